@@ -1,0 +1,26 @@
+//! The flight core behind its link: frames in, frames out.
+//!
+//! `mpp-core` knows no wire format and `hil-protocol` no planner; this crate joins them, once, for
+//! every place where the core runs: in the harness's process, as a process of its own, and on a
+//! flight computer. It has no clock, no I/O and no heap: whoever owns the link feeds bytes in and
+//! sends the bytes that come out.
+//!
+//! # One tick
+//!
+//! ```text
+//! LidarScan k      kept until the sensor frame of the same tick
+//! SensorFrame k    1. a cycle whose latency has passed is finished and taken over -> PlanReport
+//!                  2. estimate, reference, control          -> StepReport, ActuatorCommand
+//!                  3. a scan, if it is time to replan, starts a cycle
+//!                  4. the planner runs its slices of this tick
+//! ```
+//!
+//! A plan is used `latency_ticks` after its scan and not before, however fast it was found: what
+//! flies does not depend on the machine.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod convert;
+mod session;
+
+pub use session::FlightNode;

@@ -1,0 +1,94 @@
+//! The link between the flight core and the hardware-in-the-loop harness, and the telemetry that
+//! a ground station reads.
+//!
+//! The crate knows frames, versions, checksums and messages. It never knows what a value means to
+//! the planner, reads no clock, does no input or output, allocates nothing and has no panic.
+//!
+//! # A frame
+//!
+//! ```text
+//!            0      1      2      3      4              n - 4        n
+//!            +------+------+------+------+--------------+------------+
+//! plain      | 0x4D | 0x50 | ver. |  id  |   payload    |   CRC-32   |
+//!            +------+------+------+------+--------------+------------+
+//!            |<------- header ---------->|  postcard    | little     |
+//!            |<------------ checked by the CRC -------->| endian     |
+//!
+//!            +------------------------------------------------+------+
+//! on wire    |        COBS(plain): no zero byte inside        | 0x00 |
+//!            +------------------------------------------------+------+
+//! ```
+//!
+//! * The magic is "MP"; `ver.` is [`PROTOCOL_VERSION`]; `id` is one of [`id`].
+//! * The payload is the [postcard](https://postcard.jamesmunns.com/wire-format) form of the
+//!   message's struct: integers wider than a byte are varints, floats are little endian, an enum
+//!   is the position of its variant. [`Message`] itself is never encoded; the id stands for it.
+//! * The CRC is CRC-32/ISO-HDLC (the one of Ethernet and zlib).
+//! * The zero byte ends a frame and occurs nowhere else, so whatever noise went before, a
+//!   receiver is in step again at the next one. A sender that opens a line of unknown state
+//!   writes one 0x00 first: successive zeros are not an error.
+//!
+//! # A session
+//!
+//! ```text
+//! harness                                      core
+//!    | -------- Hello -------------------------> |
+//!    | <------------------------- Hello -------- |   both check the version and the sizes
+//!    | -------- Configure ---------------------> |
+//!    | <---------------- ConfigureReply -------- |   Accepted, or why not
+//!    |                                           |
+//!    | -------- [LidarScan] -------------------> |  \
+//!    | -------- SensorFrame -------------------> |   |
+//!    | <------------------- [Rejection] -------- |   |  each tick, 100 Hz;
+//!    | <------------------ [PlanReport] -------- |   |  [..] only when there is one
+//!    | <-------------------- StepReport -------- |   |
+//!    | <--------------- ActuatorCommand -------- |  /
+//! ```
+//!
+//! The [`ActuatorCommand`] ends the tick: a harness in lockstep sends nothing more until it came.
+//!
+//! # Versions
+//!
+//! Postcard has no evolution: a peer that knows one field more reads nonsense. Therefore
+//!
+//! * every change of what can go over the wire raises [`PROTOCOL_VERSION`], and both sides must
+//!   speak the same one: [`DecodeError::Version`] names the other's;
+//! * header and CRC stay as they are in every version, so that this error can be told from noise;
+//! * ids and variants are only ever appended, never moved or used again, so that a number means
+//!   the same in every recording. `tests/frozen_bytes.rs` holds the bytes of all of them.
+//!
+//! # Use
+//!
+//! ```
+//! use hil_protocol::{Decoder, MAX_FRAME, Message, SensorFrame, encode};
+//!
+//! let sent = Message::SensorFrame(SensorFrame { tick: 7, airspeed: 9.0, pitch: 0.1, x: 0.0, z: 30.0 });
+//! let mut buffer = [0; MAX_FRAME];
+//! let frame = encode(&sent, &mut buffer)?;
+//!
+//! let mut decoder = Decoder::new();
+//! let received = frame.iter().find_map(|&byte| decoder.push(byte));
+//! assert_eq!(received, Some(Ok(sent)));
+//! # Ok::<(), hil_protocol::EncodeError>(())
+//! ```
+//!
+//! Telemetry for ground stations is MAVLink 2 and stands apart, in [`telemetry`].
+
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod error;
+mod frame;
+mod message;
+pub mod telemetry;
+
+pub use error::{DecodeError, EncodeError};
+pub use frame::{Decoder, MAGIC, MAX_FRAME, PROTOCOL_VERSION, encode};
+pub use message::flight::{
+    ActuatorCommand, ControlMode, LidarScan, MAX_BEAMS, SensorFrame, StepReport,
+};
+pub use message::report::{PlanOutcome, PlanReport, Rejection, RejectionCause};
+pub use message::session::{
+    AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, Preset, Role,
+};
+pub use message::{MAX_PAYLOAD, Message, id};

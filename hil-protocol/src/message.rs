@@ -1,0 +1,155 @@
+//! The messages: one struct each, gathered in [`Message`].
+
+pub(crate) mod flight;
+pub(crate) mod report;
+pub(crate) mod session;
+
+use crate::error::{DecodeError, EncodeError};
+use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
+use report::{PlanReport, Rejection};
+use serde::de::DeserializeOwned;
+use session::{Configure, ConfigureReply, Hello};
+
+/// Message ids, the fourth byte of a frame. Append-only: a number is never used again.
+pub mod id {
+    /// [`Hello`](crate::Hello).
+    pub const HELLO: u8 = 1;
+    /// [`Configure`](crate::Configure).
+    pub const CONFIGURE: u8 = 2;
+    /// [`ConfigureReply`](crate::ConfigureReply).
+    pub const CONFIGURE_REPLY: u8 = 3;
+    /// [`SensorFrame`](crate::SensorFrame).
+    pub const SENSOR_FRAME: u8 = 4;
+    /// [`LidarScan`](crate::LidarScan).
+    pub const LIDAR_SCAN: u8 = 5;
+    /// [`ActuatorCommand`](crate::ActuatorCommand).
+    pub const ACTUATOR_COMMAND: u8 = 6;
+    /// [`StepReport`](crate::StepReport).
+    pub const STEP_REPORT: u8 = 7;
+    /// [`PlanReport`](crate::PlanReport).
+    pub const PLAN_REPORT: u8 = 8;
+    /// [`Rejection`](crate::Rejection).
+    pub const REJECTION: u8 = 9;
+}
+
+/// Everything that can go over the link.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the scan on"
+)]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Message {
+    /// Who speaks; the first message in both directions.
+    Hello(Hello),
+    /// Harness to core: what to fly with.
+    Configure(Configure),
+    /// Core to harness: whether it will.
+    ConfigureReply(ConfigureReply),
+    /// Harness to core: the measurements of one tick.
+    SensorFrame(SensorFrame),
+    /// Harness to core: one sweep of the lidar.
+    LidarScan(LidarScan),
+    /// Core to harness: the actuators of one tick.
+    ActuatorCommand(ActuatorCommand),
+    /// Core to harness: estimate and reference of one tick.
+    StepReport(StepReport),
+    /// Core to harness: how one planning cycle ended.
+    PlanReport(PlanReport),
+    /// Core to harness: an input that was not used, and why.
+    Rejection(Rejection),
+}
+
+impl Message {
+    /// The number that stands for this message in a frame's header, one of [`id`].
+    #[must_use]
+    pub const fn id(&self) -> u8 {
+        match self {
+            Self::Hello(_) => id::HELLO,
+            Self::Configure(_) => id::CONFIGURE,
+            Self::ConfigureReply(_) => id::CONFIGURE_REPLY,
+            Self::SensorFrame(_) => id::SENSOR_FRAME,
+            Self::LidarScan(_) => id::LIDAR_SCAN,
+            Self::ActuatorCommand(_) => id::ACTUATOR_COMMAND,
+            Self::StepReport(_) => id::STEP_REPORT,
+            Self::PlanReport(_) => id::PLAN_REPORT,
+            Self::Rejection(_) => id::REJECTION,
+        }
+    }
+
+    /// Writes the payload into `buffer` and returns the part of it that was used.
+    pub(crate) fn write<'a>(
+        &self,
+        buffer: &'a mut [u8; MAX_PAYLOAD],
+    ) -> Result<&'a [u8], EncodeError> {
+        let written = match self {
+            Self::Hello(body) => postcard::to_slice(body, buffer),
+            Self::Configure(body) => postcard::to_slice(body, buffer),
+            Self::ConfigureReply(body) => postcard::to_slice(body, buffer),
+            Self::SensorFrame(body) => postcard::to_slice(body, buffer),
+            Self::LidarScan(body) => postcard::to_slice(body, buffer),
+            Self::ActuatorCommand(body) => postcard::to_slice(body, buffer),
+            Self::StepReport(body) => postcard::to_slice(body, buffer),
+            Self::PlanReport(body) => postcard::to_slice(body, buffer),
+            Self::Rejection(body) => postcard::to_slice(body, buffer),
+        };
+        match written {
+            Ok(payload) => Ok(payload),
+            Err(_) => Err(EncodeError::TooLong { id: self.id() }),
+        }
+    }
+
+    /// Reads the payload of the message with this id.
+    pub(crate) fn read(id: u8, payload: &[u8]) -> Result<Self, DecodeError> {
+        Ok(match id {
+            id::HELLO => Self::Hello(body(id, payload)?),
+            id::CONFIGURE => Self::Configure(body(id, payload)?),
+            id::CONFIGURE_REPLY => Self::ConfigureReply(body(id, payload)?),
+            id::SENSOR_FRAME => Self::SensorFrame(body(id, payload)?),
+            id::LIDAR_SCAN => Self::LidarScan(body(id, payload)?),
+            id::ACTUATOR_COMMAND => Self::ActuatorCommand(body(id, payload)?),
+            id::STEP_REPORT => Self::StepReport(body(id, payload)?),
+            id::PLAN_REPORT => Self::PlanReport(body(id, payload)?),
+            id::REJECTION => Self::Rejection(body(id, payload)?),
+            _ => return Err(DecodeError::UnknownId { id }),
+        })
+    }
+}
+
+/// One struct from exactly these bytes.
+fn body<T: DeserializeOwned>(id: u8, payload: &[u8]) -> Result<T, DecodeError> {
+    match postcard::take_from_bytes(payload) {
+        Ok((value, [])) => Ok(value),
+        Ok(_) => Err(DecodeError::TrailingBytes { id }),
+        Err(_) => Err(DecodeError::Payload { id }),
+    }
+}
+
+/// Size of the longest payload, a full [`LidarScan`] \[bytes\].
+pub const MAX_PAYLOAD: usize = LidarScan::MAX_SIZE;
+
+const _: () = {
+    assert!(Hello::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(Configure::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(ConfigureReply::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(SensorFrame::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(ActuatorCommand::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(StepReport::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(PlanReport::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(Rejection::MAX_SIZE <= MAX_PAYLOAD);
+};
+
+/// The most bytes that postcard needs for one value of a type.
+pub(crate) mod size {
+    /// `bool`, and the variant of an enum with at most 128 of them.
+    pub(crate) const BYTE: usize = 1;
+    /// `u16`, and the length of a list below 2^14: seven bits to the byte.
+    pub(crate) const U16: usize = 3;
+    /// `u32`.
+    pub(crate) const U32: usize = 5;
+    /// `u64`.
+    pub(crate) const U64: usize = 10;
+    /// `f32`.
+    pub(crate) const F32: usize = 4;
+    /// `f64`.
+    pub(crate) const F64: usize = 8;
+}

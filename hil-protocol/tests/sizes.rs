@@ -1,0 +1,114 @@
+//! The longest payload of each message is as long as its `MAX_SIZE` says, and fits.
+
+#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+
+use hil_protocol::*;
+use serde::Serialize;
+
+fn payload(value: &impl Serialize) -> usize {
+    postcard::to_slice(value, &mut [0; 1024]).unwrap().len()
+}
+
+/// Not a zero among its bytes.
+const FLOAT: f64 = f64::from_bits(0x4142_4344_4546_4748);
+
+fn longest_scan() -> LidarScan {
+    let value = f32::from_bits(0x4142_4344);
+    LidarScan {
+        tick: u32::MAX,
+        angle_min: value,
+        angle_increment: value,
+        ranges: [value; MAX_BEAMS].into_iter().collect(),
+    }
+}
+
+#[test]
+fn of_the_session() {
+    let hello = Hello {
+        role: Role::Core,
+        software: [u8::MAX; 3],
+        tick_period_us: u32::MAX,
+        beams_max: u16::MAX,
+        stages: u16::MAX,
+    };
+    assert_eq!(payload(&hello), Hello::MAX_SIZE);
+    let configure = Configure {
+        preset: Preset::Flight,
+        airframe: AirframeId::Reference,
+        paths: u16::MAX,
+        replan_period_ticks: u32::MAX,
+        latency_ticks: u32::MAX,
+        slices_per_tick: u32::MAX,
+        seed: u64::MAX,
+        beams: u16::MAX,
+        range_max: 1.0,
+        altitude: FLOAT,
+    };
+    assert_eq!(payload(&configure), Configure::MAX_SIZE);
+    let reply = ConfigureReply {
+        verdict: ConfigureVerdict::Beams { max: u16::MAX },
+    };
+    assert_eq!(payload(&reply), ConfigureReply::MAX_SIZE);
+}
+
+#[test]
+fn of_a_tick() {
+    let sensors = SensorFrame {
+        tick: u32::MAX,
+        airspeed: FLOAT,
+        pitch: FLOAT,
+        x: FLOAT,
+        z: FLOAT,
+    };
+    assert_eq!(payload(&sensors), SensorFrame::MAX_SIZE);
+    assert_eq!(payload(&longest_scan()), LidarScan::MAX_SIZE);
+    let command = ActuatorCommand {
+        tick: u32::MAX,
+        thrust: FLOAT,
+        elevator: FLOAT,
+        mode: ControlMode::Tracking,
+    };
+    assert_eq!(payload(&command), ActuatorCommand::MAX_SIZE);
+    let report = StepReport {
+        tick: u32::MAX,
+        estimate: [FLOAT; 4],
+        reference: [FLOAT; 6],
+        plan_age_ticks: u32::MAX,
+    };
+    assert_eq!(payload(&report), StepReport::MAX_SIZE);
+}
+
+#[test]
+fn of_the_reports() {
+    let plan = PlanReport {
+        scan_tick: u32::MAX,
+        used_from_tick: u32::MAX,
+        outcome: PlanOutcome::TrimHold,
+        candidates: u16::MAX,
+        feasible: u16::MAX,
+        tree_runs: u16::MAX,
+        slices: u32::MAX,
+        cost: FLOAT,
+        violation: FLOAT,
+        complete: true,
+    };
+    assert_eq!(payload(&plan), PlanReport::MAX_SIZE);
+    let cause = RejectionCause::TickOrder {
+        expected: u32::MAX,
+        found: u32::MAX,
+    };
+    assert_eq!(
+        payload(&Rejection {
+            tick: u32::MAX,
+            cause
+        }),
+        Rejection::MAX_SIZE
+    );
+}
+
+#[test]
+fn of_a_frame() {
+    let mut buffer = [0; MAX_FRAME];
+    let longest = Message::LidarScan(longest_scan());
+    assert_eq!(encode(&longest, &mut buffer).unwrap().len(), MAX_FRAME);
+}

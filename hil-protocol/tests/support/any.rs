@@ -1,0 +1,193 @@
+//! Any message, floats of every bit pattern included.
+
+use hil_protocol::*;
+use proptest::array::{uniform4, uniform6};
+use proptest::collection::vec;
+use proptest::num::{f32, f64};
+use proptest::prelude::*;
+use proptest::sample::select;
+
+pub(crate) fn message() -> impl Strategy<Value = Message> {
+    prop_oneof![
+        hello().prop_map(Message::Hello),
+        configure().prop_map(Message::Configure),
+        verdict().prop_map(|verdict| Message::ConfigureReply(ConfigureReply { verdict })),
+        sensor_frame().prop_map(Message::SensorFrame),
+        lidar_scan().prop_map(Message::LidarScan),
+        actuator_command().prop_map(Message::ActuatorCommand),
+        step_report().prop_map(Message::StepReport),
+        plan_report().prop_map(Message::PlanReport),
+        (any::<u32>(), cause())
+            .prop_map(|(tick, cause)| Message::Rejection(Rejection { tick, cause })),
+    ]
+}
+
+fn hello() -> impl Strategy<Value = Hello> {
+    let roles = select(&[Role::Harness, Role::Core]);
+    (
+        roles,
+        any::<[u8; 3]>(),
+        any::<u32>(),
+        any::<u16>(),
+        any::<u16>(),
+    )
+        .prop_map(
+            |(role, software, tick_period_us, beams_max, stages)| Hello {
+                role,
+                software,
+                tick_period_us,
+                beams_max,
+                stages,
+            },
+        )
+}
+
+fn configure() -> impl Strategy<Value = Configure> {
+    let presets = select(&[Preset::Reference, Preset::Paper, Preset::Flight]);
+    let airframes = select(&[AirframeId::Paper, AirframeId::Reference]);
+    let ticks = any::<[u32; 3]>();
+    let rest = (any::<u64>(), any::<u16>(), f32::ANY, f64::ANY);
+    (presets, airframes, any::<u16>(), ticks, rest).prop_map(
+        |(preset, airframe, paths, ticks, (seed, beams, range_max, altitude))| Configure {
+            preset,
+            airframe,
+            paths,
+            replan_period_ticks: ticks[0],
+            latency_ticks: ticks[1],
+            slices_per_tick: ticks[2],
+            seed,
+            beams,
+            range_max,
+            altitude,
+        },
+    )
+}
+
+fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
+    prop_oneof![
+        any::<u16>().prop_map(|max| ConfigureVerdict::TooManyPaths { max }),
+        any::<u16>().prop_map(|max| ConfigureVerdict::Beams { max }),
+        select(&[
+            ConfigureVerdict::Accepted,
+            ConfigureVerdict::ReplanPeriod,
+            ConfigureVerdict::Latency,
+            ConfigureVerdict::NonFinite,
+            ConfigureVerdict::NotTrimmable,
+            ConfigureVerdict::SlicesPerTick,
+            ConfigureVerdict::RangeMax,
+            ConfigureVerdict::AlreadyConfigured,
+        ]),
+    ]
+}
+
+fn sensor_frame() -> impl Strategy<Value = SensorFrame> {
+    (any::<u32>(), uniform4(f64::ANY)).prop_map(|(tick, [airspeed, pitch, x, z])| SensorFrame {
+        tick,
+        airspeed,
+        pitch,
+        x,
+        z,
+    })
+}
+
+fn lidar_scan() -> impl Strategy<Value = LidarScan> {
+    (
+        any::<u32>(),
+        f32::ANY,
+        f32::ANY,
+        vec(f32::ANY, 0..=MAX_BEAMS),
+    )
+        .prop_map(|(tick, angle_min, angle_increment, ranges)| LidarScan {
+            tick,
+            angle_min,
+            angle_increment,
+            ranges: ranges.into_iter().collect(),
+        })
+}
+
+fn actuator_command() -> impl Strategy<Value = ActuatorCommand> {
+    let modes = select(&[ControlMode::TrimHold, ControlMode::Tracking]);
+    (any::<u32>(), f64::ANY, f64::ANY, modes).prop_map(|(tick, thrust, elevator, mode)| {
+        ActuatorCommand {
+            tick,
+            thrust,
+            elevator,
+            mode,
+        }
+    })
+}
+
+fn step_report() -> impl Strategy<Value = StepReport> {
+    (
+        any::<u32>(),
+        uniform4(f64::ANY),
+        uniform6(f64::ANY),
+        any::<u32>(),
+    )
+        .prop_map(|(tick, estimate, reference, plan_age_ticks)| StepReport {
+            tick,
+            estimate,
+            reference,
+            plan_age_ticks,
+        })
+}
+
+fn plan_report() -> impl Strategy<Value = PlanReport> {
+    let outcomes = select(&[
+        PlanOutcome::Adopted,
+        PlanOutcome::LeastViolating,
+        PlanOutcome::KeptPrevious,
+        PlanOutcome::TrimHold,
+    ]);
+    let counts = (any::<[u32; 3]>(), any::<[u16; 3]>());
+    (outcomes, counts, f64::ANY, f64::ANY, any::<bool>()).prop_map(
+        |(outcome, (long, short), cost, violation, complete)| PlanReport {
+            scan_tick: long[0],
+            used_from_tick: long[1],
+            outcome,
+            candidates: short[0],
+            feasible: short[1],
+            tree_runs: short[2],
+            slices: long[2],
+            cost,
+            violation,
+            complete,
+        },
+    )
+}
+
+fn cause() -> impl Strategy<Value = RejectionCause> {
+    prop_oneof![
+        any::<(bool, bool)>()
+            .prop_map(|(airspeed, pitch)| RejectionCause::InnovationGate { airspeed, pitch }),
+        any::<(u16, u16)>()
+            .prop_map(|(expected, found)| RejectionCause::ScanLength { expected, found }),
+        any::<u16>().prop_map(|beam| RejectionCause::ScanNotFinite { beam }),
+        any::<u16>().prop_map(|beam| RejectionCause::ScanRange { beam }),
+        any::<(u32, u32)>()
+            .prop_map(|(expected, found)| RejectionCause::TickOrder { expected, found }),
+        any::<u8>().prop_map(|id| RejectionCause::UnexpectedMessage { id }),
+        decode_error().prop_map(RejectionCause::Frame),
+        select(&[
+            RejectionCause::NonFiniteSensor,
+            RejectionCause::NotConfigured,
+            RejectionCause::PlannerBusy,
+        ]),
+    ]
+}
+
+fn decode_error() -> impl Strategy<Value = DecodeError> {
+    prop_oneof![
+        any::<u8>().prop_map(|peer| DecodeError::Version { peer }),
+        any::<u8>().prop_map(|id| DecodeError::UnknownId { id }),
+        any::<u8>().prop_map(|id| DecodeError::Payload { id }),
+        any::<u8>().prop_map(|id| DecodeError::TrailingBytes { id }),
+        select(&[
+            DecodeError::TooLong,
+            DecodeError::Cobs,
+            DecodeError::TooShort,
+            DecodeError::Magic,
+            DecodeError::Crc,
+        ]),
+    ]
+}

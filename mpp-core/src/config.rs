@@ -1,0 +1,56 @@
+//! Every compile-time size and rate, tied together by the assertions at the end.
+
+/// Period of the flight loop [s].
+pub const TICK_PERIOD: f64 = 0.01;
+
+/// Stages of the planning horizon (paper, section III-D: 4.5 s at 0.25 s).
+pub const STAGES: usize = 18;
+/// Stage boundaries, the start included.
+pub const KNOTS: usize = STAGES + 1;
+/// Length of a stage [s].
+pub const STAGE_PERIOD: f64 = 0.25;
+
+/// Rays, and so half-planes, around each collocation point (paper, section III-B).
+pub const DIRECTIONS: usize = 8;
+/// Length at which a ray gives up [m].
+pub const RAY_LIMIT: f64 = 20.0;
+
+/// Rows (height) of the occupancy grid; a cell is 1 m x 1 m.
+pub const GRID_ROWS: usize = 75;
+/// Columns (downrange) of the occupancy grid.
+pub const GRID_COLS: usize = 150;
+/// Row of the aircraft, which is at the low corner of its cell.
+pub const ORIGIN_ROW: usize = 37;
+/// Column of the aircraft.
+pub const ORIGIN_COL: usize = 25;
+
+/// First grid row that the path search and the authors' rays see: 10 m below the aircraft.
+pub const SEARCH_ROW: usize = 27;
+/// Rows of the search box: 10 m below to 10 m above the aircraft.
+pub const SEARCH_ROWS: usize = 20;
+/// Columns of the search box.
+pub const SEARCH_COLS: usize = 85;
+
+/// Nodes of one RRT*-AR tree ("a low number of samples", paper, section III-A).
+pub const TREE_NODES: usize = 150;
+/// Samples that one tree may draw, rejected ones included; 177 were the most seen in recorded
+/// runs, the rest is for fields so dense that most samples are rejected.
+pub const TREE_SAMPLES: usize = 4 * TREE_NODES;
+/// Runs of RRT*-AR in one planning cycle.
+pub const TREE_RUNS: usize = 100;
+/// Most candidate paths of one cycle.
+pub const MAX_PATHS: usize = 50;
+/// Points of a path: the tree's depth and the goal.
+pub const PATH_POINTS: usize = TREE_NODES + 1;
+
+/// Most beams of a lidar scan.
+pub const MAX_BEAMS: usize = 128;
+
+const _: () = {
+    assert!(SEARCH_ROW + SEARCH_ROWS <= GRID_ROWS);
+    assert!(SEARCH_COLS <= GRID_COLS);
+    assert!(ORIGIN_ROW >= SEARCH_ROW && ORIGIN_ROW < SEARCH_ROW + SEARCH_ROWS);
+    assert!(TREE_NODES < u16::MAX as usize);
+    // A collocation point lies on a tick, so that a plan can be taken over on one.
+    assert!((STAGE_PERIOD / TICK_PERIOD) as usize == 25);
+};

@@ -1,0 +1,163 @@
+//! Raytracing around the collocation points: eight half-planes a stage (paper, section III-B).
+
+use crate::Rules;
+use crate::config::{
+    DIRECTIONS, GRID_COLS, KNOTS, ORIGIN_COL, ORIGIN_ROW, RAY_LIMIT, SEARCH_ROW, STAGE_PERIOD,
+    STAGES,
+};
+use crate::map::{CellWalk, GridPoint, MAX_WALK, OccupancyGrid};
+use crate::plan::CollocationPoints;
+
+/// Ray directions `(row, col)`, counter-clockwise from up to forward, down and back.
+///
+/// The digits are those of the recorded reference (cosines and sines of multiples of 45 degrees
+/// in floating point, the first zero replaced by 1e-8): a ray that runs along a cell boundary ends
+/// in another cell with other digits.
+#[expect(
+    clippy::approx_constant,
+    reason = "the recorded digits, not the nearest ones"
+)]
+pub const DIRECTION_VECTORS: [[f64; 2]; DIRECTIONS] = [
+    [1.0, 1e-8],
+    [0.7071067811865476, 0.7071067811865475],
+    [6.123233995736766e-17, 1.0],
+    [-0.7071067811865475, 0.7071067811865476],
+    [-1.0, 1.2246467991473532e-16],
+    [-0.7071067811865477, -0.7071067811865475],
+    [-1.8369701987210297e-16, -1.0],
+    [0.7071067811865474, -0.7071067811865477],
+];
+
+/// Distance kept from what a ray hit [m], growing over the horizon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Padding {
+    /// At the first stage boundary.
+    pub near: f64,
+    /// At the last.
+    pub far: f64,
+}
+
+impl Padding {
+    /// The authors' values; the paper says "slightly".
+    pub const AUTHORS: Self = Self {
+        near: 1.5,
+        far: 2.5,
+    };
+
+    fn at(&self, stage: usize) -> f64 {
+        self.near + (self.far - self.near) * (stage as f64 / STAGES as f64)
+    }
+}
+
+/// Half-planes `g_i . p_k <= bounds[k][i]` [m] on the position `p_k = (z, x)` of each stage
+/// boundary relative to straight and level flight, `g_i` being [`DIRECTION_VECTORS`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Corridor {
+    /// Right-hand sides [m], `KNOTS` x `DIRECTIONS`.
+    pub bounds: [[f64; DIRECTIONS]; KNOTS],
+}
+
+impl Corridor {
+    /// A corridor without bounds.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            bounds: [[f64::INFINITY; DIRECTIONS]; KNOTS],
+        }
+    }
+
+    /// Traces the rays of every collocation point; `cruise` is the airspeed of straight and level
+    /// flight [m/s].
+    pub fn trace(
+        &mut self,
+        grid: &OccupancyGrid,
+        points: &CollocationPoints,
+        cruise: f64,
+        padding: &Padding,
+        rules: Rules,
+    ) {
+        for (stage, (point, bounds)) in points.iter().zip(&mut self.bounds).enumerate() {
+            let level_row = point.row - ORIGIN_ROW as f64;
+            let level_col = point.col - ORIGIN_COL as f64 - cruise * STAGE_PERIOD * stage as f64;
+            for (direction, bound) in DIRECTION_VECTORS.iter().zip(bounds) {
+                let reach = match rules {
+                    Rules::Authors => {
+                        let hit = authors_ray(grid, *point, direction);
+                        direction[0] * (hit.row - point.row) + direction[1] * (hit.col - point.col)
+                    }
+                    Rules::Corrected => cast_ray(grid, *point, direction),
+                };
+                *bound =
+                    reach + direction[0] * level_row + direction[1] * level_col - padding.at(stage);
+            }
+        }
+    }
+}
+
+impl Default for Corridor {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Distance [m] from a point along a unit vector to the near side of the first occupied cell, at
+/// most [`RAY_LIMIT`].
+#[must_use]
+pub fn cast_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]) -> f64 {
+    CellWalk::new(origin, *direction)
+        .take(MAX_WALK)
+        .take_while(|(_, _, entered)| *entered < RAY_LIMIT)
+        .find(|(row, col, _)| grid.occupied(*row, *col))
+        .map_or(RAY_LIMIT, |(_, _, entered)| entered)
+}
+
+/// Rows of the window that the authors' rays see, from [`SEARCH_ROW`] up.
+const WINDOW_ROWS: i32 = 48;
+/// Columns of that window.
+const WINDOW_COLS: i32 = 80;
+const _: () = assert!(WINDOW_COLS as usize <= GRID_COLS);
+
+/// The authors' ray, to compare with their code: where it ends, in grid coordinates.
+///
+/// It steps from line to line of either axis and tests the cell that it stands in, so that towards
+/// negative directions the cell just crossed is tested and the far side of an obstacle is returned;
+/// below the window's low edges it reads the cells of the opposite edges; and it returns the low
+/// corner of the last cell.
+#[must_use]
+pub fn authors_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]) -> GridPoint {
+    let mut at = [origin.row - SEARCH_ROW as f64, origin.col];
+    let inverse = [1.0 / direction[0], 1.0 / direction[1]];
+    let mut travelled = 0.0;
+    for _ in 0..MAX_WALK {
+        if travelled >= RAY_LIMIT {
+            break;
+        }
+        let mut ratio = [0.0; 2];
+        for axis in 0..2 {
+            let line = if direction[axis] < 0.0 {
+                libm::ceil(at[axis] - 1.0)
+            } else {
+                libm::floor(at[axis] + 1.0)
+            };
+            // Not a division: its last digit would move rays along cell boundaries.
+            ratio[axis] = (line - at[axis]) * inverse[axis];
+        }
+        let length = ratio[0].min(ratio[1]);
+        at[0] += length * direction[0];
+        at[1] += length * direction[1];
+        let (row, col) = (at[0] as i32, at[1] as i32);
+        if at[0] >= f64::from(WINDOW_ROWS) || at[1] >= f64::from(WINDOW_COLS) {
+            break;
+        }
+        let wrapped_row = if row < 0 { row + WINDOW_ROWS } else { row };
+        let wrapped_col = if col < 0 { col + WINDOW_COLS } else { col };
+        if grid.occupied(wrapped_row + SEARCH_ROW as i32, wrapped_col) {
+            break;
+        }
+        travelled += length;
+    }
+    GridPoint {
+        row: libm::floor(at[0]) + SEARCH_ROW as f64,
+        col: libm::floor(at[1]),
+    }
+}

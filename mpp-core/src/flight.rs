@@ -1,0 +1,211 @@
+//! The 100 Hz step: estimate, reference, control; and the hand-over of trajectories.
+
+use crate::control::Lqr;
+use crate::estimate::{Ekf, Innovation, Verdict as MeasurementVerdict};
+use crate::health::Health;
+use crate::planner::{SetupError, Verdict};
+use crate::sense::SensorFrame;
+use crate::settings::Settings;
+use crate::trajectory::{Reference, Trajectory};
+use crate::vehicle::{AirState, Control, Trim, VehicleState, linearize};
+
+/// What flies the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mode {
+    /// Level trim: there is no trajectory, or it has ended.
+    TrimHold,
+    /// A trajectory.
+    Tracking,
+}
+
+/// What became of a finished planning cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Adoption {
+    /// A feasible trajectory is flown from now on.
+    Feasible,
+    /// The least-violating trajectory is flown from now on.
+    LeastViolating,
+    /// The last trajectory is flown on.
+    Kept,
+    /// Level trim is held.
+    TrimHold,
+}
+
+/// The outcome of one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepOutput {
+    /// What the actuators are told.
+    pub control: Control,
+    /// What is tracked.
+    pub reference: Reference,
+    /// By what.
+    pub mode: Mode,
+    /// The verdicts on the measurement.
+    pub innovation: Innovation,
+    /// Whether the position was finite and used.
+    pub position_used: bool,
+}
+
+/// Everything that runs at 100 Hz.
+#[derive(Clone, Debug)]
+pub struct FlightLoop {
+    ekf: Ekf,
+    lqr: Lqr,
+    trim: Trim,
+    trajectory: Option<Trajectory>,
+    position: (f64, f64),
+    last: Option<(f64, Control)>,
+    health: Health,
+}
+
+impl FlightLoop {
+    /// A loop that starts from level trim at the origin.
+    ///
+    /// # Errors
+    /// [`SetupError`] when trim or gain do not exist.
+    pub fn new(settings: &Settings) -> Result<Self, SetupError> {
+        let airframe = &settings.airframe;
+        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        let design = Control {
+            thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
+            ..trim.control
+        };
+        let linear = linearize(airframe, &trim.state, design, settings.design_jacobian);
+        let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
+        Ok(Self {
+            ekf: Ekf::new(*airframe, settings.estimator, trim.state),
+            lqr,
+            trim,
+            trajectory: None,
+            position: (0.0, settings.planner.altitude),
+            last: None,
+            health: Health::default(),
+        })
+    }
+
+    /// One step at a time [s]: predicts under the last control over the time since, corrects by
+    /// the measurement, and tracks the reference.
+    pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
+        if let Some((before, control)) = self.last
+            && self.ekf.predict(control, time - before).is_err()
+        {
+            Health::count(&mut self.health.predictions_diverged);
+        }
+        let innovation = self.ekf.update(&frame.measurement);
+        self.count_verdict(innovation.airspeed);
+        self.count_verdict(innovation.pitch);
+        let position_used = frame.x.is_finite() && frame.z.is_finite();
+        if position_used {
+            self.position = (frame.x, frame.z);
+        } else {
+            Health::count(&mut self.health.positions_not_finite);
+        }
+
+        let tracked = self
+            .trajectory
+            .as_ref()
+            .and_then(|trajectory| trajectory.sample(time));
+        let (mode, reference) = match tracked {
+            Some(reference) => (Mode::Tracking, reference),
+            None => (Mode::TrimHold, self.level_reference()),
+        };
+        let mut control = self.lqr.track(
+            self.ekf.estimate(),
+            &reference.state.air,
+            reference.feedforward,
+        );
+        if control.thrust < 0.0 {
+            control.thrust = 0.0;
+            Health::count(&mut self.health.thrust_raised);
+        }
+        self.last = Some((time, control));
+        StepOutput {
+            control,
+            reference,
+            mode,
+            innovation,
+            position_used,
+        }
+    }
+
+    /// Takes over what a planning cycle has to offer. What happens without a feasible trajectory
+    /// stands here and nowhere else.
+    pub fn adopt(&mut self, time: f64, verdict: Verdict, offered: &Trajectory) -> Adoption {
+        let valid = self
+            .trajectory
+            .as_ref()
+            .is_some_and(|last| last.sample(time).is_some());
+        match (verdict, valid) {
+            (Verdict::Feasible, _) => {
+                self.trajectory = Some(offered.clone());
+                Health::count(&mut self.health.plans_feasible);
+                Adoption::Feasible
+            }
+            // The last trajectory was made for a map that did not show what is in the way now: the
+            // least-violating one knows it.
+            (Verdict::LeastViolating, _) => {
+                self.trajectory = Some(offered.clone());
+                Health::count(&mut self.health.plans_least_violating);
+                Adoption::LeastViolating
+            }
+            (Verdict::Nothing, true) => {
+                Health::count(&mut self.health.plans_kept);
+                Adoption::Kept
+            }
+            (Verdict::Nothing, false) => {
+                self.trajectory = None;
+                Health::count(&mut self.health.plans_trim_hold);
+                Adoption::TrimHold
+            }
+        }
+    }
+
+    /// The estimated motion.
+    #[must_use]
+    pub fn estimate(&self) -> &AirState {
+        self.ekf.estimate()
+    }
+
+    /// The state that a plan starts from: position as delivered, motion as estimated.
+    #[must_use]
+    pub fn state(&self) -> VehicleState {
+        VehicleState {
+            x: self.position.0,
+            z: self.position.1,
+            air: *self.ekf.estimate(),
+        }
+    }
+
+    /// The trajectory being flown, if any.
+    #[must_use]
+    pub fn trajectory(&self) -> Option<&Trajectory> {
+        self.trajectory.as_ref()
+    }
+
+    /// What went wrong so far.
+    #[must_use]
+    pub fn health(&self) -> &Health {
+        &self.health
+    }
+
+    fn level_reference(&self) -> Reference {
+        Reference {
+            state: VehicleState {
+                x: self.position.0,
+                z: self.position.1,
+                air: self.trim.state,
+            },
+            feedforward: self.trim.control,
+        }
+    }
+
+    fn count_verdict(&mut self, verdict: MeasurementVerdict) {
+        match verdict {
+            MeasurementVerdict::Accepted => {}
+            MeasurementVerdict::Gated => Health::count(&mut self.health.measurements_gated),
+            MeasurementVerdict::NotFinite => {
+                Health::count(&mut self.health.measurements_not_finite);
+            }
+        }
+    }
+}

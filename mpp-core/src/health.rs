@@ -1,0 +1,32 @@
+//! Counters of everything that was rejected, replaced or given up. They only ever grow; the ground
+//! reads what changed.
+
+/// One counter a cause; a full counter stays at its maximum.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Health {
+    /// Measured values that were not finite.
+    pub measurements_not_finite: u32,
+    /// Measured values beyond the innovation gate.
+    pub measurements_gated: u32,
+    /// Predictions that were not finite; the last estimate was kept.
+    pub predictions_diverged: u32,
+    /// Positions that were not finite; the last one was kept.
+    pub positions_not_finite: u32,
+    /// Thrust commands below zero, raised to it.
+    pub thrust_raised: u32,
+    /// Cycles that gave a feasible trajectory.
+    pub plans_feasible: u32,
+    /// Cycles without one that flew on along the last trajectory.
+    pub plans_kept: u32,
+    /// Cycles without one that took the least-violating trajectory.
+    pub plans_least_violating: u32,
+    /// Cycles that had nothing to offer and no trajectory to keep.
+    pub plans_trim_hold: u32,
+}
+
+impl Health {
+    /// Adds one to a counter.
+    pub(crate) fn count(counter: &mut u32) {
+        *counter = counter.saturating_add(1);
+    }
+}

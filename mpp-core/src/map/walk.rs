@@ -1,0 +1,58 @@
+//! The cells that a straight line passes (Amanatides, Woo: "A fast voxel traversal algorithm for
+//! ray tracing", 1987).
+
+use super::GridPoint;
+
+/// Iterates over the cells along a ray: `(row, col, distance at which the cell is entered [m])`.
+///
+/// The first item is the cell of the origin at distance 0. The walk never ends by itself; the
+/// caller stops at a distance, which bounds the cells by `2 distance + 3`.
+pub(crate) struct CellWalk {
+    cell: [i32; 2],
+    step: [i32; 2],
+    next_line: [f64; 2],
+    line_spacing: [f64; 2],
+    entered: f64,
+}
+
+impl CellWalk {
+    /// A walk from `origin` along the unit vector `direction` `(row, col)`.
+    pub(crate) fn new(origin: GridPoint, direction: [f64; 2]) -> Self {
+        let origin = [origin.row, origin.col];
+        let mut walk = Self {
+            cell: [0; 2],
+            step: [0; 2],
+            next_line: [f64::INFINITY; 2],
+            line_spacing: [f64::INFINITY; 2],
+            entered: 0.0,
+        };
+        for axis in 0..2 {
+            let floor = libm::floor(origin[axis]);
+            walk.cell[axis] = floor as i32;
+            let inverse = 1.0 / direction[axis];
+            if direction[axis] > 0.0 {
+                walk.step[axis] = 1;
+                walk.next_line[axis] = (floor + 1.0 - origin[axis]) * inverse;
+                walk.line_spacing[axis] = inverse;
+            } else if direction[axis] < 0.0 {
+                walk.step[axis] = -1;
+                walk.next_line[axis] = (floor - origin[axis]) * inverse;
+                walk.line_spacing[axis] = -inverse;
+            }
+        }
+        walk
+    }
+}
+
+impl Iterator for CellWalk {
+    type Item = (i32, i32, f64);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let item = (self.cell[0], self.cell[1], self.entered);
+        let axis = usize::from(self.next_line[1] < self.next_line[0]);
+        self.entered = self.next_line[axis];
+        self.cell[axis] = self.cell[axis].saturating_add(self.step[axis]);
+        self.next_line[axis] += self.line_spacing[axis];
+        Some(item)
+    }
+}

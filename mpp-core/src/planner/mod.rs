@@ -1,0 +1,333 @@
+//! The anytime planner: composes map, path search, raytracing and program, in bounded slices.
+//!
+//! ```text
+//! begin --> Map --> Tree --> Corridor --> Program --+--> Done
+//!                    ^  ^                  |        |
+//!                    |  +-- next path -----+        |
+//!                    +----- tree read out ----------+
+//! ```
+//!
+//! Between any two slices the flight loop may run, and at any slice the best trajectory so far can
+//! be taken.
+
+mod cycle;
+
+use crate::config::{KNOTS, MAX_PATHS};
+use crate::corridor::Corridor;
+use crate::map::{GridPoint, OccupancyGrid};
+use crate::plan::{CollocationPoints, Path, Search};
+use crate::qp::{
+    Bounds, CondenseError, Condensed, ModelError, Problem, Solution, Solver, StageModel,
+};
+use crate::sense::LidarScan;
+use crate::settings::{AttitudeLimits, PlannerSettings, Settings};
+use crate::trajectory::Trajectory;
+use crate::vehicle::{AirState, Airframe, Trim, TrimError, VehicleState, linearize};
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+/// A trajectory whose rows are violated by no more than this [m or rad] is feasible.
+const FEASIBLE: f64 = 1e-6;
+
+/// Why a planner cannot be set up. The vehicle does not start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SetupError {
+    /// The airframe has no level trim at the cruise thrust.
+    Trim(TrimError),
+    /// The regulator has no stabilising gain.
+    Regulator(crate::control::RiccatiError),
+    /// The plan's model has no steady state.
+    Model(ModelError),
+    /// The program's Hessian is not positive definite.
+    Condense(CondenseError),
+    /// More paths than [`MAX_PATHS`].
+    TooManyPaths,
+    /// A number is not finite, or a penalty not positive.
+    Number,
+}
+
+/// What a finished or interrupted cycle came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlanSummary {
+    /// Candidate paths refined.
+    pub candidates: usize,
+    /// Those with a feasible trajectory (a dominated candidate's is not known and not counted).
+    pub feasible: usize,
+    /// Trees grown.
+    pub tree_runs: usize,
+    /// Slices used.
+    pub slices: usize,
+    /// Solver steps used.
+    pub solver_steps: usize,
+    /// Whether every candidate was looked at.
+    pub complete: bool,
+    /// Cost of the best trajectory; infinite without one.
+    pub cost: f64,
+    /// Its worst violation [m or rad]; infinite without one.
+    pub violation: f64,
+}
+
+/// What the cycle has to offer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A trajectory that keeps every row.
+    Feasible,
+    /// None does; the best one violates rows least.
+    LeastViolating,
+    /// No candidate gave any trajectory.
+    Nothing,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Idle,
+    Map,
+    Tree,
+    Corridor,
+    Program,
+    Done,
+}
+
+/// The planner and all its workspaces. Large: place it in a `static` or a box, and never on a stack.
+#[derive(Clone, Debug)]
+pub struct Planner {
+    settings: PlannerSettings,
+    trim: Trim,
+    airframe: Airframe,
+    shared: Condensed,
+    /// None until the planner is set up.
+    random: Option<Pcg64Mcg>,
+    phase: Phase,
+    time: f64,
+    state: VehicleState,
+    scan: LidarScan,
+    grid: OccupancyGrid,
+    search: Search,
+    next_node: usize,
+    path: Path,
+    points: CollocationPoints,
+    corridor: Corridor,
+    problem: Problem,
+    solver: Solver,
+    candidate: Solution,
+    best_length: f64,
+    best: Trajectory,
+    summary: PlanSummary,
+}
+
+impl Planner {
+    /// An idle planner that is not set up.
+    #[must_use]
+    pub const fn new() -> Self {
+        let settings = Settings::reference();
+        let still = VehicleState {
+            x: 0.0,
+            z: 0.0,
+            air: STILL,
+        };
+        Self {
+            settings: settings.planner,
+            trim: Trim {
+                state: STILL,
+                control: crate::vehicle::Control {
+                    thrust: 0.0,
+                    elevator: 0.0,
+                },
+            },
+            airframe: settings.airframe,
+            shared: Condensed::new(),
+            random: None,
+            phase: Phase::Idle,
+            time: 0.0,
+            state: still,
+            scan: LidarScan::new(),
+            grid: OccupancyGrid::new(),
+            search: Search::new(),
+            next_node: 0,
+            path: Path::new(),
+            points: [GridPoint::AIRCRAFT; KNOTS],
+            corridor: Corridor::new(),
+            problem: Problem {
+                initial: [0.0; 6],
+                target: [0.0; 6],
+                bounds: Bounds::none(),
+                penalty: None,
+                cost_limit: f64::INFINITY,
+            },
+            solver: Solver::new(),
+            candidate: Solution::new(),
+            best_length: f64::INFINITY,
+            best: Trajectory::new(),
+            summary: NO_SUMMARY,
+        }
+    }
+
+    /// Sets up the model about level trim.
+    ///
+    /// # Errors
+    /// [`SetupError`]: nothing is planned.
+    pub fn set_up(&mut self, settings: &Settings) -> Result<(), SetupError> {
+        let planner = &settings.planner;
+        if planner.paths > MAX_PATHS {
+            return Err(SetupError::TooManyPaths);
+        }
+        let priced = planner
+            .penalty
+            .is_none_or(|p| p.linear > 0.0 && p.quadratic > 0.0);
+        if !planner.altitude.is_finite() || !priced {
+            return Err(SetupError::Number);
+        }
+        let airframe = &settings.airframe;
+        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        let linear = linearize(airframe, &trim.state, trim.control, planner.jacobian);
+        let model = StageModel::new(
+            airframe,
+            &trim,
+            &linear,
+            planner.steady_state,
+            planner.initial,
+        )
+        .map_err(SetupError::Model)?;
+        self.shared
+            .condense(&model, &planner.weights)
+            .map_err(SetupError::Condense)?;
+        self.settings = *planner;
+        self.trim = trim;
+        self.airframe = *airframe;
+        self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
+        // Rows that these settings do not have must not stay from others.
+        self.problem.bounds.clear();
+        self.phase = Phase::Idle;
+        Ok(())
+    }
+
+    /// Starts a cycle at a time [s] from a state and a checked scan; drops one under way.
+    pub fn begin(&mut self, time: f64, state: &VehicleState, scan: &LidarScan) {
+        self.time = time;
+        self.state = *state;
+        self.scan.clone_from(scan);
+        self.problem.initial = self.shared.initial_state(&self.trim, &state.air);
+        self.problem.target = [0.0, self.settings.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
+        self.problem.penalty = self.settings.penalty;
+        self.problem.bounds.set_thrust(self.trim.control.thrust);
+        if let Some(limits) = self.settings.attitude {
+            let AttitudeLimits {
+                angle_of_attack,
+                flight_path,
+            } = limits;
+            let level = self.trim.state.flight_path;
+            self.problem.bounds.set_attitude(
+                [angle_of_attack, flight_path - level],
+                [-angle_of_attack, -flight_path - level],
+            );
+        }
+        self.summary = NO_SUMMARY;
+        self.best_length = f64::INFINITY;
+        self.phase = Phase::Map;
+    }
+
+    /// Whether a cycle is under way.
+    #[must_use]
+    pub fn is_working(&self) -> bool {
+        !matches!(self.phase, Phase::Idle | Phase::Done)
+    }
+
+    /// Does one bounded slice of work; true while there is more.
+    pub fn advance(&mut self) -> bool {
+        if self.is_working() {
+            self.summary.slices += 1;
+        }
+        match self.phase {
+            Phase::Idle | Phase::Done => {}
+            Phase::Map => {
+                self.grid
+                    .rebuild(&self.scan, self.state.air.pitch, self.settings.rules);
+                self.start_tree();
+            }
+            Phase::Tree => self.grow_tree(),
+            Phase::Corridor => self.trace_corridor(),
+            Phase::Program => self.refine(),
+        }
+        self.is_working()
+    }
+
+    /// Ends the cycle and tells what it came to; [`Planner::best`] is the trajectory.
+    pub fn finish(&mut self) -> Verdict {
+        self.summary.complete = self.phase == Phase::Done;
+        self.phase = Phase::Idle;
+        if self.summary.cost == f64::INFINITY {
+            Verdict::Nothing
+        } else if self.summary.violation <= FEASIBLE {
+            Verdict::Feasible
+        } else {
+            Verdict::LeastViolating
+        }
+    }
+
+    /// The best trajectory of the cycle, if its verdict is not [`Verdict::Nothing`].
+    #[must_use]
+    pub fn best(&self) -> &Trajectory {
+        &self.best
+    }
+
+    /// What the cycle came to so far.
+    #[must_use]
+    pub fn summary(&self) -> &PlanSummary {
+        &self.summary
+    }
+
+    /// The grid of the cycle.
+    #[must_use]
+    pub fn grid(&self) -> &OccupancyGrid {
+        &self.grid
+    }
+
+    /// The model that plans are made by.
+    #[must_use]
+    pub fn model(&self) -> &StageModel {
+        self.shared.model()
+    }
+
+    /// The program of the candidate at hand, while it is being solved.
+    #[must_use]
+    pub fn program(&self) -> Option<&Problem> {
+        (self.phase == Phase::Program).then_some(&self.problem)
+    }
+
+    /// Collocation points of the candidate at hand.
+    #[must_use]
+    pub fn points(&self) -> &CollocationPoints {
+        &self.points
+    }
+
+    /// Level trim, about which plans are made.
+    #[must_use]
+    pub fn trim(&self) -> &Trim {
+        &self.trim
+    }
+}
+
+impl Default for Planner {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+const STILL: AirState = AirState {
+    airspeed: 0.0,
+    pitch: 0.0,
+    pitch_rate: 0.0,
+    flight_path: 0.0,
+};
+
+const NO_SUMMARY: PlanSummary = PlanSummary {
+    candidates: 0,
+    feasible: 0,
+    tree_runs: 0,
+    slices: 0,
+    solver_steps: 0,
+    complete: false,
+    cost: f64::INFINITY,
+    violation: f64::INFINITY,
+};

@@ -1,0 +1,160 @@
+//! Everything that can be chosen before a flight, and the named presets.
+
+use crate::Rules;
+use crate::control::LqrWeights;
+use crate::corridor::Padding;
+use crate::estimate::EkfTuning;
+use crate::qp::{Initial, Penalty, SteadyState, Weights};
+use crate::vehicle::{Airframe, JacobianForm, Trim, TrimError};
+
+/// Limits of the attitude rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttitudeLimits {
+    /// Of the angle of attack, either side of trim [rad]: lift, and so how tightly a path may bend.
+    pub angle_of_attack: f64,
+    /// Of the flight path angle, absolute [rad].
+    pub flight_path: f64,
+}
+
+/// What the planner plans by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannerSettings {
+    /// Rules of map, path search and raytracing.
+    pub rules: Rules,
+    /// Jacobian of the plan's model.
+    pub jacobian: JacobianForm,
+    /// Steady state of the plan's rotation.
+    pub steady_state: SteadyState,
+    /// First state of the plan.
+    pub initial: Initial,
+    /// Weights of the cost.
+    pub weights: Weights,
+    /// Price of corridor and attitude rows; none makes them hard.
+    pub penalty: Option<Penalty>,
+    /// Attitude rows, if any.
+    pub attitude: Option<AttitudeLimits>,
+    /// Distance from obstacles.
+    pub padding: Padding,
+    /// Candidate paths of a cycle, at most [`crate::config::MAX_PATHS`]; 0 tracks the shortest path
+    /// itself, without refinement (the paper's baseline "RRT*").
+    pub paths: usize,
+    /// Height to return to [m].
+    pub altitude: f64,
+    /// Seed of the path search.
+    pub seed: u64,
+}
+
+/// The level flight that plans deviate from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Cruise {
+    /// Steady flight at an airspeed [m/s]; the paper cruises at 12.
+    Airspeed(f64),
+    /// The authors' point, which is not quite steady.
+    Authors,
+}
+
+impl Cruise {
+    /// The trim.
+    ///
+    /// # Errors
+    /// [`TrimError`] when no steady flight is found at the airspeed.
+    pub fn trim(&self, airframe: &Airframe) -> Result<Trim, TrimError> {
+        match *self {
+            Self::Airspeed(airspeed) => Trim::at_speed(airframe, airspeed, 0.0),
+            Self::Authors => Ok(Trim::of_authors(airframe)),
+        }
+    }
+}
+
+/// The whole flight core.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// The aircraft as the core knows it.
+    pub airframe: Airframe,
+    /// Straight and level flight, about which everything is linearised.
+    pub cruise: Cruise,
+    /// Thrust about which the regulator is designed [N]; none takes that of the trim.
+    pub design_thrust: Option<f64>,
+    /// Jacobian of the regulator's design.
+    pub design_jacobian: JacobianForm,
+    /// The estimator's tuning.
+    pub estimator: EkfTuning,
+    /// The regulator's weights.
+    pub regulator: LqrWeights,
+    /// The planner.
+    pub planner: PlannerSettings,
+}
+
+impl Settings {
+    /// The authors' code: parameters, rules and faults, to compare with it.
+    #[must_use]
+    pub const fn reference() -> Self {
+        Self {
+            airframe: Airframe::REFERENCE,
+            cruise: Cruise::Authors,
+            // Sic: the authors trim at 4.3 N and linearise with 4.0 N.
+            design_thrust: Some(4.0),
+            design_jacobian: JacobianForm::Authors,
+            estimator: EkfTuning::AUTHORS,
+            regulator: LqrWeights::PAPER,
+            planner: PlannerSettings {
+                rules: Rules::Authors,
+                jacobian: JacobianForm::Authors,
+                steady_state: SteadyState::ZeroPitchRate,
+                initial: Initial::ThroughSteadyState,
+                weights: Weights::PAPER,
+                penalty: None,
+                attitude: None,
+                padding: Padding::AUTHORS,
+                paths: 25,
+                altitude: 50.0,
+                seed: 0,
+            },
+        }
+    }
+
+    /// The paper's text, its slips corrected.
+    #[must_use]
+    pub const fn paper() -> Self {
+        let reference = Self::reference();
+        Self {
+            cruise: Cruise::Airspeed(12.0),
+            design_thrust: None,
+            design_jacobian: JacobianForm::Exact,
+            estimator: EkfTuning::EXACT,
+            planner: PlannerSettings {
+                rules: Rules::Corrected,
+                jacobian: JacobianForm::Exact,
+                initial: Initial::Estimate,
+                ..reference.planner
+            },
+            ..reference
+        }
+    }
+
+    /// The best we know: soft rows, so that a least-violating trajectory always exists; attitude
+    /// rows; steady state by balance of moments.
+    #[must_use]
+    pub const fn flight() -> Self {
+        let paper = Self::paper();
+        Self {
+            planner: PlannerSettings {
+                steady_state: SteadyState::MomentBalance,
+                weights: Weights {
+                    terminal: 10.0,
+                    ..Weights::PAPER
+                },
+                penalty: Some(Penalty {
+                    linear: 1e4,
+                    quadratic: 1e3,
+                }),
+                attitude: Some(AttitudeLimits {
+                    angle_of_attack: 0.2,
+                    flight_path: 0.6,
+                }),
+                ..paper.planner
+            },
+            ..paper
+        }
+    }
+}

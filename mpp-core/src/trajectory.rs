@@ -1,0 +1,143 @@
+//! The trajectory that the controller tracks: stage boundaries, interpolated.
+
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::GridPoint;
+use crate::plan::CollocationPoints;
+use crate::qp::Solution;
+use crate::vehicle::{AirState, Airframe, Control, Trim, VehicleState};
+
+/// What the vehicle should do at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Reference {
+    /// Where it should be and how it should move.
+    pub state: VehicleState,
+    /// Controls that fly it by the plan's own model.
+    pub feedforward: Control,
+}
+
+/// A plan over the horizon, from its start on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    /// When it starts [s].
+    pub start: f64,
+    /// References at the stage boundaries. The last one's controls are those of the last stage.
+    pub knots: [Reference; KNOTS],
+}
+
+impl Trajectory {
+    /// A place for a trajectory.
+    #[must_use]
+    pub const fn new() -> Self {
+        let nothing = Reference {
+            state: VehicleState {
+                x: 0.0,
+                z: 0.0,
+                air: AirState {
+                    airspeed: 0.0,
+                    pitch: 0.0,
+                    pitch_rate: 0.0,
+                    flight_path: 0.0,
+                },
+            },
+            feedforward: Control {
+                thrust: 0.0,
+                elevator: 0.0,
+            },
+        };
+        Self {
+            start: 0.0,
+            knots: [nothing; KNOTS],
+        }
+    }
+
+    /// Places a solution, deviations from level flight at trim that starts at `(x, z)` [m], in the
+    /// world.
+    pub fn place(&mut self, solution: &Solution, trim: &Trim, start: f64, x: f64, z: f64) {
+        self.start = start;
+        for (stage, (knot, state)) in self.knots.iter_mut().zip(&solution.states).enumerate() {
+            let elapsed = STAGE_PERIOD * stage as f64;
+            knot.state = VehicleState {
+                x: x + trim.state.airspeed * elapsed + state[0],
+                z: z + state[1],
+                air: AirState {
+                    airspeed: trim.state.airspeed + state[2],
+                    pitch: trim.state.pitch + state[3],
+                    pitch_rate: trim.state.pitch_rate + state[4],
+                    flight_path: trim.state.flight_path + state[5],
+                },
+            };
+            let [elevator, thrust] = solution.controls[stage.min(STAGES - 1)];
+            knot.feedforward = Control {
+                thrust: trim.control.thrust + thrust,
+                elevator: trim.control.elevator + elevator,
+            };
+        }
+    }
+
+    /// Follows collocation points at cruise speed in steady climbs and descents: the paper's
+    /// baseline, a path that is tracked without refinement. It starts at the aircraft's `state`.
+    pub fn follow(
+        &mut self,
+        points: &CollocationPoints,
+        trim: &Trim,
+        airframe: &Airframe,
+        start: f64,
+        state: &VehicleState,
+    ) {
+        self.start = start;
+        let mut slope = 0.0;
+        for (stage, (knot, point)) in self.knots.iter_mut().zip(points).enumerate() {
+            // The last point keeps the slope that led to it.
+            if let Some(next) = points.get(stage + 1) {
+                slope = libm::atan2(next.row - point.row, next.col - point.col);
+            }
+            // Where no steady flight is found, trim's controls are as good as any.
+            let steady = Trim::at_speed(airframe, trim.state.airspeed, slope).unwrap_or(*trim);
+            knot.state = VehicleState {
+                x: state.x + point.col - GridPoint::AIRCRAFT.col,
+                z: state.z + point.row - GridPoint::AIRCRAFT.row,
+                air: AirState {
+                    pitch: slope + steady.state.angle_of_attack(),
+                    flight_path: slope,
+                    ..trim.state
+                },
+            };
+            knot.feedforward = steady.control;
+            // A steep descent would need drag, which the propeller does not give.
+            knot.feedforward.thrust = knot.feedforward.thrust.max(0.0);
+        }
+    }
+
+    /// The reference at a time [s]: linear between stage boundaries. None before the start and past
+    /// the last stage.
+    #[must_use]
+    pub fn sample(&self, time: f64) -> Option<Reference> {
+        let stages = (time - self.start) / STAGE_PERIOD;
+        // A tick that falls on a boundary may miss it by rounding.
+        if !(-1e-6..=STAGES as f64 + 1e-6).contains(&stages) {
+            return None;
+        }
+        let stage = (stages.max(0.0) as usize).min(STAGES - 1);
+        let share = stages - stage as f64;
+        let (from, to) = (&self.knots[stage], &self.knots[stage + 1]);
+        let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
+        let air = from.state.air.to_vector() * (1.0 - share) + to.state.air.to_vector() * share;
+        Some(Reference {
+            state: VehicleState {
+                x: mix(from.state.x, to.state.x),
+                z: mix(from.state.z, to.state.z),
+                air: AirState::from_vector(&air),
+            },
+            feedforward: Control {
+                thrust: mix(from.feedforward.thrust, to.feedforward.thrust),
+                elevator: mix(from.feedforward.elevator, to.feedforward.elevator),
+            },
+        })
+    }
+}
+
+impl Default for Trajectory {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,79 @@
+//! Airframe parameters: the paper's appendix, and the authors' code.
+
+/// Standard gravity [m/s^2], as the paper's appendix.
+pub const GRAVITY: f64 = 9.81;
+
+/// Longitudinal airframe parameters (paper, appendix).
+///
+/// Aerodynamic coefficients refer to the dynamic pressure `q = rho v^2 / 2` and the wing area:
+/// `L = q S C_L`, `D = q S C_D`, `M = q S l C_M` with
+/// `C_L = C_L0 + C_La alpha`, `C_D = C_D0 + K C_L^2`,
+/// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Me delta_e`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Airframe {
+    /// Mass `m` [kg].
+    pub mass: f64,
+    /// Moment of inertia in pitch `I_yy` [kg m^2].
+    pub pitch_inertia: f64,
+    /// Wing area `S` [m^2].
+    pub wing_area: f64,
+    /// Reference length of the pitching moment `l` [m]: the chord `c` in the paper, 1 in the
+    /// authors' code, which leaves the chord out.
+    pub moment_length: f64,
+    /// Air density `rho` [kg/m^3].
+    pub air_density: f64,
+    /// Lift coefficient at zero angle of attack `C_L0` [-].
+    pub lift_zero: f64,
+    /// Lift slope `C_La` [1/rad].
+    pub lift_alpha: f64,
+    /// Parasitic drag coefficient `C_D0` [-].
+    pub drag_zero: f64,
+    /// Induced drag factor `K` [-].
+    pub drag_induced: f64,
+    /// Pitching moment coefficient at zero angle of attack `C_M0` [-].
+    pub moment_zero: f64,
+    /// Pitch stiffness `C_Ma` [1/rad].
+    pub moment_alpha: f64,
+    /// Pitch damping through the rate of the angle of attack `C_Ma'` [s/rad].
+    pub moment_alpha_rate: f64,
+    /// Elevator effectiveness `C_Me` [1 per unit of elevator command]. The command is a number,
+    /// not radians: level trim needs 3.85.
+    pub moment_elevator: f64,
+}
+
+impl Airframe {
+    /// The paper's appendix as printed: with chord and `I_yy = 0.17`.
+    pub const PAPER: Self = Self {
+        mass: 3.2,
+        pitch_inertia: 0.17,
+        wing_area: 0.25,
+        moment_length: 0.13,
+        air_density: 1.225,
+        lift_zero: 0.5,
+        lift_alpha: 5.73,
+        drag_zero: 0.1,
+        drag_induced: 0.05,
+        moment_zero: 0.5,
+        moment_alpha: -8.02,
+        moment_alpha_rate: -0.46,
+        moment_elevator: 0.2,
+    };
+
+    /// The authors' code: derivatives per degree times 180/pi, no chord in the moment, a uniform
+    /// rod's inertia. The flights behind the paper's results used this airframe.
+    pub const REFERENCE: Self = Self {
+        mass: 3.2,
+        pitch_inertia: 1.0 / 12.0 * 3.2 * (0.8 * 0.8),
+        moment_length: 1.0,
+        lift_alpha: 0.1 * 180.0 / core::f64::consts::PI,
+        moment_alpha: -0.14 * 180.0 / core::f64::consts::PI,
+        moment_alpha_rate: -0.008 * 180.0 / core::f64::consts::PI,
+        ..Self::PAPER
+    };
+
+    /// Elevator command [-] that balances the pitching moment at a constant angle of attack [rad].
+    #[must_use]
+    pub fn elevator_for(&self, angle_of_attack: f64) -> f64 {
+        -(self.moment_alpha * angle_of_attack + self.moment_zero) / self.moment_elevator
+    }
+}

@@ -1,0 +1,113 @@
+//! The nonlinear longitudinal equations of motion (paper, section II-A).
+//!
+//! The paper prints `L/(mv) - cos(gamma)/v - T sin(alpha)/(mv)` for the flight path rate; lift,
+//! weight and thrust balance only as `(L - m g cos(gamma) + T sin(alpha)) / (m v)`, which is also
+//! what the authors' code integrates.
+
+use super::{Airframe, GRAVITY};
+use nalgebra::Vector4;
+
+/// Motion through the air: what the estimator estimates and the controller regulates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct AirState {
+    /// Airspeed `v` [m/s].
+    pub airspeed: f64,
+    /// Pitch `theta` [rad], nose-up positive.
+    pub pitch: f64,
+    /// Pitch rate `theta'` [rad/s].
+    pub pitch_rate: f64,
+    /// Flight path angle `gamma` [rad], climbing positive.
+    pub flight_path: f64,
+}
+
+impl AirState {
+    /// Angle of attack `alpha = theta - gamma` [rad].
+    #[must_use]
+    pub fn angle_of_attack(&self) -> f64 {
+        self.pitch - self.flight_path
+    }
+
+    /// As `(v, theta, theta', gamma)`.
+    #[must_use]
+    pub fn to_vector(&self) -> Vector4<f64> {
+        Vector4::new(self.airspeed, self.pitch, self.pitch_rate, self.flight_path)
+    }
+
+    /// From `(v, theta, theta', gamma)`.
+    #[must_use]
+    pub fn from_vector(vector: &Vector4<f64>) -> Self {
+        Self {
+            airspeed: vector.x,
+            pitch: vector.y,
+            pitch_rate: vector.z,
+            flight_path: vector.w,
+        }
+    }
+
+    /// Whether every component is a finite number.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.to_vector().iter().all(|value| value.is_finite())
+    }
+}
+
+/// The whole vehicle state: position in the world and motion through the air.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct VehicleState {
+    /// Downrange distance [m].
+    pub x: f64,
+    /// Height [m], up positive.
+    pub z: f64,
+    /// Motion through the air.
+    pub air: AirState,
+}
+
+/// What the actuators are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Control {
+    /// Thrust `T` along the body axis [N].
+    pub thrust: f64,
+    /// Elevator command `delta_e` [-].
+    pub elevator: f64,
+}
+
+/// Time derivative of the motion through the air, in the units of [`AirState`] per second.
+///
+/// Not finite at zero airspeed: the equations have no meaning there.
+#[must_use]
+pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirState {
+    let a = airframe;
+    let (sin_path, cos_path) = libm::sincos(state.flight_path);
+    let alpha = state.angle_of_attack();
+    let (sin_alpha, cos_alpha) = libm::sincos(alpha);
+    let pressure_area = 0.5 * a.air_density * (state.airspeed * state.airspeed) * a.wing_area;
+
+    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha;
+    let drag_coefficient = a.drag_zero + a.drag_induced * (lift_coefficient * lift_coefficient);
+    let lift = pressure_area * lift_coefficient;
+    let drag = pressure_area * drag_coefficient;
+
+    let flight_path = (lift - a.mass * GRAVITY * cos_path + control.thrust * sin_alpha)
+        / (a.mass * state.airspeed);
+    let moment_coefficient = a.moment_zero
+        + a.moment_alpha * alpha
+        + a.moment_alpha_rate * (state.pitch_rate - flight_path)
+        + a.moment_elevator * control.elevator;
+    AirState {
+        airspeed: (-drag - a.mass * GRAVITY * sin_path + control.thrust * cos_alpha) / a.mass,
+        pitch: state.pitch_rate,
+        pitch_rate: pressure_area * a.moment_length * moment_coefficient / a.pitch_inertia,
+        flight_path,
+    }
+}
+
+/// Time derivative of the whole vehicle state.
+#[must_use]
+pub fn vehicle_rate(airframe: &Airframe, state: &VehicleState, control: Control) -> VehicleState {
+    let (sin_path, cos_path) = libm::sincos(state.air.flight_path);
+    VehicleState {
+        x: state.air.airspeed * cos_path,
+        z: state.air.airspeed * sin_path,
+        air: air_rate(airframe, &state.air, control),
+    }
+}

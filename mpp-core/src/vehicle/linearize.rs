@@ -1,0 +1,100 @@
+//! Analytic Jacobians of the equations of motion.
+
+use super::{AirState, Airframe, Control, GRAVITY};
+use nalgebra::{Matrix4, Matrix4x2};
+
+/// Which Jacobian to form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JacobianForm {
+    /// Every partial derivative.
+    Exact,
+    /// As the authors' code, to compare with it: without `d theta''/d theta'`, without the share of
+    /// `d gamma'/dv` that comes from the division by `v` and its way into `d theta''/dv`, and
+    /// without `d theta''/dT`.
+    Authors,
+}
+
+/// `d/dt dx = a dx + b du` about an operating point; state order `(v, theta, theta', gamma)`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linearization {
+    /// State Jacobian, 4 x 4.
+    pub a: Matrix4<f64>,
+    /// Control Jacobian, 4 x 2, columns `(thrust, elevator)`.
+    pub b: Matrix4x2<f64>,
+}
+
+/// Linearises [`super::air_rate`] about `state` and `control`.
+#[must_use]
+pub fn linearize(
+    airframe: &Airframe,
+    state: &AirState,
+    control: Control,
+    form: JacobianForm,
+) -> Linearization {
+    let a = airframe;
+    let v = state.airspeed;
+    let alpha = state.angle_of_attack();
+    let (sin_path, cos_path) = libm::sincos(state.flight_path);
+    let (sin_alpha, cos_alpha) = libm::sincos(alpha);
+    let thrust = control.thrust;
+    let momentum = a.mass * v;
+    let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
+
+    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha;
+    let drag_coefficient = a.drag_zero + a.drag_induced * (lift_coefficient * lift_coefficient);
+    let lift = pressure_area * lift_coefficient;
+    let lift_v = a.air_density * v * a.wing_area * lift_coefficient;
+    let lift_alpha = pressure_area * a.lift_alpha;
+    let drag_v = a.air_density * v * a.wing_area * drag_coefficient;
+    let drag_alpha = 2.0 * a.drag_induced * pressure_area * lift_coefficient * a.lift_alpha;
+
+    // gamma' = (L - m g cos(gamma) + T sin(alpha)) / (m v)
+    let path_rate = (lift - a.mass * GRAVITY * cos_path + thrust * sin_alpha) / momentum;
+    let path_v = match form {
+        JacobianForm::Exact => lift_v / momentum - path_rate / v,
+        JacobianForm::Authors => lift_v / momentum,
+    };
+    let path_pitch = (lift_alpha + thrust * cos_alpha) / momentum;
+    let path_path = (-lift_alpha - thrust * cos_alpha + a.mass * GRAVITY * sin_path) / momentum;
+    let path_thrust = sin_alpha / momentum;
+
+    // theta'' = q S l / I (C_M0 + C_Ma alpha + C_Ma' (theta' - gamma') + C_Me delta_e)
+    let moment_scale = pressure_area * a.moment_length / a.pitch_inertia;
+    let moment_coefficient = a.moment_zero
+        + a.moment_alpha * alpha
+        + a.moment_alpha_rate * (state.pitch_rate - path_rate)
+        + a.moment_elevator * control.elevator;
+    let moment_v =
+        a.air_density * v * a.wing_area * a.moment_length / a.pitch_inertia * moment_coefficient;
+    let (pitch_v, pitch_rate, pitch_thrust) = match form {
+        JacobianForm::Exact => (
+            moment_v - moment_scale * a.moment_alpha_rate * path_v,
+            moment_scale * a.moment_alpha_rate,
+            -moment_scale * a.moment_alpha_rate * path_thrust,
+        ),
+        JacobianForm::Authors => (moment_v, 0.0, 0.0),
+    };
+    let pitch_pitch = moment_scale * (a.moment_alpha - a.moment_alpha_rate * path_pitch);
+    let pitch_path = moment_scale * (-a.moment_alpha - a.moment_alpha_rate * path_path);
+
+    // v' = (-D - m g sin(gamma) + T cos(alpha)) / m
+    let speed_alpha = (-drag_alpha - thrust * sin_alpha) / a.mass;
+    #[rustfmt::skip]
+    let state_jacobian = Matrix4::new(
+        -drag_v / a.mass, speed_alpha, 0.0,        -speed_alpha - GRAVITY * cos_path,
+        0.0,              0.0,         1.0,        0.0,
+        pitch_v,          pitch_pitch, pitch_rate, pitch_path,
+        path_v,           path_pitch,  0.0,        path_path,
+    );
+    #[rustfmt::skip]
+    let control_jacobian = Matrix4x2::new(
+        cos_alpha / a.mass, 0.0,
+        0.0,                0.0,
+        pitch_thrust,       moment_scale * a.moment_elevator,
+        path_thrust,        0.0,
+    );
+    Linearization {
+        a: state_jacobian,
+        b: control_jacobian,
+    }
+}

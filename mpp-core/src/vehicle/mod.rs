@@ -1,0 +1,11 @@
+//! The aircraft: parameters, equations of motion, Jacobians and steady flight.
+
+mod airframe;
+mod dynamics;
+mod linearize;
+mod trim;
+
+pub use airframe::{Airframe, GRAVITY};
+pub use dynamics::{AirState, Control, VehicleState, air_rate, vehicle_rate};
+pub use linearize::{JacobianForm, Linearization, linearize};
+pub use trim::{Trim, TrimError};

@@ -1,0 +1,42 @@
+//! A world of discs, and a lidar that looks at it.
+
+use mpp_core::config::MAX_BEAMS;
+use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::VehicleState;
+
+/// Centre `(x, z)` and radius [m].
+pub(crate) type Disc = (f64, f64, f64);
+
+/// Sight of the lidar [m].
+pub(crate) const SIGHT: f64 = 50.0;
+const BEAMS: usize = 100;
+const _: () = assert!(BEAMS <= MAX_BEAMS);
+
+/// A sweep of 100 beams over 100 degrees, without noise.
+pub(crate) fn scan(discs: &[Disc], state: &VehicleState) -> LidarScan {
+    let mut scan = LidarScan::new();
+    let degree = core::f64::consts::PI / 180.0;
+    scan.angle_min = -50.0 * degree;
+    scan.angle_increment = degree;
+    for beam in 0..BEAMS {
+        let angle = state.air.pitch + scan.angle_min + degree * beam as f64;
+        let (sin, cos) = libm::sincos(angle);
+        let nearest = discs
+            .iter()
+            .filter_map(|(x, z, radius)| {
+                let (dx, dz) = (x - state.x, z - state.z);
+                let along = dx * cos + dz * sin;
+                let across = dz * cos - dx * sin;
+                let half_chord_squared = radius * radius - across * across;
+                (half_chord_squared >= 0.0).then(|| along - libm::sqrt(half_chord_squared))
+            })
+            .filter(|range| (0.0..SIGHT).contains(range))
+            .fold(f64::INFINITY, f64::min);
+        let _ = scan.ranges.push(if nearest.is_finite() {
+            nearest as f32
+        } else {
+            0.0
+        });
+    }
+    scan
+}

@@ -1,0 +1,205 @@
+//! The 100 Hz loop: hand-over of trajectories, and faults that it survives.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod sensors;
+    pub(crate) mod trajectories;
+}
+
+use common::sensors::frame;
+use common::trajectories::{HORIZON, trajectory};
+use mpp_core::config::{KNOTS, TICK_PERIOD};
+use mpp_core::estimate::Verdict as MeasurementVerdict;
+use mpp_core::flight::{Adoption, FlightLoop, Mode};
+use mpp_core::health::Health;
+use mpp_core::planner::{SetupError, Verdict};
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::Airframe;
+
+fn flight_loop() -> FlightLoop {
+    FlightLoop::new(&Settings::flight()).unwrap()
+}
+
+#[test]
+fn without_a_trajectory_trim_is_held() {
+    let mut flight = flight_loop();
+    let state = flight.state();
+    for tick in 0..100 {
+        let out = flight.step(f64::from(tick) * TICK_PERIOD, &frame(&state));
+        assert_eq!(out.mode, Mode::TrimHold);
+        assert!((out.control.thrust - out.reference.feedforward.thrust).abs() < 1e-12);
+        assert!((out.control.elevator - out.reference.feedforward.elevator).abs() < 1e-3);
+    }
+    assert_eq!(*flight.health(), Health::default());
+    assert!(flight.trajectory().is_none());
+}
+
+#[test]
+fn a_feasible_plan_replaces_whatever_was_flown() {
+    let mut flight = flight_loop();
+    for start in [1.0, 2.0] {
+        let offered = trajectory(start);
+        assert_eq!(
+            flight.adopt(start, Verdict::Feasible, &offered),
+            Adoption::Feasible
+        );
+        assert_eq!(flight.trajectory(), Some(&offered));
+    }
+    let expected = Health {
+        plans_feasible: 2,
+        ..Health::default()
+    };
+    assert_eq!(*flight.health(), expected);
+}
+
+#[test]
+fn a_least_violating_plan_replaces_even_a_valid_one() {
+    let mut flight = flight_loop();
+    flight.adopt(1.0, Verdict::Feasible, &trajectory(1.0));
+    let offered = trajectory(2.0);
+    let adoption = flight.adopt(2.0, Verdict::LeastViolating, &offered);
+    assert_eq!(adoption, Adoption::LeastViolating);
+    assert_eq!(flight.trajectory(), Some(&offered));
+    assert_eq!(flight.health().plans_least_violating, 1);
+}
+
+#[test]
+fn nothing_keeps_a_trajectory_that_still_runs() {
+    let mut flight = flight_loop();
+    let flown = trajectory(1.0);
+    flight.adopt(1.0, Verdict::Feasible, &flown);
+    let adoption = flight.adopt(1.0 + HORIZON, Verdict::Nothing, &trajectory(9.0));
+    assert_eq!(adoption, Adoption::Kept);
+    assert_eq!(flight.trajectory(), Some(&flown));
+    assert_eq!(
+        (flight.health().plans_kept, flight.health().plans_trim_hold),
+        (1, 0)
+    );
+}
+
+#[test]
+fn nothing_after_the_end_holds_trim() {
+    let mut flight = flight_loop();
+    assert_eq!(
+        flight.adopt(0.0, Verdict::Nothing, &trajectory(0.0)),
+        Adoption::TrimHold
+    );
+    flight.adopt(1.0, Verdict::Feasible, &trajectory(1.0));
+    let late = 1.0 + HORIZON + TICK_PERIOD;
+    assert_eq!(
+        flight.adopt(late, Verdict::Nothing, &trajectory(late)),
+        Adoption::TrimHold
+    );
+    assert!(flight.trajectory().is_none());
+    assert_eq!(
+        (flight.health().plans_kept, flight.health().plans_trim_hold),
+        (0, 2)
+    );
+    let state = flight.state();
+    assert_eq!(flight.step(late, &frame(&state)).mode, Mode::TrimHold);
+}
+
+#[test]
+fn a_trajectory_is_tracked_from_its_start_to_its_end() {
+    let mut flight = flight_loop();
+    let flown = trajectory(1.0);
+    let state = flight.state();
+    flight.adopt(0.9, Verdict::Feasible, &flown);
+    for (time, mode) in [
+        (0.98, Mode::TrimHold),
+        (1.0, Mode::Tracking),
+        (1.1, Mode::Tracking),
+        (1.0 + HORIZON, Mode::Tracking),
+        (1.01 + HORIZON, Mode::TrimHold),
+    ] {
+        let out = flight.step(time, &frame(&state));
+        assert_eq!(out.mode, mode, "{time}");
+        if mode == Mode::Tracking {
+            assert_eq!(Some(out.reference), flown.sample(time));
+        }
+    }
+}
+
+#[test]
+fn frames_that_are_not_finite_are_counted_and_survived() {
+    let mut flight = flight_loop();
+    let state = flight.state();
+    let mut bad = frame(&state);
+    bad.measurement.airspeed = f64::NAN;
+    bad.measurement.pitch = f64::INFINITY;
+    bad.x = f64::NAN;
+    for tick in 0..50 {
+        let out = flight.step(f64::from(tick) * TICK_PERIOD, &bad);
+        assert!(out.control.thrust.is_finite() && out.control.elevator.is_finite());
+        assert!(!out.position_used && out.innovation.airspeed == MeasurementVerdict::NotFinite);
+    }
+    let expected = Health {
+        measurements_not_finite: 100,
+        positions_not_finite: 50,
+        ..Health::default()
+    };
+    assert_eq!(*flight.health(), expected);
+    assert_eq!((flight.state().x, flight.state().z), (state.x, state.z));
+
+    let mut moved = frame(&state);
+    moved.x = 7.0;
+    assert!(flight.step(0.5, &moved).position_used);
+    assert!((flight.state().x - 7.0).abs() < 1e-12 && flight.health().positions_not_finite == 50);
+}
+
+#[test]
+fn spikes_are_counted_apart() {
+    let mut flight = flight_loop();
+    let mut spike = frame(&flight.state());
+    spike.measurement.airspeed += 50.0;
+    let before = *flight.estimate();
+    flight.step(0.0, &spike);
+    assert_eq!(flight.health().measurements_gated, 1);
+    assert!((flight.estimate().airspeed - before.airspeed).abs() < 1e-9);
+}
+
+#[test]
+fn time_that_is_none_is_counted_and_survived() {
+    let mut flight = flight_loop();
+    let state = flight.state();
+    flight.step(0.0, &frame(&state));
+    flight.step(f64::NAN, &frame(&state));
+    assert_eq!(flight.health().predictions_diverged, 1);
+    assert!(flight.estimate().is_finite());
+    // The step after it has no time since the last one either; the next one has.
+    flight.step(0.02, &frame(&state));
+    flight.step(0.03, &frame(&state));
+    assert_eq!(flight.health().predictions_diverged, 2);
+}
+
+#[test]
+fn thrust_is_never_negative() {
+    let mut flight = flight_loop();
+    let mut diving = trajectory(0.0);
+    diving
+        .knots
+        .iter_mut()
+        .for_each(|knot| knot.feedforward.thrust = -2.0);
+    diving.knots[KNOTS - 1].feedforward.thrust = 3.0;
+    flight.adopt(0.0, Verdict::Feasible, &diving);
+    let state = flight.state();
+    let mut raised = 0;
+    for tick in 0..450 {
+        let out = flight.step(f64::from(tick) * TICK_PERIOD, &frame(&state));
+        assert!(out.control.thrust >= 0.0);
+        raised += u32::from(out.reference.feedforward.thrust < 0.0);
+    }
+    assert!(raised > 400 && flight.health().thrust_raised == raised);
+}
+
+#[test]
+fn an_airframe_that_does_not_fly_is_refused() {
+    let heavy = Settings {
+        airframe: Airframe {
+            mass: f64::NAN,
+            ..Airframe::PAPER
+        },
+        ..Settings::flight()
+    };
+    assert!(matches!(FlightLoop::new(&heavy), Err(SetupError::Trim(_))));
+}

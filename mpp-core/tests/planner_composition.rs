@@ -1,0 +1,153 @@
+//! The plan of a cycle is the best of its candidates' optima, each solved here to the end.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod planning;
+    pub(crate) mod world;
+}
+
+use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
+use common::world::{Disc, scan};
+use mpp_core::corridor::Corridor;
+use mpp_core::planner::{Planner, Verdict};
+use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel, Status};
+use mpp_core::settings::{PlannerSettings, Settings};
+use mpp_core::vehicle::{VehicleState, linearize};
+
+/// So close that every path comes nearer to them than it should.
+const CLOSE: [Disc; 3] = [(107.0, 50.5, 1.5), (118.0, 46.0, 2.0), (119.0, 55.0, 2.0)];
+
+/// Off the altitude [m], climbing [rad], faster than trim [m/s]; the last needs less than no thrust.
+const STARTS: [(f64, f64, f64); 6] = [
+    (0.0, 0.0, 0.0),
+    (2.0, 0.1, 0.5),
+    (-3.0, 0.0, -0.5),
+    (1.0, -0.1, 0.0),
+    (-1.0, 0.05, 1.0),
+    (4.0, -0.2, 5.0),
+];
+
+/// The planner's model, set up apart from it.
+fn condensed(settings: &Settings, planner: &Planner) -> Box<Condensed> {
+    let (airframe, trim, p) = (&settings.airframe, planner.trim(), &settings.planner);
+    let linear = linearize(airframe, &trim.state, trim.control, p.jacobian);
+    let model = StageModel::new(airframe, trim, &linear, p.steady_state, p.initial).unwrap();
+    let mut shared = Box::new(Condensed::new());
+    shared.condense(&model, &p.weights).unwrap();
+    shared
+}
+
+/// The program of the candidate that a planner has at hand.
+fn program(
+    settings: &Settings,
+    planner: &Planner,
+    shared: &Condensed,
+    state: &VehicleState,
+) -> Problem {
+    let (trim, p) = (planner.trim(), &settings.planner);
+    let mut corridor = Corridor::new();
+    let cruise = trim.state.airspeed;
+    corridor.trace(
+        planner.grid(),
+        planner.points(),
+        cruise,
+        &p.padding,
+        p.rules,
+    );
+    let mut bounds = Bounds::none();
+    bounds.set_corridor(&corridor);
+    bounds.set_thrust(trim.control.thrust);
+    if let Some(limits) = p.attitude {
+        let upper = [limits.angle_of_attack, limits.flight_path];
+        bounds.set_attitude(upper, upper.map(|limit| -limit));
+    }
+    Problem {
+        initial: shared.initial_state(trim, &state.air),
+        target: [0.0, p.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
+        bounds,
+        penalty: p.penalty,
+        cost_limit: f64::INFINITY,
+    }
+}
+
+/// Rank of the best candidate of a cycle, and how many candidates were looked at.
+fn best_of_all(
+    settings: &Settings,
+    planner: &mut Planner,
+    state: &VehicleState,
+    discs: &[Disc],
+) -> ((f64, f64), usize) {
+    let shared = condensed(settings, planner);
+    let (mut solver, mut solution) = (Box::new(Solver::new()), Solution::new());
+    let mut best = (f64::INFINITY, f64::INFINITY);
+    let mut seen = 0;
+    planner.begin(0.0, state, &scan(discs, state));
+    let mut working = true;
+    while working {
+        working = planner.advance();
+        if planner.summary().candidates > seen {
+            seen += 1;
+            let problem = program(settings, planner, &shared, state);
+            if solver.solve(&shared, &problem) == Status::Optimal
+                && solver.solution(&shared, &mut solution) == Status::Optimal
+            {
+                let rank = (solution.violation.max(FEASIBLE), solution.cost);
+                if rank < best {
+                    best = rank;
+                }
+            }
+        }
+    }
+    (best, seen)
+}
+
+#[test]
+fn the_plan_is_the_best_of_all_candidates() {
+    let mut least_violating = 0;
+    for preset in presets() {
+        let settings = with_planner(
+            preset,
+            PlannerSettings {
+                paths: 10,
+                ..preset.planner
+            },
+        );
+        let mut planner = planner(&settings);
+        for (off, climb, faster) in STARTS {
+            for discs in [&SCATTERED[..], &CLOSE] {
+                let mut state = level(&planner);
+                state.z += off;
+                state.air.flight_path += climb;
+                state.air.airspeed += faster;
+                let (best, candidates) = best_of_all(&settings, &mut planner, &state, discs);
+                let summary = *planner.summary();
+                assert_eq!(summary.candidates, candidates);
+                if best.1.is_infinite() {
+                    assert_eq!(planner.finish(), Verdict::Nothing);
+                    continue;
+                }
+                let (violation, cost) = (summary.violation.max(FEASIBLE), summary.cost);
+                assert!((violation - best.0).abs() < 1e-9, "{summary:?}: {best:?}");
+                assert!(
+                    (cost - best.1).abs() <= 1e-9 * best.1.max(1.0),
+                    "{summary:?}: {best:?}"
+                );
+                least_violating += usize::from(violation > FEASIBLE);
+            }
+        }
+    }
+    assert!(least_violating >= 3, "{least_violating}");
+}
+
+#[test]
+fn the_plan_is_placed_where_the_aircraft_is() {
+    for settings in presets() {
+        let mut planner = planner(&settings);
+        let mut state = level(&planner);
+        state.x = 321.0;
+        state.z = 47.0;
+        assert_eq!(plan(&mut planner, &state, &[]), Verdict::Feasible);
+        let first = planner.best().knots[0].state;
+        assert!((first.x - 321.0).abs() < 1e-9 && (first.z - 47.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,7 @@
+//! Properties of the program's solver: optimality, invariances, ends.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod ends;
+mod invariances;
+mod optimality;
+mod programs;

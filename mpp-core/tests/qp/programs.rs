@@ -1,0 +1,202 @@
+//! Random programs about random tubes, and what their rows and costs are by the model alone.
+
+use mpp_core::config::{KNOTS, STAGES};
+use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
+use mpp_core::qp::{
+    Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, StageControl, StageModel,
+    StageState, Weights,
+};
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::linearize;
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// The model of a preset, and what it condenses to.
+pub(crate) struct Setup {
+    pub(crate) model: StageModel,
+    pub(crate) weights: Weights,
+    pub(crate) shared: Box<Condensed>,
+    pub(crate) thrust: f64,
+}
+
+impl Setup {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        let planner = &settings.planner;
+        let trim = settings.cruise.trim(&settings.airframe).unwrap();
+        let linear = linearize(
+            &settings.airframe,
+            &trim.state,
+            trim.control,
+            planner.jacobian,
+        );
+        let model = StageModel::new(
+            &settings.airframe,
+            &trim,
+            &linear,
+            planner.steady_state,
+            planner.initial,
+        )
+        .unwrap();
+        let mut shared = Box::new(Condensed::new());
+        shared.condense(&model, &planner.weights).unwrap();
+        Self {
+            model,
+            weights: planner.weights,
+            shared,
+            thrust: trim.control.thrust,
+        }
+    }
+
+    pub(crate) fn all() -> [Self; 3] {
+        [Settings::reference(), Settings::paper(), Settings::flight()].map(|s| Self::new(&s))
+    }
+
+    /// A random program: half-planes about a random smooth line, narrow ones now and then.
+    pub(crate) fn program(&self, draw: &mut Draw) -> Problem {
+        let mut corridor = Corridor::new();
+        let (climb, wave, phase) = (
+            draw.between(-4.0, 4.0),
+            draw.between(0.0, 3.0),
+            draw.between(0.0, 6.0),
+        );
+        for (knot, bounds) in corridor.bounds.iter_mut().enumerate() {
+            let share = knot as f64 / STAGES as f64;
+            let height = climb * share + wave * (libm::sin(phase + 5.0 * share) - libm::sin(phase));
+            for (bound, [up, _]) in bounds.iter_mut().zip(&DIRECTION_VECTORS) {
+                *bound = up * height + draw.between(0.5, 6.0);
+            }
+        }
+        let mut bounds = Bounds::none();
+        bounds.set_corridor(&corridor);
+        bounds.set_thrust(self.thrust);
+        if draw.unit() < 0.5 {
+            let (attack, path) = (draw.between(0.05, 0.3), draw.between(0.2, 0.6));
+            bounds.set_attitude([attack, path], [-attack, -path]);
+        }
+        let spread = [0.0, 0.0, 1.5, 0.2, 0.4, 0.2];
+        Problem {
+            initial: spread.map(|spread| draw.between(-spread, spread)),
+            target: [0.0, draw.between(-8.0, 8.0), 0.0, 0.0, 0.0, 0.0],
+            bounds,
+            penalty: None,
+            cost_limit: f64::INFINITY,
+        }
+    }
+
+    pub(crate) fn roll_out(
+        &self,
+        initial: &StageState,
+        controls: &[StageControl; STAGES],
+    ) -> [StageState; KNOTS] {
+        let mut states = [*initial; KNOTS];
+        for stage in 0..STAGES {
+            states[stage + 1] = self.model.step(&states[stage], &controls[stage]);
+        }
+        states
+    }
+
+    /// Cost without penalties.
+    pub(crate) fn cost(&self, problem: &Problem, controls: &[StageControl; STAGES]) -> f64 {
+        let states = self.roll_out(&problem.initial, controls);
+        let effort: f64 = controls
+            .iter()
+            .flat_map(|control| control.iter().zip(&self.weights.control))
+            .map(|(value, weight)| weight * value * value)
+            .sum();
+        let missing: f64 = states[STAGES]
+            .iter()
+            .zip(&problem.target)
+            .map(|(x, goal)| (x - goal) * (x - goal))
+            .sum();
+        0.5 * (effort + self.weights.terminal * missing)
+    }
+
+    /// Gradient of a function of the controls that is at most quadratic: central differences are
+    /// exact but for rounding, and the step is large to keep that small.
+    pub(crate) fn gradient(
+        &self,
+        controls: &[StageControl; STAGES],
+        function: impl Fn(&[StageControl; STAGES]) -> f64,
+    ) -> [f64; 2 * STAGES] {
+        core::array::from_fn(|index| {
+            let at = |step: f64| {
+                let mut moved = *controls;
+                moved[index / 2][index % 2] += step;
+                function(&moved)
+            };
+            (at(1.0) - at(-1.0)) / 2.0
+        })
+    }
+}
+
+/// A row's left-hand side.
+pub(crate) fn left_hand_side(
+    row: usize,
+    states: &[StageState; KNOTS],
+    controls: &[StageControl; STAGES],
+) -> f64 {
+    match RowKind::of(row) {
+        RowKind::Position(knot, direction) => {
+            let [up, forward] = DIRECTION_VECTORS[direction];
+            up * states[knot][1] + forward * states[knot][0]
+        }
+        RowKind::Attitude(knot, 0) => states[knot][3] - states[knot][5],
+        RowKind::Attitude(knot, 1) => states[knot][5],
+        RowKind::Attitude(knot, 2) => states[knot][5] - states[knot][3],
+        RowKind::Attitude(knot, _) => -states[knot][5],
+        RowKind::Thrust(stage) => -controls[stage][1],
+    }
+}
+
+/// How far each row is violated; negative where it has room.
+pub(crate) fn violations(problem: &Problem, solution: &Solution) -> [f64; ROWS] {
+    core::array::from_fn(|row| {
+        left_hand_side(row, &solution.states, &solution.controls) - problem.bounds.0[row]
+    })
+}
+
+/// Whether a penalty softens a row.
+pub(crate) fn softens(row: usize) -> bool {
+    !matches!(RowKind::of(row), RowKind::Thrust(_))
+}
+
+/// Whether no control can change a row: positions follow the controls two stages later.
+pub(crate) fn is_constant(row: usize) -> bool {
+    matches!(RowKind::of(row), RowKind::Position(0 | 1, _))
+}
+
+/// Cost with the price of every row that the controls can change.
+pub(crate) fn priced(problem: &Problem, solution: &Solution, penalty: &Penalty) -> f64 {
+    let price: f64 = violations(problem, solution)
+        .iter()
+        .enumerate()
+        .filter(|(row, _)| softens(*row) && !is_constant(*row))
+        .map(|(_, violation)| violation.max(0.0))
+        .map(|slack| penalty.linear * slack + 0.5 * penalty.quadratic * slack * slack)
+        .sum();
+    solution.cost + price
+}
+
+/// Seeded random numbers.
+pub(crate) struct Draw(Pcg64Mcg);
+
+impl Draw {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(Pcg64Mcg::seed_from_u64(seed))
+    }
+
+    /// Uniform in [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
+    }
+
+    /// Uniform between two numbers.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Uniform below a number.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        (self.unit() * count as f64) as usize
+    }
+}

@@ -1,0 +1,257 @@
+//! `fly`: one flight, its log and its picture.
+
+use super::{FAILURE, Failure, LINK, USAGE, data, talk};
+use crate::figure::flight_svg;
+use crate::link::{Link, LinkError, PipeLink, TcpLink};
+use crate::log::FlightLog;
+use crate::run::{FlyError, fly};
+use crate::scenario::{AirframeName, Preset, Scenario, TICKS_PER_SECOND};
+use crate::telemetry::TelemetryLink;
+use indicatif::{ProgressBar, ProgressStyle};
+use mpp_core::config::MAX_PATHS;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct FlyArgs {
+    /// Seed of the field, of all noise and of the planner
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Obstacles between 25 m and 240 m downrange
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(0..=1000))]
+    obstacles: u16,
+    /// Candidate paths of a planning cycle; 0 tracks the shortest path itself, unrefined
+    #[arg(long, default_value_t = 25, value_parser = clap::value_parser!(u16).range(0..=MAX_PATHS as i64))]
+    paths: u16,
+    /// Parameters and rules
+    #[arg(long, value_enum, default_value_t = Preset::Flight)]
+    preset: Preset,
+    /// Aircraft, as it is and as the core knows it
+    #[arg(long, value_enum, default_value_t = AirframeName::Reference)]
+    airframe: AirframeName,
+    /// Replanning rate [Hz]; 100 must be a whole multiple of it
+    #[arg(long, default_value_t = 1.0)]
+    replan_hz: f64,
+    /// Simulated time from a scan until its plan is flown [ms], a multiple of 10
+    #[arg(long, default_value_t = 10)]
+    latency_ms: u32,
+    /// Planner slices that run between two ticks [default: until the cycle is done]
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    slices_per_tick: Option<u32>,
+    /// Length of the flight [s]
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=3600))]
+    duration: u32,
+    /// Where the core runs: tcp:HOST:PORT [default: in this process]
+    #[arg(long)]
+    link: Option<String>,
+    /// Send MAVLink 2 telemetry to udp:HOST:PORT, for instance udp:127.0.0.1:14550
+    #[arg(long)]
+    mavlink: Option<String>,
+    /// Speed against real time, for instance 1 to watch [default: as fast as it goes]
+    #[arg(long)]
+    speed: Option<f64>,
+    /// Print the result as one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Directory for the log and the picture
+    #[arg(long, default_value = "out")]
+    out: PathBuf,
+}
+
+impl FlyArgs {
+    fn scenario(&self) -> Result<Scenario, Failure> {
+        let period = f64::from(TICKS_PER_SECOND) / self.replan_hz;
+        let whole = (1.0..=f64::from(u16::MAX)).contains(&period) && period.fract() == 0.0;
+        if !whole {
+            let why = "--replan-hz: give a rate of which 100 Hz is a whole multiple, such as 0.5, 1, \
+                       2, 4, 5 or 10";
+            return Err(Failure::new(USAGE, why));
+        }
+        let replan_ticks = period as u32;
+        let latency_ticks = self.latency_ms / 10;
+        if !self.latency_ms.is_multiple_of(10) || !(1..=replan_ticks).contains(&latency_ticks) {
+            let why = "--latency-ms: give a multiple of 10, at least 10 and no longer than the time \
+                       between two plans";
+            return Err(Failure::new(USAGE, why));
+        }
+        Ok(Scenario {
+            obstacles: usize::from(self.obstacles),
+            airframe: self.airframe,
+            paths: self.paths,
+            replan_ticks,
+            latency_ticks,
+            slices_per_tick: self.slices_per_tick.unwrap_or(u32::MAX),
+            ticks: self.duration * TICKS_PER_SECOND,
+            ..Scenario::new(self.preset, self.seed)
+        })
+    }
+
+    fn connect(&self) -> Result<Box<dyn Link>, Failure> {
+        match self.link.as_deref() {
+            None => Ok(Box::new(PipeLink::new())),
+            Some(text) => match text.strip_prefix("tcp:") {
+                None => Err(Failure::new(USAGE, "--link: give tcp:HOST:PORT")),
+                Some(address) => match TcpLink::connect(address) {
+                    Ok(link) => Ok(Box::new(link)),
+                    Err(error) => Err(Failure::new(LINK, error)),
+                },
+            },
+        }
+    }
+
+    fn telemetry(&self) -> Result<Option<TelemetryLink>, Failure> {
+        let Some(text) = self.mavlink.as_deref() else {
+            return Ok(None);
+        };
+        let Some(address) = text.strip_prefix("udp:") else {
+            return Err(Failure::new(USAGE, "--mavlink: give udp:HOST:PORT"));
+        };
+        let link = TelemetryLink::open(address)
+            .map_err(|error| Failure::new(LINK, format!("--mavlink {text}: {error}")))?;
+        talk(format_args!(
+            "MAVLink 2 to {address} as system 1: QGroundControl listens there by itself; \
+             mavproxy.py --master=udp:{address}; pymavlink: mavutil.mavlink_connection('udpin:{address}')"
+        ));
+        Ok(Some(link))
+    }
+}
+
+/// The result line.
+#[derive(Serialize)]
+struct ResultLine<'a> {
+    seed: u64,
+    preset: &'a str,
+    airframe: &'a str,
+    obstacles: usize,
+    paths: usize,
+    outcome: String,
+    t_end: f64,
+    x_end: f64,
+    min_clearance: Option<f64>,
+    replans: u32,
+    candidates: u32,
+    feasible: u32,
+    rejections: usize,
+    log_hash: &'a str,
+    log: String,
+    figure: String,
+}
+
+pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
+    let scenario = args.scenario()?;
+    if args
+        .speed
+        .is_some_and(|speed| !speed.is_finite() || speed <= 0.0)
+    {
+        return Err(Failure::new(USAGE, "--speed: give a positive number"));
+    }
+    let mut telemetry = args.telemetry()?;
+    let mut link = args.connect()?;
+    talk(format_args!(
+        "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
+        scenario.seed,
+        scenario.obstacles,
+        scenario.preset.name(),
+        scenario.paths,
+        args.link.as_deref().unwrap_or("in this process"),
+    ));
+    let progress = progress_bar(u64::from(scenario.ticks));
+    let begin = Instant::now();
+    let result = fly(&scenario, link.as_mut(), |moment| {
+        progress.inc(1);
+        if let Some(telemetry) = &mut telemetry {
+            telemetry.send(moment);
+        }
+        if let Some(speed) = args.speed {
+            let due = Duration::from_secs_f64(moment.tick.t / speed);
+            std::thread::sleep(due.saturating_sub(begin.elapsed()));
+        }
+    });
+    progress.finish_and_clear();
+    let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;
+    report(args, &log)
+}
+
+/// Drawn on a terminal only.
+fn progress_bar(ticks: u64) -> ProgressBar {
+    let bar = ProgressBar::new(ticks);
+    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} ticks, {per_sec}, {eta} left");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar
+}
+
+fn exit_code(error: &FlyError) -> u8 {
+    match error {
+        FlyError::Link(LinkError::Refused(_)) => USAGE,
+        FlyError::Link(_) => LINK,
+        FlyError::Plant(_) | FlyError::Trim(_) => FAILURE,
+    }
+}
+
+/// Writes log and picture, and prints the result.
+fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
+    let failed = |what: &Path, why: String| {
+        Failure::new(FAILURE, format!("cannot write {}: {why}", what.display()))
+    };
+    std::fs::create_dir_all(&args.out).map_err(|error| failed(&args.out, error.to_string()))?;
+    let name = format!("{}-seed{}", log.header.preset, log.header.seed);
+    let log_path = args.out.join(format!("{name}.json"));
+    let figure_path = args.out.join(format!("{name}.svg"));
+    log.write_json(&log_path)
+        .map_err(|error| failed(&log_path, error.to_string()))?;
+    let svg = flight_svg(log).map_err(|error| failed(&figure_path, error.to_string()))?;
+    std::fs::write(&figure_path, svg).map_err(|error| failed(&figure_path, error.to_string()))?;
+    let hash = log
+        .hash()
+        .map_err(|error| failed(&log_path, error.to_string()))?;
+
+    let summary = &log.summary;
+    let line = ResultLine {
+        seed: log.header.seed,
+        preset: &log.header.preset,
+        airframe: &log.header.airframe,
+        obstacles: log.header.obstacles,
+        paths: log.header.paths,
+        outcome: summary.outcome.to_string(),
+        t_end: summary.t_end,
+        x_end: summary.x_end,
+        min_clearance: summary.min_clearance,
+        replans: summary.replans,
+        candidates: summary.candidates,
+        feasible: summary.feasible,
+        rejections: log.rejections.len(),
+        log_hash: &hash,
+        log: log_path.display().to_string(),
+        figure: figure_path.display().to_string(),
+    };
+    if args.json {
+        let text = serde_json::to_string(&line).map_err(|error| Failure::new(FAILURE, error))?;
+        data(text);
+    } else {
+        talk(format_args!("log {}, picture {}", line.log, line.figure));
+        data(text_line(&line));
+    }
+    Ok(summary.outcome.exit_code())
+}
+
+fn text_line(line: &ResultLine<'_>) -> String {
+    let clearance = match line.min_clearance {
+        Some(clearance) => format!("{clearance:.2} m"),
+        None => "none".to_owned(),
+    };
+    format!(
+        "result: seed {}, {} after {:.2} s, clearance {clearance}, {} replans, {} candidates, {} \
+         feasible, {} rejections, log {}",
+        line.seed,
+        line.outcome,
+        line.t_end,
+        line.replans,
+        line.candidates,
+        line.feasible,
+        line.rejections,
+        line.log_hash
+    )
+}

@@ -1,0 +1,42 @@
+//! Software in the loop for the MPP flight core: everything around the aircraft's computer.
+//!
+//! ```text
+//!             +------------------------- control -------------------------+
+//!             v                                                           |
+//! world --> plant --+--> sensors --(airspeed, pitch; 100 Hz)--+           |
+//!   |               |                                         +--> link --+--> core
+//!   +---------------+--> lidar ----(ranges; each replan)------+
+//!   |               |
+//!   +---------------+--> outcome --> log --> figure
+//! ```
+//!
+//! * [`world`]: the obstacle field of the paper, from a seed.
+//! * [`plant`]: the true aircraft; integrates the core's own equations of motion.
+//! * [`sensors`], [`lidar`]: what the aircraft measures, with noise from seeded streams.
+//! * [`outcome`]: the success rule of the paper.
+//! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
+//! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
+//! * [`scenario`]: what is flown; [`run`]: one flight in lockstep; [`link`]: where the core is.
+//! * [`telemetry`]: MAVLink 2 for ground stations.
+//! * [`check_reference`]: core and plant against data recorded from the authors' code.
+//! * [`cli`]: the command line.
+//! * [`random`]: the only source of random numbers.
+//!
+//! Frames and units: `x` downrange [m], `z` up [m], angles [rad] positive nose-up, speeds [m/s],
+//! time [s]. Every transcendental goes through `libm`, every random number through a seeded
+//! generator; only the command line reads a clock, to pace a flight for human eyes.
+
+pub mod check_reference;
+pub mod cli;
+pub mod figure;
+pub mod lidar;
+pub mod link;
+pub mod log;
+pub mod outcome;
+pub mod plant;
+pub mod random;
+pub mod run;
+pub mod scenario;
+pub mod sensors;
+pub mod telemetry;
+pub mod world;

@@ -1,0 +1,194 @@
+//! A scanning lidar: a fan of beams in the vertical plane, fixed to the body axis.
+
+use crate::random::{self, Stream};
+use crate::world::{Obstacle, ObstacleField, Point, evenly_spaced};
+use mpp_core::vehicle::VehicleState;
+use rand_chacha::ChaCha8Rng;
+
+/// Least range that is reported [m]. 0 means no return, and a sensor inside an obstacle sees
+/// nothing but the obstacle right at its window.
+pub const RANGE_MIN: f64 = 0.01;
+
+/// What a beam returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LidarRule {
+    /// The nearest point of any obstacle on the beam, within range.
+    Nearest,
+    /// As the authors' code, for comparison with it. Only obstacles whose *centre* is ahead
+    /// (`x >=` the aircraft's), within range and inside the fan are seen. Of the two points where
+    /// the beam's infinite line cuts an obstacle, the one nearer to the *world origin* counts.
+    Authors,
+}
+
+/// Geometry and error of a lidar.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LidarConfig {
+    /// Number of beams, evenly spaced over the field of view, both edges included.
+    pub beams: usize,
+    /// Field of view [rad], centred on the body axis.
+    pub field_of_view: f64,
+    /// Greatest range [m].
+    pub range_max: f64,
+    /// Standard deviation of the range error, as a share of the range [-].
+    pub range_error: f64,
+    /// What a beam returns.
+    pub rule: LidarRule,
+}
+
+impl LidarConfig {
+    /// The paper: 45 m (section IV) and an error proportional to the range (section II-C), whose
+    /// size it does not name: 1 %. Beams and field of view from the authors' code.
+    pub const PAPER: Self = Self {
+        beams: 100,
+        field_of_view: 100_f64.to_radians(),
+        range_max: 45.0,
+        range_error: 0.01,
+        rule: LidarRule::Nearest,
+    };
+    /// The authors' code: 50 m, no error.
+    pub const AUTHORS: Self = Self {
+        range_max: 50.0,
+        range_error: 0.0,
+        rule: LidarRule::Authors,
+        ..Self::PAPER
+    };
+
+    /// Ranges of all beams without error [m], 0 = no return; from the lowest beam to the highest.
+    #[must_use]
+    pub fn exact_ranges(&self, state: &VehicleState, field: &ObstacleField) -> Vec<f64> {
+        let from = (state.x, state.z);
+        let half_fan = 0.5 * self.field_of_view;
+        let directions = evenly_spaced(-half_fan, half_fan, self.beams).map(|angle| {
+            let (up, ahead) = libm::sincos(state.air.pitch + angle);
+            (ahead, up)
+        });
+        match self.rule {
+            LidarRule::Nearest => directions
+                .map(|direction| nearest_range(from, direction, self.range_max, &field.obstacles))
+                .collect(),
+            LidarRule::Authors => {
+                let seen = self.seen_by_authors(state, field);
+                directions
+                    .map(|direction| authors_range(from, direction, &seen))
+                    .collect()
+            }
+        }
+    }
+
+    /// The obstacles that the authors' code passes on to its beams.
+    fn seen_by_authors(&self, state: &VehicleState, field: &ObstacleField) -> Vec<Obstacle> {
+        let half_fan = 0.5 * self.field_of_view;
+        let upper = libm::tan(state.air.pitch + half_fan);
+        let lower = libm::tan(state.air.pitch - half_fan);
+        let seen = |obstacle: &&Obstacle| {
+            let (dx, dz) = (obstacle.x - state.x, obstacle.z - state.z);
+            let in_range = (dx * dx + dz * dz).sqrt() <= self.range_max;
+            dx >= 0.0 && in_range && lower * dx <= dz && dz <= upper * dx
+        };
+        field.obstacles.iter().filter(seen).copied().collect()
+    }
+}
+
+/// Range to the nearest obstacle on a beam [m], 0 = none within `range_max`.
+fn nearest_range(from: Point, direction: Point, range_max: f64, obstacles: &[Obstacle]) -> f64 {
+    let nearest = obstacles
+        .iter()
+        .filter_map(|obstacle| entry_range(from, direction, obstacle))
+        .fold(f64::INFINITY, f64::min);
+    if nearest <= range_max { nearest } else { 0.0 }
+}
+
+/// Distance along a beam at which it enters an obstacle [m]; [`RANGE_MIN`] from inside, where the
+/// exit point is not visible. `direction` is a unit vector.
+fn entry_range(from: Point, direction: Point, obstacle: &Obstacle) -> Option<f64> {
+    let (dx, dz) = (obstacle.x - from.0, obstacle.z - from.1);
+    if dx * dx + dz * dz < obstacle.radius * obstacle.radius {
+        return Some(RANGE_MIN);
+    }
+    let ahead = dx * direction.0 + dz * direction.1;
+    let aside = dx * direction.1 - dz * direction.0;
+    let half_chord_squared = obstacle.radius * obstacle.radius - aside * aside;
+    (ahead > 0.0 && half_chord_squared >= 0.0)
+        .then(|| (ahead - half_chord_squared.sqrt()).max(RANGE_MIN))
+}
+
+/// Range by the authors' rule [m], 0 = none.
+fn authors_range(from: Point, direction: Point, seen: &[Obstacle]) -> f64 {
+    seen.iter()
+        .filter_map(|obstacle| authors_hit(from, direction, obstacle))
+        .map(|(x, z)| ((x - from.0) * (x - from.0) + (z - from.1) * (z - from.1)).sqrt())
+        .reduce(f64::min)
+        .unwrap_or(0.0)
+}
+
+/// Where the infinite line of a beam cuts an obstacle: of the two points the one nearer to the
+/// world origin, and at a tie the lower. `direction` is a unit vector.
+fn authors_hit(from: Point, direction: Point, obstacle: &Obstacle) -> Option<Point> {
+    let aside = (obstacle.x - from.0) * direction.1 - (obstacle.z - from.1) * direction.0;
+    let half_chord_squared = obstacle.radius * obstacle.radius - aside * aside;
+    if half_chord_squared < 0.0 {
+        return None;
+    }
+    // The reference's sign of a level beam is 0: both points are then the middle of the chord.
+    let upwards = if direction.1 == 0.0 {
+        0.0
+    } else {
+        direction.1.signum()
+    };
+    let along = upwards * half_chord_squared.sqrt();
+    let middle = (
+        obstacle.x - aside * direction.1,
+        obstacle.z + aside * direction.0,
+    );
+    let upper = (
+        middle.0 + along * direction.0,
+        middle.1 + along * direction.1,
+    );
+    let lower = (
+        middle.0 - along * direction.0,
+        middle.1 - along * direction.1,
+    );
+    let from_origin = |(x, z): Point| x * x + z * z;
+    Some(if from_origin(upper) >= from_origin(lower) {
+        lower
+    } else {
+        upper
+    })
+}
+
+/// The lidar of one flight, with its stream of noise.
+#[derive(Clone, Debug)]
+pub struct Lidar {
+    config: LidarConfig,
+    generator: ChaCha8Rng,
+}
+
+impl Lidar {
+    /// The lidar of the flight with this seed.
+    #[must_use]
+    pub fn new(seed: u64, config: LidarConfig) -> Self {
+        Self {
+            config,
+            generator: random::generator(seed, Stream::Lidar),
+        }
+    }
+
+    /// One scan from the true state: ranges [m], 0 = no return; from the lowest beam to the
+    /// highest. A range with an error stays within `(0, range_max]`.
+    pub fn scan(&mut self, state: &VehicleState, field: &ObstacleField) -> Vec<f32> {
+        let mut ranges = self.config.exact_ranges(state, field);
+        if self.config.range_error > 0.0 {
+            for range in &mut ranges {
+                // Every beam draws, so that one obstacle more does not shift the others' noise.
+                let error = self.config.range_error * random::gaussian(&mut self.generator);
+                if *range > 0.0 {
+                    *range = (*range * (1.0 + error)).clamp(RANGE_MIN, self.config.range_max);
+                }
+            }
+        }
+        ranges.into_iter().map(|range| range as f32).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

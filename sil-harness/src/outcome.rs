@@ -1,0 +1,187 @@
+//! How a flight ended, by the paper's rule, and how close it came.
+
+use crate::world::ObstacleField;
+use mpp_core::vehicle::VehicleState;
+use serde::{Deserialize, Serialize};
+
+/// Pitch beyond which a flight has failed [rad] (paper, section IV).
+pub const PITCH_LIMIT: f64 = 60_f64.to_radians();
+/// Flight path angle beyond which a flight has failed [rad] (paper, section IV).
+pub const FLIGHT_PATH_LIMIT: f64 = 45_f64.to_radians();
+
+/// How a flight ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum Outcome {
+    /// Flew to the end.
+    Survived,
+    /// Touched the inside of an obstacle between two ticks.
+    Collision,
+    /// Pitch beyond [`PITCH_LIMIT`].
+    PitchLimit,
+    /// Flight path angle beyond [`FLIGHT_PATH_LIMIT`].
+    FlightPathLimit,
+}
+
+impl Outcome {
+    /// The process's exit code for a flight that ended so.
+    #[must_use]
+    pub fn exit_code(self) -> u8 {
+        match self {
+            Self::Survived => 0,
+            Self::Collision => 3,
+            Self::PitchLimit | Self::FlightPathLimit => 4,
+        }
+    }
+}
+
+impl core::fmt::Display for Outcome {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::Survived => "survived",
+            Self::Collision => "collision",
+            Self::PitchLimit => "pitch limit",
+            Self::FlightPathLimit => "flight path limit",
+        })
+    }
+}
+
+/// Extremes of a flight so far.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Score {
+    /// The altitude that the flight should keep [m].
+    pub altitude: f64,
+    /// Least distance to an obstacle's edge [m]: negative inside, infinite without obstacles.
+    pub min_clearance: f64,
+    /// Greatest `|pitch|` [rad].
+    pub max_pitch: f64,
+    /// Greatest `|flight path angle|` [rad].
+    pub max_flight_path: f64,
+    /// Greatest distance from the altitude [m].
+    pub max_altitude_deviation: f64,
+}
+
+impl Score {
+    /// Of a flight that has not begun and should keep this altitude [m].
+    #[must_use]
+    pub fn new(altitude: f64) -> Self {
+        Self {
+            altitude,
+            min_clearance: f64::INFINITY,
+            max_pitch: 0.0,
+            max_flight_path: 0.0,
+            max_altitude_deviation: 0.0,
+        }
+    }
+
+    /// Takes in one tick's motion, with the straight path swept between the two states. `Some`
+    /// says how the flight ended; a collision comes before an extreme attitude.
+    pub fn update(
+        &mut self,
+        field: &ObstacleField,
+        from: &VehicleState,
+        to: &VehicleState,
+    ) -> Option<Outcome> {
+        let clearance = field.clearance_of_segment((from.x, from.z), (to.x, to.z));
+        let (pitch, flight_path) = (to.air.pitch.abs(), to.air.flight_path.abs());
+        self.min_clearance = self.min_clearance.min(clearance);
+        self.max_pitch = self.max_pitch.max(pitch);
+        self.max_flight_path = self.max_flight_path.max(flight_path);
+        let deviation = (to.z - self.altitude).abs();
+        self.max_altitude_deviation = self.max_altitude_deviation.max(deviation);
+        if clearance < 0.0 {
+            Some(Outcome::Collision)
+        } else if pitch > PITCH_LIMIT {
+            Some(Outcome::PitchLimit)
+        } else if flight_path > FLIGHT_PATH_LIMIT {
+            Some(Outcome::FlightPathLimit)
+        } else {
+            None
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::world::Obstacle;
+    use mpp_core::vehicle::AirState;
+
+    fn state(x: f64, z: f64, pitch_deg: f64, path_deg: f64) -> VehicleState {
+        VehicleState {
+            x,
+            z,
+            air: AirState {
+                airspeed: 12.0,
+                pitch: pitch_deg.to_radians(),
+                pitch_rate: 0.0,
+                flight_path: path_deg.to_radians(),
+            },
+        }
+    }
+
+    fn field() -> ObstacleField {
+        ObstacleField {
+            obstacles: vec![Obstacle {
+                x: 10.0,
+                z: 50.0,
+                radius: 1.0,
+            }],
+        }
+    }
+
+    fn end(from: VehicleState, to: VehicleState) -> Option<Outcome> {
+        Score::new(50.0).update(&field(), &from, &to)
+    }
+
+    #[test]
+    fn the_swept_path_counts_not_only_the_ticks() {
+        let (before, after) = (state(8.0, 50.9, 0.0, 0.0), state(12.0, 50.9, 0.0, 0.0));
+        assert_eq!(end(before, before), None);
+        assert_eq!(end(after, after), None);
+        assert_eq!(end(before, after), Some(Outcome::Collision));
+    }
+
+    #[test]
+    fn attitude_limits_are_the_papers() {
+        for sign in [-1.0, 1.0] {
+            let at = |pitch: f64, path: f64| {
+                let state = state(0.0, 50.0, sign * pitch, sign * path);
+                end(state, state)
+            };
+            assert_eq!(at(59.9, 44.9), None);
+            assert_eq!(at(60.1, 0.0), Some(Outcome::PitchLimit));
+            assert_eq!(at(0.0, 45.1), Some(Outcome::FlightPathLimit));
+        }
+        let inside = state(10.0, 50.0, 70.0, 70.0);
+        assert_eq!(end(inside, inside), Some(Outcome::Collision));
+    }
+
+    #[test]
+    fn a_score_keeps_the_extremes() {
+        let mut score = Score::new(50.0);
+        let path = [
+            state(0.0, 50.0, -20.0, 5.0),
+            state(10.0, 53.0, 10.0, -8.0),
+            state(20.0, 49.0, 3.0, 1.0),
+        ];
+        for pair in path.windows(2) {
+            assert_eq!(score.update(&field(), &pair[0], &pair[1]), None);
+        }
+        assert!((score.max_pitch - 10_f64.to_radians()).abs() < 1e-12);
+        assert!((score.max_flight_path - 8_f64.to_radians()).abs() < 1e-12);
+        assert!((score.max_altitude_deviation - 3.0).abs() < 1e-12);
+        let expected = field().clearance_of_segment((0.0, 50.0), (10.0, 53.0));
+        let second = field().clearance_of_segment((10.0, 53.0), (20.0, 49.0));
+        assert!((score.min_clearance - expected.min(second)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn exit_codes_are_the_documented_ones() {
+        assert_eq!(Outcome::Survived.exit_code(), 0);
+        assert_eq!(Outcome::Collision.exit_code(), 3);
+        assert_eq!(Outcome::PitchLimit.exit_code(), 4);
+        assert_eq!(Outcome::FlightPathLimit.exit_code(), 4);
+    }
+}

@@ -1,0 +1,289 @@
+//! One flight in lockstep: sensors out, command back, plant on.
+
+use crate::lidar::Lidar;
+use crate::link::{Link, LinkError};
+use crate::log::{
+    Columns, FlightLog, Header, ObstacleEntry, PlanEntry, RejectionEntry, SCHEMA, Summary, Tick,
+    finite,
+};
+use crate::outcome::{Outcome, Score};
+use crate::plant::{Plant, PlantError};
+use crate::scenario::{ALTITUDE, Scenario, TICKS_PER_SECOND};
+use crate::sensors::AirDataSensors;
+use crate::world::ObstacleField;
+use hil_protocol::{
+    ActuatorCommand, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, PlanReport, Role,
+    SensorFrame, StepReport,
+};
+use mpp_core::config::{STAGES, TICK_PERIOD};
+use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
+use nalgebra::Vector4;
+use std::fmt;
+
+/// Why a flight could not be flown to an outcome.
+#[derive(Debug)]
+pub enum FlyError {
+    /// The link failed.
+    Link(LinkError),
+    /// The core told the plant something that it cannot fly.
+    Plant(PlantError),
+    /// The airframe has no level flight to start from.
+    Trim(TrimError),
+}
+
+impl fmt::Display for FlyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Link(error) => write!(f, "{error}"),
+            Self::Plant(error) => write!(f, "{error}"),
+            Self::Trim(error) => write!(f, "the airframe has no level flight: {error:?}"),
+        }
+    }
+}
+
+impl std::error::Error for FlyError {}
+
+impl From<LinkError> for FlyError {
+    fn from(error: LinkError) -> Self {
+        Self::Link(error)
+    }
+}
+
+/// What one tick brought, for whoever watches the flight.
+pub struct Moment<'a> {
+    /// The tick as logged.
+    pub tick: &'a Tick,
+    /// The plan taken over at this tick, if one was.
+    pub plan: Option<&'a PlanEntry>,
+}
+
+/// The core's answer to one tick.
+struct Answer {
+    command: ActuatorCommand,
+    step: Option<StepReport>,
+    plan: Option<PlanEntry>,
+}
+
+/// Flies a scenario over a link; `watch` sees every tick.
+///
+/// # Errors
+/// [`FlyError`]: there is no outcome.
+pub fn fly(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    mut watch: impl FnMut(&Moment<'_>),
+) -> Result<FlightLog, FlyError> {
+    let start = scenario.start().map_err(FlyError::Trim)?;
+    greet(scenario, link)?;
+    let field = ObstacleField::generate(scenario.seed, scenario.obstacles, start.x, ALTITUDE);
+    let mut plant = Plant {
+        airframe: scenario.airframe.airframe(),
+        state: start,
+    };
+    let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
+    let mut lidar = Lidar::new(scenario.seed, scenario.lidar);
+    let mut score = Score::new(ALTITUDE);
+    let mut ticks = Columns::default();
+    let mut plans = Vec::new();
+    let mut rejections = Vec::new();
+    let mut outcome = None;
+    let mut flown = 0;
+    while flown < scenario.ticks && outcome.is_none() {
+        let number = flown;
+        let measured = sensors.measure(&plant.state);
+        if number % scenario.replan_ticks == 0 {
+            let ranges = lidar.scan(&plant.state, &field);
+            link.send(&Message::LidarScan(wire_scan(scenario, number, &ranges)))?;
+        }
+        link.send(&Message::SensorFrame(SensorFrame {
+            tick: number,
+            airspeed: measured.airspeed,
+            pitch: measured.pitch,
+            x: plant.state.x,
+            z: plant.state.z,
+        }))?;
+        let answer = receive_answer(link, number, &mut rejections)?;
+        let tick = logged(number, &plant.state, measured, &answer);
+        watch(&Moment {
+            tick: &tick,
+            plan: answer.plan.as_ref(),
+        });
+        ticks.push(&tick);
+        plans.extend(answer.plan);
+
+        let before = plant.state;
+        plant
+            .step(tick.control, TICK_PERIOD)
+            .map_err(FlyError::Plant)?;
+        outcome = score.update(&field, &before, &plant.state);
+        flown += 1;
+    }
+    let summary = Summary {
+        outcome: outcome.unwrap_or(Outcome::Survived),
+        t_end: Scenario::time(flown),
+        x_end: plant.state.x,
+        min_clearance: finite(Some(score.min_clearance)),
+        replans: plans.len() as u32,
+        candidates: plans.iter().map(|plan: &PlanEntry| plan.candidates).sum(),
+        feasible: plans.iter().map(|plan: &PlanEntry| plan.feasible).sum(),
+    };
+    Ok(FlightLog {
+        schema: SCHEMA,
+        header: header(scenario, &field),
+        ticks,
+        plans,
+        rejections,
+        summary,
+    })
+}
+
+/// Hello both ways, and the configuration.
+fn greet(scenario: &Scenario, link: &mut dyn Link) -> Result<(), LinkError> {
+    let own = Hello {
+        role: Role::Harness,
+        software: software(),
+        tick_period_us: (TICK_PERIOD * 1e6) as u32,
+        beams_max: hil_protocol::MAX_BEAMS as u16,
+        stages: STAGES as u16,
+    };
+    link.send(&Message::Hello(own))?;
+    let peer = match link.receive("hello")? {
+        Message::Hello(peer) => peer,
+        other => return Err(unexpected("hello", &other)),
+    };
+    if peer.role != Role::Core {
+        let why = "the other side is a harness too: give the address of a core";
+        return Err(LinkError::Peer(why.to_owned()));
+    }
+    if peer.tick_period_us != own.tick_period_us
+        || usize::from(peer.beams_max) < scenario.lidar.beams
+    {
+        return Err(LinkError::Peer(format!(
+            "the core ticks every {} us and takes {} beams; this harness needs {} us and {} beams",
+            peer.tick_period_us, peer.beams_max, own.tick_period_us, scenario.lidar.beams
+        )));
+    }
+    link.send(&Message::Configure(scenario.configure()))?;
+    match link.receive("the reply to the configuration")? {
+        Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => Ok(()),
+        Message::ConfigureReply(reply) => Err(LinkError::Refused(reply.verdict)),
+        other => Err(unexpected("the reply to the configuration", &other)),
+    }
+}
+
+fn unexpected(awaited: &str, message: &Message) -> LinkError {
+    LinkError::Unexpected {
+        awaited: awaited.to_owned(),
+        id: message.id(),
+    }
+}
+
+/// Collects what the core sends until its command for this tick.
+fn receive_answer(
+    link: &mut dyn Link,
+    tick: u32,
+    rejections: &mut Vec<RejectionEntry>,
+) -> Result<Answer, LinkError> {
+    let awaited = format!("the actuator command of tick {tick}");
+    let mut step = None;
+    let mut plan = None;
+    loop {
+        match link.receive(&awaited)? {
+            Message::ActuatorCommand(command) if command.tick == tick => {
+                return Ok(Answer {
+                    command,
+                    step,
+                    plan,
+                });
+            }
+            Message::StepReport(report) => step = Some(report),
+            Message::PlanReport(report) => plan = Some(plan_entry(&report)),
+            Message::Rejection(rejection) => rejections.push(RejectionEntry {
+                tick: u64::from(rejection.tick),
+                cause: format!("{:?}", rejection.cause),
+            }),
+            other => return Err(unexpected(&awaited, &other)),
+        }
+    }
+}
+
+fn plan_entry(report: &PlanReport) -> PlanEntry {
+    PlanEntry {
+        tick: u64::from(report.scan_tick),
+        used_from_tick: Some(u64::from(report.used_from_tick)),
+        outcome: format!("{:?}", report.outcome),
+        candidates: u32::from(report.candidates),
+        feasible: u32::from(report.feasible),
+        tree_runs: u32::from(report.tree_runs),
+        cost: finite(Some(report.cost)),
+        violation: finite(Some(report.violation)),
+    }
+}
+
+fn wire_scan(scenario: &Scenario, tick: u32, ranges: &[f32]) -> LidarScan {
+    let lidar = &scenario.lidar;
+    let gaps = lidar.beams.saturating_sub(1).max(1);
+    LidarScan {
+        tick,
+        angle_min: (-0.5 * lidar.field_of_view) as f32,
+        angle_increment: (lidar.field_of_view / gaps as f64) as f32,
+        ranges: ranges
+            .iter()
+            .copied()
+            .take(hil_protocol::MAX_BEAMS)
+            .collect(),
+    }
+}
+
+fn logged(
+    number: u32,
+    state: &VehicleState,
+    measured: crate::sensors::Measurement,
+    answer: &Answer,
+) -> Tick {
+    let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
+    let tracking = answer.command.mode == ControlMode::Tracking;
+    let reference = answer.step.filter(|_| tracking).map(|step| {
+        let [x, z, rest @ ..] = step.reference;
+        VehicleState {
+            x,
+            z,
+            air: air(rest),
+        }
+    });
+    Tick {
+        t: Scenario::time(number),
+        state: *state,
+        measured,
+        estimate: answer.step.map_or(state.air, |step| air(step.estimate)),
+        reference,
+        control: Control {
+            thrust: answer.command.thrust,
+            elevator: answer.command.elevator,
+        },
+    }
+}
+
+fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
+    Header {
+        package_version: env!("CARGO_PKG_VERSION").to_owned(),
+        seed: scenario.seed,
+        obstacles: scenario.obstacles,
+        paths: usize::from(scenario.paths),
+        preset: scenario.preset.name().to_owned(),
+        airframe: scenario.airframe.name().to_owned(),
+        replan_hz: f64::from(TICKS_PER_SECOND) / f64::from(scenario.replan_ticks),
+        latency: Scenario::time(scenario.latency_ticks),
+        field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
+    }
+}
+
+/// This crate's version.
+fn software() -> [u8; 3] {
+    let part = |text: &str| text.parse().unwrap_or(0);
+    [
+        part(env!("CARGO_PKG_VERSION_MAJOR")),
+        part(env!("CARGO_PKG_VERSION_MINOR")),
+        part(env!("CARGO_PKG_VERSION_PATCH")),
+    ]
+}

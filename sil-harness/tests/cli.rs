@@ -1,0 +1,214 @@
+//! The command line as a user meets it: exit codes, what is printed where, what is written.
+
+use serde_json::Value;
+use std::io::{BufRead, BufReader};
+use std::net::UdpSocket;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+use std::time::Duration;
+
+fn harness() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_sil-harness"))
+}
+
+/// A directory of this test's own; the name keeps tests apart.
+fn scratch(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("sil-harness-{}-{name}", std::process::id()))
+}
+
+#[expect(
+    clippy::unwrap_used,
+    reason = "a binary that does not start fails the test"
+)]
+fn run(name: &str, arguments: &[&str]) -> (Output, PathBuf) {
+    let out = scratch(name);
+    let output = harness()
+        .args(arguments)
+        .arg("--out")
+        .arg(&out)
+        .output()
+        .unwrap();
+    (output, out)
+}
+
+#[test]
+fn a_flight_prints_one_json_object_and_writes_log_and_picture() {
+    let (output, out) = run("json", &["--seed", "3", "--json"]);
+    assert!(output.status.success());
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(result["seed"], 3);
+    assert_eq!(result["outcome"], "survived");
+    let log = std::fs::read(out.join("flight-seed3.json")).unwrap();
+    let log: Value = serde_json::from_slice(&log).unwrap();
+    assert_eq!(log["ticks"]["t"].as_array().unwrap().len(), 2000);
+    let picture = std::fs::read_to_string(out.join("flight-seed3.svg")).unwrap();
+    assert!(picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"));
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn without_json_one_line_says_it_all() {
+    let (output, out) = run("line", &["fly", "--seed", "3", "--duration", "2"]);
+    let line = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(line.lines().count(), 1, "{line}");
+    assert!(
+        line.starts_with("result: seed 3, survived after 2.00 s, clearance "),
+        "{line}"
+    );
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+/// Seeds that end badly, found by flying; the outcome and the exit code must fit.
+#[test]
+fn exit_codes_tell_how_a_flight_ended() {
+    let mut seen = std::collections::BTreeSet::new();
+    for seed in 0..40 {
+        if seen.len() == 3 {
+            break;
+        }
+        let (output, out) = run(
+            "codes",
+            &[
+                "--preset",
+                "reference",
+                "--paths",
+                "1",
+                "--seed",
+                &seed.to_string(),
+                "--json",
+            ],
+        );
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let expected = match result["outcome"].as_str().unwrap() {
+            "survived" => 0,
+            "collision" => 3,
+            _ => 4,
+        };
+        assert_eq!(output.status.code(), Some(expected), "{result}");
+        seen.insert(expected);
+        std::fs::remove_dir_all(out).unwrap();
+    }
+    assert_eq!(seen.into_iter().collect::<Vec<_>>(), [0, 3, 4]);
+}
+
+#[test]
+fn absurd_flags_are_usage_errors_that_say_what_to_do() {
+    let absurd: [(&[&str], &str); 11] = [
+        (&["--paths", "51"], "51 is not in 0..=50"),
+        (&["--obstacles", "-1"], "unexpected argument"),
+        (&["--obstacles", "100000"], "100000 is not in"),
+        (&["--replan-hz", "3"], "whole multiple"),
+        (&["--replan-hz", "0"], "whole multiple"),
+        (&["--replan-hz", "nan"], "whole multiple"),
+        (&["--latency-ms", "15"], "multiple of 10"),
+        (
+            &["--latency-ms", "2000"],
+            "no longer than the time between two plans",
+        ),
+        (&["--speed", "0"], "positive number"),
+        (&["--link", "carrier-pigeon"], "tcp:HOST:PORT"),
+        (&["--mavlink", "127.0.0.1:14550"], "udp:HOST:PORT"),
+    ];
+    for (flags, hint) in absurd {
+        let (output, _) = run("absurd", flags);
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{flags:?}: {talk}");
+        assert!(talk.contains(hint), "{flags:?}: {talk}");
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn a_core_that_is_not_there_is_a_link_error() {
+    // A port that was free a moment ago.
+    let port = std::net::TcpListener::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port();
+    let (output, _) = run("nobody", &["--link", &format!("tcp:127.0.0.1:{port}")]);
+    let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(6), "{talk}");
+    assert!(
+        talk.contains("connecting to the core at 127.0.0.1"),
+        "{talk}"
+    );
+}
+
+#[test]
+fn a_core_in_another_process_flies_the_same_log() {
+    let mut core = harness()
+        .args(["core", "--listen", "127.0.0.1:0", "--once"])
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut greeting = String::new();
+    BufReader::new(core.stderr.take().unwrap())
+        .read_line(&mut greeting)
+        .unwrap();
+    let link = greeting.split_whitespace().last().unwrap();
+    assert!(link.starts_with("tcp:127.0.0.1:"), "{greeting}");
+    let flags = ["--seed", "9", "--duration", "5", "--json"];
+    let (apart, out) = run("apart", &[&flags[..], &["--link", link]].concat());
+    assert!(core.wait().unwrap().success());
+    let (together, other) = run("together", &flags);
+    let hash = |output: &Output| {
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        result["log_hash"].as_str().map(str::to_owned)
+    };
+    assert!(hash(&apart).is_some());
+    assert_eq!(hash(&apart), hash(&together));
+    let bytes = |out: &PathBuf| std::fs::read(out.join("flight-seed9.json")).unwrap();
+    assert_eq!(bytes(&out), bytes(&other));
+    std::fs::remove_dir_all(out).unwrap();
+    std::fs::remove_dir_all(other).unwrap();
+}
+
+#[test]
+fn telemetry_goes_out_over_udp() {
+    let ground = UdpSocket::bind("127.0.0.1:0").unwrap();
+    ground
+        .set_read_timeout(Some(Duration::from_secs(5)))
+        .unwrap();
+    let target = format!("udp:{}", ground.local_addr().unwrap());
+    let (output, out) = run("mavlink", &["--duration", "2", "--mavlink", &target]);
+    assert!(output.status.success());
+    std::fs::remove_dir_all(out).unwrap();
+    // 2 heartbeats, 20 x 3 positions, and a text for each of the 2 plans.
+    let mut ids = std::collections::BTreeMap::new();
+    let mut datagram = [0; 300];
+    for _ in 0..64 {
+        let length = ground.recv(&mut datagram).unwrap();
+        assert!(length > 9 && datagram[0] == 0xFD, "MAVLink 2 magic");
+        let id = u32::from_le_bytes([datagram[7], datagram[8], datagram[9], 0]);
+        *ids.entry(id).or_insert(0) += 1;
+    }
+    let expected = [(0, 2), (30, 20), (32, 20), (74, 20), (253, 2)];
+    assert_eq!(ids.into_iter().collect::<Vec<_>>(), expected);
+}
+
+#[test]
+fn the_reference_check_refuses_what_is_no_reference() {
+    let missing = harness()
+        .args(["check-reference", "no-such-directory"])
+        .output()
+        .unwrap();
+    assert_eq!(missing.status.code(), Some(2));
+    let empty = scratch("empty");
+    std::fs::create_dir_all(&empty).unwrap();
+    let output = harness()
+        .arg("check-reference")
+        .arg(&empty)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    std::fs::write(empty.join("ray_000.json"), "{\"occupied\": 3}").unwrap();
+    let broken = harness()
+        .arg("check-reference")
+        .arg(&empty)
+        .output()
+        .unwrap();
+    assert_eq!(broken.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&broken.stdout).contains("does not parse"));
+    std::fs::remove_dir_all(empty).unwrap();
+}

@@ -1,0 +1,207 @@
+//! Generated programs: random obstacle fields, the tree's paths through them, the corridors around
+//! those, and random motions at the start.
+
+use mpp_core::config::{GRID_ROWS, TREE_SAMPLES};
+use mpp_core::corridor::Corridor;
+use mpp_core::map::{GridPoint, OccupancyGrid};
+use mpp_core::plan::{Extension, Path, Search, resample};
+use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageModel, StageState};
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::{AirState, Trim, linearize};
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+/// Paths taken of one tree.
+const PATHS_OF_A_TREE: usize = 3;
+
+/// A preset's model, as the planner sets it up.
+pub(crate) struct Preset {
+    pub(crate) settings: Settings,
+    pub(crate) trim: Trim,
+    pub(crate) model: StageModel,
+    pub(crate) shared: Box<Condensed>,
+}
+
+/// One program in the words of the paper, from which both solvers' inputs are made.
+#[derive(Clone)]
+pub(crate) struct Instance {
+    pub(crate) initial: StageState,
+    pub(crate) target: StageState,
+    pub(crate) corridor: Corridor,
+    /// Upper limits, then lower limits, of `(angle of attack, flight path)` as deviations from trim.
+    pub(crate) attitude: Option<([f64; 2], [f64; 2])>,
+    pub(crate) thrust_reserve: f64,
+}
+
+impl Preset {
+    pub(crate) fn new(settings: Settings) -> Self {
+        let trim = settings.cruise.trim(&settings.airframe).unwrap();
+        let planner = &settings.planner;
+        let linear = linearize(
+            &settings.airframe,
+            &trim.state,
+            trim.control,
+            planner.jacobian,
+        );
+        let model = StageModel::new(
+            &settings.airframe,
+            &trim,
+            &linear,
+            planner.steady_state,
+            planner.initial,
+        )
+        .unwrap();
+        let mut shared = Box::new(Condensed::new());
+        shared.condense(&model, &planner.weights).unwrap();
+        Self {
+            settings,
+            trim,
+            model,
+            shared,
+        }
+    }
+
+    pub(crate) fn all() -> [Self; 3] {
+        [Settings::reference(), Settings::paper(), Settings::flight()].map(Self::new)
+    }
+}
+
+impl Instance {
+    /// The same with every row moved outwards [m, rad, N].
+    pub(crate) fn relaxed(&self, by: f64) -> Self {
+        let mut relaxed = self.clone();
+        relaxed
+            .corridor
+            .bounds
+            .iter_mut()
+            .flatten()
+            .for_each(|bound| *bound += by);
+        relaxed.thrust_reserve += by;
+        if let Some((upper, lower)) = &mut relaxed.attitude {
+            upper.iter_mut().for_each(|limit| *limit += by);
+            lower.iter_mut().for_each(|limit| *limit -= by);
+        }
+        relaxed
+    }
+
+    /// The program as the crate takes it.
+    pub(crate) fn problem(&self, penalty: Option<Penalty>) -> Problem {
+        let mut bounds = Bounds::none();
+        bounds.set_corridor(&self.corridor);
+        bounds.set_thrust(self.thrust_reserve);
+        if let Some((upper, lower)) = self.attitude {
+            bounds.set_attitude(upper, lower);
+        }
+        Problem {
+            initial: self.initial,
+            target: self.target,
+            bounds,
+            penalty,
+            cost_limit: f64::INFINITY,
+        }
+    }
+}
+
+/// Seeded random numbers.
+pub(crate) struct Draw(ChaCha8Rng);
+
+impl Draw {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    /// Uniform in [0, 1).
+    pub(crate) fn unit(&mut self) -> f64 {
+        f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
+    }
+
+    /// Uniform between two numbers.
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// A padded grid with discs as the lidar might see them, the nearest 3 m ahead.
+fn field(draw: &mut Draw) -> OccupancyGrid {
+    let mut grid = OccupancyGrid::new();
+    let discs = draw.between(3.0, 40.0) as usize;
+    for _ in 0..discs {
+        let radius = draw.between(0.3, 1.5);
+        let centre = GridPoint {
+            row: draw.between(22.0, 52.0),
+            col: draw.between(28.0 + radius, 85.0),
+        };
+        mark_disc(&mut grid, centre, radius);
+    }
+    grid.pad();
+    grid
+}
+
+fn mark_disc(grid: &mut OccupancyGrid, centre: GridPoint, radius: f64) {
+    for row in 0..GRID_ROWS as i32 {
+        for col in 25..90 {
+            let cell = GridPoint {
+                row: f64::from(row) + 0.5,
+                col: f64::from(col) + 0.5,
+            };
+            if centre.distance(&cell) <= radius.max(0.71) {
+                grid.mark(row, col);
+            }
+        }
+    }
+}
+
+/// A motion about trim as it is met in flight.
+fn motion(draw: &mut Draw, trim: &Trim) -> AirState {
+    AirState {
+        airspeed: trim.state.airspeed + draw.between(-1.5, 1.5),
+        pitch: trim.state.pitch + draw.between(-0.25, 0.25),
+        pitch_rate: draw.between(-0.5, 0.5),
+        flight_path: trim.state.flight_path + draw.between(-0.25, 0.25),
+    }
+}
+
+/// The next few programs: those of one random field and one tree.
+pub(crate) fn next_instances(draw: &mut Draw, preset: &Preset) -> Vec<Instance> {
+    let planner = &preset.settings.planner;
+    let grid = field(draw);
+    let estimate = motion(draw, &preset.trim);
+    let height_missing = draw.between(-8.0, 8.0);
+    // Limits down to 40 % of the preset's, so that many programs meet them.
+    let strictness = draw.between(0.4, 1.0);
+    let mut search = Search::new();
+    search.restart(planner.rules);
+    for _ in 0..=TREE_SAMPLES {
+        if search.extend(&grid, || draw.unit()) == Extension::Complete {
+            break;
+        }
+    }
+    let mut instances = Vec::new();
+    let mut path = Path::new();
+    let mut next = 0;
+    while let Some(after) = search.next_path(next, &mut path)
+        && instances.len() < PATHS_OF_A_TREE
+    {
+        next = after;
+        let points = resample(&path, planner.rules);
+        let mut corridor = Corridor::new();
+        let cruise = preset.trim.state.airspeed;
+        corridor.trace(&grid, &points, cruise, &planner.padding, planner.rules);
+        instances.push(Instance {
+            initial: preset.shared.initial_state(&preset.trim, &estimate),
+            target: [0.0, height_missing, 0.0, 0.0, 0.0, 0.0],
+            corridor,
+            attitude: planner.attitude.map(|limits| {
+                let level = preset.trim.state.flight_path;
+                let angle_of_attack = strictness * limits.angle_of_attack;
+                let flight_path = strictness * limits.flight_path;
+                (
+                    [angle_of_attack, flight_path - level],
+                    [-angle_of_attack, -flight_path - level],
+                )
+            }),
+            thrust_reserve: preset.trim.control.thrust,
+        });
+    }
+    instances
+}
