@@ -132,6 +132,24 @@ fn the_baseline_follows_the_shortest_path_at_cruise_speed() {
 }
 
 #[test]
+fn the_baseline_forgets_the_shortest_path_of_the_cycle_before() {
+    let paper = Settings::paper();
+    let baseline = PlannerSettings {
+        paths: 0,
+        ..paper.planner
+    };
+    let mut planner = planner(&with_planner(paper, baseline));
+    let mut state = level(&planner);
+    assert_eq!(plan(&mut planner, &state, &[]), Verdict::Feasible);
+    let straight = planner.summary().cost;
+    state.x += 12.0;
+    let wall = [(140.0, 50.0, 6.0)];
+    assert_eq!(plan(&mut planner, &state, &wall), Verdict::Feasible);
+    assert!(planner.summary().cost > straight, "a way around is longer");
+    assert!((planner.best().knots[0].state.x - state.x).abs() < 1e-9);
+}
+
+#[test]
 fn states_that_are_not_finite_give_no_plan() {
     for settings in presets() {
         for broken in 0..5 {

@@ -11,7 +11,7 @@ use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
 use mpp_core::estimate::Measurement;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
-use mpp_core::qp::MAX_ITERATIONS;
+use mpp_core::qp::{MAX_ITERATIONS, Weights};
 use mpp_core::sense::SensorFrame;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
@@ -170,5 +170,23 @@ fn a_planner_set_up_again_plans_like_a_new_one() {
         diving.z += 12.0;
         assert_eq!(plan(&mut used, &diving, &[]), plan(&mut new, &diving, &[]));
         assert_eq!(used.summary(), new.summary());
+    }
+}
+
+#[test]
+fn a_planner_whose_last_set_up_failed_plans_nothing() {
+    for settings in presets() {
+        let mut planner = planner(&settings);
+        let state = level(&planner);
+        let weights = Weights {
+            control: [1.0, -5.0],
+            terminal: 1.0,
+        };
+        let bad = PlannerSettings {
+            weights,
+            ..settings.planner
+        };
+        assert!(planner.set_up(&with_planner(settings, bad)).is_err());
+        assert_eq!(plan(&mut planner, &state, &SCATTERED), Verdict::Nothing);
     }
 }

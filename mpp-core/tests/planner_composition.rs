@@ -8,11 +8,15 @@ mod common {
 
 use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
 use common::world::{Disc, scan};
+use mpp_core::config::TREE_SAMPLES;
 use mpp_core::corridor::Corridor;
+use mpp_core::plan::{CollocationPoints, Extension, Path, Search, resample};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel, Status};
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::vehicle::{VehicleState, linearize};
+use rand_core::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 
 /// So close that every path comes nearer to them than it should.
 const CLOSE: [Disc; 3] = [(107.0, 50.5, 1.5), (118.0, 46.0, 2.0), (119.0, 55.0, 2.0)];
@@ -137,6 +141,44 @@ fn the_plan_is_the_best_of_all_candidates() {
         }
     }
     assert!(least_violating >= 3, "{least_violating}");
+}
+
+/// The first candidates of a seed, tree after tree and node after node.
+fn candidates(settings: &Settings, planner: &Planner, count: usize) -> Vec<CollocationPoints> {
+    let mut random = Pcg64Mcg::seed_from_u64(settings.planner.seed);
+    let mut unit = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+    let (mut search, mut path) = (Search::new(), Path::new());
+    let mut found = Vec::new();
+    while found.len() < count {
+        search.restart(settings.planner.rules);
+        let grown = |_: &usize| search.extend(planner.grid(), &mut unit) == Extension::Complete;
+        (0..=TREE_SAMPLES).find(grown).unwrap();
+        let mut next = 0;
+        while let Some(after) = search.next_path(next, &mut path) {
+            found.push(resample(&path, settings.planner.rules));
+            next = after;
+        }
+    }
+    found.truncate(count);
+    found
+}
+
+#[test]
+fn every_path_of_every_tree_is_a_candidate_in_turn() {
+    for settings in presets() {
+        let mut planner = planner(&settings);
+        let state = level(&planner);
+        planner.begin(0.0, &state, &scan(&SCATTERED, &state));
+        let mut seen = Vec::new();
+        while planner.advance() {
+            if planner.summary().candidates > seen.len() {
+                seen.push(*planner.points());
+            }
+        }
+        seen.push(*planner.points());
+        assert_eq!(seen.len(), settings.planner.paths);
+        assert_eq!(seen, candidates(&settings, &planner, seen.len()));
+    }
 }
 
 #[test]

@@ -140,6 +140,8 @@ proptest! {
         let power = (control.thrust * libm::cos(state.angle_of_attack()) - drag) * v;
         let vehicle = VehicleState { x: 3.0, z: 7.0, air: state };
         let rate = vehicle_rate(&airframe, &vehicle, control);
+        prop_assert!((libm::hypot(rate.x, rate.z) - v).abs() <= ROUNDING * v);
+        prop_assert!((libm::atan2(rate.z, rate.x) - state.flight_path).abs() <= ROUNDING);
         let change = airframe.mass * (v * rate.air.airspeed + GRAVITY * rate.z);
         let scale = airframe.mass * GRAVITY * v + drag * v;
         prop_assert!((power - change).abs() <= ROUNDING * scale, "{power} against {change}");

@@ -19,6 +19,7 @@
 //! * [`scenario`]: what is flown; [`run`]: one flight in lockstep; [`link`]: where the core is.
 //! * [`telemetry`]: MAVLink 2 for ground stations.
 //! * [`check_reference`]: core and plant against data recorded from the authors' code.
+//! * [`bench`]: our parts beside others.
 //! * [`cli`]: the command line.
 //! * [`random`]: the only source of random numbers.
 //!
@@ -26,6 +27,7 @@
 //! time [s]. Every transcendental goes through `libm`, every random number through a seeded
 //! generator; only the command line reads a clock, to pace a flight for human eyes.
 
+pub mod bench;
 pub mod check_reference;
 pub mod cli;
 pub mod figure;

@@ -220,7 +220,8 @@ fn plan_entry(report: &PlanReport) -> PlanEntry {
     }
 }
 
-fn wire_scan(scenario: &Scenario, tick: u32, ranges: &[f32]) -> LidarScan {
+/// A scan as it goes over the link.
+pub(crate) fn wire_scan(scenario: &Scenario, tick: u32, ranges: &[f32]) -> LidarScan {
     let lidar = &scenario.lidar;
     let gaps = lidar.beams.saturating_sub(1).max(1);
     LidarScan {

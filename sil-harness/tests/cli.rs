@@ -212,3 +212,15 @@ fn the_reference_check_refuses_what_is_no_reference() {
     assert!(String::from_utf8_lossy(&broken.stdout).contains("does not parse"));
     std::fs::remove_dir_all(empty).unwrap();
 }
+
+#[test]
+fn the_readme_shows_what_the_main_job_prints() {
+    let (output, out) = run("readme", &[]);
+    std::fs::remove_dir_all(out).unwrap();
+    let readme = include_str!("../../README.md");
+    let line = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        readme.contains(line.trim_end()),
+        "README.md shows another flight than {line}"
+    );
+}

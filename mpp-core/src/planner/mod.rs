@@ -168,6 +168,9 @@ impl Planner {
     /// # Errors
     /// [`SetupError`]: nothing is planned.
     pub fn set_up(&mut self, settings: &Settings) -> Result<(), SetupError> {
+        // Whatever fails below: a planner that is half set up plans nothing.
+        self.random = None;
+        self.phase = Phase::Idle;
         let planner = &settings.planner;
         if planner.paths > MAX_PATHS {
             return Err(SetupError::TooManyPaths);

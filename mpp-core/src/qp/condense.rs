@@ -1,36 +1,53 @@
-//! The part of the program that all candidates share: states eliminated, Hessian factored, kernel
-//! of the outputs formed.
+//! The part of the program that all candidates of a model share: states eliminated, Hessian
+//! factored, kernel of the outputs formed.
 
-use super::rows::{OUTPUTS, ROWS, RowPattern, STAGE_OUTPUTS, THRUST_OUTPUT};
-use super::{StageControl, StageModel, StageState, Weights};
+use super::dense::{CONTROLS, ControlVector, backward, dot, factor, forward};
+use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
+use super::{Dynamics, StageControl, StageModel, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
 use crate::vehicle::{AirState, Trim};
 use nalgebra::Vector6;
-
-/// Controls of the whole horizon, stage by stage.
-pub(super) const CONTROLS: usize = 2 * STAGES;
 
 /// Rows whose `c' K c` is below this are constants but for rounding: positions follow the controls
 /// two stages later.
 const UNCHANGEABLE: f64 = 1e-20;
 
-type ControlVector = [f64; CONTROLS];
+/// What a candidate without rows depends on: first state, target, and a one for the offsets.
+const INPUTS: usize = 13;
+
+/// `x_k` by controls, 6 x 36, and by inputs, 6 x 13.
+type Sensitivity = [ControlVector; 6];
+type FreeResponse = [[f64; INPUTS]; 6];
+
+/// Where the outputs stand in a state.
+const X: usize = 0;
+const Z: usize = 1;
+const PITCH: usize = 3;
+const PATH: usize = 5;
 
 /// Everything that candidates share.
 #[derive(Clone, Debug)]
 pub struct Condensed {
-    pub(super) model: StageModel,
-    pub(super) weights: Weights,
+    model: StageModel,
+    dynamics: [Dynamics; STAGES],
+    weights: Weights,
     /// `K = Y H^-1 Y'`.
     pub(super) kernel: [[f64; OUTPUTS]; OUTPUTS],
-    /// `H^-1 Y'`, one row an output.
-    pub(super) response: [ControlVector; OUTPUTS],
-    /// `w H^-1 G'`, one row a state: controls per unit of missing terminal state.
-    steering: [ControlVector; 6],
-    /// `1 / sqrt(c' K c)` of each row; 0 where the controls cannot change the row.
-    pub(super) inverse_norm: [f64; ROWS],
-    /// Lower Cholesky factor of `H`: only needed while condensing.
+    /// Lower Cholesky factor `L` of `H`.
     factor: [ControlVector; CONTROLS],
+    /// `L^-1 Y'`, one row an output; while condensing, `Y'`.
+    half_response: [ControlVector; OUTPUTS],
+    /// The optimum without rows by input: outputs and controls.
+    outputs_by_input: [[f64; OUTPUTS]; INPUTS],
+    controls_by_input: [ControlVector; INPUTS],
+    /// Its cost is `z' M z / 2` of the inputs `z`.
+    cost_by_inputs: [[f64; INPUTS]; INPUTS],
+    /// The last input: 1 where the dynamics have offsets.
+    constant: f64,
+    /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/4)`, and 0
+    /// where the controls cannot change the row. Halfway between absolute violation and violation
+    /// relative to what it takes to move a row; of the three it needs the fewest steps.
+    pub(super) pricing: [f64; ROWS],
 }
 
 /// The Hessian is not positive definite: a weight is not positive, or the model not finite. The
@@ -38,74 +55,206 @@ pub struct Condensed {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CondenseError;
 
+/// A candidate's optimum without rows.
+pub(super) struct Unconstrained {
+    pub(super) controls: ControlVector,
+    pub(super) outputs: [f64; OUTPUTS],
+    pub(super) cost: f64,
+}
+
 impl Condensed {
     /// An empty workspace.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             model: StageModel::at_rest(),
+            dynamics: [Dynamics::at_rest(); STAGES],
             weights: Weights::PAPER,
             kernel: [[0.0; OUTPUTS]; OUTPUTS],
-            response: [[0.0; CONTROLS]; OUTPUTS],
-            steering: [[0.0; CONTROLS]; 6],
-            inverse_norm: [0.0; ROWS],
             factor: [[0.0; CONTROLS]; CONTROLS],
+            half_response: [[0.0; CONTROLS]; OUTPUTS],
+            outputs_by_input: [[0.0; OUTPUTS]; INPUTS],
+            controls_by_input: [[0.0; CONTROLS]; INPUTS],
+            cost_by_inputs: [[0.0; INPUTS]; INPUTS],
+            constant: 0.0,
+            pricing: [0.0; ROWS],
         }
     }
 
-    /// Condenses a model: `H = R + w G'G`, its Cholesky factor, and the kernel.
+    /// Condenses a model that is the same in every stage.
     ///
     /// # Errors
     /// [`CondenseError`] as described there.
     pub fn condense(&mut self, model: &StageModel, weights: &Weights) -> Result<(), CondenseError> {
         self.model = *model;
-        self.weights = *weights;
-        let markov = markov_parameters(model);
-        self.factor_hessian(&markov)?;
+        self.dynamics.fill(model.dynamics());
+        self.constant = 0.0;
+        self.condense_stages(weights)
+    }
 
-        for (state, steering) in self.steering.iter_mut().enumerate() {
-            *steering = terminal_row(&markov, state);
-            solve(&self.factor, steering);
-            steering
-                .iter_mut()
-                .for_each(|value| *value *= weights.terminal);
-        }
-        for (output, response) in self.response.iter_mut().enumerate() {
-            *response = output_row(&markov, output);
-            solve(&self.factor, response);
+    /// Condenses a model of its own for each stage, as linearised about a trajectory.
+    ///
+    /// # Errors
+    /// [`CondenseError`] as described there.
+    pub fn condense_varying(
+        &mut self,
+        dynamics: &[Dynamics; STAGES],
+        weights: &Weights,
+    ) -> Result<(), CondenseError> {
+        self.dynamics = *dynamics;
+        self.constant = 1.0;
+        self.condense_stages(weights)
+    }
+
+    /// `H = R + w G'G`, its Cholesky factor, and from it kernel, responses and the optimum without
+    /// rows.
+    fn condense_stages(&mut self, weights: &Weights) -> Result<(), CondenseError> {
+        self.weights = *weights;
+        let (last, free) = self.write_outputs();
+        factor(&mut self.factor, &last, weights).ok_or(CondenseError)?;
+
+        for row in &mut self.half_response {
+            forward(&self.factor, CONTROLS, row);
         }
         for output in 0..OUTPUTS {
-            let row = output_row(&markov, output);
-            for (kernel, response) in self.kernel[output].iter_mut().zip(&self.response) {
-                *kernel = dot(&row, response);
+            for other in 0..output + 1 {
+                let product = dot(&self.half_response[output], &self.half_response[other]);
+                self.kernel[output][other] = product;
+                self.kernel[other][output] = product;
             }
         }
-        for row in 0..ROWS {
-            let squared = RowPattern::of(row).map_or(0.0, |row| self.between(&row, &row));
-            self.inverse_norm[row] = if squared > UNCHANGEABLE {
-                1.0 / libm::sqrt(squared)
+        for (row, price) in self.pricing.iter_mut().enumerate() {
+            let squared = RowPattern::of(row).map_or(0.0, |row| row.norm_squared(&self.kernel));
+            *price = if squared > UNCHANGEABLE {
+                1.0 / libm::sqrt(libm::sqrt(squared))
             } else {
                 0.0
             };
         }
+        self.write_unconstrained(last, &free);
         Ok(())
     }
 
-    /// `c_i' K c_j` of two rows.
-    pub(super) fn between(&self, i: &RowPattern, j: &RowPattern) -> f64 {
-        let at = |output: usize, other: usize| {
-            self.kernel
-                .get(output)
-                .and_then(|row| row.get(other))
-                .copied()
-                .unwrap_or(0.0)
-        };
-        i.first.1 * (at(i.first.0, j.first.0) * j.first.1 + at(i.first.0, j.second.0) * j.second.1)
-            + i.second.1
-                * (at(i.second.0, j.first.0) * j.first.1 + at(i.second.0, j.second.0) * j.second.1)
+    /// Writes the outputs by controls (`Y`) and by inputs, and gives
+    /// the last state by both.
+    fn write_outputs(&mut self) -> (Sensitivity, FreeResponse) {
+        let mut by_controls = [[0.0; CONTROLS]; 6];
+        let mut by_inputs = [[0.0; INPUTS]; 6];
+        for (index, row) in by_inputs.iter_mut().enumerate() {
+            // The first inputs are the first state.
+            row[index] = 1.0;
+        }
+        for (stage, dynamics) in self.dynamics.iter().enumerate() {
+            by_controls = product(dynamics, &by_controls);
+            by_inputs = product(dynamics, &by_inputs);
+            for index in 0..6 {
+                by_inputs[index][INPUTS - 1] += dynamics.offset[index];
+                let pairs = by_controls[index].as_chunks_mut::<2>().0;
+                if let Some([elevator, thrust]) = pairs.get_mut(stage) {
+                    *elevator += dynamics.b[(index, 0)];
+                    *thrust += dynamics.b[(index, 1)];
+                }
+            }
+            let places = [2 * stage, ATTITUDE_OUTPUT + 2 * stage];
+            for (place, states) in places.into_iter().zip([[X, Z], [PITCH, PATH]]) {
+                for (output, state) in (place..).zip(states) {
+                    if let Some(row) = self.half_response.get_mut(output) {
+                        *row = by_controls[state];
+                    }
+                    for (outputs, input) in self.outputs_by_input.iter_mut().zip(&by_inputs[state])
+                    {
+                        if let Some(place) = outputs.get_mut(output) {
+                            *place = *input;
+                        }
+                    }
+                }
+            }
+        }
+        let thrusts = self
+            .half_response
+            .iter_mut()
+            .skip(THRUST_OUTPUT)
+            .take(STAGES);
+        for (stage, row) in thrusts.enumerate() {
+            *row = [0.0; CONTROLS];
+            if let Some([_, thrust]) = row.as_chunks_mut::<2>().0.get_mut(stage) {
+                *thrust = 1.0;
+            }
+        }
+        for outputs in &mut self.outputs_by_input {
+            outputs
+                .iter_mut()
+                .skip(THRUST_OUTPUT)
+                .take(STAGES)
+                .for_each(|thrust| *thrust = 0.0);
+        }
+        (by_controls, by_inputs)
     }
 
-    /// The model that was condensed.
+    /// The optimum without rows, `u = w H^-1 G' (target - free last state)`, by input.
+    fn write_unconstrained(&mut self, last: [ControlVector; 6], free: &FreeResponse) {
+        let mut steering = last;
+        for row in &mut steering {
+            forward(&self.factor, CONTROLS, row);
+            backward(&self.factor, CONTROLS, row);
+        }
+        let mut missing = [[0.0; 6]; INPUTS];
+        for (input, missing) in missing.iter_mut().enumerate() {
+            for (state, missing) in missing.iter_mut().enumerate() {
+                // Inputs 6 to 11 are the target.
+                let wanted = if input == state + 6 { 1.0 } else { 0.0 };
+                *missing = wanted
+                    - if (6..12).contains(&input) {
+                        0.0
+                    } else {
+                        free[state][input]
+                    };
+            }
+        }
+        for (input, missing) in missing.iter_mut().enumerate() {
+            let mut controls = [0.0; CONTROLS];
+            for (steering, missing) in steering.iter().zip(missing.iter()) {
+                add_scaled(&mut controls, steering, self.weights.terminal * missing);
+            }
+            self.controls_by_input[input] = controls;
+            self.add_outputs(input, &controls, missing);
+        }
+        for (i, costs) in self.cost_by_inputs.iter_mut().enumerate() {
+            for (j, cost) in costs.iter_mut().enumerate() {
+                let pairs = self.controls_by_input[i].as_chunks::<2>().0.iter();
+                let effort: f64 = pairs
+                    .zip(self.controls_by_input[j].as_chunks::<2>().0)
+                    .map(|(a, b)| {
+                        self.weights.control[0] * (a[0] * b[0])
+                            + self.weights.control[1] * (a[1] * b[1])
+                    })
+                    .sum();
+                let terminal: f64 = missing[i].iter().zip(&missing[j]).map(|(a, b)| a * b).sum();
+                *cost = effort + self.weights.terminal * terminal;
+            }
+        }
+    }
+
+    /// Adds what controls do to the outputs of an input, and takes what they do to the last state
+    /// from what is missing there.
+    fn add_outputs(&mut self, input: usize, controls: &ControlVector, missing: &mut [f64; 6]) {
+        let mut states = [[0.0; 6]; KNOTS];
+        let mut outputs = [0.0; OUTPUTS];
+        let still = [0.0; 6];
+        let linear = self.dynamics.map(|dynamics| Dynamics {
+            offset: Vector6::zeros(),
+            ..dynamics
+        });
+        roll_out(&linear, &still, controls, &mut states, &mut outputs);
+        for (sum, output) in self.outputs_by_input[input].iter_mut().zip(&outputs) {
+            *sum += output;
+        }
+        for (missing, last) in missing.iter_mut().zip(&states[KNOTS - 1]) {
+            *missing -= last;
+        }
+    }
+
+    /// The model that was condensed, if it is the same in every stage.
     #[must_use]
     pub fn model(&self) -> &StageModel {
         &self.model
@@ -118,19 +267,39 @@ impl Condensed {
         (self.model.initial * Vector6::new(0.0, 0.0, d.x, d.y, d.z, d.w)).into()
     }
 
-    /// Controls of the optimum without rows.
-    pub(super) fn unconstrained(&self, initial: &StageState, target: &StageState) -> ControlVector {
-        let mut state = *initial;
-        for _ in 0..STAGES {
-            state = self.model.step(&state, &[0.0; 2]);
+    /// The optimum without rows.
+    pub(super) fn unconstrained(&self, initial: &StageState, target: &StageState) -> Unconstrained {
+        let mut inputs = [self.constant; INPUTS];
+        for (input, value) in inputs.iter_mut().zip(initial.iter().chain(target)) {
+            *input = *value;
         }
+        let mut optimum = Unconstrained {
+            controls: [0.0; CONTROLS],
+            outputs: [0.0; OUTPUTS],
+            cost: 0.0,
+        };
+        for (index, input) in inputs.iter().enumerate() {
+            add_scaled(
+                &mut optimum.controls,
+                &self.controls_by_input[index],
+                *input,
+            );
+            add_scaled(&mut optimum.outputs, &self.outputs_by_input[index], *input);
+            let costs = self.cost_by_inputs[index].iter().zip(&inputs);
+            optimum.cost += 0.5 * input * costs.map(|(cost, other)| cost * other).sum::<f64>();
+        }
+        optimum
+    }
+
+    /// The controls `H^-1 Y' c` that push back by `c`, multipliers by output.
+    pub(super) fn push_back(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
         let mut controls = [0.0; CONTROLS];
-        for (index, steering) in self.steering.iter().enumerate() {
-            let missing = target[index] - state[index];
-            for (control, gain) in controls.iter_mut().zip(steering) {
-                *control += gain * missing;
+        for (row, factor) in self.half_response.iter().zip(outputs) {
+            if *factor != 0.0 {
+                add_scaled(&mut controls, row, *factor);
             }
         }
+        backward(&self.factor, CONTROLS, &mut controls);
         controls
     }
 
@@ -142,20 +311,7 @@ impl Condensed {
         states: &mut [StageState; KNOTS],
         outputs: &mut [f64; OUTPUTS],
     ) {
-        let mut state = *initial;
-        let [first, later @ ..] = states;
-        *first = state;
-        let (motion, thrusts) = outputs.split_at_mut(THRUST_OUTPUT);
-        let motion = motion.as_chunks_mut::<{ STAGE_OUTPUTS.len() }>().0;
-        let stages = later.iter_mut().zip(motion).zip(thrusts);
-        for (control, ((next, motion), thrust)) in controls.as_chunks::<2>().0.iter().zip(stages) {
-            state = self.model.step(&state, control);
-            *next = state;
-            // The STAGE_OUTPUTS.
-            let [x, z, _, pitch, _, flight_path] = state;
-            *motion = [x, z, pitch, flight_path];
-            *thrust = control[1];
-        }
+        roll_out(&self.dynamics, initial, controls, states, outputs);
     }
 
     /// Cost of controls that end in a state.
@@ -165,44 +321,15 @@ impl Condensed {
         last: &StageState,
         target: &StageState,
     ) -> f64 {
-        let effort: f64 = controls
+        let [elevator, thrust] = self.weights.control;
+        let efforts = controls
             .iter()
-            .map(|u| {
-                self.weights.control[0] * (u[0] * u[0]) + self.weights.control[1] * (u[1] * u[1])
-            })
-            .sum();
-        let missing: f64 = last
+            .map(|u| elevator * (u[0] * u[0]) + thrust * (u[1] * u[1]));
+        let missing = last
             .iter()
             .zip(target)
-            .map(|(x, goal)| (x - goal) * (x - goal))
-            .sum();
-        0.5 * (effort + self.weights.terminal * missing)
-    }
-
-    fn factor_hessian(&mut self, markov: &MarkovParameters) -> Result<(), CondenseError> {
-        let terminal: [ControlVector; 6] = core::array::from_fn(|row| terminal_row(markov, row));
-        for row in 0..CONTROLS {
-            for col in 0..row + 1 {
-                let coupling: f64 = terminal.iter().map(|state| state[row] * state[col]).sum();
-                let own = if row == col {
-                    self.weights.control[row % 2]
-                } else {
-                    0.0
-                };
-                let mut value = own + self.weights.terminal * coupling;
-                for inner in 0..col {
-                    value -= self.factor[row][inner] * self.factor[col][inner];
-                }
-                self.factor[row][col] = if row > col {
-                    value / self.factor[col][col]
-                } else if value > 0.0 && value.is_finite() {
-                    libm::sqrt(value)
-                } else {
-                    return Err(CondenseError);
-                };
-            }
-        }
-        Ok(())
+            .map(|(x, goal)| (x - goal) * (x - goal));
+        0.5 * (efforts.sum::<f64>() + self.weights.terminal * missing.sum::<f64>())
     }
 }
 
@@ -212,72 +339,46 @@ impl Default for Condensed {
     }
 }
 
-/// `A^i B`, `i` = 0 to N - 1: the state `i + 1` stages after a unit control.
-type MarkovParameters = [[StageControl; 6]; STAGES];
-
-fn markov_parameters(model: &StageModel) -> MarkovParameters {
-    let mut power = model.b;
-    core::array::from_fn(|_| {
-        let rows = core::array::from_fn(|row| [power[(row, 0)], power[(row, 1)]]);
-        power = model.a * power;
-        rows
-    })
-}
-
-/// How a state at boundary `boundary` depends on the controls.
-fn state_row(markov: &MarkovParameters, boundary: usize, state: usize) -> ControlVector {
-    let mut row = [0.0; CONTROLS];
-    for (pair, response) in row
-        .as_chunks_mut::<2>()
-        .0
-        .iter_mut()
-        .take(boundary)
-        .rev()
-        .zip(markov)
-    {
-        *pair = response.get(state).copied().unwrap_or_default();
-    }
-    row
-}
-
-fn terminal_row(markov: &MarkovParameters, state: usize) -> ControlVector {
-    state_row(markov, STAGES, state)
-}
-
-/// How an output depends on the controls: a row of `Y`.
-fn output_row(markov: &MarkovParameters, output: usize) -> ControlVector {
-    if output < THRUST_OUTPUT {
-        let boundary = output / STAGE_OUTPUTS.len() + 1;
-        state_row(
-            markov,
-            boundary,
-            STAGE_OUTPUTS[output % STAGE_OUTPUTS.len()],
-        )
-    } else {
-        let mut row = [0.0; CONTROLS];
-        row[(2 * (output - THRUST_OUTPUT) + 1) % CONTROLS] = 1.0;
-        row
-    }
-}
-
-/// Solves `L L' x = b` in place.
-fn solve(factor: &[ControlVector; CONTROLS], b: &mut ControlVector) {
-    for row in 0..CONTROLS {
-        let mut value = b[row];
-        for col in 0..row {
-            value -= factor[row][col] * b[col];
+/// `a s`
+fn product<const N: usize>(dynamics: &Dynamics, s: &[[f64; N]; 6]) -> [[f64; N]; 6] {
+    let mut product = [[0.0; N]; 6];
+    for (row, sum) in product.iter_mut().enumerate() {
+        for (col, term) in s.iter().enumerate() {
+            add_scaled(sum, term, dynamics.a[(row, col)]);
         }
-        b[row] = value / factor[row][row];
     }
-    for row in (0..CONTROLS).rev() {
-        let mut value = b[row];
-        for col in row + 1..CONTROLS {
-            value -= factor[col][row] * b[col];
-        }
-        b[row] = value / factor[row][row];
+    product
+}
+
+fn add_scaled<const N: usize>(sum: &mut [f64; N], term: &[f64; N], factor: f64) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
     }
 }
 
-fn dot(a: &ControlVector, b: &ControlVector) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+fn roll_out(
+    dynamics: &[Dynamics; STAGES],
+    initial: &StageState,
+    controls: &ControlVector,
+    states: &mut [StageState; KNOTS],
+    outputs: &mut [f64; OUTPUTS],
+) {
+    let mut state = *initial;
+    let [first, later @ ..] = states;
+    *first = state;
+    let (motion, rest) = outputs.split_at_mut(THRUST_OUTPUT);
+    let (thrusts, attitudes) = rest.split_at_mut(STAGES);
+    let places = motion.as_chunks_mut::<2>().0.iter_mut().zip(thrusts);
+    let places = places.zip(attitudes.as_chunks_mut::<2>().0).zip(later);
+    let stages = dynamics.iter().zip(controls.as_chunks::<2>().0);
+    for ((dynamics, control), (((motion, thrust), attitude), next)) in stages.zip(places) {
+        state = dynamics.step(&state, control);
+        *next = state;
+        let [x, z, _, pitch, _, flight_path] = state;
+        *motion = [x, z];
+        *attitude = [pitch, flight_path];
+        *thrust = control[1];
+    }
 }
+
+const _: () = assert!(INPUTS == 2 * 6 + 1);

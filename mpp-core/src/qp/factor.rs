@@ -1,5 +1,6 @@
 //! A Cholesky factor that rows are appended to and removed from.
 
+use super::dense::{backward, forward};
 use super::solve::CAPACITY;
 
 /// Lower factor `L` of the Gram matrix of the active rows, in the order in which they were added.
@@ -23,25 +24,12 @@ impl Factor {
 
     /// `L^-1 b`, in place on the first entries of `b`.
     pub(super) fn forward(&self, b: &mut [f64; CAPACITY]) {
-        for row in 0..self.len.min(CAPACITY) {
-            let mut value = b[row];
-            for col in 0..row {
-                value -= self.rows[row][col] * b[col];
-            }
-            b[row] = value / self.rows[row][row];
-        }
+        forward(&self.rows, self.len, b);
     }
 
     /// `L^-T b`, in place on the first entries of `b`.
     pub(super) fn backward(&self, b: &mut [f64; CAPACITY]) {
-        let len = self.len.min(CAPACITY);
-        for row in (0..len).rev() {
-            let mut value = b[row];
-            for col in row + 1..len {
-                value -= self.rows[col][row] * b[col];
-            }
-            b[row] = value / self.rows[row][row];
-        }
+        backward(&self.rows, self.len, b);
     }
 
     /// Appends a row whose products with the active rows, passed through [`Self::forward`], are

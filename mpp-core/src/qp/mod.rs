@@ -18,6 +18,7 @@
 //! `K = Y H^-1 Y'`, formed once.
 
 mod condense;
+mod dense;
 mod factor;
 mod model;
 mod rows;
@@ -25,7 +26,7 @@ mod solve;
 
 use crate::config::{KNOTS, STAGES};
 pub use condense::{CondenseError, Condensed};
-pub use model::{Initial, ModelError, StageModel, SteadyState};
+pub use model::{Dynamics, Initial, ModelError, StageModel, SteadyState};
 pub use rows::{Bounds, ROWS, RowKind};
 pub use solve::{MAX_ITERATIONS, Solver};
 

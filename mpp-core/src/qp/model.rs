@@ -92,10 +92,51 @@ impl StageModel {
         }
     }
 
+    /// The model as one stage's dynamics.
+    #[must_use]
+    pub fn dynamics(&self) -> Dynamics {
+        Dynamics {
+            a: self.a,
+            b: self.b,
+            offset: Vector6::zeros(),
+        }
+    }
+
     /// The state after a stage.
     #[must_use]
     pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
-        (self.a * Vector6::from(*state) + self.b * Vector2::from(*control)).into()
+        self.dynamics().step(state, control)
+    }
+}
+
+/// `x_{k+1} = a x_k + b u_k + offset`: one stage, as linearised about any trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dynamics {
+    /// 6 x 6.
+    pub a: Matrix6<f64>,
+    /// 6 x 2.
+    pub b: Matrix6x2<f64>,
+    /// Where the state goes from zero without control.
+    pub offset: Vector6<f64>,
+}
+
+impl Dynamics {
+    /// Dynamics that stand still: a place for some.
+    #[must_use]
+    pub const fn at_rest() -> Self {
+        Self {
+            a: StageModel::at_rest().a,
+            b: StageModel::at_rest().b,
+            offset: Vector6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]])),
+        }
+    }
+
+    /// The state after the stage.
+    #[must_use]
+    pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
+        let [elevator, thrust] = *control;
+        let control = self.b * Vector2::new(elevator, thrust);
+        (self.a * Vector6::from(*state) + control + self.offset).into()
     }
 }
 

@@ -3,12 +3,14 @@
 use crate::config::{DIRECTIONS, KNOTS, STAGES};
 use crate::corridor::{Corridor, DIRECTION_VECTORS};
 
-/// Outputs of a stage boundary that rows touch: `x, z, theta, gamma`.
-pub(super) const STAGE_OUTPUTS: [usize; 4] = [0, 1, 3, 5];
-/// Outputs: those of boundaries 1 to N, then the thrusts of stages 0 to N - 1.
-pub(super) const OUTPUTS: usize = STAGES * STAGE_OUTPUTS.len() + STAGES;
+/// Outputs, what rows touch: positions `(x, z)` at boundaries 1 to N, then the thrusts of stages 0 to
+/// N - 1, then attitudes `(theta, gamma)` at boundaries 1 to N. Programs without attitude rows need
+/// only the first part.
+pub(super) const OUTPUTS: usize = ATTITUDE_OUTPUT + 2 * STAGES;
 /// The first thrust among the outputs.
-pub(super) const THRUST_OUTPUT: usize = STAGES * STAGE_OUTPUTS.len();
+pub(super) const THRUST_OUTPUT: usize = 2 * STAGES;
+/// The first attitude among the outputs.
+pub(super) const ATTITUDE_OUTPUT: usize = THRUST_OUTPUT + STAGES;
 
 /// Rows on positions, boundary 0 included.
 const POSITION_ROWS: usize = KNOTS * DIRECTIONS;
@@ -50,7 +52,7 @@ impl RowKind {
 }
 
 /// `first.1 y[first.0] + second.1 y[second.0]`: a row's left-hand side in outputs `y`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RowPattern {
     pub(super) first: (usize, f64),
     pub(super) second: (usize, f64),
@@ -63,14 +65,14 @@ impl RowPattern {
             RowKind::Position(0, _) => None,
             RowKind::Position(stage, direction) => {
                 let [up, forward] = *DIRECTION_VECTORS.get(direction)?;
-                let base = (stage - 1) * STAGE_OUTPUTS.len();
+                let base = 2 * (stage - 1);
                 Some(Self {
                     first: (base, forward),
                     second: (base + 1, up),
                 })
             }
             RowKind::Attitude(stage, which) => {
-                let pitch = (stage - 1) * STAGE_OUTPUTS.len() + 2;
+                let pitch = ATTITUDE_OUTPUT + 2 * (stage - 1);
                 let side = if which < 2 { 1.0 } else { -1.0 };
                 let angle_of_attack = which % 2 == 0;
                 Some(Self {
@@ -96,6 +98,185 @@ impl RowPattern {
         };
         at(self.first) + at(self.second)
     }
+
+    /// `K c`: how the outputs move with the row's multiplier; those of attitudes only if asked for.
+    pub(super) fn column(
+        &self,
+        kernel: &[[f64; OUTPUTS]; OUTPUTS],
+        attitude_rows: bool,
+    ) -> [f64; OUTPUTS] {
+        let mut column = [0.0; OUTPUTS];
+        let rows = (kernel.get(self.first.0), kernel.get(self.second.0));
+        if let (Some(first), Some(second)) = rows {
+            let factors = [self.first.1, self.second.1];
+            add_scaled(&mut column, [first, second], factors, attitude_rows);
+        }
+        column
+    }
+
+    /// `c' K c`.
+    pub(super) fn norm_squared(&self, kernel: &[[f64; OUTPUTS]; OUTPUTS]) -> f64 {
+        self.value(&self.column(kernel, true))
+    }
+}
+
+/// `sum += factors . rows`, over the outputs of attitudes only if asked for. Two rows at a time:
+/// rows of the kernel are needed in pairs, and each sum is loaded and stored once for both.
+pub(super) fn add_scaled(
+    sum: &mut [f64; OUTPUTS],
+    rows: [&[f64; OUTPUTS]; 2],
+    factors: [f64; 2],
+    attitude_rows: bool,
+) {
+    fn add(sum: &mut [f64], one: &[f64], other: &[f64], factors: [f64; 2]) {
+        for ((sum, one), other) in sum.iter_mut().zip(one).zip(other) {
+            *sum += factors[0] * one + factors[1] * other;
+        }
+    }
+    let [one, other] = rows.map(|row| row.split_at(ATTITUDE_OUTPUT));
+    let (first, second) = sum.split_at_mut(ATTITUDE_OUTPUT);
+    add(first, one.0, other.0, factors);
+    if attitude_rows {
+        add(second, one.1, other.1, factors);
+    }
+}
+
+/// By how much outputs exceed the bounds of all rows, those of boundary 0 left out (minus
+/// infinity), which outputs do not hold.
+pub(super) fn excesses(outputs: &[f64; OUTPUTS], bounds: &Bounds) -> [f64; ROWS] {
+    let mut excess = [f64::NEG_INFINITY; ROWS];
+    let (positions, rest) = excess.split_at_mut(POSITION_ROWS);
+    let (attitudes, thrusts) = rest.split_at_mut(ATTITUDE_ROWS);
+    let (position_bounds, attitude_bounds, thrust_bounds) = bounds.parts();
+    let (motion, thrust, attitude) = parts(outputs);
+
+    let positions = positions.as_chunks_mut::<DIRECTIONS>().0.iter_mut().skip(1);
+    for ((at, excess), bounds) in motion
+        .iter()
+        .zip(positions)
+        .zip(position_bounds.iter().skip(1))
+    {
+        *excess = position_excess(at, bounds);
+    }
+    let attitudes = attitudes.as_chunks_mut::<4>().0;
+    for ((at, excess), limits) in attitude.iter().zip(attitudes).zip(attitude_bounds) {
+        *excess = attitude_excess(at, limits);
+    }
+    for ((excess, thrust), bound) in thrusts.iter_mut().zip(thrust).zip(thrust_bounds) {
+        *excess = -thrust - bound;
+    }
+    excess
+}
+
+/// The row whose excess times `weight` is largest, if any is positive. `attitude` tells whether
+/// attitude rows are to be looked at. Bounds of rows without weight must be finite.
+pub(super) fn most_violated(
+    outputs: &[f64; OUTPUTS],
+    bounds: &Bounds,
+    weight: &[f64; ROWS],
+    attitude_rows: bool,
+) -> Option<usize> {
+    let (position_bounds, attitude_bounds, thrust_bounds) = bounds.parts();
+    let (position_weights, rest) = weight.split_at(POSITION_ROWS);
+    let (attitude_weights, thrust_weights) = rest.split_at(ATTITUDE_ROWS);
+    let (motion, thrust, attitude) = parts(outputs);
+    let mut worst = Worst {
+        most: 0.0,
+        row: None,
+    };
+
+    let weights = position_weights.as_chunks::<DIRECTIONS>().0.iter();
+    let stages = motion
+        .iter()
+        .zip(position_bounds.iter().zip(weights).skip(1));
+    for (stage, (at, (bounds, weights))) in stages.enumerate() {
+        let mut excess = position_excess(at, bounds);
+        for (excess, weight) in excess.iter_mut().zip(weights) {
+            *excess *= weight;
+        }
+        worst.consider(&excess, (stage + 1) * DIRECTIONS);
+    }
+    for (stage, ((thrust, bound), weight)) in thrust
+        .iter()
+        .zip(thrust_bounds)
+        .zip(thrust_weights)
+        .enumerate()
+    {
+        let excess = [(-thrust - bound) * weight];
+        worst.consider(&excess, POSITION_ROWS + ATTITUDE_ROWS + stage);
+    }
+    if attitude_rows {
+        let weights = attitude_weights.as_chunks::<4>().0;
+        let stages = attitude.iter().zip(attitude_bounds.iter().zip(weights));
+        for (stage, (at, (limits, weights))) in stages.enumerate() {
+            let mut excess = attitude_excess(at, limits);
+            for (excess, weight) in excess.iter_mut().zip(weights) {
+                *excess *= weight;
+            }
+            worst.consider(&excess, POSITION_ROWS + 4 * stage);
+        }
+    }
+    worst.row
+}
+
+/// The largest value so far and its row.
+struct Worst {
+    most: f64,
+    row: Option<usize>,
+}
+
+impl Worst {
+    /// Looks at the values of rows from `first` on. Halving them finds the largest with few
+    /// comparisons that wait for each other.
+    fn consider<const N: usize>(&mut self, values: &[f64; N], first: usize) {
+        let mut halves = *values;
+        let mut len = N;
+        while len > 1 {
+            len /= 2;
+            let (low, high) = halves.split_at_mut(len);
+            for (low, high) in low.iter_mut().zip(high) {
+                if *high > *low {
+                    *low = *high;
+                }
+            }
+        }
+        if halves.first().is_some_and(|largest| *largest > self.most) {
+            for (offset, value) in values.iter().enumerate() {
+                if *value > self.most {
+                    self.most = *value;
+                    self.row = Some(first + offset);
+                }
+            }
+        }
+    }
+}
+
+type OutputParts<'a> = (&'a [[f64; 2]], &'a [f64], &'a [[f64; 2]]);
+
+/// Positions, thrusts, attitudes.
+fn parts(outputs: &[f64; OUTPUTS]) -> OutputParts<'_> {
+    let (motion, rest) = outputs.split_at(THRUST_OUTPUT);
+    let (thrust, attitude) = rest.split_at(STAGES);
+    (motion.as_chunks().0, thrust, attitude.as_chunks().0)
+}
+
+fn position_excess([x, z]: &[f64; 2], bounds: &[f64; DIRECTIONS]) -> [f64; DIRECTIONS] {
+    let mut excess = [0.0; DIRECTIONS];
+    for ((excess, bound), [up, forward]) in excess.iter_mut().zip(bounds).zip(&DIRECTION_VECTORS) {
+        *excess = forward * x + up * z - bound;
+    }
+    excess
+}
+
+fn attitude_excess([pitch, flight_path]: &[f64; 2], limits: &[f64; 4]) -> [f64; 4] {
+    let attack = pitch - flight_path;
+    let [a, b, c, d] = limits;
+    [attack - a, flight_path - b, -attack - c, -flight_path - d]
+}
+
+/// Splits per-row values into those of rows that a penalty softens and those that are always hard.
+pub(super) fn split_soft(values: &[f64; ROWS]) -> (&[f64], &[f64]) {
+    values.split_at(POSITION_ROWS + ATTITUDE_ROWS)
 }
 
 impl Bounds {
@@ -103,6 +284,40 @@ impl Bounds {
     #[must_use]
     pub const fn none() -> Self {
         Self([f64::INFINITY; ROWS])
+    }
+
+    /// Bounds of positions, attitudes and thrusts.
+    fn parts(&self) -> (&[[f64; DIRECTIONS]], &[[f64; 4]], &[f64]) {
+        let (position, rest) = self.0.split_at(POSITION_ROWS);
+        let (attitude, thrust) = rest.split_at(ATTITUDE_ROWS);
+        (position.as_chunks().0, attitude.as_chunks().0, thrust)
+    }
+
+    /// The rows of two opposite faces that cross by more than `least` [m], if any do.
+    pub(super) fn crossing_faces(&self, least: f64) -> Option<(usize, usize)> {
+        const HALF: usize = DIRECTIONS / 2;
+        self.parts()
+            .0
+            .iter()
+            .enumerate()
+            .find_map(|(stage, faces)| {
+                let (one, other) = faces.split_at(HALF);
+                let crossing = one
+                    .iter()
+                    .zip(other)
+                    .position(|(one, other)| one + other < -least)?;
+                let row = stage * DIRECTIONS + crossing;
+                Some((row, row + HALF))
+            })
+    }
+
+    /// Whether any attitude row is there.
+    pub(super) fn has_attitude(&self) -> bool {
+        self.parts()
+            .1
+            .iter()
+            .flatten()
+            .any(|bound| *bound != f64::INFINITY)
     }
 
     /// Takes every row away.

@@ -1,6 +1,9 @@
 //! Properties of the program's solver: optimality, invariances, ends.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
+mod brute_force;
+mod conditions;
+mod dense;
 mod ends;
 mod invariances;
 mod optimality;

@@ -9,6 +9,7 @@ mod program;
 mod search;
 mod vehicle;
 
+pub(crate) use program::recorded_instances;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};

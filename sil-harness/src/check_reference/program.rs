@@ -2,16 +2,18 @@
 
 use super::perception::grid_with;
 use super::{Comparison, worst_difference};
+use crate::bench::Instance;
 use mpp_core::Rules;
-use mpp_core::config::SEARCH_ROW;
+use mpp_core::config::{DIRECTIONS, SEARCH_ROW};
 use mpp_core::corridor::{Corridor, Padding};
 use mpp_core::map::GridPoint;
 use mpp_core::plan::resample;
 use mpp_core::qp::{
-    Bounds, Condensed, Initial, Problem, Solution, Solver, StageModel, Status, SteadyState, Weights,
+    Bounds, Initial, ModelError, Problem, Solution, Solver, StageModel, Status, SteadyState,
+    Weights,
 };
-use mpp_core::vehicle::{AirState, Airframe, JacobianForm, Trim, linearize};
-use nalgebra::Vector4;
+use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
+use nalgebra::{Vector4, Vector6};
 use serde::Deserialize;
 
 /// A recorded feasibility margin below this [m] is a tie that neither answer is wrong on.
@@ -23,7 +25,7 @@ struct CaseFile {
     og: Cells,
     path: Vec<[f64; 2]>,
     ref_points: Vec<[f64; 2]>,
-    h: Vec<Vec<f64>>,
+    h: Vec<[f64; DIRECTIONS]>,
     h_thrust: Vec<f64>,
     xgoal: [f64; 6],
     tight: Recorded,
@@ -80,20 +82,11 @@ pub(super) fn check_case(text: &str) -> Result<Vec<Comparison>, serde_json::Erro
             1e-9,
         ),
     ];
-    let forms = [
-        (
-            Initial::ThroughSteadyState,
-            file.lp_min_max_violation,
-            &file.tight,
-        ),
-        (
-            Initial::Estimate,
-            file.x0_fixed.lp_min_max_violation,
-            &file.x0_fixed.tight,
-        ),
-    ];
-    for (initial, margin, recorded) in forms {
-        comparisons.extend(compare_program(&file, &trim, initial, margin, recorded));
+    match instances_of("case", &file) {
+        Ok(instances) => {
+            comparisons.extend(instances.iter().flat_map(compare_program));
+        }
+        Err(ModelError) => comparisons.push(Comparison::failed("QP verdict", "no model")),
     }
     Ok(comparisons)
 }
@@ -105,55 +98,82 @@ fn in_grid([row, col]: [f64; 2]) -> GridPoint {
     }
 }
 
-/// Solves the recorded program, from the recorded half-planes, and compares verdict and objective.
-fn compare_program(
-    file: &CaseFile,
-    trim: &Trim,
-    initial: Initial,
-    margin: f64,
-    recorded: &Recorded,
-) -> Vec<Comparison> {
-    const VERDICT: &str = "QP verdict";
-    const OBJECTIVE: &str = "QP objective (relative)";
-    let mut shared = Box::new(Condensed::new());
-    let linear = linearize(
-        &Airframe::REFERENCE,
-        &trim.state,
-        trim.control,
-        JacobianForm::Authors,
-    );
+/// The programs of a recorded case, by both forms of the first state.
+pub(crate) fn recorded_instances(
+    name: &str,
+    text: &str,
+) -> Result<Vec<Instance>, serde_json::Error> {
+    let file: CaseFile = serde_json::from_str(text)?;
+    instances_of(name, &file)
+        .map_err(|ModelError| serde::de::Error::custom("the plan's model has no steady state"))
+}
+
+fn instances_of(name: &str, file: &CaseFile) -> Result<Vec<Instance>, ModelError> {
+    let forms = [
+        (
+            "authors",
+            Initial::ThroughSteadyState,
+            file.lp_min_max_violation,
+            &file.tight,
+        ),
+        (
+            "fixed",
+            Initial::Estimate,
+            file.x0_fixed.lp_min_max_violation,
+            &file.x0_fixed.tight,
+        ),
+    ];
+    let airframe = &Airframe::REFERENCE;
+    let trim = Trim::of_authors(airframe);
+    let linear = linearize(airframe, &trim.state, trim.control, JacobianForm::Authors);
     let steady = SteadyState::ZeroPitchRate;
-    let model = StageModel::new(&Airframe::REFERENCE, trim, &linear, steady, initial);
-    let condensed = model.is_ok_and(|model| shared.condense(&model, &Weights::PAPER).is_ok());
-    if !condensed {
-        return vec![Comparison::failed(VERDICT, "the model cannot be condensed")];
-    };
-    let mut bounds = Bounds::none();
+    let deviation = Vector4::from(file.state_estimate) - trim.state.to_vector();
     let mut corridor = Corridor::new();
-    for (ours, theirs) in corridor
-        .bounds
-        .iter_mut()
-        .flatten()
-        .zip(file.h.iter().flatten())
-    {
+    for (ours, theirs) in corridor.bounds.iter_mut().zip(&file.h) {
         *ours = *theirs;
     }
+    let mut bounds = Bounds::none();
     bounds.set_corridor(&corridor);
     bounds.set_thrust(file.h_thrust.first().copied().unwrap_or(f64::NAN));
-    let estimate = AirState::from_vector(&Vector4::from(file.state_estimate));
-    let problem = Problem {
-        initial: shared.initial_state(trim, &estimate),
-        target: file.xgoal,
-        bounds,
-        penalty: None,
-        cost_limit: f64::INFINITY,
+    let instance = |(form, initial, margin, recorded): (&str, Initial, f64, &Recorded)| {
+        let model = StageModel::new(airframe, &trim, &linear, steady, initial)?;
+        let [v, pitch, pitch_rate, path]: [f64; 4] = deviation.into();
+        let problem = Problem {
+            initial: (model.initial * Vector6::new(0.0, 0.0, v, pitch, pitch_rate, path)).into(),
+            target: file.xgoal,
+            bounds,
+            penalty: None,
+            cost_limit: f64::INFINITY,
+        };
+        // The recorded objective leaves out the constant w |target|^2 / 2.
+        let squared: f64 = file.xgoal.iter().map(|goal| goal * goal).sum();
+        let constant = 0.5 * Weights::PAPER.terminal * squared;
+        let objective = recorded.objective_recomputed.or(recorded.primal_objective);
+        let name = format!("{name}-{form}");
+        Ok(Instance {
+            margin: Some(margin),
+            cost: objective
+                .filter(|_| margin < 0.0)
+                .map(|objective| objective + constant),
+            ..Instance::of_program(name, &model, &Weights::PAPER, &problem)
+        })
+    };
+    forms.into_iter().map(instance).collect()
+}
+
+/// Solves a recorded program and compares verdict and objective.
+fn compare_program(instance: &Instance) -> Vec<Comparison> {
+    const VERDICT: &str = "QP verdict";
+    let Ok(shared) = instance.condense() else {
+        return vec![Comparison::failed(VERDICT, "the model cannot be condensed")];
     };
     let mut solver = Box::new(Solver::new());
     let mut solution = Solution::new();
-    let mut status = solver.solve(&shared, &problem);
+    let mut status = solver.solve(&shared, &instance.problem());
     if status == Status::Optimal {
         status = solver.solution(&shared, &mut solution);
     }
+    let margin = instance.margin.unwrap_or(f64::NAN);
     let right = match status {
         Status::Optimal => margin <= TIE,
         Status::Infeasible => margin >= -TIE,
@@ -168,13 +188,9 @@ fn compare_program(
         )
     };
     let mut comparisons = vec![verdict];
-    let objective = recorded.objective_recomputed.or(recorded.primal_objective);
-    if let (Status::Optimal, Some(theirs)) = (status, objective) {
-        // The recorded objective leaves out the constant w |target|^2 / 2.
-        let constant: f64 = file.xgoal.iter().map(|goal| goal * goal).sum();
-        let ours = solution.cost - 0.5 * Weights::PAPER.terminal * constant;
-        let error = (ours - theirs).abs() / theirs.abs().max(1.0);
-        comparisons.push(Comparison::within(OBJECTIVE, error, 1e-6));
+    if let (Status::Optimal, Some(cost)) = (status, instance.cost) {
+        let error = (solution.cost - cost).abs() / cost.abs().max(1.0);
+        comparisons.push(Comparison::within("QP objective (relative)", error, 1e-6));
     }
     comparisons
 }

@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link.
 
+mod bench;
 mod check;
 mod core;
 mod fly;
@@ -34,6 +35,8 @@ enum Command {
     Fly(fly::FlyArgs),
     /// Serve the flight core to harnesses over TCP
     Core(core::CoreArgs),
+    /// Measure our parts beside others, in one run
+    Bench(bench::BenchArgs),
     /// Check core and plant against data recorded from the authors' code
     CheckReference(check::CheckArgs),
 }
@@ -46,6 +49,7 @@ pub fn run() -> ExitCode {
         None => fly::run(&cli.fly),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Core(args)) => core::run(&args),
+        Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),
     };
     match result {

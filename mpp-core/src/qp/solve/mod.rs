@@ -11,9 +11,10 @@
 
 mod step;
 
-use super::condense::{CONTROLS, Condensed};
+use super::condense::Condensed;
+use super::dense::CONTROLS;
 use super::factor::Factor;
-use super::rows::{Bounds, OUTPUTS, ROWS, RowKind, RowPattern};
+use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
 use super::{Problem, Solution, Status};
 use crate::config::KNOTS;
 
@@ -26,6 +27,10 @@ pub const MAX_ITERATIONS: usize = 400;
 /// A row counts as violated beyond this [m, rad or N].
 const TOLERANCE: f64 = 1e-9;
 
+/// Opposite faces that cross by less than this [m] are left to the method: the directions are
+/// opposite to 1e-8 only.
+const CROSSING: f64 = 1e-5;
+
 /// Worst violation of a hard row in an accepted solution.
 const ACCEPTED: f64 = 1e-6;
 
@@ -33,6 +38,7 @@ const ACCEPTED: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Active {
     row: usize,
+    pattern: RowPattern,
     multiplier: f64,
     yielded: bool,
 }
@@ -44,7 +50,10 @@ pub struct Solver {
     unconstrained: [f64; CONTROLS],
     outputs: [f64; OUTPUTS],
     active: heapless::Vec<Active, CAPACITY>,
-    is_active: [bool; ROWS],
+    /// The bounds of rows that may enter, with their tolerance; infinite for those that are active.
+    open: Bounds,
+    /// Whether the program has attitude rows; without, their outputs are not followed.
+    attitude_rows: bool,
     entering: Option<Active>,
     factor: Factor,
     dual: f64,
@@ -68,7 +77,8 @@ impl Solver {
             unconstrained: [0.0; CONTROLS],
             outputs: [0.0; OUTPUTS],
             active: heapless::Vec::new(),
-            is_active: [false; ROWS],
+            open: Bounds::none(),
+            attitude_rows: false,
             entering: None,
             factor: Factor::new(),
             dual: 0.0,
@@ -82,23 +92,23 @@ impl Solver {
     pub fn start(&mut self, shared: &Condensed, problem: &Problem) {
         self.problem = *problem;
         self.active.clear();
-        self.is_active = [false; ROWS];
+        let rows = problem.bounds.0.iter().zip(&shared.pricing);
+        for (open, (bound, norm)) in self.open.0.iter_mut().zip(rows) {
+            // An infinite bound times no weight would not be a number.
+            *open = if *norm > 0.0 { bound + TOLERANCE } else { 0.0 };
+        }
+        self.attitude_rows = problem.bounds.has_attitude();
         self.entering = None;
         self.factor.clear();
         self.iterations = 0;
         self.certificate.clear();
-        self.unconstrained = shared.unconstrained(&problem.initial, &problem.target);
-        let mut states = [[0.0; 6]; KNOTS];
-        shared.roll_out(
-            &problem.initial,
-            &self.unconstrained,
-            &mut states,
-            &mut self.outputs,
-        );
-        let controls = self.unconstrained.as_chunks::<2>().0;
-        self.dual = shared.cost(controls, &states[KNOTS - 1], &problem.target);
+        let optimum = shared.unconstrained(&problem.initial, &problem.target);
+        self.unconstrained = optimum.controls;
+        self.outputs = optimum.outputs;
+        self.dual = optimum.cost;
         self.status = if self.dual.is_finite() && !problem.bounds.0.iter().any(|b| b.is_nan()) {
             self.check_constant_rows(shared)
+                .or_else(|| self.check_opposite_faces())
         } else {
             Some(Status::NumericalFailure)
         };
@@ -150,19 +160,17 @@ impl Solver {
     /// Writes the trajectory of the multipliers found. The status, [`Status::NumericalFailure`] if a
     /// hard row does not hold after all.
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
-        let mut controls = self.unconstrained;
-        let mut add = |(output, factor): (usize, f64)| {
-            if let Some(response) = shared.response.get(output) {
-                for (control, response) in controls.iter_mut().zip(response) {
-                    *control -= factor * response;
+        let mut pushes = [0.0; OUTPUTS];
+        for active in &self.active {
+            for (output, factor) in [active.pattern.first, active.pattern.second] {
+                if let Some(push) = pushes.get_mut(output) {
+                    *push += factor * active.multiplier;
                 }
             }
-        };
-        for active in &self.active {
-            if let Some(pattern) = RowPattern::of(active.row) {
-                add((pattern.first.0, pattern.first.1 * active.multiplier));
-                add((pattern.second.0, pattern.second.1 * active.multiplier));
-            }
+        }
+        let mut controls = self.unconstrained;
+        for (control, push) in controls.iter_mut().zip(shared.push_back(&pushes)) {
+            *control -= push;
         }
         let mut outputs = [0.0; OUTPUTS];
         let initial = &self.problem.initial;
@@ -189,20 +197,19 @@ impl Solver {
 
     /// Worst violation of soft and of hard rows that controls can change.
     fn worst_violations(&self, shared: &Condensed, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
-        let mut worst = (0.0_f64, 0.0_f64);
-        for (row, bound) in self.problem.bounds.0.iter().enumerate() {
-            let changeable = shared.inverse_norm.get(row).is_some_and(|norm| *norm > 0.0);
-            if changeable && let Some(pattern) = RowPattern::of(row) {
-                let violation = pattern.value(outputs) - bound;
-                let side = if self.is_soft(row) {
-                    &mut worst.0
-                } else {
-                    &mut worst.1
-                };
-                *side = side.max(violation);
+        let mut excess = excesses(outputs, &self.problem.bounds);
+        for (excess, norm) in excess.iter_mut().zip(&shared.pricing) {
+            if *norm == 0.0 {
+                *excess = 0.0;
             }
         }
-        worst
+        let worst = |rows: &[f64]| rows.iter().fold(0.0, |worst: f64, row| worst.max(*row));
+        let (soft, hard) = split_soft(&excess);
+        if self.problem.penalty.is_some() {
+            (worst(soft), worst(hard))
+        } else {
+            (0.0, worst(&excess))
+        }
     }
 
     fn is_soft(&self, row: usize) -> bool {
@@ -212,7 +219,7 @@ impl Solver {
     /// Hard rows that no control can change hold, or the problem is infeasible at once.
     fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
         for (row, bound) in self.problem.bounds.0.iter().enumerate() {
-            if shared.inverse_norm.get(row).is_some_and(|norm| *norm > 0.0) || self.is_soft(row) {
+            if shared.pricing.get(row).is_some_and(|norm| *norm > 0.0) || self.is_soft(row) {
                 continue;
             }
             let value = match (RowKind::of(row), RowPattern::of(row)) {
@@ -231,31 +238,16 @@ impl Solver {
         None
     }
 
-    /// The row that is violated most, relative to what it takes to move it.
-    fn most_violated(&self, shared: &Condensed) -> Option<usize> {
-        let mut worst = None;
-        let mut most = 0.0;
-        let rows = self
-            .problem
-            .bounds
-            .0
-            .iter()
-            .zip(&shared.inverse_norm)
-            .zip(&self.is_active);
-        for (row, ((bound, norm), active)) in rows.enumerate() {
-            if *active || *norm == 0.0 || *bound == f64::INFINITY {
-                continue;
-            }
-            let Some(pattern) = RowPattern::of(row) else {
-                continue;
-            };
-            let violation = pattern.value(&self.outputs) - bound;
-            if violation > TOLERANCE && violation * norm > most {
-                most = violation * norm;
-                worst = Some(row);
-            }
+    /// Opposite faces of a corridor that cross by more than rounding leave no room for a position:
+    /// two rows are the whole proof.
+    fn check_opposite_faces(&mut self) -> Option<Status> {
+        if self.problem.penalty.is_some() {
+            return None;
         }
-        worst
+        let (first, second) = self.problem.bounds.crossing_faces(CROSSING)?;
+        let _ = self.certificate.push((first, 1.0));
+        let _ = self.certificate.push((second, 1.0));
+        Some(Status::Infeasible)
     }
 }
 

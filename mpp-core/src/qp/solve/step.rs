@@ -1,9 +1,9 @@
 //! One step of the method: from one event to the next.
 
-use super::{Active, CAPACITY, Solver};
+use super::{Active, CAPACITY, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::rows::{OUTPUTS, RowPattern};
+use crate::qp::rows::{OUTPUTS, RowPattern, add_scaled, most_violated};
 
 /// Schur complements below this share of the row's own norm are zero but for rounding: the row
 /// depends on the active ones.
@@ -12,6 +12,10 @@ const DEPENDENT: f64 = 1e-10;
 /// The same for soft rows, which this much elasticity keeps apart: it lets a row give way by 1e-12
 /// of what it takes to move it.
 const SOFT_FLOOR: f64 = 1e-12;
+
+/// No controls that an aircraft could fly cost this much: where the lower bound of the cost passes
+/// it, rows contradict each other but for rounding.
+const ABSURD_COST: f64 = 1e12;
 
 /// What ends a step.
 #[derive(Clone, Copy)]
@@ -31,23 +35,30 @@ impl Solver {
     pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
         let entering = match self.entering.take() {
             Some(entering) => entering,
-            None => match self.most_violated(shared) {
-                None => return Some(Status::Optimal),
-                Some(row) => Active {
+            None => {
+                let (open, norms) = (&self.open, &shared.pricing);
+                // Relative to what it takes to move a row.
+                let worst = most_violated(&self.outputs, open, norms, self.attitude_rows);
+                let Some(row) = worst else {
+                    return Some(Status::Optimal);
+                };
+                let Some(pattern) = RowPattern::of(row) else {
+                    return Some(Status::NumericalFailure);
+                };
+                Active {
                     row,
+                    pattern,
                     multiplier: 0.0,
                     yielded: false,
-                },
-            },
+                }
+            }
         };
-        let Some(pattern) = RowPattern::of(entering.row) else {
-            return Some(Status::NumericalFailure);
-        };
-        let (products, complement) = self.complement(shared, &pattern, &entering);
+        let column = entering.pattern.column(&shared.kernel, self.attitude_rows);
+        let (products, complement) = self.complement(&column, &entering);
         let mut rates = products;
         self.factor.backward(&mut rates);
 
-        let violation = self.violation(&pattern, &entering);
+        let violation = self.violation(&entering);
         let full = if complement > 0.0 {
             violation / complement
         } else {
@@ -59,7 +70,11 @@ impl Solver {
             return Some(Status::Infeasible);
         }
         self.dual += length * (violation - 0.5 * length * complement);
-        let entering = self.move_by(shared, length, &rates, &pattern, entering);
+        let entering = self.move_by(shared, length, &rates, &column, entering);
+        if self.dual > ABSURD_COST {
+            self.certify_by_multipliers(&entering);
+            return Some(Status::Infeasible);
+        }
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
         }
@@ -70,21 +85,14 @@ impl Solver {
     }
 
     /// `L^-1 C K c` and the Schur complement of a row against the active rows; 0 when it depends on
-    /// them.
-    fn complement(
-        &self,
-        shared: &Condensed,
-        pattern: &RowPattern,
-        own: &Active,
-    ) -> ([f64; CAPACITY], f64) {
+    /// them. `column` is its `K c`.
+    fn complement(&self, column: &[f64; OUTPUTS], own: &Active) -> ([f64; CAPACITY], f64) {
         let mut products = [0.0; CAPACITY];
         for (product, active) in products.iter_mut().zip(&self.active) {
-            if let Some(other) = RowPattern::of(active.row) {
-                *product = shared.between(pattern, &other);
-            }
+            *product = active.pattern.value(column);
         }
         self.factor.forward(&mut products);
-        let norm = shared.between(pattern, pattern);
+        let norm = own.pattern.value(column);
         let explained: f64 = products
             .iter()
             .take(self.active.len())
@@ -107,7 +115,7 @@ impl Solver {
     }
 
     /// How far a row is from where its multiplier wants it.
-    fn violation(&self, pattern: &RowPattern, own: &Active) -> f64 {
+    fn violation(&self, own: &Active) -> f64 {
         let bound = self
             .problem
             .bounds
@@ -119,7 +127,7 @@ impl Solver {
             Some(penalty) if own.yielded => (own.multiplier - penalty.linear) / penalty.quadratic,
             _ => 0.0,
         };
-        pattern.value(&self.outputs) - bound - allowed
+        own.pattern.value(&self.outputs) - bound - allowed
     }
 
     /// What happens first while the entering multiplier grows, and how far away it is.
@@ -160,29 +168,35 @@ impl Solver {
         shared: &Condensed,
         length: f64,
         rates: &[f64; CAPACITY],
-        pattern: &RowPattern,
+        column: &[f64; OUTPUTS],
         mut entering: Active,
     ) -> Active {
         let mut change = [0.0; OUTPUTS];
         let mut add = |(output, factor): (usize, f64)| {
             if let Some(change) = change.get_mut(output) {
-                *change += factor * length;
+                *change += factor;
             }
         };
-        add(pattern.first);
-        add(pattern.second);
         for (active, rate) in self.active.iter_mut().zip(rates) {
-            active.multiplier -= length * rate;
-            if let Some(other) = RowPattern::of(active.row) {
-                add((other.first.0, -rate * other.first.1));
-                add((other.second.0, -rate * other.second.1));
-            }
+            let step = length * rate;
+            // Rounding may take the multiplier that just left below zero.
+            active.multiplier = (active.multiplier - step).max(0.0);
+            let RowPattern { first, second } = active.pattern;
+            add((first.0, step * first.1));
+            add((second.0, step * second.1));
         }
-        for (change, kernel) in change.iter().zip(&shared.kernel) {
-            if *change != 0.0 {
-                for (output, kernel) in self.outputs.iter_mut().zip(kernel) {
-                    *output -= change * kernel;
-                }
+        for (output, column) in self.outputs.iter_mut().zip(column) {
+            *output -= length * column;
+        }
+        let kernel = shared.kernel.as_chunks::<2>().0;
+        for ([one, other], factors) in kernel.iter().zip(change.as_chunks::<2>().0) {
+            if factors.iter().any(|factor| *factor != 0.0) {
+                add_scaled(
+                    &mut self.outputs,
+                    [one, other],
+                    *factors,
+                    self.attitude_rows,
+                );
             }
         }
         entering.multiplier += length;
@@ -206,11 +220,10 @@ impl Solver {
                 self.deactivate(index);
             }
             Event::Toggle(index) => {
-                if let Some(mut active) = self.deactivate(index)
-                    && let Some(pattern) = RowPattern::of(active.row)
-                {
+                if let Some(mut active) = self.deactivate(index) {
                     active.yielded = !active.yielded;
-                    let (products, complement) = self.complement(shared, &pattern, &active);
+                    let column = active.pattern.column(&shared.kernel, self.attitude_rows);
+                    let (products, complement) = self.complement(&column, &active);
                     let failed = self.activate(active, &products, complement);
                     if failed.is_some() {
                         return failed;
@@ -229,8 +242,8 @@ impl Solver {
         complement: f64,
     ) -> Option<Status> {
         let room = self.active.push(row).is_ok() && self.factor.append(products, complement);
-        if let Some(flag) = self.is_active.get_mut(row.row) {
-            *flag = true;
+        if let Some(open) = self.open.0.get_mut(row.row) {
+            *open = f64::INFINITY;
         }
         (!room).then_some(Status::IterationLimit)
     }
@@ -243,8 +256,9 @@ impl Solver {
         from_index.rotate_left(1);
         let removed = self.active.pop()?;
         self.factor.remove(index);
-        if let Some(flag) = self.is_active.get_mut(removed.row) {
-            *flag = false;
+        let bound = self.problem.bounds.0.get(removed.row);
+        if let (Some(open), Some(bound)) = (self.open.0.get_mut(removed.row), bound) {
+            *open = *bound + TOLERANCE;
         }
         Some(removed)
     }
@@ -257,6 +271,17 @@ impl Solver {
             if *rate != 0.0 {
                 let _ = self.certificate.push((active.row, -rate));
             }
+        }
+    }
+
+    /// Records the multipliers themselves, which prove that no controls of any sensible size keep the
+    /// rows.
+    fn certify_by_multipliers(&mut self, entering: &Active) {
+        let scale = entering.multiplier.max(1.0);
+        for active in self.active.iter().chain([entering]) {
+            let _ = self
+                .certificate
+                .push((active.row, active.multiplier / scale));
         }
     }
 }
