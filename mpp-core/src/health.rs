@@ -30,3 +30,32 @@ impl Health {
         *counter = counter.saturating_add(1);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Health;
+
+    #[test]
+    fn counting_adds_one_to_its_counter_alone() {
+        let mut health = Health::default();
+        Health::count(&mut health.plans_kept);
+        Health::count(&mut health.plans_kept);
+        let expected = Health {
+            plans_kept: 2,
+            ..Health::default()
+        };
+        assert_eq!(health, expected);
+    }
+
+    #[test]
+    fn a_full_counter_stays_full() {
+        let mut health = Health {
+            thrust_raised: u32::MAX - 1,
+            ..Health::default()
+        };
+        for _ in 0..3 {
+            Health::count(&mut health.thrust_raised);
+            assert_eq!(health.thrust_raised, u32::MAX);
+        }
+    }
+}

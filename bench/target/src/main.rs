@@ -8,43 +8,30 @@
 use core::arch::asm;
 use core::fmt::{self, Write};
 use core::panic::PanicInfo;
-use mpp_core::config::{DIRECTIONS, STAGES};
 use mpp_core::corridor::Corridor;
 use mpp_core::qp::{
-    Bounds, Condensed, Dynamics, Penalty, Problem, Solution, Solver, StageModel, Status, Weights,
+    Bounds, Condensed, Penalty, Problem, Solution, Solver, StageModel, Status, Weights,
 };
 use nalgebra::{Matrix6, Matrix6x2};
 
 type Real = f64;
 const INFINITY: Real = Real::INFINITY;
-const INSTRUCTIONS_PER_TICK: u32 = 40;
-
-struct Program {
-    a: [Real; 36],
-    b: [Real; 12],
-    control_weight: [Real; 2],
-    terminal_weight: [Real; 1],
-    initial: [Real; 6],
-    target: [Real; 6],
-    position_bounds: [Real; 152],
-    thrust_reserve: [Real; 1],
-    attitude: [Real; 4],
-    penalty: [Real; 2],
-}
 include!(concat!(env!("OUT_DIR"), "/programs.rs"));
 
+const INSTRUCTIONS_PER_TICK: u32 = 40;
 /// Control, reload and current value of SysTick.
 const SYSTICK: *mut u32 = 0xE000_E010 as *mut u32;
 /// Switches the FPU on.
 const CPACR: *mut u32 = 0xE000_ED88 as *mut u32;
 
-#[unsafe(link_section = ".vectors")]
+/// First stack pointer, then where to start.
 #[used]
+#[unsafe(link_section = ".vectors")]
 static VECTORS: (usize, unsafe extern "C" fn() -> !) = (0x2040_0000, reset);
 
 #[unsafe(no_mangle)]
 unsafe extern "C" fn reset() -> ! {
-    // SAFETY: registers of this processor; no code that needs the FPU is inlined here.
+    // SAFETY: registers of this processor.
     unsafe {
         CPACR.write_volatile(0xF << 20);
         asm!("dsb", "isb");
@@ -71,9 +58,8 @@ struct Host;
 
 impl Write for Host {
     fn write_str(&mut self, text: &str) -> fmt::Result {
-        for byte in text.bytes() {
-            host(0x03, &raw const byte as u32);
-        }
+        text.bytes()
+            .for_each(|byte| host(0x03, &raw const byte as u32));
         Ok(())
     }
 }
@@ -93,67 +79,87 @@ fn count(call: impl FnOnce()) -> u32 {
     (begin.wrapping_sub(now()) & 0xFF_FFFF) * INSTRUCTIONS_PER_TICK
 }
 
-/// Too large for the stack of a small machine; initialised at compile time.
 static mut CONDENSED: Condensed = Condensed::new();
 static mut VARYING: Condensed = Condensed::new();
 static mut SOLVER: Solver = Solver::new();
-static mut COUNTS: [[u32; 2048]; 3] = [[0; 2048]; 3];
+static mut COUNTS: [[u32; PROGRAMS.len()]; 3] = [[0; PROGRAMS.len()]; 3];
 
+/// Not inlined: the FPU is off where it is called from at first.
 #[inline(never)]
+#[expect(static_mut_refs, reason = "one thread")]
 fn run() {
-    // SAFETY: one thread, called once.
-    let (condensed, varying, solver, counts) = unsafe {
-        (&mut *(&raw mut CONDENSED), &mut *(&raw mut VARYING), &mut *(&raw mut SOLVER), &mut *(&raw mut COUNTS))
-    };
+    // SAFETY: the only references, taken once.
+    let (shared, varying, solver, counts) =
+        unsafe { (&mut CONDENSED, &mut VARYING, &mut SOLVER, &mut COUNTS) };
     let mut solution = Solution::new();
-    let (mut solved, mut infeasible) = (0, 0);
-    for (index, program) in PROGRAMS.iter().enumerate() {
-        let (model, weights, problem) = program.parts();
-        let dynamics: [Dynamics; STAGES] = [model.dynamics(); STAGES];
-        counts[0][index] = count(|| assert!(condensed.condense(&model, &weights).is_ok()));
-        counts[1][index] = count(|| assert!(varying.condense_varying(&dynamics, &weights).is_ok()));
+    let (mut optimal, mut infeasible) = (0, 0);
+    for (index, numbers) in PROGRAMS.iter().enumerate() {
+        let (model, weights, problem) = program(numbers);
+        let stages = [model.dynamics(); 18];
+        counts[0][index] = count(|| assert!(shared.condense(&model, &weights).is_ok()));
+        counts[1][index] = count(|| assert!(varying.condense_varying(&stages, &weights).is_ok()));
         let mut status = Status::NumericalFailure;
         counts[2][index] = count(|| {
-            status = solver.solve(condensed, &problem);
+            status = solver.solve(shared, &problem);
             if status == Status::Optimal {
-                status = solver.solution(condensed, &mut solution);
+                status = solver.solution(shared, &mut solution);
             }
         });
-        solved += u32::from(status == Status::Optimal);
+        optimal += u32::from(status == Status::Optimal);
         infeasible += u32::from(status == Status::Infeasible);
     }
     let all = PROGRAMS.len();
-    let _ = writeln!(Host, "{all} programs, {solved} optimal, {infeasible} infeasible; instructions:");
-    for (name, counts) in ["condense", "condense_varying", "candidate"].iter().zip(counts) {
-        let counts = &mut counts[..all];
+    let _ = writeln!(
+        Host,
+        "{all} programs, {optimal} optimal, {infeasible} infeasible"
+    );
+    let names = ["condense", "condense_varying", "candidate"];
+    for (name, counts) in names.iter().zip(counts) {
         counts.sort_unstable();
-        let [median, p99] = [50, 99].map(|percent| counts[(all * percent).div_ceil(100).max(1) - 1]);
-        let _ = writeln!(Host, "{name:<17} median {median:>8}  p99 {p99:>8}  max {:>8}", counts[all - 1]);
+        let [median, p99] = [50, 99].map(|part| counts[(all * part).div_ceil(100).max(1) - 1]);
+        let mean = counts.iter().map(|count| u64::from(*count)).sum::<u64>() / all as u64;
+        let max = counts[all - 1];
+        let _ = writeln!(
+            Host,
+            "{name:<17} instructions: mean {mean:>8}  median {median:>8}  p99 {p99:>8}  max {max:>8}"
+        );
     }
 }
 
-impl Program {
-    fn parts(&self) -> (StageModel, Weights, Problem) {
-        let model = StageModel {
-            a: Matrix6::from_row_slice(&self.a),
-            b: Matrix6x2::from_row_slice(&self.b),
-            initial: Matrix6::identity(),
-        };
-        let weights = Weights { control: self.control_weight, terminal: self.terminal_weight[0] };
-        let mut corridor = Corridor::new();
-        for (ours, theirs) in corridor.bounds.iter_mut().zip(self.position_bounds.as_chunks::<DIRECTIONS>().0) {
-            *ours = *theirs;
-        }
-        let mut bounds = Bounds::none();
-        bounds.set_corridor(&corridor);
-        bounds.set_thrust(self.thrust_reserve[0]);
-        let [attack, path, least_attack, least_path] = self.attitude;
-        if attack.is_finite() {
-            bounds.set_attitude([attack, path], [least_attack, least_path]);
-        }
-        let [linear, quadratic] = self.penalty;
-        let penalty = (quadratic > 0.0).then_some(Penalty { linear, quadratic });
-        let problem = Problem { initial: self.initial, target: self.target, bounds, penalty, cost_limit: INFINITY };
-        (model, weights, problem)
+/// The next numbers of a program.
+fn take<const N: usize>(rest: &mut &[Real]) -> [Real; N] {
+    let (head, tail) = rest.split_first_chunk().expect("a whole program");
+    *rest = tail;
+    *head
+}
+
+fn program(mut rest: &[Real]) -> (StageModel, Weights, Problem) {
+    let rest = &mut rest;
+    let model = StageModel {
+        a: Matrix6::from_row_slice(&take::<36>(rest)),
+        b: Matrix6x2::from_row_slice(&take::<12>(rest)),
+        initial: Matrix6::identity(),
+    };
+    let control = take(rest);
+    let [terminal] = take(rest);
+    let (initial, target) = (take(rest), take(rest));
+    let mut corridor = Corridor::new();
+    corridor.bounds.fill_with(|| take(rest));
+    let mut bounds = Bounds::none();
+    bounds.set_corridor(&corridor);
+    let [reserve] = take(rest);
+    bounds.set_thrust(reserve);
+    let [attack, path, least_attack, least_path] = take(rest);
+    if attack < INFINITY {
+        bounds.set_attitude([attack, path], [least_attack, least_path]);
     }
+    let [linear, quadratic] = take(rest);
+    let problem = Problem {
+        initial,
+        target,
+        bounds,
+        penalty: (linear < INFINITY).then_some(Penalty { linear, quadratic }),
+        cost_limit: INFINITY,
+    };
+    (model, Weights { control, terminal }, problem)
 }

@@ -48,6 +48,8 @@ pub struct Condensed {
     /// where the controls cannot change the row. Halfway between absolute violation and violation
     /// relative to what it takes to move a row; of the three it needs the fewest steps.
     pub(super) pricing: [f64; ROWS],
+    /// The rows of no price.
+    pub(super) constant_rows: heapless::Vec<usize, ROWS>,
 }
 
 /// The Hessian is not positive definite: a weight is not positive, or the model not finite. The
@@ -78,6 +80,7 @@ impl Condensed {
             cost_by_inputs: [[0.0; INPUTS]; INPUTS],
             constant: 0.0,
             pricing: [0.0; ROWS],
+            constant_rows: heapless::Vec::new(),
         }
     }
 
@@ -123,11 +126,14 @@ impl Condensed {
                 self.kernel[other][output] = product;
             }
         }
+        self.constant_rows.clear();
         for (row, price) in self.pricing.iter_mut().enumerate() {
             let squared = RowPattern::of(row).map_or(0.0, |row| row.norm_squared(&self.kernel));
             *price = if squared > UNCHANGEABLE {
                 1.0 / libm::sqrt(libm::sqrt(squared))
             } else {
+                // As many places as rows: the push cannot fail.
+                let _ = self.constant_rows.push(row);
                 0.0
             };
         }

@@ -87,7 +87,7 @@ pub enum Status {
     Infeasible,
     /// The optimum costs more than the limit; not solved to the end.
     Dominated,
-    /// [`MAX_ITERATIONS`] were not enough.
+    /// [`MAX_ITERATIONS`] were not enough, or more rows are active than there is room for.
     IterationLimit,
     /// Rounding has the upper hand, or the input is not finite: the result is not to be used.
     NumericalFailure,

@@ -1,7 +1,7 @@
 //! What an answer of the solver must keep to be believed: the conditions of Karush, Kuhn and Tucker
 //! at an optimum, a valid sum of rows at a contradiction. By the dense program alone.
 
-use crate::dense::{CONTROLS, DenseProgram, dot, flat, largest};
+use crate::dense::{CONTROLS, DenseProgram, flat, largest};
 use crate::programs::softens;
 use mpp_core::qp::{Penalty, ROWS, Solution, Solver};
 
@@ -9,8 +9,9 @@ use mpp_core::qp::{Penalty, ROWS, Solution, Solver};
 const STATIONARY: f64 = 1e-7;
 /// Violation of a row that callers accept [m, rad, N].
 pub(crate) const ACCEPTED: f64 = 1e-6;
-/// A proof may leave room for controls beyond this, summed over the horizon: none flies.
-const ABSURD_CONTROLS: f64 = 1e6;
+/// Rounding in a proof may leave room for controls of this size, summed over the horizon: thirty
+/// for each, and flights take one.
+const ABSURD_CONTROLS: f64 = 1e3;
 
 /// Multipliers by row.
 fn multipliers(solver: &Solver) -> [f64; ROWS] {
@@ -90,12 +91,4 @@ pub(crate) fn assert_contradiction(program: &DenseProgram, solver: &Solver) {
         escape > ABSURD_CONTROLS,
         "controls of size {escape} escape: {right}"
     );
-}
-
-/// Whether controls keep every row.
-pub(crate) fn holds(program: &DenseProgram, controls: &[f64; CONTROLS], tight: f64) -> bool {
-    program
-        .rows
-        .iter()
-        .all(|row| dot(&row.normal, controls) <= row.bound + tight)
 }

@@ -3,8 +3,12 @@
 
 mod brute_force;
 mod conditions;
+mod degenerate;
 mod dense;
 mod ends;
 mod invariances;
 mod optimality;
 mod programs;
+mod small_programs;
+mod symmetries;
+mod varying;

@@ -93,9 +93,11 @@ impl Solver {
         self.problem = *problem;
         self.active.clear();
         let rows = problem.bounds.0.iter().zip(&shared.pricing);
-        for (open, (bound, norm)) in self.open.0.iter_mut().zip(rows) {
+        let mut numbers = true;
+        for (open, (bound, price)) in self.open.0.iter_mut().zip(rows) {
+            numbers &= !bound.is_nan();
             // An infinite bound times no weight would not be a number.
-            *open = if *norm > 0.0 { bound + TOLERANCE } else { 0.0 };
+            *open = if *price > 0.0 { bound + TOLERANCE } else { 0.0 };
         }
         self.attitude_rows = problem.bounds.has_attitude();
         self.entering = None;
@@ -106,9 +108,10 @@ impl Solver {
         self.unconstrained = optimum.controls;
         self.outputs = optimum.outputs;
         self.dual = optimum.cost;
-        self.status = if self.dual.is_finite() && !problem.bounds.0.iter().any(|b| b.is_nan()) {
+        self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)
                 .or_else(|| self.check_opposite_faces())
+                .or_else(|| (self.dual > problem.cost_limit).then_some(Status::Dominated))
         } else {
             Some(Status::NumericalFailure)
         };
@@ -144,7 +147,8 @@ impl Solver {
     }
 
     /// Rows and their multipliers: at an optimum those of the active rows, at
-    /// [`Status::Infeasible`] those whose sum of rows reads `0 <= negative`.
+    /// [`Status::Infeasible`] those whose sum of rows reads `0 <= negative`, for all controls but
+    /// absurdly large ones.
     pub fn multipliers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let proof = self.status == Some(Status::Infeasible);
         let optimum = self
@@ -197,18 +201,21 @@ impl Solver {
 
     /// Worst violation of soft and of hard rows that controls can change.
     fn worst_violations(&self, shared: &Condensed, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
-        let mut excess = excesses(outputs, &self.problem.bounds);
-        for (excess, norm) in excess.iter_mut().zip(&shared.pricing) {
-            if *norm == 0.0 {
-                *excess = 0.0;
-            }
-        }
-        let worst = |rows: &[f64]| rows.iter().fold(0.0, |worst: f64, row| worst.max(*row));
+        let excess = excesses(outputs, &self.problem.bounds);
+        let worst = |(rows, prices): (&[f64], &[f64])| {
+            let changeable = rows.iter().zip(prices).filter(|(_, price)| **price > 0.0);
+            changeable.fold(
+                0.0,
+                |worst, (row, _)| if *row > worst { *row } else { worst },
+            )
+        };
         let (soft, hard) = split_soft(&excess);
+        let (soft_prices, hard_prices) = split_soft(&shared.pricing);
+        let (soft, hard) = (worst((soft, soft_prices)), worst((hard, hard_prices)));
         if self.problem.penalty.is_some() {
-            (worst(soft), worst(hard))
+            (soft, hard)
         } else {
-            (0.0, worst(&excess))
+            (0.0, soft.max(hard))
         }
     }
 
@@ -218,8 +225,11 @@ impl Solver {
 
     /// Hard rows that no control can change hold, or the problem is infeasible at once.
     fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
-        for (row, bound) in self.problem.bounds.0.iter().enumerate() {
-            if shared.pricing.get(row).is_some_and(|norm| *norm > 0.0) || self.is_soft(row) {
+        for row in shared.constant_rows.iter().copied() {
+            let Some(bound) = self.problem.bounds.0.get(row) else {
+                continue;
+            };
+            if self.is_soft(row) {
                 continue;
             }
             let value = match (RowKind::of(row), RowPattern::of(row)) {

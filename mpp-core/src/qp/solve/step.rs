@@ -9,7 +9,10 @@ use crate::qp::rows::{OUTPUTS, RowPattern, add_scaled, most_violated};
 /// depends on the active ones.
 const DEPENDENT: f64 = 1e-10;
 
-/// The same for soft rows, which this much elasticity keeps apart: it lets a row give way by 1e-12
+/// Violations of dependent rows up to this [m, rad or N] may be rounding.
+const NEGLIGIBLE: f64 = 1e-8;
+
+/// Soft rows are kept apart by this much elasticity: it lets a row give way by 1e-12
 /// of what it takes to move it.
 const SOFT_FLOOR: f64 = 1e-12;
 
@@ -36,9 +39,8 @@ impl Solver {
         let entering = match self.entering.take() {
             Some(entering) => entering,
             None => {
-                let (open, norms) = (&self.open, &shared.pricing);
-                // Relative to what it takes to move a row.
-                let worst = most_violated(&self.outputs, open, norms, self.attitude_rows);
+                let (open, pricing) = (&self.open, &shared.pricing);
+                let worst = most_violated(&self.outputs, open, pricing, self.attitude_rows);
                 let Some(row) = worst else {
                     return Some(Status::Optimal);
                 };
@@ -66,8 +68,7 @@ impl Solver {
         };
         let (event, length) = self.first_event(&entering, &rates, full.max(0.0));
         if length == f64::INFINITY {
-            self.certify(entering.row, &rates);
-            return Some(Status::Infeasible);
+            return self.contradiction(&entering, violation, &rates);
         }
         self.dual += length * (violation - 0.5 * length * complement);
         let entering = self.move_by(shared, length, &rates, &column, entering);
@@ -261,6 +262,23 @@ impl Solver {
             *open = *bound + TOLERANCE;
         }
         Some(removed)
+    }
+
+    /// A row that depends on the active ones cannot be kept with them: the program is infeasible,
+    /// unless rounding may have made the whole violation. Then the row is passed over.
+    fn contradiction(
+        &mut self,
+        entering: &Active,
+        violation: f64,
+        rates: &[f64; CAPACITY],
+    ) -> Option<Status> {
+        if violation <= NEGLIGIBLE && entering.multiplier == 0.0 {
+            let open = self.open.0.get_mut(entering.row)?;
+            *open = f64::INFINITY;
+            return None;
+        }
+        self.certify(entering.row, rates);
+        Some(Status::Infeasible)
     }
 
     /// Records the proof that rows contradict each other: the entering row and the active ones,
