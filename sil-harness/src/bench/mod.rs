@@ -6,6 +6,6 @@ mod instance;
 mod qp;
 
 pub use full_form::{Form, FullForm};
-pub use generate::generate;
+pub use generate::{GenerateError, generate};
 pub use instance::{Instance, InstanceError, read_instances, write_instances};
 pub use qp::{QpReport, SolverReport, run_qp};
