@@ -113,6 +113,9 @@ fn run() {
         Host,
         "{all} programs, {optimal} optimal, {infeasible} infeasible"
     );
+    let bytes =
+        size_of::<Condensed>() + size_of::<Solver>() + size_of::<Problem>() + size_of::<Solution>();
+    let _ = writeln!(Host, "workspace, problem and solution: {bytes} bytes");
     let names = ["condense", "condense_varying", "candidate"];
     for (name, counts) in names.iter().zip(counts) {
         counts.sort_unstable();

@@ -46,7 +46,7 @@ pub struct Condensed {
     constant: f64,
     /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/4)`, and 0
     /// where the controls cannot change the row. Halfway between absolute violation and violation
-    /// relative to what it takes to move a row; of the three it needs the fewest steps.
+    /// relative to what it takes to move a row; of the three it has the shortest tail.
     pub(super) pricing: [f64; ROWS],
     /// The rows of no price.
     pub(super) constant_rows: heapless::Vec<usize, ROWS>,
