@@ -30,7 +30,7 @@ const PATH: usize = 5;
 pub struct Condensed {
     model: StageModel,
     dynamics: [Dynamics; STAGES],
-    weights: Weights,
+    pub(super) weights: Weights,
     /// `K = Y H^-1 Y'`.
     pub(super) kernel: [[f64; OUTPUTS]; OUTPUTS],
     /// Lower Cholesky factor `L` of `H`.
@@ -44,9 +44,8 @@ pub struct Condensed {
     cost_by_inputs: [[f64; INPUTS]; INPUTS],
     /// The last input: 1 where the dynamics have offsets.
     constant: f64,
-    /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/4)`, and 0
-    /// where the controls cannot change the row. Halfway between absolute violation and violation
-    /// relative to what it takes to move a row; of the three it has the shortest tail.
+    /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/2)`, and 0
+    /// where the controls cannot change the row. Violations count by what it takes to mend them.
     pub(super) pricing: [f64; ROWS],
     /// The rows of no price.
     pub(super) constant_rows: heapless::Vec<usize, ROWS>,
@@ -130,7 +129,7 @@ impl Condensed {
         for (row, price) in self.pricing.iter_mut().enumerate() {
             let squared = RowPattern::of(row).map_or(0.0, |row| row.norm_squared(&self.kernel));
             *price = if squared > UNCHANGEABLE {
-                1.0 / libm::sqrt(libm::sqrt(squared))
+                1.0 / libm::sqrt(squared)
             } else {
                 // As many places as rows: the push cannot fail.
                 let _ = self.constant_rows.push(row);
@@ -299,14 +298,25 @@ impl Condensed {
 
     /// The controls `H^-1 Y' c` that push back by `c`, multipliers by output.
     pub(super) fn push_back(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
-        let mut controls = [0.0; CONTROLS];
-        for (row, factor) in self.half_response.iter().zip(outputs) {
-            if *factor != 0.0 {
-                add_scaled(&mut controls, row, *factor);
-            }
-        }
+        let mut controls = self.half_push(outputs);
         backward(&self.factor, CONTROLS, &mut controls);
         controls
+    }
+
+    /// `L^-1 Y' c`; its square is `c' K c`, without the cancellation of that.
+    pub(super) fn half_push(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
+        let mut half = [0.0; CONTROLS];
+        for (row, factor) in self.half_response.iter().zip(outputs) {
+            if *factor != 0.0 {
+                add_scaled(&mut half, row, *factor);
+            }
+        }
+        half
+    }
+
+    /// The outputs `K c` of `L^-1 Y' c`.
+    pub(super) fn outputs_of_half(&self, half: &ControlVector) -> [f64; OUTPUTS] {
+        self.half_response.each_ref().map(|row| dot(row, half))
     }
 
     /// States and outputs under controls.

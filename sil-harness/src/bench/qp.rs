@@ -32,6 +32,8 @@ pub struct SolverReport {
     pub max_us: f64,
     /// Median of the iterations.
     pub iterations_median: usize,
+    /// Mean of the iterations.
+    pub iterations_mean: f64,
     /// Most iterations.
     pub iterations_max: usize,
     /// Programs on whose feasibility it is wrong, ties apart.
@@ -73,12 +75,13 @@ impl fmt::Display for QpReport {
         )?;
         writeln!(
             f,
-            "{:<10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>15} {:>15} {:>10}",
+            "{:<10} {:>10} {:>10} {:>10} {:>10} {:>10} {:>9} {:>15} {:>15} {:>10}",
             "solver",
             "median us",
             "p99 us",
             "max us",
             "iter. med",
+            "iter. mean",
             "iter. max",
             "verdict errors",
             "cost error",
@@ -87,12 +90,13 @@ impl fmt::Display for QpReport {
         for s in solvers {
             writeln!(
                 f,
-                "{:<10} {:>10.2} {:>10.2} {:>10.2} {:>10} {:>9} {:>15} {:>15.1e} {:>10.1e}",
+                "{:<10} {:>10.2} {:>10.2} {:>10.2} {:>10} {:>10.1} {:>9} {:>15} {:>15.1e} {:>10.1e}",
                 s.name,
                 s.median_us,
                 s.p99_us,
                 s.max_us,
                 s.iterations_median,
+                s.iterations_mean,
                 s.iterations_max,
                 s.verdict_errors,
                 s.worst_objective_error,
@@ -332,6 +336,8 @@ impl Tally {
         self.report.p99_us = percentile(&self.times, 99).unwrap_or(f64::NAN);
         self.report.max_us = self.times.last().copied().unwrap_or(f64::NAN);
         self.report.iterations_median = percentile(&self.iterations, 50).unwrap_or(0);
+        let total: usize = self.iterations.iter().sum();
+        self.report.iterations_mean = total as f64 / self.iterations.len() as f64;
         self.report.iterations_max = self.iterations.last().copied().unwrap_or(0);
         self.report
     }

@@ -24,15 +24,11 @@ const MOST_BORDERLINE: usize = 3;
 /// Programs that are moved to the edge of feasibility, and from there to both sides.
 const PROGRAMS_AT_THE_EDGE: usize = 300;
 /// Programs just outside of the edge where rounding hides the proof; what the solver then finds
-/// breaks rows and is rejected: 16 of 900 so far.
-const MOST_UNPROVED: usize = 20;
-/// Gradient of a proof's sum of rows, relative to the rows. The solver takes a row for a combination
-/// of others when the rest is 1e-5 of it, or when only absurd controls could keep all rows; what
-/// counts is how large controls must be to escape.
-const PROOF_TOLERANCE: f64 = 1e-4;
+/// breaks rows and is rejected: 2 of 900 so far.
+const MOST_UNPROVED: usize = 4;
 /// Absolute controls [N or elevator], summed over the horizon, that rounding in a proof may leave
-/// room for: no flight comes near a million.
-const ABSURD_CONTROLS: f64 = 1e6;
+/// room for: thirty for each, and flights take one.
+const ABSURD_CONTROLS: f64 = 1e3;
 /// Iterations that no realistic program comes near: 65 were the most seen, 400 is the cap.
 const MOST_ITERATIONS: usize = 120;
 /// The same for soft rows, which stiffen and yield on the way: 185 were the most seen.
@@ -127,11 +123,6 @@ fn check_proof(preset: &Preset, problem: &Problem, solver: &Solver, tally: &mut 
         sum.least_weight >= 0.0,
         "a negative weight: {}",
         sum.least_weight
-    );
-    assert!(
-        sum.gradient < PROOF_TOLERANCE,
-        "the rows do not cancel: {}",
-        sum.gradient
     );
     assert!(sum.right < 0.0, "the sum of rows holds: 0 <= {}", sum.right);
     assert!(

@@ -9,6 +9,7 @@
 //! violated by `s = (multiplier - linear) / quadratic`, which adds `1 / quadratic` to its diagonal
 //! of the Gram matrix. When the multiplier falls back to the linear price it stiffens again.
 
+mod contradiction;
 mod step;
 
 use super::condense::Condensed;
@@ -34,6 +35,11 @@ const CROSSING: f64 = 1e-5;
 /// Worst violation of a hard row in an accepted solution.
 const ACCEPTED: f64 = 1e-6;
 
+/// Rows contradict each other where keeping them costs as much as missing the target by this [m] and
+/// this many times the optimum without rows.
+const ABSURD_MISS: f64 = 1000.0;
+const ABSURD_FACTOR: f64 = 1e3;
+
 /// A row with a multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Active {
@@ -57,6 +63,9 @@ pub struct Solver {
     entering: Option<Active>,
     factor: Factor,
     dual: f64,
+    /// The rise of the cost above the optimum without rows that no flight is worth; infinite where
+    /// rows are soft, which every flight keeps.
+    absurd_rise: f64,
     iterations: usize,
     status: Option<Status>,
     certificate: heapless::Vec<(usize, f64), { CAPACITY + 1 }>,
@@ -82,6 +91,7 @@ impl Solver {
             entering: None,
             factor: Factor::new(),
             dual: 0.0,
+            absurd_rise: 0.0,
             iterations: 0,
             status: None,
             certificate: heapless::Vec::new(),
@@ -108,6 +118,11 @@ impl Solver {
         self.unconstrained = optimum.controls;
         self.outputs = optimum.outputs;
         self.dual = optimum.cost;
+        self.absurd_rise = if problem.penalty.is_some() {
+            f64::INFINITY
+        } else {
+            0.5 * shared.weights.terminal * ABSURD_MISS * ABSURD_MISS + ABSURD_FACTOR * optimum.cost
+        };
         self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)
                 .or_else(|| self.check_opposite_faces())
@@ -148,7 +163,7 @@ impl Solver {
 
     /// Rows and their multipliers: at an optimum those of the active rows, at
     /// [`Status::Infeasible`] those whose sum of rows reads `0 <= negative`, for all controls but
-    /// absurdly large ones.
+    /// absurdly expensive ones.
     pub fn multipliers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let proof = self.status == Some(Status::Infeasible);
         let optimum = self

@@ -1,5 +1,6 @@
 //! One step of the method: from one event to the next.
 
+use super::contradiction::Stand;
 use super::{Active, CAPACITY, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
@@ -9,16 +10,19 @@ use crate::qp::rows::{OUTPUTS, RowPattern, add_scaled, most_violated};
 /// depends on the active ones.
 const DEPENDENT: f64 = 1e-10;
 
-/// Violations of dependent rows up to this [m, rad or N] may be rounding.
-const NEGLIGIBLE: f64 = 1e-8;
+/// Soft rows, and hard ones that touch, are kept apart by this much elasticity: it lets a row give
+/// way by 1e-12 of what it takes to move it.
+const FLOOR: f64 = 1e-12;
 
-/// Soft rows are kept apart by this much elasticity: it lets a row give way by 1e-12
-/// of what it takes to move it.
-const SOFT_FLOOR: f64 = 1e-12;
-
-/// No controls that an aircraft could fly cost this much: where the lower bound of the cost passes
-/// it, rows contradict each other but for rounding.
-const ABSURD_COST: f64 = 1e12;
+/// How the rest moves with the entering multiplier.
+pub(super) struct Direction {
+    /// `L^-1 C_A K c_p`
+    pub(super) products: [f64; CAPACITY],
+    /// By how much the multipliers of the active rows fall: `L^-T products`.
+    pub(super) rates: [f64; CAPACITY],
+    /// Schur complement of the entering row against the active ones; 0 when it depends on them.
+    pub(super) complement: f64,
+}
 
 /// What ends a step.
 #[derive(Clone, Copy)]
@@ -56,37 +60,72 @@ impl Solver {
             }
         };
         let column = entering.pattern.column(&shared.kernel, self.attitude_rows);
-        let (products, complement) = self.complement(&column, &entering);
-        let mut rates = products;
-        self.factor.backward(&mut rates);
-
         let violation = self.violation(&entering);
-        let full = if complement > 0.0 {
-            violation / complement
-        } else {
-            f64::INFINITY
-        };
-        let (event, length) = self.first_event(&entering, &rates, full.max(0.0));
+        let mut direction = self.direction(&column, &entering);
+        let mut full = (violation / direction.complement).max(0.0);
+        let mut touches = false;
+        if direction.complement <= 0.0 || 0.5 * violation * full > self.absurd_rise {
+            let stand = self.resolve(shared, &entering, violation, &mut direction);
+            touches = stand == Stand::Touches;
+            full = match stand {
+                Stand::Apart(length) => length.max(0.0),
+                Stand::Touches | Stand::Contradicts => f64::INFINITY,
+            };
+        }
+        let (event, length) = self.first_event(&entering, &direction.rates, full);
         if length == f64::INFINITY {
-            return self.contradiction(&entering, violation, &rates);
+            return if touches {
+                self.touch(entering, &column, &mut direction)
+            } else {
+                Some(self.contradiction(shared, &entering, &direction.rates))
+            };
         }
-        self.dual += length * (violation - 0.5 * length * complement);
-        let entering = self.move_by(shared, length, &rates, &column, entering);
-        if self.dual > ABSURD_COST {
-            self.certify_by_multipliers(&entering);
-            return Some(Status::Infeasible);
-        }
+        self.dual += length * (violation - 0.5 * length * direction.complement);
+        let entering = self.move_by(shared, length, &direction.rates, &column, entering);
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
+        }
+        // Twice, because it starts from the optimum without rows, and rounding must not decide.
+        if self.dual > 2.0 * self.absurd_rise {
+            return Some(self.excessive_multipliers(shared, &entering));
         }
         if !self.dual.is_finite() {
             return Some(Status::NumericalFailure);
         }
-        self.apply(shared, event, entering, &products, complement)
+        self.apply(shared, event, entering, &direction)
     }
 
-    /// `L^-1 C K c` and the Schur complement of a row against the active rows; 0 when it depends on
-    /// them. `column` is its `K c`.
+    /// A row that depends on the active ones and is kept with them but for rounding is passed over; if
+    /// it has a multiplier already, it becomes active as it is.
+    fn touch(
+        &mut self,
+        entering: Active,
+        column: &[f64; OUTPUTS],
+        direction: &mut Direction,
+    ) -> Option<Status> {
+        if entering.multiplier > 0.0 {
+            let floor = FLOOR * entering.pattern.value(column);
+            direction.complement = direction.complement.max(floor);
+            return self.activate(entering, direction);
+        }
+        let open = self.open.0.get_mut(entering.row)?;
+        *open = f64::INFINITY;
+        None
+    }
+
+    /// How the rest moves with the multiplier of a row, whose `K c` is `column`.
+    fn direction(&self, column: &[f64; OUTPUTS], own: &Active) -> Direction {
+        let (products, complement) = self.complement(column, own);
+        let mut rates = products;
+        self.factor.backward(&mut rates);
+        Direction {
+            products,
+            rates,
+            complement,
+        }
+    }
+
+    /// `L^-1 C_A K c` and the Schur complement of a row. `column` is its `K c`.
     fn complement(&self, column: &[f64; OUTPUTS], own: &Active) -> ([f64; CAPACITY], f64) {
         let mut products = [0.0; CAPACITY];
         for (product, active) in products.iter_mut().zip(&self.active) {
@@ -100,23 +139,18 @@ impl Solver {
             .map(|product| product * product)
             .sum();
         let rest = norm - explained;
-        let complement = match self.problem.penalty {
-            Some(penalty) if self.is_soft(own.row) => {
-                let elastic = if own.yielded {
-                    1.0 / penalty.quadratic
-                } else {
-                    0.0
-                };
-                rest.max(SOFT_FLOOR * norm) + elastic
-            }
-            _ if rest > DEPENDENT * norm => rest,
-            _ => 0.0,
+        let complement = if self.is_soft(own.row) {
+            rest.max(FLOOR * norm) + self.elasticity(own)
+        } else if rest > DEPENDENT * norm {
+            rest
+        } else {
+            0.0
         };
         (products, complement)
     }
 
     /// How far a row is from where its multiplier wants it.
-    fn violation(&self, own: &Active) -> f64 {
+    pub(super) fn violation(&self, own: &Active) -> f64 {
         let bound = self
             .problem
             .bounds
@@ -209,12 +243,11 @@ impl Solver {
         shared: &Condensed,
         event: Event,
         mut entering: Active,
-        products: &[f64; CAPACITY],
-        complement: f64,
+        direction: &Direction,
     ) -> Option<Status> {
         match event {
             Event::Enter => {
-                return self.activate(entering, products, complement);
+                return self.activate(entering, direction);
             }
             Event::EnteringYields => entering.yielded = true,
             Event::Leave(index) => {
@@ -224,8 +257,8 @@ impl Solver {
                 if let Some(mut active) = self.deactivate(index) {
                     active.yielded = !active.yielded;
                     let column = active.pattern.column(&shared.kernel, self.attitude_rows);
-                    let (products, complement) = self.complement(&column, &active);
-                    let failed = self.activate(active, &products, complement);
+                    let direction = self.direction(&column, &active);
+                    let failed = self.activate(active, &direction);
                     if failed.is_some() {
                         return failed;
                     }
@@ -236,13 +269,13 @@ impl Solver {
         None
     }
 
-    fn activate(
-        &mut self,
-        row: Active,
-        products: &[f64; CAPACITY],
-        complement: f64,
-    ) -> Option<Status> {
-        let room = self.active.push(row).is_ok() && self.factor.append(products, complement);
+    fn activate(&mut self, row: Active, direction: &Direction) -> Option<Status> {
+        let Direction {
+            products,
+            complement,
+            ..
+        } = direction;
+        let room = self.active.push(row).is_ok() && self.factor.append(products, *complement);
         if let Some(open) = self.open.0.get_mut(row.row) {
             *open = f64::INFINITY;
         }
@@ -262,44 +295,5 @@ impl Solver {
             *open = *bound + TOLERANCE;
         }
         Some(removed)
-    }
-
-    /// A row that depends on the active ones cannot be kept with them: the program is infeasible,
-    /// unless rounding may have made the whole violation. Then the row is passed over.
-    fn contradiction(
-        &mut self,
-        entering: &Active,
-        violation: f64,
-        rates: &[f64; CAPACITY],
-    ) -> Option<Status> {
-        if violation <= NEGLIGIBLE && entering.multiplier == 0.0 {
-            let open = self.open.0.get_mut(entering.row)?;
-            *open = f64::INFINITY;
-            return None;
-        }
-        self.certify(entering.row, rates);
-        Some(Status::Infeasible)
-    }
-
-    /// Records the proof that rows contradict each other: the entering row and the active ones,
-    /// whose left-hand sides cancel.
-    fn certify(&mut self, entering: usize, rates: &[f64; CAPACITY]) {
-        let _ = self.certificate.push((entering, 1.0));
-        for (active, rate) in self.active.iter().zip(rates) {
-            if *rate != 0.0 {
-                let _ = self.certificate.push((active.row, -rate));
-            }
-        }
-    }
-
-    /// Records the multipliers themselves, which prove that no controls of any sensible size keep the
-    /// rows.
-    fn certify_by_multipliers(&mut self, entering: &Active) {
-        let scale = entering.multiplier.max(1.0);
-        for active in self.active.iter().chain([entering]) {
-            let _ = self
-                .certificate
-                .push((active.row, active.multiplier / scale));
-        }
     }
 }
