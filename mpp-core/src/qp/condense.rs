@@ -1,8 +1,8 @@
 //! The part of the program that all candidates of a model share: states eliminated, Hessian
 //! factored, kernel of the outputs formed.
 
-use super::dense::{CONTROLS, ControlVector, backward, dot, factor, forward};
-use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
+use super::dense::{CONTROLS, ControlVector, dot, factor, solve_transposed, solve_upper};
+use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT, reach};
 use super::{Dynamics, StageControl, StageModel, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
 use crate::vehicle::{AirState, Trim};
@@ -33,9 +33,10 @@ pub struct Condensed {
     pub(super) weights: Weights,
     /// `K = Y H^-1 Y'`.
     pub(super) kernel: [[f64; OUTPUTS]; OUTPUTS],
-    /// Lower Cholesky factor `L` of `H`.
+    /// Upper factor of `H = U U'`: from the last control to the first, as outputs come to depend on
+    /// them.
     factor: [ControlVector; CONTROLS],
-    /// `L^-1 Y'`, one row an output; while condensing, `Y'`.
+    /// `U^-1 Y'`, one row an output; while condensing, `Y'`.
     half_response: [ControlVector; OUTPUTS],
     /// The optimum without rows by input: outputs and controls.
     outputs_by_input: [[f64; OUTPUTS]; INPUTS],
@@ -115,12 +116,15 @@ impl Condensed {
         let (last, free) = self.write_outputs();
         factor(&mut self.factor, &last, weights).ok_or(CondenseError)?;
 
-        for row in &mut self.half_response {
-            forward(&self.factor, CONTROLS, row);
+        for (output, row) in self.half_response.iter_mut().enumerate() {
+            solve_upper(&self.factor, reach(output), row);
         }
         for output in 0..OUTPUTS {
             for other in 0..output + 1 {
-                let product = dot(&self.half_response[output], &self.half_response[other]);
+                let len = reach(output).min(reach(other));
+                let rows = [output, other]
+                    .map(|row| self.half_response[row].split_at(len.min(CONTROLS)).0);
+                let product = dot(rows[0], rows[1]);
                 self.kernel[output][other] = product;
                 self.kernel[other][output] = product;
             }
@@ -198,10 +202,14 @@ impl Condensed {
 
     /// The optimum without rows, `u = w H^-1 G' (target - free last state)`, by input.
     fn write_unconstrained(&mut self, last: [ControlVector; 6], free: &FreeResponse) {
+        let linear = self.dynamics.map(|dynamics| Dynamics {
+            offset: Vector6::zeros(),
+            ..dynamics
+        });
         let mut steering = last;
         for row in &mut steering {
-            forward(&self.factor, CONTROLS, row);
-            backward(&self.factor, CONTROLS, row);
+            solve_upper(&self.factor, CONTROLS, row);
+            solve_transposed(&self.factor, row);
         }
         let mut missing = [[0.0; 6]; INPUTS];
         for (input, missing) in missing.iter_mut().enumerate() {
@@ -222,7 +230,7 @@ impl Condensed {
                 add_scaled(&mut controls, steering, self.weights.terminal * missing);
             }
             self.controls_by_input[input] = controls;
-            self.add_outputs(input, &controls, missing);
+            self.add_outputs(&linear, input, &controls, missing);
         }
         for (i, costs) in self.cost_by_inputs.iter_mut().enumerate() {
             for (j, cost) in costs.iter_mut().enumerate() {
@@ -242,15 +250,17 @@ impl Condensed {
 
     /// Adds what controls do to the outputs of an input, and takes what they do to the last state
     /// from what is missing there.
-    fn add_outputs(&mut self, input: usize, controls: &ControlVector, missing: &mut [f64; 6]) {
+    fn add_outputs(
+        &mut self,
+        linear: &[Dynamics; STAGES],
+        input: usize,
+        controls: &ControlVector,
+        missing: &mut [f64; 6],
+    ) {
         let mut states = [[0.0; 6]; KNOTS];
         let mut outputs = [0.0; OUTPUTS];
         let still = [0.0; 6];
-        let linear = self.dynamics.map(|dynamics| Dynamics {
-            offset: Vector6::zeros(),
-            ..dynamics
-        });
-        roll_out(&linear, &still, controls, &mut states, &mut outputs);
+        roll_out(linear, &still, controls, &mut states, &mut outputs);
         for (sum, output) in self.outputs_by_input[input].iter_mut().zip(&outputs) {
             *sum += output;
         }
@@ -299,11 +309,11 @@ impl Condensed {
     /// The controls `H^-1 Y' c` that push back by `c`, multipliers by output.
     pub(super) fn push_back(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
         let mut controls = self.half_push(outputs);
-        backward(&self.factor, CONTROLS, &mut controls);
+        solve_transposed(&self.factor, &mut controls);
         controls
     }
 
-    /// `L^-1 Y' c`; its square is `c' K c`, without the cancellation of that.
+    /// `U^-1 Y' c`; its square is `c' K c`, without the cancellation of that.
     pub(super) fn half_push(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
         let mut half = [0.0; CONTROLS];
         for (row, factor) in self.half_response.iter().zip(outputs) {
@@ -314,7 +324,7 @@ impl Condensed {
         half
     }
 
-    /// The outputs `K c` of `L^-1 Y' c`.
+    /// The outputs `K c` of `U^-1 Y' c`.
     pub(super) fn outputs_of_half(&self, half: &ControlVector) -> [f64; OUTPUTS] {
         self.half_response.each_ref().map(|row| dot(row, half))
     }

@@ -8,15 +8,15 @@ pub(super) const CONTROLS: usize = 2 * STAGES;
 
 pub(super) type ControlVector = [f64; CONTROLS];
 
-/// Lower Cholesky factor of `R + w G'G`, `G` being given by rows; none if it is not positive
-/// definite.
+/// Upper factor `U` of `R + w G'G = U U'`, `G` being given by rows; none if it is not positive
+/// definite. A vector that is zero from some control on keeps its zeros through `U^-1`.
 pub(super) fn factor(
-    lower: &mut [ControlVector; CONTROLS],
+    upper: &mut [ControlVector; CONTROLS],
     terminal: &[ControlVector; 6],
     weights: &Weights,
 ) -> Option<()> {
-    for row in 0..CONTROLS {
-        for col in 0..row + 1 {
+    for col in (0..CONTROLS).rev() {
+        for row in (0..col + 1).rev() {
             let coupling: f64 = terminal.iter().map(|state| state[row] * state[col]).sum();
             let own = if row == col {
                 weights.control[row % 2]
@@ -24,11 +24,12 @@ pub(super) fn factor(
                 0.0
             };
             let mut value = own + weights.terminal * coupling;
-            if let Some(known) = lower[col].get(..col) {
-                value -= dot(&lower[row], known);
+            if let (Some(one), Some(other)) = (upper[row].get(col + 1..), upper[col].get(col + 1..))
+            {
+                value -= dot(one, other);
             }
-            lower[row][col] = if row > col {
-                value / lower[col][col]
+            upper[row][col] = if row < col {
+                value / upper[col][col]
             } else if value > 0.0 && value.is_finite() {
                 libm::sqrt(value)
             } else {
@@ -37,6 +38,31 @@ pub(super) fn factor(
         }
     }
     Some(())
+}
+
+/// `U^-1 b`, in place, of a `b` that is zero but for its first `len` entries.
+pub(super) fn solve_upper(upper: &[ControlVector; CONTROLS], len: usize, b: &mut ControlVector) {
+    for (index, row) in upper.iter().enumerate().take(len).rev() {
+        if let (Some([value, known @ ..]), Some([diagonal, factors @ ..])) =
+            (b.get_mut(index..len), row.get(index..))
+        {
+            *value = (*value - dot(factors, known)) / diagonal;
+        }
+    }
+}
+
+/// `U^-T b`, in place.
+pub(super) fn solve_transposed(upper: &[ControlVector; CONTROLS], b: &mut ControlVector) {
+    for (index, row) in upper.iter().enumerate() {
+        if let (Some([value, later @ ..]), Some([diagonal, factors @ ..])) =
+            (b.get_mut(index..), row.get(index..))
+        {
+            *value /= diagonal;
+            for (later, factor) in later.iter_mut().zip(factors) {
+                *later -= factor * *value;
+            }
+        }
+    }
 }
 
 /// `L^-1 b`, in place on the first `len` entries of `b`.
@@ -66,7 +92,7 @@ pub(super) fn backward<const N: usize>(lower: &[[f64; N]; N], len: usize, b: &mu
 
 /// Product of `b` with the first entries of `a`, in four sums side by side: they need not wait for
 /// each other.
-pub(super) fn dot<const N: usize>(a: &[f64; N], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (chunks, rest) = b.as_chunks::<4>();
     let mut sums = [0.0; 4];
     for (a, b) in a.as_chunks::<4>().0.iter().zip(chunks) {

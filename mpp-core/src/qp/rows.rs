@@ -12,6 +12,18 @@ pub(super) const THRUST_OUTPUT: usize = 2 * STAGES;
 /// The first attitude among the outputs.
 pub(super) const ATTITUDE_OUTPUT: usize = THRUST_OUTPUT + STAGES;
 
+/// How many controls, from the first on, can change an output: those of the stages before it.
+pub(super) fn reach(output: usize) -> usize {
+    let stage = if output < THRUST_OUTPUT {
+        output / 2
+    } else if output < ATTITUDE_OUTPUT {
+        output - THRUST_OUTPUT
+    } else {
+        (output - ATTITUDE_OUTPUT) / 2
+    };
+    2 * (stage + 1)
+}
+
 /// Rows on positions, boundary 0 included.
 const POSITION_ROWS: usize = KNOTS * DIRECTIONS;
 /// Rows on attitudes: angle of attack and flight path, upper and lower, of boundaries 1 to N.
@@ -116,7 +128,14 @@ impl RowPattern {
 
     /// `c' K c`.
     pub(super) fn norm_squared(&self, kernel: &[[f64; OUTPUTS]; OUTPUTS]) -> f64 {
-        self.value(&self.column(kernel, true))
+        let ((first, p), (second, q)) = (self.first, self.second);
+        let entry = |row: usize, col: usize| {
+            let row = kernel.get(row);
+            row.and_then(|row| row.get(col)).copied().unwrap_or(0.0)
+        };
+        p * p * entry(first, first)
+            + 2.0 * p * q * entry(second, first)
+            + q * q * entry(second, second)
     }
 }
 

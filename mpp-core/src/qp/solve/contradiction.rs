@@ -98,7 +98,7 @@ impl Solver {
         direction.complement = dot(&rest, &rest) + elastic;
     }
 
-    /// `L^-1 Y' (c_p - C_A' r)`
+    /// `U^-1 Y' (c_p - C_A' r)`
     fn remainder(
         &self,
         shared: &Condensed,
