@@ -48,6 +48,8 @@ pub struct Condensed {
     /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/2)`, and 0
     /// where the controls cannot change the row. Violations count by what it takes to mend them.
     pub(super) pricing: [f64; ROWS],
+    /// The same where rows are soft: `(c' K c)^(-1/4)`, which has the shorter tail there.
+    pub(super) soft_pricing: [f64; ROWS],
     /// The rows of no price.
     pub(super) constant_rows: heapless::Vec<usize, ROWS>,
 }
@@ -80,6 +82,7 @@ impl Condensed {
             cost_by_inputs: [[0.0; INPUTS]; INPUTS],
             constant: 0.0,
             pricing: [0.0; ROWS],
+            soft_pricing: [0.0; ROWS],
             constant_rows: heapless::Vec::new(),
         }
     }
@@ -140,6 +143,7 @@ impl Condensed {
                 0.0
             };
         }
+        self.soft_pricing = self.pricing.map(libm::sqrt);
         self.write_unconstrained(last, &free);
         Ok(())
     }

@@ -43,8 +43,12 @@ impl Solver {
         let entering = match self.entering.take() {
             Some(entering) => entering,
             None => {
-                let (open, pricing) = (&self.open, &shared.pricing);
-                let worst = most_violated(&self.outputs, open, pricing, self.attitude_rows);
+                let pricing = if self.problem.penalty.is_some() {
+                    &shared.soft_pricing
+                } else {
+                    &shared.pricing
+                };
+                let worst = most_violated(&self.outputs, &self.open, pricing, self.attitude_rows);
                 let Some(row) = worst else {
                     return Some(Status::Optimal);
                 };
