@@ -12,11 +12,12 @@
 //!
 //! * [`world`]: the obstacle field of the paper, from a seed.
 //! * [`plant`]: the true aircraft; integrates the core's own equations of motion.
+//! * [`aircraft`]: the plant behind its actuators, in moving air; [`faults`]: what may go wrong.
 //! * [`sensors`], [`lidar`]: what the aircraft measures, with noise from seeded streams.
-//! * [`outcome`]: the success rule of the paper.
+//! * [`outcome`]: the success rule of the paper, and a strict one.
 //! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
-//! * [`scenario`]: what is flown; [`run`]: one flight in lockstep; [`link`]: where the core is.
+//! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
 //! * [`telemetry`]: MAVLink 2 for ground stations.
 //! * [`check_reference`]: core and plant against data recorded from the authors' code.
 //! * [`bench`]: our parts beside others.
@@ -27,9 +28,11 @@
 //! time [s]. Every transcendental goes through `libm`, every random number through a seeded
 //! generator; only the command line reads a clock, to pace a flight for human eyes.
 
+pub mod aircraft;
 pub mod bench;
 pub mod check_reference;
 pub mod cli;
+pub mod faults;
 pub mod figure;
 pub mod lidar;
 pub mod link;
@@ -39,6 +42,7 @@ pub mod plant;
 pub mod random;
 pub mod run;
 pub mod scenario;
+pub mod scene;
 pub mod sensors;
 pub mod telemetry;
 pub mod world;

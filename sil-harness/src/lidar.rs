@@ -4,13 +4,15 @@ use crate::random::{self, Stream};
 use crate::world::{Obstacle, ObstacleField, Point, evenly_spaced};
 use mpp_core::vehicle::VehicleState;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 /// Least range that is reported [m]. 0 means no return, and a sensor inside an obstacle sees
 /// nothing but the obstacle right at its window.
 pub const RANGE_MIN: f64 = 0.01;
 
 /// What a beam returns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LidarRule {
     /// The nearest point of any obstacle on the beam, within range.
     Nearest,
@@ -21,7 +23,7 @@ pub enum LidarRule {
 }
 
 /// Geometry and error of a lidar.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LidarConfig {
     /// Number of beams, evenly spaced over the field of view, both edges included.
     pub beams: usize,

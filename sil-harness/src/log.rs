@@ -11,8 +11,11 @@ mod error;
 
 pub use error::LogError;
 
-use crate::outcome::Outcome;
-use crate::sensors::Measurement;
+use crate::faults::Faults;
+use crate::lidar::LidarConfig;
+use crate::outcome::{Class, Outcome, Score};
+use crate::scene::Scene;
+use crate::sensors::{AirDataNoise, Measurement};
 use crate::world::Obstacle;
 use mpp_core::vehicle::{AirState, Control, VehicleState};
 use serde::{Deserialize, Serialize};
@@ -20,7 +23,7 @@ use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Version of the log's layout.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// One flight from its parameters to its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -39,7 +42,7 @@ pub struct FlightLog {
     pub summary: Summary,
 }
 
-/// What was flown: enough to fly it again.
+/// What was flown.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Version of `sil-harness`.
@@ -58,6 +61,16 @@ pub struct Header {
     pub replan_hz: f64,
     /// Time from a scan until its plan is flown [s].
     pub latency: f64,
+    /// Length that the flight was to have [s].
+    pub duration: f64,
+    /// The lidar.
+    pub lidar: LidarConfig,
+    /// Errors of the airspeed and pitch sensors.
+    pub air_data: AirDataNoise,
+    /// Faults and disturbances.
+    pub faults: Faults,
+    /// The challenge scene, if any.
+    pub scene: Option<Scene>,
     /// The obstacles.
     pub field: Vec<ObstacleEntry>,
 }
@@ -93,8 +106,12 @@ pub struct Tick {
     pub estimate: AirState,
     /// What the core's trajectory asks for at `t`; none before the first plan.
     pub reference: Option<VehicleState>,
-    /// The control that the core answered, flown until the next tick.
+    /// The control that the core answered.
     pub control: Control,
+    /// The control that the actuators gave, flown until the next tick.
+    pub applied: Control,
+    /// Motion of the air, downrange and up [m/s].
+    pub wind: (f64, f64),
 }
 
 /// One column per quantity, one row per tick.
@@ -142,6 +159,15 @@ pub struct Columns {
     pub thrust: Vec<f64>,
     /// Commanded elevator [-].
     pub elevator: Vec<f64>,
+    /// Thrust that the actuators gave [N]; like the elevator below, the command unless they are
+    /// limited.
+    pub applied_thrust: Vec<f64>,
+    /// Elevator that the actuators gave [-].
+    pub applied_elevator: Vec<f64>,
+    /// Motion of the air downrange [m/s].
+    pub wind_x: Vec<f64>,
+    /// Motion of the air upwards [m/s].
+    pub wind_z: Vec<f64>,
 }
 
 impl Columns {
@@ -169,6 +195,10 @@ impl Columns {
         self.ref_flight_path.push(reference(|r| r.air.flight_path));
         self.thrust.push(tick.control.thrust);
         self.elevator.push(tick.control.elevator);
+        self.applied_thrust.push(tick.applied.thrust);
+        self.applied_elevator.push(tick.applied.elevator);
+        self.wind_x.push(tick.wind.0);
+        self.wind_z.push(tick.wind.1);
     }
 }
 
@@ -187,10 +217,20 @@ pub struct PlanEntry {
     pub feasible: u32,
     /// Runs of the path search.
     pub tree_runs: u32,
+    /// Slices of planning work used.
+    pub slices: u32,
     /// Cost of the chosen trajectory [-]; null if none was chosen.
     pub cost: Option<f64>,
     /// Worst constraint violation of the chosen trajectory [m]; null if none was chosen.
     pub violation: Option<f64>,
+}
+
+impl PlanEntry {
+    /// Whether its cycle had nothing to offer: an older plan is flown on, or level trim held.
+    #[must_use]
+    pub fn had_nothing(&self) -> bool {
+        matches!(self.outcome.as_str(), "KeptPrevious" | "TrimHold")
+    }
 }
 
 /// One input that the core refused.
@@ -207,18 +247,26 @@ pub struct RejectionEntry {
 pub struct Summary {
     /// Survived, or what ended the flight.
     pub outcome: Outcome,
+    /// Success by the strict rule: survived, and never left the altitude band.
+    pub strict: bool,
+    /// What a campaign counts the flight as.
+    pub class: Class,
     /// Time at the end [s].
     pub t_end: f64,
     /// Downrange distance at the end [m].
     pub x_end: f64,
     /// Least distance to an obstacle's edge [m]; null without obstacles.
     pub min_clearance: Option<f64>,
+    /// Greatest distance from the initial altitude [m].
+    pub max_altitude_deviation: f64,
     /// Number of plans delivered.
     pub replans: u32,
     /// Candidates over all plans.
     pub candidates: u32,
     /// Feasible candidates over all plans.
     pub feasible: u32,
+    /// Slices of planning work over all plans.
+    pub slices: u64,
 }
 
 /// The value if it is a number that JSON can write.
@@ -228,6 +276,50 @@ pub fn finite(value: Option<f64>) -> Option<f64> {
 }
 
 impl FlightLog {
+    /// The log of a flight that is about to begin.
+    #[must_use]
+    pub fn begin(header: Header) -> Self {
+        Self {
+            schema: SCHEMA,
+            header,
+            ticks: Columns::default(),
+            plans: Vec::new(),
+            rejections: Vec::new(),
+            summary: Summary {
+                outcome: Outcome::Survived,
+                strict: true,
+                class: Class::Success,
+                t_end: 0.0,
+                x_end: 0.0,
+                min_clearance: None,
+                max_altitude_deviation: 0.0,
+                replans: 0,
+                candidates: 0,
+                feasible: 0,
+                slices: 0,
+            },
+        }
+    }
+
+    /// Sums up a flight that ended so; `holds_trim` when the core held level trim at that moment.
+    pub fn conclude(&mut self, outcome: Outcome, score: &Score, holds_trim: bool) {
+        let plans = &self.plans;
+        let strict = outcome == Outcome::Survived && score.in_band();
+        let planless = holds_trim || plans.last().is_some_and(PlanEntry::had_nothing);
+        self.summary = Summary {
+            outcome,
+            strict,
+            class: Class::of(outcome, strict, planless),
+            min_clearance: finite(Some(score.min_clearance)),
+            max_altitude_deviation: score.max_altitude_deviation,
+            replans: plans.len() as u32,
+            candidates: plans.iter().map(|plan| plan.candidates).sum(),
+            feasible: plans.iter().map(|plan| plan.feasible).sum(),
+            slices: plans.iter().map(|plan| u64::from(plan.slices)).sum(),
+            ..self.summary
+        };
+    }
+
     /// The log's bytes.
     ///
     /// # Errors

@@ -1,4 +1,9 @@
-//! How a flight ended, by the paper's rule, and how close it came.
+//! How a flight ended, and how close it came.
+//!
+//! Two rules judge every flight. A flight is a *success* by the paper's rule when it neither touches
+//! an obstacle nor reaches an extreme attitude. It is *strict* when it also stays within
+//! [`ALTITUDE_BAND`] of its initial altitude: flying over the field is not planning through it. The
+//! flight goes on until the paper's rule ends it.
 
 use crate::world::ObstacleField;
 use mpp_core::vehicle::VehicleState;
@@ -8,6 +13,9 @@ use serde::{Deserialize, Serialize};
 pub const PITCH_LIMIT: f64 = 60_f64.to_radians();
 /// Flight path angle beyond which a flight has failed [rad] (paper, section IV).
 pub const FLIGHT_PATH_LIMIT: f64 = 45_f64.to_radians();
+/// Distance from the initial altitude beyond which a flight is not strict [m]: the obstacles' centres
+/// lie within 10 m of it, and their radius is 1 m.
+pub const ALTITUDE_BAND: f64 = 11.0;
 
 /// How a flight ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,6 +55,64 @@ impl core::fmt::Display for Outcome {
     }
 }
 
+/// What a flight is counted as: every flight is exactly one of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Class {
+    /// Success by the strict rule.
+    Success,
+    /// Success by the paper's rule, but further than [`ALTITUDE_BAND`] from the initial altitude.
+    LeftBand,
+    /// A collision while a plan was flown.
+    Collision,
+    /// Pitch beyond [`PITCH_LIMIT`] while a plan was flown.
+    Pitch,
+    /// Flight path angle beyond [`FLIGHT_PATH_LIMIT`] while a plan was flown.
+    FlightPath,
+    /// Any failure by the paper's rule without a plan: the core held level trim when the flight
+    /// ended, or its last planning cycle had nothing to offer, so that an older plan was flown on
+    /// or level trim held.
+    NoPlan,
+}
+
+impl Class {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 6] = [
+        Self::Success,
+        Self::LeftBand,
+        Self::Collision,
+        Self::Pitch,
+        Self::FlightPath,
+        Self::NoPlan,
+    ];
+
+    /// The class of a flight; `planless` as [`Class::NoPlan`] says.
+    #[must_use]
+    pub fn of(outcome: Outcome, strict: bool, planless: bool) -> Self {
+        match outcome {
+            Outcome::Survived if strict => Self::Success,
+            Outcome::Survived => Self::LeftBand,
+            _ if planless => Self::NoPlan,
+            Outcome::Collision => Self::Collision,
+            Outcome::PitchLimit => Self::Pitch,
+            Outcome::FlightPathLimit => Self::FlightPath,
+        }
+    }
+
+    /// Its name in rows and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Success => "success",
+            Self::LeftBand => "left-band",
+            Self::Collision => "collision",
+            Self::Pitch => "pitch",
+            Self::FlightPath => "flight-path",
+            Self::NoPlan => "no-plan",
+        }
+    }
+}
+
 /// Extremes of a flight so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Score {
@@ -73,6 +139,12 @@ impl Score {
             max_flight_path: 0.0,
             max_altitude_deviation: 0.0,
         }
+    }
+
+    /// Whether the flight stayed within [`ALTITUDE_BAND`].
+    #[must_use]
+    pub fn in_band(&self) -> bool {
+        self.max_altitude_deviation <= ALTITUDE_BAND
     }
 
     /// Takes in one tick's motion, with the straight path swept between the two states. `Some`
@@ -175,6 +247,40 @@ mod tests {
         let expected = field().clearance_of_segment((0.0, 50.0), (10.0, 53.0));
         let second = field().clearance_of_segment((10.0, 53.0), (20.0, 49.0));
         assert!((score.min_clearance - expected.min(second)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_band_is_left_at_eleven_metres() {
+        for (z, inside) in [(60.9, true), (61.1, false), (39.1, true), (38.9, false)] {
+            let mut score = Score::new(50.0);
+            let at = state(0.0, z, 0.0, 0.0);
+            assert_eq!(score.update(&field(), &at, &at), None);
+            // Coming back does not help.
+            let back = state(0.0, 50.0, 0.0, 0.0);
+            score.update(&field(), &at, &back);
+            assert_eq!(score.in_band(), inside, "{z}");
+        }
+    }
+
+    #[test]
+    fn every_flight_has_one_class() {
+        use Outcome::{Collision, FlightPathLimit, PitchLimit, Survived};
+        for (outcome, strict, planless, class) in [
+            (Survived, true, false, Class::Success),
+            (Survived, true, true, Class::Success),
+            (Survived, false, true, Class::LeftBand),
+            (Collision, false, false, Class::Collision),
+            (PitchLimit, false, false, Class::Pitch),
+            (FlightPathLimit, false, false, Class::FlightPath),
+            (Collision, false, true, Class::NoPlan),
+            (PitchLimit, false, true, Class::NoPlan),
+        ] {
+            assert_eq!(Class::of(outcome, strict, planless), class);
+        }
+        for class in Class::ALL {
+            let json = serde_json::to_string(&class).unwrap();
+            assert_eq!(json, format!("\"{}\"", class.name()));
+        }
     }
 
     #[test]

@@ -18,6 +18,14 @@ pub enum Stream {
     PitchSensor = 3,
     /// Lidar range noise.
     Lidar = 4,
+    /// Signs of the airframe's errors.
+    ModelError = 5,
+    /// Motion of the air.
+    Gusts = 6,
+    /// Lidar dropouts and false hits.
+    LidarFaults = 7,
+    /// Where a challenge scene stands.
+    Scene = 8,
 }
 
 /// The generator of one subsystem in the flight with this seed.
@@ -51,11 +59,15 @@ pub fn gaussian(generator: &mut ChaCha8Rng) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 4] = [
+    const ALL: [Stream; 8] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
         Stream::Lidar,
+        Stream::ModelError,
+        Stream::Gusts,
+        Stream::LidarFaults,
+        Stream::Scene,
     ];
 
     #[test]
@@ -68,6 +80,10 @@ mod tests {
                 5_536_391_431_806_027_785,
                 3_348_856_302_973_006_449,
                 18_244_131_744_192_737_788,
+                12_716_886_768_273_581_270,
+                6_788_621_307_340_148_322,
+                12_947_559_667_725_341_916,
+                18_116_008_155_350_138_704,
             ]
         );
     }

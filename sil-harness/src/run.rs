@@ -1,14 +1,13 @@
 //! One flight in lockstep: sensors out, command back, plant on.
 
+use crate::aircraft::Aircraft;
+use crate::faults::LidarFaults;
 use crate::lidar::Lidar;
 use crate::link::{Link, LinkError};
-use crate::log::{
-    Columns, FlightLog, Header, ObstacleEntry, PlanEntry, RejectionEntry, SCHEMA, Summary, Tick,
-    finite,
-};
+use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, RejectionEntry, Tick, finite};
 use crate::outcome::{Outcome, Score};
-use crate::plant::{Plant, PlantError};
-use crate::scenario::{ALTITUDE, Scenario, TICKS_PER_SECOND};
+use crate::plant::PlantError;
+use crate::scenario::{ALTITUDE, Scenario};
 use crate::sensors::AirDataSensors;
 use crate::world::ObstacleField;
 use hil_protocol::{
@@ -73,68 +72,75 @@ pub fn fly(
     link: &mut dyn Link,
     mut watch: impl FnMut(&Moment<'_>),
 ) -> Result<FlightLog, FlyError> {
-    let start = scenario.start().map_err(FlyError::Trim)?;
+    let mut aircraft = Aircraft::new(scenario).map_err(FlyError::Trim)?;
     greet(scenario, link)?;
-    let field = ObstacleField::generate(scenario.seed, scenario.obstacles, start.x, ALTITUDE);
-    let mut plant = Plant {
-        airframe: scenario.airframe.airframe(),
-        state: start,
-    };
+    let field = scenario.field();
     let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
-    let mut lidar = Lidar::new(scenario.seed, scenario.lidar);
+    let mut eyes = Eyes::new(scenario);
     let mut score = Score::new(ALTITUDE);
-    let mut ticks = Columns::default();
-    let mut plans = Vec::new();
-    let mut rejections = Vec::new();
-    let mut outcome = None;
+    let mut log = FlightLog::begin(header(scenario, &field));
+    let mut end = None;
+    let mut holds_trim = true;
     let mut flown = 0;
-    while flown < scenario.ticks && outcome.is_none() {
-        let number = flown;
-        let measured = sensors.measure(&plant.state);
-        if number % scenario.replan_ticks == 0 {
-            let ranges = lidar.scan(&plant.state, &field);
-            link.send(&Message::LidarScan(wire_scan(scenario, number, &ranges)))?;
+    while flown < scenario.ticks && end.is_none() {
+        let before = *aircraft.state();
+        let measured = sensors.measure(&before);
+        if flown % scenario.replan_ticks == 0 {
+            let ranges = eyes.scan(&before, &field);
+            link.send(&Message::LidarScan(wire_scan(scenario, flown, &ranges)))?;
         }
         link.send(&Message::SensorFrame(SensorFrame {
-            tick: number,
+            tick: flown,
             airspeed: measured.airspeed,
             pitch: measured.pitch,
-            x: plant.state.x,
-            z: plant.state.z,
+            x: before.x,
+            z: before.z,
         }))?;
-        let answer = receive_answer(link, number, &mut rejections)?;
-        let tick = logged(number, &plant.state, measured, &answer);
+        let answer = receive_answer(link, flown, &mut log.rejections)?;
+        let wind = aircraft.wind();
+        let applied = aircraft.step(control(&answer)).map_err(FlyError::Plant)?;
+        let tick = Tick {
+            applied,
+            wind,
+            ..logged(flown, &before, measured, &answer)
+        };
         watch(&Moment {
             tick: &tick,
             plan: answer.plan.as_ref(),
         });
-        ticks.push(&tick);
-        plans.extend(answer.plan);
-
-        let before = plant.state;
-        plant
-            .step(tick.control, TICK_PERIOD)
-            .map_err(FlyError::Plant)?;
-        outcome = score.update(&field, &before, &plant.state);
+        log.ticks.push(&tick);
+        log.plans.extend(answer.plan);
+        holds_trim = answer.command.mode == ControlMode::TrimHold;
+        end = score.update(&field, &before, aircraft.state());
         flown += 1;
     }
-    let summary = Summary {
-        outcome: outcome.unwrap_or(Outcome::Survived),
-        t_end: Scenario::time(flown),
-        x_end: plant.state.x,
-        min_clearance: finite(Some(score.min_clearance)),
-        replans: plans.len() as u32,
-        candidates: plans.iter().map(|plan: &PlanEntry| plan.candidates).sum(),
-        feasible: plans.iter().map(|plan: &PlanEntry| plan.feasible).sum(),
-    };
-    Ok(FlightLog {
-        schema: SCHEMA,
-        header: header(scenario, &field),
-        ticks,
-        plans,
-        rejections,
-        summary,
-    })
+    let outcome = end.unwrap_or(Outcome::Survived);
+    log.conclude(outcome, &score, holds_trim);
+    log.summary.t_end = Scenario::time(flown);
+    log.summary.x_end = aircraft.state().x;
+    Ok(log)
+}
+
+/// The lidar with its faults.
+struct Eyes {
+    lidar: Lidar,
+    faults: LidarFaults,
+}
+
+impl Eyes {
+    fn new(scenario: &Scenario) -> Self {
+        let (seed, config) = (scenario.seed, scenario.lidar);
+        Self {
+            lidar: Lidar::new(seed, config),
+            faults: LidarFaults::new(seed, scenario.faults.lidar, config.range_max),
+        }
+    }
+
+    fn scan(&mut self, state: &VehicleState, field: &ObstacleField) -> Vec<f32> {
+        let mut ranges = self.lidar.scan(state, field);
+        self.faults.spoil(&mut ranges);
+        ranges
+    }
 }
 
 /// Hello both ways, and the configuration.
@@ -215,6 +221,7 @@ fn plan_entry(report: &PlanReport) -> PlanEntry {
         candidates: u32::from(report.candidates),
         feasible: u32::from(report.feasible),
         tree_runs: u32::from(report.tree_runs),
+        slices: report.slices,
         cost: finite(Some(report.cost)),
         violation: finite(Some(report.violation)),
     }
@@ -258,10 +265,17 @@ fn logged(
         measured,
         estimate: answer.step.map_or(state.air, |step| air(step.estimate)),
         reference,
-        control: Control {
-            thrust: answer.command.thrust,
-            elevator: answer.command.elevator,
-        },
+        control: control(answer),
+        applied: control(answer),
+        wind: (0.0, 0.0),
+    }
+}
+
+/// What the core commands.
+fn control(answer: &Answer) -> Control {
+    Control {
+        thrust: answer.command.thrust,
+        elevator: answer.command.elevator,
     }
 }
 
@@ -273,8 +287,13 @@ fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
         paths: usize::from(scenario.paths),
         preset: scenario.preset.name().to_owned(),
         airframe: scenario.airframe.name().to_owned(),
-        replan_hz: f64::from(TICKS_PER_SECOND) / f64::from(scenario.replan_ticks),
+        replan_hz: scenario.replan_hz(),
         latency: Scenario::time(scenario.latency_ticks),
+        duration: Scenario::time(scenario.ticks),
+        lidar: scenario.lidar,
+        air_data: scenario.air_data,
+        faults: scenario.faults,
+        scene: scenario.scene,
         field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
     }
 }

@@ -1,11 +1,19 @@
-//! What is flown: the presets, and everything that a flag may change.
+//! What is flown: the presets, and everything that a scenario file or a flag may change.
 
+mod file;
+
+use crate::faults::Faults;
 use crate::lidar::{LidarConfig, LidarRule};
+use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
+use crate::world::{Obstacle, ObstacleField};
 use hil_protocol::{AirframeId, Configure};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::settings::Cruise;
-use mpp_core::vehicle::{Airframe, TrimError, VehicleState};
+use mpp_core::vehicle::{Airframe, Trim, TrimError, VehicleState};
+use serde::{Deserialize, Serialize};
+
+pub use file::{AirDataTable, LidarTable, ScenarioError, ScenarioFile};
 
 /// The height at which flights start and which the planner returns to [m].
 pub const ALTITUDE: f64 = 50.0;
@@ -14,7 +22,20 @@ pub const ALTITUDE: f64 = 50.0;
 pub const TICKS_PER_SECOND: u32 = 100;
 
 /// The named sets of parameters and rules.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, clap::ValueEnum)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    clap::ValueEnum,
+)]
+#[serde(rename_all = "kebab-case")]
 pub enum Preset {
     /// The authors' code, faults included, to compare with it.
     Reference,
@@ -37,7 +58,8 @@ impl Preset {
 }
 
 /// The named airframes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "kebab-case")]
 pub enum AirframeName {
     /// The paper's appendix: with chord, `I_yy` = 0.17 kg m^2.
     Paper,
@@ -66,15 +88,19 @@ impl AirframeName {
 }
 
 /// One flight, in full.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Seed of the field, of all noise and of the planner.
     pub seed: u64,
-    /// Obstacles in the field.
+    /// Random obstacles in the field.
     pub obstacles: usize,
+    /// A challenge scene in it.
+    pub scene: Option<Scene>,
+    /// Further obstacles in it, one by one.
+    pub placed: Vec<Obstacle>,
     /// The core's preset.
     pub preset: Preset,
-    /// The aircraft, as it is and as the core knows it.
+    /// The aircraft as the core knows it, and as it is but for its errors.
     pub airframe: AirframeName,
     /// Candidate paths of a cycle; 0 tracks the shortest path itself.
     pub paths: u16,
@@ -90,6 +116,8 @@ pub struct Scenario {
     pub lidar: LidarConfig,
     /// Errors of the airspeed and pitch sensors.
     pub air_data: AirDataNoise,
+    /// Faults and disturbances.
+    pub faults: Faults,
 }
 
 impl Scenario {
@@ -103,6 +131,8 @@ impl Scenario {
         Self {
             seed,
             obstacles: 20,
+            scene: None,
+            placed: Vec::new(),
             preset,
             airframe: AirframeName::Reference,
             paths: 25,
@@ -112,7 +142,20 @@ impl Scenario {
             ticks: 20 * TICKS_PER_SECOND,
             lidar,
             air_data: AirDataNoise::PAPER,
+            faults: Faults::default(),
         }
+    }
+
+    /// The core's level trim.
+    ///
+    /// # Errors
+    /// [`TrimError`] when the airframe has no level flight.
+    pub fn trim(&self) -> Result<Trim, TrimError> {
+        let cruise = match self.preset {
+            Preset::Reference => Cruise::Authors,
+            Preset::Paper | Preset::Flight => Cruise::Airspeed(12.0),
+        };
+        cruise.trim(&self.airframe.airframe())
     }
 
     /// Where the flight starts: level, as the core's trim has it.
@@ -120,16 +163,30 @@ impl Scenario {
     /// # Errors
     /// [`TrimError`] when the airframe has no level flight.
     pub fn start(&self) -> Result<VehicleState, TrimError> {
-        let cruise = match self.preset {
-            Preset::Reference => Cruise::Authors,
-            Preset::Paper | Preset::Flight => Cruise::Airspeed(12.0),
-        };
-        let trim = cruise.trim(&self.airframe.airframe())?;
         Ok(VehicleState {
             x: 0.0,
             z: ALTITUDE,
-            air: trim.state,
+            air: self.trim()?.state,
         })
+    }
+
+    /// Every obstacle: the random ones, the scene's, the placed ones.
+    #[must_use]
+    pub fn field(&self) -> ObstacleField {
+        let mut field = ObstacleField::generate(self.seed, self.obstacles, 0.0, ALTITUDE);
+        if let Some(scene) = self.scene {
+            field
+                .obstacles
+                .extend(scene.obstacles(self.seed, 0.0, ALTITUDE));
+        }
+        field.obstacles.extend(&self.placed);
+        field
+    }
+
+    /// Replanning rate [Hz].
+    #[must_use]
+    pub fn replan_hz(&self) -> f64 {
+        f64::from(TICKS_PER_SECOND) / f64::from(self.replan_ticks)
     }
 
     /// What the core is told.

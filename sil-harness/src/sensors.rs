@@ -3,6 +3,7 @@
 use crate::random::{self, Stream};
 use mpp_core::vehicle::VehicleState;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 /// What the air data sensors report at one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,7 +15,7 @@ pub struct Measurement {
 }
 
 /// Standard deviations of the sensors' white Gaussian noise.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AirDataNoise {
     /// Airspeed [m/s].
     pub airspeed_sigma: f64,

@@ -1,6 +1,7 @@
 //! The world: circular obstacles in the vertical plane.
 
 use crate::random::{self, Stream};
+use serde::{Deserialize, Serialize};
 
 /// A point in the vertical plane: downrange and height, `(x, z)` [m].
 pub type Point = (f64, f64);
@@ -15,7 +16,8 @@ const HALF_BAND: f64 = 10.0;
 const RADIUS: f64 = 1.0;
 
 /// A circular obstacle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Obstacle {
     /// Centre, downrange [m].
     pub x: f64,

@@ -52,7 +52,7 @@ fn without_json_one_line_says_it_all() {
     let line = String::from_utf8(output.stdout).unwrap();
     assert_eq!(line.lines().count(), 1, "{line}");
     assert!(
-        line.starts_with("result: seed 3, survived after 2.00 s, clearance "),
+        line.starts_with("result: seed 3, survived (strict) after 2.00 s, clearance "),
         "{line}"
     );
     std::fs::remove_dir_all(out).unwrap();
@@ -94,9 +94,9 @@ fn exit_codes_tell_how_a_flight_ended() {
 #[test]
 fn absurd_flags_are_usage_errors_that_say_what_to_do() {
     let absurd: [(&[&str], &str); 11] = [
-        (&["--paths", "51"], "51 is not in 0..=50"),
+        (&["--paths", "51"], "paths: give at most 50"),
         (&["--obstacles", "-1"], "unexpected argument"),
-        (&["--obstacles", "100000"], "100000 is not in"),
+        (&["--obstacles", "100000"], "obstacles: give at most 1000"),
         (&["--replan-hz", "3"], "whole multiple"),
         (&["--replan-hz", "0"], "whole multiple"),
         (&["--replan-hz", "nan"], "whole multiple"),
@@ -116,6 +116,34 @@ fn absurd_flags_are_usage_errors_that_say_what_to_do() {
         assert!(talk.contains(hint), "{flags:?}: {talk}");
         assert!(output.stdout.is_empty());
     }
+}
+
+#[test]
+fn a_scenario_file_is_flown_and_flags_go_before_it() {
+    let file = scratch("scenario.toml");
+    let text = "seed = 5\nduration = 2\nscene = \"dynamics\"\n[faults.gusts]\nintensity = 1.0\n";
+    std::fs::write(&file, text).unwrap();
+    let path = file.to_str().unwrap();
+    let (output, out) = run(
+        "scenario",
+        &["--scenario", path, "--json", "--obstacles", "3"],
+    );
+    let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&result["seed"], &result["obstacles"]),
+        (&5.into(), &3.into())
+    );
+    let log = std::fs::read(out.join("flight-seed5.json")).unwrap();
+    let log: Value = serde_json::from_slice(&log).unwrap();
+    assert_eq!(log["header"]["scene"], "dynamics");
+    assert!(log["ticks"]["wind_z"][100].as_f64().unwrap() != 0.0);
+    std::fs::remove_dir_all(out).unwrap();
+    std::fs::write(&file, "obstacels = 3").unwrap();
+    let (output, _) = run("typo", &["--scenario", path]);
+    let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{talk}");
+    assert!(talk.contains("unknown field `obstacels`"), "{talk}");
+    std::fs::remove_file(file).unwrap();
 }
 
 #[test]

@@ -4,8 +4,7 @@ use super::Instance;
 use crate::lidar::Lidar;
 use crate::link::PipeLink;
 use crate::run::{FlyError, fly, wire_scan};
-use crate::scenario::{ALTITUDE, Preset, Scenario};
-use crate::world::ObstacleField;
+use crate::scenario::{Preset, Scenario};
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
@@ -69,7 +68,7 @@ fn collect(
     })
     .map_err(GenerateError::Fly)?;
 
-    let field = ObstacleField::generate(scenario.seed, scenario.obstacles, 0.0, ALTITUDE);
+    let field = scenario.field();
     let mut lidar = Lidar::new(scenario.seed, scenario.lidar);
     let mut settings = match scenario.preset {
         Preset::Reference => Settings::reference(),

@@ -1,47 +1,39 @@
 //! `fly`: one flight, its log and its picture.
 
+use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, LINK, USAGE, data, talk};
 use crate::figure::flight_svg;
 use crate::link::{Link, LinkError, PipeLink, TcpLink};
 use crate::log::FlightLog;
+use crate::outcome::{Class, Outcome};
 use crate::run::{FlyError, fly};
-use crate::scenario::{AirframeName, Preset, Scenario, TICKS_PER_SECOND};
+use crate::scenario::{Preset, Scenario};
 use crate::telemetry::TelemetryLink;
 use indicatif::{ProgressBar, ProgressStyle};
-use mpp_core::config::MAX_PATHS;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct FlyArgs {
-    /// Seed of the field, of all noise and of the planner
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Obstacles between 25 m and 240 m downrange
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u16).range(0..=1000))]
-    obstacles: u16,
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Seed of the field, of all noise and of the planner [default: 1]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Obstacles between 25 m and 240 m downrange [default: 20]
+    #[arg(long)]
+    obstacles: Option<usize>,
     /// Candidate paths of a planning cycle; 0 tracks the shortest path itself, unrefined
-    #[arg(long, default_value_t = 25, value_parser = clap::value_parser!(u16).range(0..=MAX_PATHS as i64))]
-    paths: u16,
-    /// Parameters and rules
-    #[arg(long, value_enum, default_value_t = Preset::Flight)]
-    preset: Preset,
-    /// Aircraft, as it is and as the core knows it
-    #[arg(long, value_enum, default_value_t = AirframeName::Reference)]
-    airframe: AirframeName,
-    /// Replanning rate [Hz]; 100 must be a whole multiple of it
-    #[arg(long, default_value_t = 1.0)]
-    replan_hz: f64,
-    /// Simulated time from a scan until its plan is flown [ms], a multiple of 10
-    #[arg(long, default_value_t = 10)]
-    latency_ms: u32,
-    /// Planner slices that run between two ticks [default: until the cycle is done]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    slices_per_tick: Option<u32>,
-    /// Length of the flight [s]
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=3600))]
-    duration: u32,
+    /// [default: 25]
+    #[arg(long)]
+    paths: Option<u16>,
+    /// Parameters and rules [default: flight]
+    #[arg(long, value_enum)]
+    preset: Option<Preset>,
+    /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
+    #[arg(long)]
+    replan_hz: Option<f64>,
     /// Where the core runs: tcp:HOST:PORT [default: in this process]
     #[arg(long)]
     link: Option<String>,
@@ -61,30 +53,13 @@ pub(super) struct FlyArgs {
 
 impl FlyArgs {
     fn scenario(&self) -> Result<Scenario, Failure> {
-        let period = f64::from(TICKS_PER_SECOND) / self.replan_hz;
-        let whole = (1.0..=f64::from(u16::MAX)).contains(&period) && period.fract() == 0.0;
-        if !whole {
-            let why = "--replan-hz: give a rate of which 100 Hz is a whole multiple, such as 0.5, 1, \
-                       2, 4, 5 or 10";
-            return Err(Failure::new(USAGE, why));
-        }
-        let replan_ticks = period as u32;
-        let latency_ticks = self.latency_ms / 10;
-        if !self.latency_ms.is_multiple_of(10) || !(1..=replan_ticks).contains(&latency_ticks) {
-            let why = "--latency-ms: give a multiple of 10, at least 10 and no longer than the time \
-                       between two plans";
-            return Err(Failure::new(USAGE, why));
-        }
-        Ok(Scenario {
-            obstacles: usize::from(self.obstacles),
-            airframe: self.airframe,
-            paths: self.paths,
-            replan_ticks,
-            latency_ticks,
-            slices_per_tick: self.slices_per_tick.unwrap_or(u32::MAX),
-            ticks: self.duration * TICKS_PER_SECOND,
-            ..Scenario::new(self.preset, self.seed)
-        })
+        let mut file = self.scenario.file()?;
+        replace(&mut file.seed, self.seed);
+        replace(&mut file.obstacles, self.obstacles);
+        replace(&mut file.paths, self.paths);
+        replace(&mut file.preset, self.preset);
+        replace(&mut file.replan_hz, self.replan_hz);
+        file.build().map_err(|error| Failure::new(USAGE, error))
     }
 
     fn connect(&self) -> Result<Box<dyn Link>, Failure> {
@@ -126,9 +101,12 @@ struct ResultLine<'a> {
     obstacles: usize,
     paths: usize,
     outcome: String,
+    strict: bool,
+    class: Class,
     t_end: f64,
     x_end: f64,
     min_clearance: Option<f64>,
+    max_altitude_deviation: f64,
     replans: u32,
     candidates: u32,
     feasible: u32,
@@ -151,7 +129,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
         scenario.seed,
-        scenario.obstacles,
+        scenario.field().obstacles.len(),
         scenario.preset.name(),
         scenario.paths,
         args.link.as_deref().unwrap_or("in this process"),
@@ -216,9 +194,12 @@ fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
         obstacles: log.header.obstacles,
         paths: log.header.paths,
         outcome: summary.outcome.to_string(),
+        strict: summary.strict,
+        class: summary.class,
         t_end: summary.t_end,
         x_end: summary.x_end,
         min_clearance: summary.min_clearance,
+        max_altitude_deviation: summary.max_altitude_deviation,
         replans: summary.replans,
         candidates: summary.candidates,
         feasible: summary.feasible,
@@ -232,18 +213,23 @@ fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
         data(text);
     } else {
         talk(format_args!("log {}, picture {}", line.log, line.figure));
-        data(text_line(&line));
+        data(text_line(&line, summary.outcome));
     }
     Ok(summary.outcome.exit_code())
 }
 
-fn text_line(line: &ResultLine<'_>) -> String {
+fn text_line(line: &ResultLine<'_>, outcome: Outcome) -> String {
+    let strict = match (outcome, line.strict) {
+        (Outcome::Survived, true) => " (strict)",
+        (Outcome::Survived, false) => " (left the altitude band)",
+        _ => "",
+    };
     let clearance = match line.min_clearance {
         Some(clearance) => format!("{clearance:.2} m"),
         None => "none".to_owned(),
     };
     format!(
-        "result: seed {}, {} after {:.2} s, clearance {clearance}, {} replans, {} candidates, {} \
+        "result: seed {}, {}{strict} after {:.2} s, clearance {clearance}, {} replans, {} candidates, {} \
          feasible, {} rejections, log {}",
         line.seed,
         line.outcome,

@@ -6,6 +6,7 @@ mod bench;
 mod check;
 mod core;
 mod fly;
+mod scenario;
 
 use clap::{Parser, Subcommand};
 use std::io::Write;

@@ -1,8 +1,10 @@
 //! The picture of a small flight.
 
 use super::*;
+use crate::faults::Faults;
+use crate::lidar::LidarConfig;
 use crate::log::{Columns, Header, PlanEntry, SCHEMA, Summary, Tick};
-use crate::outcome::{Outcome, Score};
+use crate::outcome::{Class, Outcome, Score};
 use crate::plant::Plant;
 use crate::sensors::{AirDataNoise, AirDataSensors};
 use crate::world::ObstacleField;
@@ -43,6 +45,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             estimate: plant.state.air,
             reference: (k >= 100).then_some(wanted),
             control,
+            applied: control,
+            wind: (0.0, 0.0),
         });
         let before = plant.state;
         plant.step(control, DT).unwrap();
@@ -55,6 +59,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         candidates: 25,
         feasible: 20,
         tree_runs: 2,
+        slices: 700,
         cost: Some(1.0),
         violation: Some(0.0),
     };
@@ -69,18 +74,27 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             airframe: "reference".into(),
             replan_hz: 1.0,
             latency: 0.0,
+            duration: 20.0,
+            lidar: LidarConfig::PAPER,
+            air_data: AirDataNoise::PAPER,
+            faults: Faults::default(),
+            scene: None,
             field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
         summary: Summary {
             outcome: Outcome::Survived,
+            strict: true,
+            class: Class::Success,
             t_end: count as f64 * DT,
             x_end: plant.state.x,
             min_clearance: Some(score.min_clearance).filter(|c| c.is_finite()),
+            max_altitude_deviation: score.max_altitude_deviation,
             replans: 19,
             candidates: 475,
             feasible: 380,
+            slices: 13_300,
         },
         ticks,
     }

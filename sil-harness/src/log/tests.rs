@@ -1,6 +1,9 @@
 //! The log's bytes.
 
 use super::*;
+use crate::faults::Faults;
+use crate::lidar::LidarConfig;
+use crate::sensors::AirDataNoise;
 
 fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
     let air = AirState {
@@ -26,6 +29,11 @@ fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
             thrust: 4.3,
             elevator: 3.9,
         },
+        applied: Control {
+            thrust: 4.2,
+            elevator: 3.9,
+        },
+        wind: (0.5, -0.25),
     }
 }
 
@@ -56,6 +64,11 @@ fn example() -> FlightLog {
             airframe: "reference".into(),
             replan_hz: 1.0,
             latency: 0.0,
+            duration: 20.0,
+            lidar: LidarConfig::PAPER,
+            air_data: AirDataNoise::PAPER,
+            faults: Faults::default(),
+            scene: None,
             field: vec![ObstacleEntry::from(&obstacle)],
         },
         ticks,
@@ -66,6 +79,7 @@ fn example() -> FlightLog {
             candidates: 25,
             feasible: 20,
             tree_runs: 3,
+            slices: 700,
             cost: Some(0.1 + 0.2),
             violation: finite(Some(f64::INFINITY)),
         }],
@@ -75,12 +89,16 @@ fn example() -> FlightLog {
         }],
         summary: Summary {
             outcome: Outcome::FlightPathLimit,
+            strict: false,
+            class: Class::FlightPath,
             t_end: 0.01,
             x_end: 0.12,
             min_clearance: None,
+            max_altitude_deviation: 1.5,
             replans: 1,
             candidates: 25,
             feasible: 20,
+            slices: 700,
         },
     }
 }
@@ -96,19 +114,19 @@ fn a_log_reads_back_as_it_was() {
 fn the_layout_is_frozen() {
     let text = String::from_utf8(example().to_json().unwrap()).unwrap();
     assert!(text.starts_with(
-        r#"{"schema":1,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
+        r#"{"schema":2,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
     ));
     for part in [
         r#""field":[{"x":25.0,"z":47.5,"radius":1.0}]},"ticks":{"t":[0.0,0.01],"#,
         r#""ref_x":[null,0.1],"ref_z":[null,null],"#,
         r#""cost":0.30000000000000004,"violation":null}],"rejections":[{"tick":1,"#,
-        r#""summary":{"outcome":"flight-path-limit","t_end":0.01,"x_end":0.12,"min_clearance":null,"#,
+        r#""summary":{"outcome":"flight-path-limit","strict":false,"class":"flight-path","t_end":0.01,"x_end":0.12,"min_clearance":null,"#,
     ] {
         assert!(text.contains(part), "{part} is not in {text}");
     }
     assert_eq!(
         example().hash().unwrap(),
-        "a5481f0c59a7f2ee",
+        "d9d5a676393cedd2",
         "the bytes of a log changed: raise SCHEMA"
     );
 }
@@ -137,7 +155,7 @@ fn another_schema_is_refused_by_name() {
     assert!(matches!(error, LogError::Schema(9)));
     assert_eq!(
         error.to_string(),
-        "flight log has schema 9, this program reads 1"
+        "flight log has schema 9, this program reads 2"
     );
     assert!(matches!(
         FlightLog::from_json(b"nonsense"),
