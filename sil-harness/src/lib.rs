@@ -18,6 +18,7 @@
 //! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
 //! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
+//! * [`campaign`]: many flights over a grid, with intervals.
 //! * [`telemetry`]: MAVLink 2 for ground stations.
 //! * [`check_reference`]: core and plant against data recorded from the authors' code.
 //! * [`bench`]: our parts beside others.
@@ -30,6 +31,7 @@
 
 pub mod aircraft;
 pub mod bench;
+pub mod campaign;
 pub mod check_reference;
 pub mod cli;
 pub mod faults;

@@ -146,6 +146,85 @@ fn a_scenario_file_is_flown_and_flags_go_before_it() {
     std::fs::remove_file(file).unwrap();
 }
 
+/// Any row of a campaign is flown again, to the same bytes, by `fly` with its flags and seed.
+#[test]
+fn a_campaigns_row_is_flown_again_in_full() {
+    let file = scratch("all.toml");
+    let text = include_str!("../../docs/scenarios/all-together.toml");
+    std::fs::write(&file, text.replace("replan_hz = 4.0", "duration = 3")).unwrap();
+    let rows = scratch("rows.jsonl");
+    let flags = ["--scenario", file.to_str().unwrap()];
+    let output = harness()
+        .arg("campaign")
+        .args(flags)
+        .args([
+            "--obstacles",
+            "20,40",
+            "--paths",
+            "5",
+            "--preset",
+            "paper,flight",
+        ])
+        .args([
+            "--replan-hz",
+            "2",
+            "--trials",
+            "2",
+            "--seed",
+            "70",
+            "--threads",
+            "2",
+            "--json",
+        ])
+        .arg("--out")
+        .arg(&rows)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["cells"].as_array().unwrap().len(), 4);
+    let text = std::fs::read_to_string(&rows).unwrap();
+    assert_eq!(text.lines().count(), 1 + 8);
+    for line in text.lines().skip(1) {
+        let row: Value = serde_json::from_str(line).unwrap();
+        let number = |key: &str| row[key].to_string();
+        let (seed, obstacles) = (number("seed"), number("obstacles"));
+        let (paths, replan_hz) = (number("paths"), number("replan_hz"));
+        let own = [
+            ["--seed", &seed],
+            ["--obstacles", &obstacles],
+            ["--paths", &paths],
+            ["--replan-hz", &replan_hz],
+            ["--preset", row["preset"].as_str().unwrap()],
+        ];
+        let (again, out) = run(
+            "again",
+            &[&["fly", "--json"], &flags[..], &own.concat()].concat(),
+        );
+        let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+        for key in [
+            "log_hash",
+            "class",
+            "strict",
+            "min_clearance",
+            "candidates",
+            "t_end",
+        ] {
+            assert_eq!(again[key], row[key], "{key} of {line}");
+        }
+        std::fs::remove_dir_all(out).unwrap();
+    }
+    // The report of the file is that of the run.
+    let again = harness()
+        .args(["campaign", "--json", "--report"])
+        .arg(&rows)
+        .output()
+        .unwrap();
+    assert_eq!(again.stdout, output.stdout);
+    std::fs::remove_file(file).unwrap();
+    std::fs::remove_file(rows).unwrap();
+}
+
 #[test]
 fn a_core_that_is_not_there_is_a_link_error() {
     // A port that was free a moment ago.

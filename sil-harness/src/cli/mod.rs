@@ -3,6 +3,7 @@
 //! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link.
 
 mod bench;
+mod campaign;
 mod check;
 mod core;
 mod fly;
@@ -34,6 +35,8 @@ struct Cli {
 enum Command {
     /// Fly once through a field of obstacles (the default)
     Fly(fly::FlyArgs),
+    /// Fly many times over a grid, in parallel, and give success rates with their intervals
+    Campaign(campaign::CampaignArgs),
     /// Serve the flight core to harnesses over TCP
     Core(core::CoreArgs),
     /// Measure our parts beside others, in one run
@@ -49,6 +52,7 @@ pub fn run() -> ExitCode {
     let result = match cli.command {
         None => fly::run(&cli.fly),
         Some(Command::Fly(args)) => fly::run(&args),
+        Some(Command::Campaign(args)) => campaign::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),

@@ -1,0 +1,216 @@
+//! What a campaign's rows come to: one object, one table.
+
+use super::{Campaign, Cell, Row, wilson};
+use crate::outcome::Class;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use std::fmt;
+
+/// The result of a campaign, the same for every order, number of threads and shards.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// What was flown.
+    pub campaign: Campaign,
+    /// Flights that the campaign has.
+    pub flights: usize,
+    /// Flights that are here.
+    pub flown: usize,
+    /// One entry for each cell.
+    pub cells: Vec<CellReport>,
+}
+
+/// The result of one cell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CellReport {
+    /// What was flown.
+    #[serde(flatten)]
+    pub cell: Cell,
+    /// Flights.
+    pub trials: u32,
+    /// Successes by the paper's rule.
+    pub successes: u32,
+    /// Their share [-]; null without flights.
+    pub success_rate: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub wilson_low: f64,
+    /// Upper end.
+    pub wilson_high: f64,
+    /// Successes by the strict rule.
+    pub strict_successes: u32,
+    /// Their share [-]; null without flights.
+    pub strict_success_rate: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub strict_wilson_low: f64,
+    /// Upper end.
+    pub strict_wilson_high: f64,
+    /// Flights of each class.
+    pub outcomes: Outcomes,
+    /// Median over flights of the least distance to an obstacle's edge [m]; null without obstacles.
+    pub min_clearance_median: Option<f64>,
+    /// Plans over all flights.
+    pub replans: u64,
+    /// Candidates over all flights.
+    pub candidates: u64,
+    /// Feasible candidates over all flights.
+    pub feasible: u64,
+    /// Slices of planning work over all flights.
+    pub slices: u64,
+    /// Mean wall time that the core worked for one plan, the 100 Hz steps until the next included
+    /// [ms]; only of timed campaigns.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub core_ms_per_replan: Option<f64>,
+}
+
+/// Flights of each class, in the order of [`Class::ALL`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outcomes([u32; Class::ALL.len()]);
+
+impl Outcomes {
+    /// Flights of a class.
+    #[must_use]
+    pub fn of(&self, class: Class) -> u32 {
+        self.0[class as usize]
+    }
+}
+
+impl Serialize for Outcomes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for class in Class::ALL {
+            map.serialize_entry(class.name(), &self.of(class))?;
+        }
+        map.end()
+    }
+}
+
+impl Report {
+    /// The report of a campaign's rows, each flight once.
+    #[must_use]
+    pub fn new(campaign: &Campaign, rows: &[Row]) -> Self {
+        let cells = campaign.cells();
+        Self {
+            flights: cells.len() * campaign.trials as usize,
+            flown: rows.len(),
+            cells: cells
+                .iter()
+                .map(|cell| CellReport::new(*cell, rows))
+                .collect(),
+            campaign: campaign.clone(),
+        }
+    }
+}
+
+impl CellReport {
+    fn new(cell: Cell, all: &[Row]) -> Self {
+        let rows: Vec<&Row> = all.iter().filter(|row| row.cell == cell).collect();
+        let trials = rows.len() as u32;
+        let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count() as u32;
+        let (successes, strict_successes) = (count(|row| row.success), count(|row| row.strict));
+        let share = |part: u32| (trials > 0).then(|| f64::from(part) / f64::from(trials));
+        let ((wilson_low, wilson_high), (strict_wilson_low, strict_wilson_high)) =
+            (wilson(successes, trials), wilson(strict_successes, trials));
+        let mut outcomes = Outcomes::default();
+        for row in &rows {
+            outcomes.0[row.class as usize] += 1;
+        }
+        let replans = rows.iter().map(|row| u64::from(row.replans)).sum();
+        let times: Option<f64> = rows.iter().map(|row| row.core_ms).sum();
+        Self {
+            cell,
+            trials,
+            successes,
+            success_rate: share(successes),
+            wilson_low,
+            wilson_high,
+            strict_successes,
+            strict_success_rate: share(strict_successes),
+            strict_wilson_low,
+            strict_wilson_high,
+            outcomes,
+            min_clearance_median: median(rows.iter().filter_map(|row| row.min_clearance)),
+            replans,
+            candidates: rows.iter().map(|row| u64::from(row.candidates)).sum(),
+            feasible: rows.iter().map(|row| u64::from(row.feasible)).sum(),
+            slices: rows.iter().map(|row| row.slices).sum(),
+            core_ms_per_replan: times
+                .filter(|_| replans > 0)
+                .map(|time| time / replans as f64),
+        }
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    let (low, high) = (
+        values.get(values.len().saturating_sub(1) / 2)?,
+        values.get(values.len() / 2)?,
+    );
+    Some(0.5 * (low + high))
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<9} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+            "preset",
+            "Hz",
+            "paths",
+            "obstacles",
+            "flights",
+            "success [95 %]",
+            "strict [95 %]",
+            "left-band",
+            "collision",
+            "pitch",
+            "flight-path",
+            "no-plan",
+            "clearance",
+        )?;
+        for cell in &self.cells {
+            let Cell {
+                preset,
+                obstacles,
+                paths,
+                replan_hz,
+            } = cell.cell;
+            let outcomes = |class| cell.outcomes.of(class);
+            writeln!(
+                f,
+                "{:<9} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+                preset.name(),
+                cell.trials,
+                percent(cell.success_rate, cell.wilson_low, cell.wilson_high),
+                percent(
+                    cell.strict_success_rate,
+                    cell.strict_wilson_low,
+                    cell.strict_wilson_high
+                ),
+                outcomes(Class::LeftBand),
+                outcomes(Class::Collision),
+                outcomes(Class::Pitch),
+                outcomes(Class::FlightPath),
+                outcomes(Class::NoPlan),
+                cell.min_clearance_median
+                    .map_or("-".to_owned(), |median| format!("{median:.2} m")),
+            )?;
+        }
+        if self.flown < self.flights {
+            writeln!(f, "{} of {} flights are here", self.flown, self.flights)?;
+        }
+        Ok(())
+    }
+}
+
+fn percent(share: Option<f64>, low: f64, high: f64) -> String {
+    match share {
+        Some(share) => format!(
+            "{:.1} % [{:.1}, {:.1}]",
+            100.0 * share,
+            100.0 * low,
+            100.0 * high
+        ),
+        None => "-".to_owned(),
+    }
+}

@@ -1,0 +1,256 @@
+//! Campaigns: the same rows however they are flown, written and read.
+
+use super::*;
+use std::path::PathBuf;
+use std::sync::Mutex;
+
+/// Eight short flights in four cells.
+fn short() -> Campaign {
+    let scenario = ScenarioFile {
+        duration: Some(1),
+        ..ScenarioFile::default()
+    };
+    let lists = Lists {
+        preset: vec![Preset::Paper],
+        obstacles: vec![20, 60, 20],
+        paths: vec![0, 5],
+        replan_hz: Vec::new(),
+    };
+    Campaign::new(scenario, lists, 2, Some(11)).unwrap()
+}
+
+fn fly_jobs(campaign: &Campaign, shard: Shard, threads: usize) -> Vec<Row> {
+    let rows = Mutex::new(Vec::new());
+    run(campaign, &campaign.jobs(shard), threads, false, |row| {
+        rows.lock().unwrap().push(row);
+        Ok(())
+    })
+    .unwrap();
+    rows.into_inner().unwrap()
+}
+
+fn scratch(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("mpp-campaign-{}-{name}.jsonl", std::process::id()))
+}
+
+#[test]
+fn absent_lists_are_the_scenarios_and_repetitions_are_dropped() {
+    let campaign = short();
+    assert_eq!(campaign.obstacles, [20, 60]);
+    assert_eq!(campaign.replan_hz, [1.0]);
+    assert_eq!(campaign.cells().len(), 4);
+    let plain = Campaign::new(ScenarioFile::default(), Lists::default(), 3, None).unwrap();
+    assert_eq!((plain.cells().len(), plain.seed), (1, 1));
+    let absurd = Lists {
+        replan_hz: vec![1.0, 3.0],
+        ..Lists::default()
+    };
+    let error = Campaign::new(ScenarioFile::default(), absurd, 3, None).unwrap_err();
+    assert!(error.to_string().starts_with("replan_hz: give"), "{error}");
+}
+
+#[test]
+fn rows_depend_neither_on_threads_nor_on_shards() {
+    let campaign = short();
+    let whole = merge(&campaign, fly_jobs(&campaign, Shard::WHOLE, 1)).unwrap();
+    assert_eq!(whole.len(), 8);
+    let threaded = merge(&campaign, fly_jobs(&campaign, Shard::WHOLE, 3)).unwrap();
+    assert_eq!(whole, threaded);
+    let shards = ["3/3", "1/3", "2/3"].map(|shard| shard.parse().unwrap());
+    let parts = shards.map(|shard| fly_jobs(&campaign, shard, 1));
+    assert_eq!(parts.each_ref().map(Vec::len), [2, 3, 3]);
+    assert_eq!(
+        merge(&campaign, parts.into_iter().flatten()).unwrap(),
+        whole
+    );
+    // The rows are of different flights, not one flight eight times.
+    let mut hashes: Vec<&str> = whole.iter().map(|row| row.log_hash.as_str()).collect();
+    hashes.sort_unstable();
+    hashes.dedup();
+    assert_eq!(hashes.len(), 8);
+}
+
+#[test]
+fn a_shard_is_a_part_of_a_whole() {
+    for absurd in ["", "1", "0/3", "4/3", "1/0", "a/b", "-1/3"] {
+        assert!(absurd.parse::<Shard>().is_err(), "{absurd}");
+    }
+}
+
+/// Writes a file, cuts it at every kind of place, and goes on with it.
+#[test]
+fn a_cut_file_is_gone_on_with_and_nothing_is_lost_or_repeated() {
+    let campaign = short();
+    let header = Header::new(campaign.clone(), Shard::WHOLE);
+    let rows = fly_jobs(&campaign, Shard::WHOLE, 1);
+    let path = scratch("cut");
+    let _ = std::fs::remove_file(&path);
+    let (mut file, known) = RowFile::open(&path, &header).unwrap();
+    assert!(known.is_empty());
+    rows.iter().for_each(|row| file.push(row).unwrap());
+    drop(file);
+    let whole = std::fs::read(&path).unwrap();
+    let ends: Vec<usize> = (0..whole.len()).filter(|at| whole[*at] == b'\n').collect();
+    for line in 0..ends.len() {
+        for cut in [ends[line].saturating_sub(40), ends[line], ends[line] + 1] {
+            std::fs::write(&path, &whole[..cut]).unwrap();
+            let (mut file, known) = RowFile::open(&path, &header).unwrap();
+            assert_eq!(known, rows[..known.len()]);
+            // A torn line is dropped, and only that one.
+            let complete = ends.iter().filter(|end| **end < cut).count();
+            assert_eq!(known.len(), complete.saturating_sub(1));
+            rows[known.len()..]
+                .iter()
+                .for_each(|row| file.push(row).unwrap());
+            drop(file);
+            assert_eq!(std::fs::read(&path).unwrap(), whole, "cut at {cut}");
+        }
+    }
+    std::fs::remove_file(&path).unwrap();
+}
+
+#[test]
+fn another_campaigns_file_is_refused_by_what_differs() {
+    let campaign = short();
+    let header = Header::new(campaign.clone(), Shard::WHOLE);
+    let path = scratch("other");
+    let _ = std::fs::remove_file(&path);
+    let (file, _) = RowFile::open(&path, &header).unwrap();
+    let busy = RowFile::open(&path, &header).unwrap_err();
+    assert!(
+        busy.to_string()
+            .contains("being written by another process"),
+        "{busy}"
+    );
+    drop(file);
+    let before = std::fs::read(&path).unwrap();
+    let others = [
+        (
+            Campaign {
+                trials: 3,
+                ..campaign.clone()
+            },
+            Shard::WHOLE,
+            "its trials is 2, not 3",
+        ),
+        (campaign.clone(), "1/2".parse().unwrap(), "its shard is"),
+        (
+            Campaign {
+                seed: 12,
+                ..campaign
+            },
+            Shard::WHOLE,
+            "its seed is 11, not 12",
+        ),
+    ];
+    for (campaign, shard, what) in others {
+        let error = RowFile::open(&path, &Header::new(campaign, shard)).unwrap_err();
+        assert!(error.to_string().contains(what), "{error}");
+        assert_eq!(std::fs::read(&path).unwrap(), before);
+    }
+    std::fs::write(&path, "a poem\n").unwrap();
+    let error = RowFile::open(&path, &header).unwrap_err();
+    assert!(error.to_string().contains("line 1: no header"), "{error}");
+    std::fs::remove_file(&path).unwrap();
+}
+
+#[test]
+fn a_row_of_another_campaign_and_a_spoilt_line_are_named() {
+    let campaign = short();
+    let header = Header::new(campaign.clone(), Shard::WHOLE);
+    let path = scratch("lines");
+    let _ = std::fs::remove_file(&path);
+    let (mut file, _) = RowFile::open(&path, &header).unwrap();
+    let mut row = fly_jobs(&campaign, "1/8".parse().unwrap(), 1).remove(0);
+    file.push(&row).unwrap();
+    row.seed = 999;
+    file.push(&row).unwrap();
+    drop(file);
+    let error = read(&path).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("line 3: this row is not of the file"),
+        "{error}"
+    );
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("\"class\"", "\"klass\"")).unwrap();
+    let error = read(&path).unwrap_err();
+    assert!(
+        error.to_string().contains("line 2: missing field `class`"),
+        "{error}"
+    );
+    std::fs::remove_file(&path).unwrap();
+}
+
+#[test]
+fn files_that_disagree_about_a_flight_are_refused() {
+    let campaign = short();
+    let row = fly_jobs(&campaign, "1/8".parse().unwrap(), 1).remove(0);
+    let timed = Row {
+        core_ms: Some(3.0),
+        ..row.clone()
+    };
+    assert_eq!(merge(&campaign, [row.clone(), timed]).unwrap().len(), 1);
+    let other = Row {
+        replans: row.replans + 1,
+        ..row.clone()
+    };
+    assert!(matches!(
+        merge(&campaign, [row, other]),
+        Err(CampaignError::Disagree(..))
+    ));
+}
+
+#[test]
+fn a_report_counts_what_its_rows_say() {
+    let campaign = short();
+    let mut rows = merge(&campaign, fly_jobs(&campaign, Shard::WHOLE, 1)).unwrap();
+    rows[0].class = crate::outcome::Class::LeftBand;
+    rows[0].strict = false;
+    rows[1].class = crate::outcome::Class::NoPlan;
+    (rows[1].strict, rows[1].success) = (false, false);
+    let report = serde_json::to_value(Report::new(&campaign, &rows)).unwrap();
+    assert_eq!(
+        (&report["flights"], &report["flown"]),
+        (&8.into(), &8.into())
+    );
+    let cell = &report["cells"][0];
+    assert_eq!(cell["preset"], "paper");
+    assert_eq!(
+        (&cell["obstacles"], &cell["paths"], &cell["trials"]),
+        (&20.into(), &0.into(), &2.into())
+    );
+    assert_eq!(
+        (&cell["successes"], &cell["strict_successes"]),
+        (&1.into(), &0.into())
+    );
+    assert_eq!(cell["success_rate"], 0.5);
+    let (low, high) = wilson(1, 2);
+    assert_eq!(
+        (&cell["wilson_low"], &cell["wilson_high"]),
+        (&low.into(), &high.into())
+    );
+    assert_eq!(
+        (&cell["outcomes"]["left-band"], &cell["outcomes"]["no-plan"]),
+        (&1.into(), &1.into())
+    );
+    let total = |cell: &serde_json::Value| {
+        let outcomes = cell["outcomes"].as_object().unwrap();
+        outcomes
+            .values()
+            .filter_map(serde_json::Value::as_u64)
+            .sum::<u64>()
+    };
+    assert!(
+        report["cells"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|cell| total(cell) == 2)
+    );
+    // Cells without flights yet say so.
+    let early = Report::new(&campaign, &rows[..2]);
+    assert_eq!(early.cells[3].success_rate, None);
+    assert!(early.to_string().contains("2 of 8 flights are here"));
+}

@@ -1,0 +1,158 @@
+//! `campaign`: many flights over a grid, in parallel, resumable.
+
+use super::scenario::ScenarioArgs;
+use super::{FAILURE, Failure, USAGE, data, talk};
+use crate::campaign::{
+    Campaign, CampaignError, Cell, Header, Lists, Report, Row, RowFile, Shard, merge, read,
+    run as fly_all,
+};
+use crate::scenario::Preset;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::HashSet;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct CampaignArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Random obstacles, a list such as 20,40 [default: the scenario's]
+    #[arg(long, value_delimiter = ',')]
+    obstacles: Vec<usize>,
+    /// Candidate paths of a planning cycle, a list [default: the scenario's]
+    #[arg(long, value_delimiter = ',')]
+    paths: Vec<u16>,
+    /// Presets, a list [default: the scenario's]
+    #[arg(long, value_delimiter = ',', value_enum)]
+    preset: Vec<Preset>,
+    /// Replanning rates [Hz], a list [default: the scenario's]
+    #[arg(long, value_delimiter = ',')]
+    replan_hz: Vec<f64>,
+    /// Flights of each cell
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    trials: u32,
+    /// Seed of the first flight; the others follow [default: the scenario's]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Threads; 0 takes every core
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Fly only the i-th of n parts, such as 2/8
+    #[arg(long, default_value = "1/1")]
+    shard: Shard,
+    /// Row file (JSON lines) to write, or to go on with
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Also measure the core's wall time; it depends on the machine
+    #[arg(long)]
+    timing: bool,
+    /// Fly nothing: report the rows of these files, shards of one campaign
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
+    report: Vec<PathBuf>,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
+    let report = if args.report.is_empty() {
+        flown(args)
+    } else {
+        report_of(&args.report).map_err(|error| failure(&error))
+    }?;
+    if args.json {
+        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?);
+    } else {
+        data(report.to_string().trim_end());
+    }
+    Ok(0)
+}
+
+fn failure(error: &CampaignError) -> Failure {
+    let code = match error {
+        CampaignError::Flight(..) | CampaignError::Disagree(..) => FAILURE,
+        _ => USAGE,
+    };
+    Failure::new(code, error)
+}
+
+/// The report of row files.
+pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
+    let mut campaign: Option<Campaign> = None;
+    let mut rows = Vec::new();
+    for path in paths {
+        let (header, found) = read(path)?;
+        match &campaign {
+            Some(first) if *first != header.campaign => {
+                let why = "its flags are not those of the files before".to_owned();
+                return Err(CampaignError::Differs(path.display().to_string(), why));
+            }
+            Some(_) => {}
+            None => campaign = Some(header.campaign),
+        }
+        rows.extend(found);
+    }
+    let none = || CampaignError::Line("--report".to_owned(), 0, "no file".to_owned());
+    let campaign = campaign.ok_or_else(none)?;
+    Ok(Report::new(&campaign, &merge(&campaign, rows)?))
+}
+
+fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
+    let lists = Lists {
+        preset: args.preset.clone(),
+        obstacles: args.obstacles.clone(),
+        paths: args.paths.clone(),
+        replan_hz: args.replan_hz.clone(),
+    };
+    let campaign = Campaign::new(args.scenario.file()?, lists, args.trials, args.seed);
+    let campaign = campaign.map_err(|error| failure(&error))?;
+    let rows = fly_rows(args, &campaign).map_err(|error| failure(&error))?;
+    let rows = merge(&campaign, rows).map_err(|error| failure(&error))?;
+    Ok(Report::new(&campaign, &rows))
+}
+
+/// Flies what is missing, and gives every row of this shard.
+fn fly_rows(args: &CampaignArgs, campaign: &Campaign) -> Result<Vec<Row>, CampaignError> {
+    let header = Header::new(campaign.clone(), args.shard);
+    let (file, known) = match &args.out {
+        Some(path) => RowFile::open(path, &header).map(|(file, rows)| (Some(file), rows))?,
+        None => (None, Vec::new()),
+    };
+    let all = campaign.jobs(args.shard);
+    let places = known.iter().map(|row| campaign.place(&row.cell, row.seed));
+    let places: HashSet<Option<(usize, u64)>> = places.collect();
+    let missing = |(cell, seed): &(Cell, u64)| !places.contains(&campaign.place(cell, *seed));
+    let jobs: Vec<(Cell, u64)> = all.iter().copied().filter(missing).collect();
+    if !known.is_empty() {
+        talk(format_args!(
+            "{} of {} flights are there",
+            all.len() - jobs.len(),
+            all.len()
+        ));
+    }
+    let progress = progress_bar(jobs.len());
+    let sink = Mutex::new((file, known));
+    let flown = fly_all(campaign, &jobs, args.threads, args.timing, |row| {
+        progress.inc(1);
+        let (file, rows) = &mut *sink.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(file) = file {
+            file.push(&row)?;
+        }
+        rows.push(row);
+        Ok(())
+    });
+    progress.finish_and_clear();
+    flown?;
+    Ok(sink.into_inner().unwrap_or_else(PoisonError::into_inner).1)
+}
+
+/// Drawn on a terminal only.
+fn progress_bar(flights: usize) -> ProgressBar {
+    let bar = ProgressBar::new(flights as u64);
+    let style =
+        ProgressStyle::with_template("{wide_bar} {pos}/{len} flights, {per_sec}, {eta} left");
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    bar
+}
