@@ -1,22 +1,35 @@
-//! One flight as a picture, like Figure 7 of the paper: the flight through the field, true to
-//! scale, and the motion over time below it.
+//! Pictures: counterparts of the paper's figures.
+//!
+//! [`flight_svg`] is one flight, like Figure 7 of the paper: the flight through the field, true to
+//! scale, and the motion over time below it. The others stand one to a column: the challenge scenes
+//! (Figure 1), the steps of a planning cycle (Figures 4 to 6) and success rates (Figure 8). The same
+//! colour means the same thing in all of them.
 
+mod challenge;
+mod cycle;
+mod page;
 mod panel;
+mod process;
+mod success;
+
+pub use challenge::challenge_svg;
+pub use cycle::{Candidate, Cycle};
+pub use process::{candidates_svg, rays_svg, scan_svg};
+pub use success::{Rule, success_svg};
 
 use crate::log::{FlightLog, ObstacleEntry};
+use page::{document, to_scale};
 use panel::{Axis, Canvas, Curve, DrawingError, Panel};
 use plotters::prelude::*;
 use std::ops::Range;
 
-/// The reference: everyone tells blue from orange.
+/// The reference, a chosen plan: everyone tells blue from orange.
 const REFERENCE: RGBColor = RGBColor(0, 114, 178);
 /// What was flown.
 const FLOWN: RGBColor = RGBColor(230, 120, 0);
 /// The obstacles.
 const OBSTACLE: RGBColor = RGBColor(70, 70, 70);
 
-/// The backend draws on whole pixels, so everything is drawn this many times larger than shown.
-const OVERSAMPLING: u32 = 4;
 /// Size on the canvas [px]; shown as 1000 x 600.
 const CANVAS: (u32, u32) = (4000, 2400);
 /// Heights from top to bottom [px]: the legend, the field, the upper row over time; the lower row
@@ -33,6 +46,8 @@ const FIELD_MARGIN: f64 = 4.0;
 pub enum FigureError {
     /// The log holds no tick.
     EmptyFlight,
+    /// The flight or the planning cycle to be drawn did not come about.
+    Cycle(String),
     /// The drawing library failed.
     Drawing(Box<dyn core::error::Error + Send + Sync>),
 }
@@ -41,7 +56,8 @@ impl core::fmt::Display for FigureError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::EmptyFlight => f.write_str("the flight log holds no tick to draw"),
-            Self::Drawing(error) => write!(f, "drawing the flight: {error}"),
+            Self::Cycle(why) => write!(f, "nothing to draw: {why}"),
+            Self::Drawing(error) => write!(f, "drawing: {error}"),
         }
     }
 }
@@ -49,7 +65,7 @@ impl core::fmt::Display for FigureError {
 impl core::error::Error for FigureError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
-            Self::EmptyFlight => None,
+            Self::EmptyFlight | Self::Cycle(_) => None,
             Self::Drawing(error) => Some(error.as_ref()),
         }
     }
@@ -73,16 +89,10 @@ pub fn flight_svg(log: &FlightLog) -> Result<String, FigureError> {
     if log.ticks.t.is_empty() {
         return Err(FigureError::EmptyFlight);
     }
-    let mut svg = String::new();
-    draw(log, &mut svg)?;
-    let size = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
-    let shown = (CANVAS.0 / OVERSAMPLING, CANVAS.1 / OVERSAMPLING);
-    Ok(svg.replacen(&size(CANVAS), &size(shown), 1))
+    document(CANVAS, |canvas| draw(log, canvas))
 }
 
-fn draw(log: &FlightLog, svg: &mut String) -> Result<(), DrawingError> {
-    let canvas = SVGBackend::with_string(svg, CANVAS).into_drawing_area();
-    canvas.fill(&WHITE)?;
+fn draw(log: &FlightLog, canvas: &Canvas<'_>) -> Result<(), DrawingError> {
     let (legend, rest) = canvas.split_vertically(LEGEND_HEIGHT);
     let (field, rest) = rest.split_vertically(FIELD_HEIGHT);
     let (upper, lower) = rest.split_vertically(ROW_HEIGHT);
@@ -111,8 +121,7 @@ fn draw(log: &FlightLog, svg: &mut String) -> Result<(), DrawingError> {
         &t.ref_airspeed,
     )
     .draw(&left)?;
-    motion_panel(log, ("Time (s)", "Thrust (N)"), 1.0, &t.thrust, &[]).draw(&right)?;
-    canvas.present()
+    motion_panel(log, ("Time (s)", "Thrust (N)"), 1.0, &t.thrust, &[]).draw(&right)
 }
 
 /// One column over time, times `scale`, with the reference's column.
@@ -137,10 +146,11 @@ fn motion_panel(
     let span = bounds(time.iter().copied().chain([log.summary.t_end]));
     let values = bounds(curves.iter().flat_map(Curve::points).map(|point| point.1));
     Panel {
-        x: Axis::tight(x_label, span, 5),
-        y: Axis::around(y_label, values, 4),
-        circles: Vec::new(),
         curves,
+        ..Panel::new(
+            Axis::tight(x_label, span, 5),
+            Axis::around(y_label, values, 4),
+        )
     }
 }
 
@@ -159,19 +169,17 @@ fn field_panel(log: &FlightLog) -> Panel {
     let x = widened(bounds(points(|p| p.0).chain(edges(|o| o.x))), FIELD_MARGIN);
     let z = widened(bounds(points(|p| p.1).chain(edges(|o| o.z))), FIELD_MARGIN);
 
-    // One scale [m/px] for both axes: the looser one widens the other range about its middle.
-    let (width, height) = panel::plot_size((CANVAS.0, FIELD_HEIGHT), true);
-    let scale = ((x.end - x.start) / width).max((z.end - z.start) / height);
-    let x_room = 0.5 * (scale * width - (x.end - x.start));
-    let z_room = 0.5 * (scale * height - (z.end - z.start));
+    let (x, z, scale) = to_scale((CANVAS.0, FIELD_HEIGHT), true, x, z);
     let circles = log.header.field.iter();
     Panel {
-        x: Axis::tight("Downrange distance (m)", widened(x, x_room), 8),
-        y: Axis::tight("Height (m)", widened(z, z_room), 4),
         circles: circles
             .map(|o| ((o.x, o.z), (o.radius / scale).round() as u32, OBSTACLE))
             .collect(),
         curves,
+        ..Panel::new(
+            Axis::tight("Downrange distance (m)", x, 8),
+            Axis::tight("Height (m)", z, 4),
+        )
     }
 }
 

@@ -226,6 +226,22 @@ fn a_campaigns_row_is_flown_again_in_full() {
 }
 
 #[test]
+fn figures_are_drawn_into_a_directory() {
+    let (output, out) = run("figures", &["figures"]);
+    assert!(output.status.success(), "{output:?}");
+    for name in ["challenge", "flight", "scan", "rays", "candidates"] {
+        let svg = std::fs::read_to_string(out.join(name).with_extension("svg")).unwrap();
+        assert!(
+            svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
+            "{name}"
+        );
+    }
+    // Success rates are only drawn from rows.
+    assert!(!out.join("success.svg").exists());
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
 fn a_core_that_is_not_there_is_a_link_error() {
     // A port that was free a moment ago.
     let port = std::net::TcpListener::bind("127.0.0.1:0")

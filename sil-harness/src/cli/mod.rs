@@ -6,6 +6,7 @@ mod bench;
 mod campaign;
 mod check;
 mod core;
+mod figures;
 mod fly;
 mod scenario;
 
@@ -37,6 +38,8 @@ enum Command {
     Fly(fly::FlyArgs),
     /// Fly many times over a grid, in parallel, and give success rates with their intervals
     Campaign(campaign::CampaignArgs),
+    /// Draw counterparts of the paper's figures
+    Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
     Core(core::CoreArgs),
     /// Measure our parts beside others, in one run
@@ -53,6 +56,7 @@ pub fn run() -> ExitCode {
         None => fly::run(&cli.fly),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Campaign(args)) => campaign::run(&args),
+        Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),

@@ -1,4 +1,4 @@
-//! One pair of axes with curves and circles.
+//! One pair of axes and what is drawn between them.
 
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
@@ -20,6 +20,9 @@ const TOP: u32 = 50;
 /// Room below the plot with numbers and label, and without [px].
 const BELOW_LABELLED: u32 = 230;
 const BELOW: u32 = 35;
+
+/// What a panel without words on its downrange axis is lower by [px].
+pub(super) const BELOW_SAVED: u32 = BELOW_LABELLED - BELOW;
 
 const GREY: RGBColor = RGBColor(222, 222, 222);
 const DARK: RGBColor = RGBColor(40, 40, 40);
@@ -166,15 +169,134 @@ fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Axes, and what is drawn between them: circles (centre, radius [px], colour) below curves.
+/// Segments as pieces, each as long as the next one begins where the last one ends.
+fn joined(segments: impl Iterator<Item = [(f64, f64); 2]>) -> Vec<Vec<(f64, f64)>> {
+    let mut pieces: Vec<Vec<(f64, f64)>> = Vec::new();
+    for [from, to] in segments {
+        match pieces.last_mut() {
+            Some(piece) if piece.last() == Some(&from) => piece.push(to),
+            _ => pieces.push(vec![from, to]),
+        }
+    }
+    pieces
+}
+
+/// The part of a convex polygon where `normal . p <= bound`.
+pub(super) fn clipped(polygon: &[(f64, f64)], normal: (f64, f64), bound: f64) -> Vec<(f64, f64)> {
+    let excess = |p: (f64, f64)| normal.0 * p.0 + normal.1 * p.1 - bound;
+    let mut kept = Vec::new();
+    for (index, &from) in polygon.iter().enumerate() {
+        let to = polygon[(index + 1) % polygon.len()];
+        let (before, after) = (excess(from), excess(to));
+        if before <= 0.0 {
+            kept.push(from);
+        }
+        if (before < 0.0) != (after < 0.0) {
+            let share = before / (before - after);
+            kept.push((
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            ));
+        }
+    }
+    kept
+}
+
+/// Axes, and what is drawn between them, each upon the one before.
 pub(super) struct Panel {
     pub(super) x: Axis,
     pub(super) y: Axis,
+    /// Filled polygons.
+    pub(super) areas: Vec<(Vec<(f64, f64)>, RGBAColor)>,
+    /// Centre, radius [px], colour.
     pub(super) circles: Vec<((f64, f64), u32, RGBColor)>,
     pub(super) curves: Vec<Curve>,
+    /// Like the circles, but upon the curves.
+    pub(super) dots: Vec<((f64, f64), u32, RGBColor)>,
+    /// Words, from their left middle on.
+    pub(super) labels: Vec<((f64, f64), String, RGBColor)>,
 }
 
 impl Panel {
+    pub(super) fn new(x: Axis, y: Axis) -> Self {
+        Self {
+            x,
+            y,
+            areas: Vec::new(),
+            circles: Vec::new(),
+            curves: Vec::new(),
+            dots: Vec::new(),
+            labels: Vec::new(),
+        }
+    }
+
+    /// Adds a line, cut off at the panel's edges.
+    pub(super) fn line(&mut self, colour: RGBColor, width: u32, points: &[(f64, f64)]) {
+        let pieces = points
+            .windows(2)
+            .filter_map(|pair| self.cut(pair[0], pair[1]));
+        let curve = Curve {
+            colour,
+            width,
+            pieces: joined(pieces),
+        };
+        self.curves.push(curve);
+    }
+
+    /// Adds a filled polygon, which must be convex, cut off at the panel's edges.
+    pub(super) fn area(&mut self, colour: RGBAColor, points: &[(f64, f64)]) {
+        let (x, y) = (&self.x.range, &self.y.range);
+        let sides = [
+            ((1.0, 0.0), x.end),
+            ((-1.0, 0.0), -x.start),
+            ((0.0, 1.0), y.end),
+            ((0.0, -1.0), -y.start),
+        ];
+        let inside = sides
+            .iter()
+            .fold(points.to_vec(), |points, (normal, bound)| {
+                clipped(&points, *normal, *bound)
+            });
+        if inside.len() > 2 {
+            self.areas.push((inside, colour));
+        }
+    }
+
+    pub(super) fn holds(&self, point: (f64, f64)) -> bool {
+        self.x.range.contains(&point.0) && self.y.range.contains(&point.1)
+    }
+
+    /// Adds a dot if it lies within the panel.
+    pub(super) fn dot(&mut self, centre: (f64, f64), radius: u32, colour: RGBColor) {
+        if self.holds(centre) {
+            self.dots.push((centre, radius, colour));
+        }
+    }
+
+    /// The part of a segment within the panel (Liang and Barsky).
+    fn cut(&self, from: (f64, f64), to: (f64, f64)) -> Option<[(f64, f64); 2]> {
+        let (mut first, mut last) = (0.0_f64, 1.0_f64);
+        for (start, step, range) in [
+            (from.0, to.0 - from.0, &self.x.range),
+            (from.1, to.1 - from.1, &self.y.range),
+        ] {
+            let (a, b) = ((range.start - start) / step, (range.end - start) / step);
+            if step.abs() > 0.0 {
+                first = first.max(a.min(b));
+                last = last.min(a.max(b));
+            } else if !range.contains(&start) {
+                return None;
+            }
+        }
+        let at = |share: f64| {
+            (
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            )
+        };
+        (first < last).then(|| [at(first), at(last)])
+    }
+
     pub(super) fn draw(&self, area: &Canvas<'_>) -> Result<(), DrawingError> {
         let labelled = !self.x.label.is_empty();
         let mut chart = ChartBuilder::on(area)
@@ -199,12 +321,65 @@ impl Panel {
         let circle = |&(centre, radius, colour): &((f64, f64), u32, RGBColor)| {
             Circle::new(centre, radius, colour.filled())
         };
+        let areas = self.areas.iter();
+        chart.draw_series(areas.map(|(points, colour)| Polygon::new(points.clone(), *colour)))?;
         chart.draw_series(self.circles.iter().map(circle))?;
         for curve in &self.curves {
             let style = curve.colour.stroke_width(curve.width);
             let lines = curve.pieces.iter().filter(|piece| piece.len() > 1);
             chart.draw_series(lines.map(|piece| PathElement::new(piece.clone(), style)))?;
         }
+        chart.draw_series(self.dots.iter().map(circle))?;
+        chart.draw_series(self.labels.iter().map(|(place, words, colour)| {
+            let style = text_style().color(colour).pos(left_middle());
+            Text::new(words.clone(), *place, style)
+        }))?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn panel() -> Panel {
+        Panel::new(
+            Axis::tight("x", 0.0..10.0, 5),
+            Axis::tight("y", 0.0..5.0, 5),
+        )
+    }
+
+    #[test]
+    fn lines_are_cut_off_at_the_edges_and_stay_whole_within() {
+        let mut panel = panel();
+        panel.line(
+            BLACK,
+            1,
+            &[(-5.0, 1.0), (5.0, 1.0), (5.0, 9.0), (8.0, 9.0), (8.0, 2.0)],
+        );
+        let pieces = &panel.curves[0].pieces;
+        assert_eq!(pieces[0], [(0.0, 1.0), (5.0, 1.0), (5.0, 5.0)]);
+        assert_eq!(pieces[1], [(8.0, 5.0), (8.0, 2.0)]);
+        panel.dot((11.0, 1.0), 1, BLACK);
+        assert!(panel.dots.is_empty());
+    }
+
+    #[test]
+    fn clipping_a_square_leaves_the_half_plane() {
+        let square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let area = |p: &[(f64, f64)]| {
+            let pairs = p.iter().zip(p.iter().cycle().skip(1));
+            0.5 * pairs.map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>()
+        };
+        assert!((area(&clipped(&square, (1.0, 0.0), 0.5)) - 1.0).abs() < 1e-12);
+        assert!((area(&clipped(&square, (1.0, 1.0), 1.0)) - 0.5).abs() < 1e-12);
+        assert!((area(&clipped(&square, (1.0, 0.0), 5.0)) - 4.0).abs() < 1e-12);
+        assert!(clipped(&square, (1.0, 0.0), -1.0).is_empty());
+        let mut panel = panel();
+        panel.area(
+            BLACK.to_rgba(),
+            &[(8.0, 1.0), (12.0, 1.0), (12.0, 2.0), (8.0, 2.0)],
+        );
+        assert!((area(&panel.areas[0].0) - 2.0).abs() < 1e-12);
     }
 }

@@ -1,11 +1,13 @@
 //! The picture of a small flight.
 
 use super::*;
+use crate::campaign::{Campaign, Lists, Report};
 use crate::faults::Faults;
 use crate::lidar::LidarConfig;
 use crate::log::{Columns, Header, PlanEntry, SCHEMA, Summary, Tick};
 use crate::outcome::{Class, Outcome, Score};
 use crate::plant::Plant;
+use crate::scenario::{Preset, Scenario, ScenarioFile};
 use crate::sensors::{AirDataNoise, AirDataSensors};
 use crate::world::ObstacleField;
 use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
@@ -144,4 +146,80 @@ fn a_flight_of_one_tick_is_drawn_and_an_empty_one_refused() {
         flight_svg(&example(0, 20)),
         Err(FigureError::EmptyFlight)
     ));
+}
+
+#[test]
+fn a_planning_cycle_is_drawn_step_by_step() {
+    let scenario = Scenario {
+        obstacles: 30,
+        ..Scenario::new(Preset::Paper, 1)
+    };
+    let cycle = Cycle::of_flight(&scenario, 300).unwrap();
+    assert_eq!(cycle.candidates.len(), 25);
+    let feasible = |cycle: &Cycle| {
+        let refined = cycle
+            .candidates
+            .iter()
+            .filter(|candidate| candidate.refined.is_some());
+        refined.count()
+    };
+    assert!(feasible(&cycle) > 0);
+    // What is chosen is one of the feasible trajectories, and it starts at the aircraft.
+    let start = cycle.chosen.knots[0].state;
+    assert!((start.x - cycle.state.x).abs() < 1e-9 && (start.z - cycle.state.z).abs() < 1e-9);
+    let end = cycle.chosen.knots[18].state;
+    let chosen = cycle
+        .candidates
+        .iter()
+        .filter_map(|candidate| candidate.refined.as_ref());
+    let gaps = chosen.map(|path| (path[18].0 - end.x).abs() + (path[18].1 - end.z).abs());
+    assert!(gaps.fold(f64::INFINITY, f64::min) < 1e-6);
+
+    let scan = scan_svg(&cycle).unwrap();
+    assert_eq!(scan, scan_svg(&cycle).unwrap());
+    assert!(scan.starts_with("<svg width=\"600\""));
+    // Two panels and the legend.
+    assert_eq!(scan.matches("#C81E46").count(), 2 * cycle.hits.len() + 1);
+    let paths = candidates_svg(&cycle).unwrap();
+    assert_eq!(paths.matches("#009E73").count(), feasible(&cycle) + 1);
+    let rays = rays_svg(&cycle).unwrap();
+    for words in ["collocation point", "allowed region", "Height (m)"] {
+        assert!(rays.contains(words), "{words}");
+    }
+    let late = Cycle::of_flight(
+        &Scenario {
+            ticks: 100,
+            ..scenario
+        },
+        5000,
+    );
+    assert!(matches!(late, Err(FigureError::Cycle(_))));
+}
+
+#[test]
+fn success_curves_show_every_cell_and_the_papers_results() {
+    let lists = Lists {
+        preset: vec![Preset::Reference, Preset::Flight],
+        obstacles: vec![20, 5, 10],
+        paths: vec![1, 25],
+        replan_hz: Vec::new(),
+    };
+    let campaign = Campaign::new(ScenarioFile::default(), lists, 4, None).unwrap();
+    let report = Report::new(&campaign, &[]);
+    // Nothing flown: axes, and the paper's dots.
+    assert!(success_svg(&report, Rule::Paper).is_ok());
+    let mut report = report;
+    for cell in &mut report.cells {
+        cell.trials = 4;
+        cell.success_rate = Some(0.5);
+        cell.strict_success_rate = Some(0.25);
+    }
+    let svg = success_svg(&report, Rule::Paper).unwrap();
+    // A band for each of four curves; a ring and a dot for five published results of two curves, and
+    // the legend's.
+    assert_eq!(svg.matches("<polygon").count(), 4);
+    assert_eq!(svg.matches("<circle").count(), 2 * 2 * 5 + 1);
+    assert!(svg.contains("reference, 1 Hz") && svg.contains("flight, 1 Hz"));
+    let strict = success_svg(&report, Rule::Strict).unwrap();
+    assert!(strict.contains("Strict success (%)") && !strict.contains("published"));
 }

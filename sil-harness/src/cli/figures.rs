@@ -1,0 +1,104 @@
+//! `figures`: counterparts of the paper's figures.
+
+use super::campaign::report_of;
+use super::{FAILURE, Failure, USAGE, talk};
+use crate::figure::{
+    Cycle, FigureError, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
+    success_svg,
+};
+use crate::link::PipeLink;
+use crate::log::FlightLog;
+use crate::run::fly;
+use crate::scenario::{Preset, Scenario, TICKS_PER_SECOND};
+use crate::scene::Scene;
+use std::path::PathBuf;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct FiguresArgs {
+    /// Directory for the pictures (SVG)
+    #[arg(long, default_value = "out/figures")]
+    out: PathBuf,
+    /// Seed of everything that is flown for them
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Row files of one campaign: draws its success rates too
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    rows: Vec<PathBuf>,
+}
+
+/// Obstacles of the flight whose planning is drawn.
+const CYCLE_OBSTACLES: usize = 30;
+
+pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
+    let drawing = |error: FigureError| Failure::new(FAILURE, error);
+    let mut pictures = vec![
+        ("challenge", challenge(args.seed)?),
+        (
+            "flight",
+            flight_svg(&flown(&Scenario::new(Preset::Flight, args.seed))?).map_err(drawing)?,
+        ),
+    ];
+    let cycle = telling_cycle(args.seed)?;
+    pictures.push(("scan", scan_svg(&cycle).map_err(drawing)?));
+    pictures.push(("rays", rays_svg(&cycle).map_err(drawing)?));
+    pictures.push(("candidates", candidates_svg(&cycle).map_err(drawing)?));
+    if !args.rows.is_empty() {
+        let report = report_of(&args.rows).map_err(|error| Failure::new(USAGE, error))?;
+        pictures.push((
+            "success",
+            success_svg(&report, Rule::Paper).map_err(drawing)?,
+        ));
+        pictures.push((
+            "success-strict",
+            success_svg(&report, Rule::Strict).map_err(drawing)?,
+        ));
+    }
+    std::fs::create_dir_all(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
+    for (name, svg) in pictures {
+        let path = args.out.join(name).with_extension("svg");
+        std::fs::write(&path, svg).map_err(|error| {
+            Failure::new(FAILURE, format!("cannot write {}: {error}", path.display()))
+        })?;
+        talk(path.display());
+    }
+    Ok(0)
+}
+
+/// The cycle of a flight with the most candidates of both kinds, feasible and not.
+fn telling_cycle(seed: u64) -> Result<Cycle, Failure> {
+    let scenario = Scenario {
+        obstacles: CYCLE_OBSTACLES,
+        ..Scenario::new(Preset::Paper, seed)
+    };
+    // A flight that ends early has fewer cycles.
+    let cycles = (0..16).filter_map(|second| {
+        let cycle = Cycle::of_flight(&scenario, second * TICKS_PER_SECOND).ok()?;
+        let refined = cycle
+            .candidates
+            .iter()
+            .filter(|candidate| candidate.refined.is_some());
+        let feasible = refined.count();
+        Some((feasible.min(cycle.candidates.len() - feasible), cycle))
+    });
+    let telling = cycles.max_by_key(|(both, _)| *both);
+    let none = || Failure::new(FAILURE, "no cycle of this seed's flight could be planned");
+    telling.map(|(_, cycle)| cycle).ok_or_else(none)
+}
+
+/// Every challenge scene with some flights through it, each at its own offset.
+fn challenge(seed: u64) -> Result<String, Failure> {
+    let mut scenes = Vec::new();
+    for scene in Scene::ALL {
+        let scenario = Scenario {
+            obstacles: 0,
+            scene: Some(scene),
+            ..Scenario::new(Preset::Flight, seed)
+        };
+        scenes.push((scene, vec![flown(&scenario)?]));
+    }
+    challenge_svg(&scenes).map_err(|error| Failure::new(FAILURE, error))
+}
+
+fn flown(scenario: &Scenario) -> Result<FlightLog, Failure> {
+    fly(scenario, &mut PipeLink::new(), |_| {}).map_err(|error| Failure::new(FAILURE, error))
+}
