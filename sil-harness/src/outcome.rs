@@ -11,7 +11,8 @@ use serde::{Deserialize, Serialize};
 
 /// Pitch beyond which a flight has failed [rad] (paper, section IV).
 pub const PITCH_LIMIT: f64 = 60_f64.to_radians();
-/// Flight path angle beyond which a flight has failed [rad] (paper, section IV).
+/// Flight path angle beyond which a flight has failed [rad] (paper, section IV); in wind that of the
+/// motion through the air.
 pub const FLIGHT_PATH_LIMIT: f64 = 45_f64.to_radians();
 /// Distance from the initial altitude beyond which a flight is not strict [m]: the obstacles' centres
 /// lie within 10 m of it, and their radius is 1 m.

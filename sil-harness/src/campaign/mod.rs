@@ -161,6 +161,24 @@ impl Campaign {
         all.skip(shard.index - 1).step_by(shard.of).collect()
     }
 
+    /// What this program makes of the campaign's first seconds, for each preset: another program's
+    /// rows are not to be mixed with its own.
+    ///
+    /// # Errors
+    /// [`CampaignError::Flight`].
+    pub fn fingerprint(&self) -> Result<String, CampaignError> {
+        const SECONDS: u32 = 2;
+        let mut start = self.clone();
+        start.scenario.duration = Some(SECONDS);
+        let mut hashes = Vec::new();
+        for preset in &self.preset {
+            if let Some(cell) = self.cells().iter().find(|cell| cell.preset == *preset) {
+                hashes.push(flown(&start, *cell, self.seed, false)?.log_hash);
+            }
+        }
+        Ok(hashes.join("-"))
+    }
+
     /// The place of a flight in the campaign, by cell and trial; none if it is not one of its
     /// flights.
     #[must_use]

@@ -22,6 +22,8 @@ pub struct Header {
     rows: u32,
     /// Version of `sil-harness`.
     package_version: String,
+    /// [`Campaign::fingerprint`] of the program that flew the rows.
+    pub fingerprint: String,
     /// What is flown.
     pub campaign: Campaign,
     /// The part of it that this file takes.
@@ -30,25 +32,29 @@ pub struct Header {
 
 impl Header {
     /// The header of a file that this program writes.
-    #[must_use]
-    pub fn new(campaign: Campaign, shard: Shard) -> Self {
-        Self {
+    ///
+    /// # Errors
+    /// [`CampaignError::Flight`] when the campaign's first flight fails.
+    pub fn new(campaign: Campaign, shard: Shard) -> Result<Self, CampaignError> {
+        Ok(Self {
             rows: ROWS,
             package_version: env!("CARGO_PKG_VERSION").to_owned(),
+            fingerprint: campaign.fingerprint()?,
             campaign,
             shard,
-        }
+        })
     }
 
-    /// The first key in which two headers differ, with both values.
-    fn difference(&self, other: &Self) -> Option<String> {
+    /// The first key in which another header differs, with both values.
+    #[must_use]
+    pub fn difference(&self, other: &Self) -> Option<String> {
         let flat = |header: &Self| {
             let mut keys = serde_json::to_value(header).unwrap_or_default();
             let campaign = keys["campaign"].take();
             (keys, campaign)
         };
         let ((outer, inner), (other_outer, other_inner)) = (flat(self), flat(other));
-        [(outer, other_outer), (inner, other_inner)]
+        [(inner, other_inner), (outer, other_outer)]
             .iter()
             .find_map(|(own, others)| {
                 let keys = own.as_object()?;
@@ -56,7 +62,7 @@ impl Header {
                     .iter()
                     .find(|(key, value)| others[key.as_str()] != **value)?;
                 Some(format!(
-                    "its {key} is {value}, not {}",
+                    "its {key} is {}, not {value}",
                     others[key.as_str()]
                 ))
             })
@@ -94,7 +100,7 @@ impl RowFile {
         let whole = text.rfind('\n').map_or(0, |end| end + 1);
         let rows = match parse(&name, &text[..whole])? {
             None => Vec::new(),
-            Some((found, rows)) => match found.difference(header) {
+            Some((found, rows)) => match header.difference(&found) {
                 Some(what) => return Err(CampaignError::Differs(name, what)),
                 None => rows,
             },

@@ -78,22 +78,19 @@ fn failure(error: &CampaignError) -> Failure {
 
 /// The report of row files.
 pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
-    let mut campaign: Option<Campaign> = None;
+    let mut first: Option<Header> = None;
     let mut rows = Vec::new();
     for path in paths {
-        let (header, found) = read(path)?;
-        match &campaign {
-            Some(first) if *first != header.campaign => {
-                let why = "its flags are not those of the files before".to_owned();
-                return Err(CampaignError::Differs(path.display().to_string(), why));
-            }
-            Some(_) => {}
-            None => campaign = Some(header.campaign),
-        }
+        let (mut header, found) = read(path)?;
         rows.extend(found);
+        let first = first.get_or_insert_with(|| header.clone());
+        header.shard = first.shard;
+        if let Some(what) = first.difference(&header) {
+            return Err(CampaignError::Differs(path.display().to_string(), what));
+        }
     }
     let none = || CampaignError::Line("--report".to_owned(), 0, "no file".to_owned());
-    let campaign = campaign.ok_or_else(none)?;
+    let campaign = first.ok_or_else(none)?.campaign;
     Ok(Report::new(&campaign, &merge(&campaign, rows)?))
 }
 
@@ -113,9 +110,11 @@ fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
 
 /// Flies what is missing, and gives every row of this shard.
 fn fly_rows(args: &CampaignArgs, campaign: &Campaign) -> Result<Vec<Row>, CampaignError> {
-    let header = Header::new(campaign.clone(), args.shard);
     let (file, known) = match &args.out {
-        Some(path) => RowFile::open(path, &header).map(|(file, rows)| (Some(file), rows))?,
+        Some(path) => {
+            let header = Header::new(campaign.clone(), args.shard)?;
+            RowFile::open(path, &header).map(|(file, rows)| (Some(file), rows))?
+        }
         None => (None, Vec::new()),
     };
     let all = campaign.jobs(args.shard);
