@@ -1,5 +1,7 @@
 //! Raytracing around the collocation points: eight half-planes a stage (paper, section III-B).
 
+mod segments;
+
 use crate::Rules;
 use crate::config::{
     DIRECTIONS, GRID_COLS, KNOTS, ORIGIN_COL, ORIGIN_ROW, RAY_LIMIT, SEARCH_ROW, STAGE_PERIOD,
@@ -7,6 +9,7 @@ use crate::config::{
 };
 use crate::map::{CellWalk, GridPoint, MAX_WALK, OccupancyGrid};
 use crate::plan::CollocationPoints;
+pub use segments::Keep;
 
 /// Ray directions `(row, col)`, counter-clockwise from up to forward, down and back.
 ///

@@ -9,6 +9,9 @@ use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::vehicle::{AirState, Control, Trim, VehicleState, linearize};
 
+/// Most by which a reference is turned back to its path [rad].
+const MOST_TURN: f64 = 0.15;
+
 /// What flies the vehicle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
@@ -52,6 +55,7 @@ pub struct FlightLoop {
     ekf: Ekf,
     lqr: Lqr,
     trim: Trim,
+    cross_track: f64,
     trajectory: Option<Trajectory>,
     position: (f64, f64),
     last: Option<(f64, Control)>,
@@ -76,6 +80,7 @@ impl FlightLoop {
             ekf: Ekf::new(*airframe, settings.estimator, trim.state),
             lqr,
             trim,
+            cross_track: settings.cross_track,
             trajectory: None,
             position: (0.0, settings.planner.altitude),
             last: None,
@@ -111,7 +116,7 @@ impl FlightLoop {
         };
         let mut control = self.lqr.track(
             self.ekf.estimate(),
-            &reference.state.air,
+            &self.turned_back(&reference.state),
             reference.feedforward,
         );
         if control.thrust < 0.0 {
@@ -186,6 +191,19 @@ impl FlightLoop {
     #[must_use]
     pub fn health(&self) -> &Health {
         &self.health
+    }
+
+    /// The reference's motion, turned back to its path.
+    fn turned_back(&self, reference: &VehicleState) -> AirState {
+        let (x, z) = self.position;
+        let (sin, cos) = libm::sincos(reference.air.flight_path);
+        let off = cos * (reference.z - z) - sin * (reference.x - x);
+        let turn = (self.cross_track * off).clamp(-MOST_TURN, MOST_TURN);
+        AirState {
+            pitch: reference.air.pitch + turn,
+            flight_path: reference.air.flight_path + turn,
+            ..reference.air
+        }
     }
 
     fn level_reference(&self) -> Reference {

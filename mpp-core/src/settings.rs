@@ -16,6 +16,21 @@ pub struct AttitudeLimits {
     pub flight_path: f64,
 }
 
+/// What rounds of linearisation go by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iteration {
+    /// Rounds that the best candidates get.
+    pub rounds: u8,
+    /// How many candidates get more than the first.
+    pub deepened: usize,
+    /// Distance to keep from the centres of occupied cells [m].
+    pub margin: f64,
+    /// Greatest distance from the altitude [m].
+    pub band: f64,
+    /// Greatest thrust of a plan [N].
+    pub thrust_max: f64,
+}
+
 /// What the planner plans by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannerSettings {
@@ -35,7 +50,10 @@ pub struct PlannerSettings {
     pub attitude: Option<AttitudeLimits>,
     /// Distance from obstacles.
     pub padding: Padding,
-    /// Candidate paths of a cycle, at most [`crate::config::MAX_PATHS`]; 0 tracks the shortest path
+    /// Rounds of linearisation in a map with memory; none plans as the paper does. Needs attitude
+    /// rows and a penalty.
+    pub iteration: Option<Iteration>,
+    /// Candidate paths of a cycle (with an iteration: at most that many), at most [`crate::config::MAX_PATHS`]; 0 tracks the shortest path
     /// itself, without refinement (the paper's baseline "RRT*").
     pub paths: usize,
     /// Height to return to [m].
@@ -81,6 +99,9 @@ pub struct Settings {
     pub estimator: EkfTuning,
     /// The regulator's weights.
     pub regulator: LqrWeights,
+    /// Flight path angle by which the regulator's reference turns back per metre off the trajectory
+    /// [rad/m]; 0 regulates the motion alone, as the paper does.
+    pub cross_track: f64,
     /// The planner.
     pub planner: PlannerSettings,
 }
@@ -97,6 +118,7 @@ impl Settings {
             design_jacobian: JacobianForm::Authors,
             estimator: EkfTuning::AUTHORS,
             regulator: LqrWeights::PAPER,
+            cross_track: 0.0,
             planner: PlannerSettings {
                 rules: Rules::Authors,
                 jacobian: JacobianForm::Authors,
@@ -106,6 +128,7 @@ impl Settings {
                 penalty: None,
                 attitude: None,
                 padding: Padding::AUTHORS,
+                iteration: None,
                 paths: 25,
                 altitude: 50.0,
                 seed: 0,
@@ -132,25 +155,34 @@ impl Settings {
         }
     }
 
-    /// The best we know: soft rows, so that a least-violating trajectory always exists; attitude
-    /// rows; steady state by balance of moments.
+    /// The best we know: a map with memory, distinct candidates, soft rows, rounds of linearisation
+    /// about the trajectory itself, and a reference that the aircraft can fly.
     #[must_use]
     pub const fn flight() -> Self {
         let paper = Self::paper();
         Self {
+            estimator: EkfTuning::SENSORS,
+            cross_track: 0.08,
             planner: PlannerSettings {
                 steady_state: SteadyState::MomentBalance,
                 weights: Weights {
-                    terminal: 10.0,
-                    ..Weights::PAPER
+                    control: [1.0, 0.05],
+                    terminal: 1.0,
                 },
                 penalty: Some(Penalty {
-                    linear: 1e4,
+                    linear: 1e3,
                     quadratic: 1e3,
                 }),
                 attitude: Some(AttitudeLimits {
                     angle_of_attack: 0.2,
                     flight_path: 0.6,
+                }),
+                iteration: Some(Iteration {
+                    rounds: 3,
+                    deepened: 2,
+                    margin: 0.8,
+                    band: 10.3,
+                    thrust_max: 20.0,
                 }),
                 ..paper.planner
             },

@@ -4,7 +4,7 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
 use crate::plan::CollocationPoints;
 use crate::qp::Solution;
-use crate::vehicle::{AirState, Airframe, Control, Trim, VehicleState};
+use crate::vehicle::{AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState};
 
 /// What the vehicle should do at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -22,6 +22,17 @@ pub struct Trajectory {
     pub start: f64,
     /// References at the stage boundaries. The last one's controls are those of the last stage.
     pub knots: [Reference; KNOTS],
+    /// What lies in between.
+    between: Between,
+}
+
+/// What lies between the knots of a trajectory.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Between {
+    /// Straight lines (the paper).
+    Lines,
+    /// The motion of the point mass, thrust and rate of the angle of attack constant over a stage.
+    Flown(Airframe),
 }
 
 impl Trajectory {
@@ -47,6 +58,28 @@ impl Trajectory {
         Self {
             start: 0.0,
             knots: [nothing; KNOTS],
+            between: Between::Lines,
+        }
+    }
+
+    /// Ends the trajectory before it begins: it has no reference at any time.
+    pub fn clear(&mut self) {
+        self.start = f64::INFINITY;
+    }
+
+    /// Takes over a flown-out motion, knots and the controls of the stages in between.
+    pub fn fly_out(
+        &mut self,
+        knots: &[PathState; KNOTS],
+        controls: &[PathControl; STAGES],
+        airframe: &Airframe,
+        start: f64,
+    ) {
+        self.start = start;
+        self.between = Between::Flown(*airframe);
+        for (stage, (place, knot)) in self.knots.iter_mut().zip(knots).enumerate() {
+            let (state, feedforward) = knot.reference(airframe, &controls[stage.min(STAGES - 1)]);
+            *place = Reference { state, feedforward };
         }
     }
 
@@ -54,6 +87,7 @@ impl Trajectory {
     /// world.
     pub fn place(&mut self, solution: &Solution, trim: &Trim, start: f64, x: f64, z: f64) {
         self.start = start;
+        self.between = Between::Lines;
         for (stage, (knot, state)) in self.knots.iter_mut().zip(&solution.states).enumerate() {
             let elapsed = STAGE_PERIOD * stage as f64;
             knot.state = VehicleState {
@@ -85,6 +119,7 @@ impl Trajectory {
         state: &VehicleState,
     ) {
         self.start = start;
+        self.between = Between::Lines;
         let mut slope = 0.0;
         for (stage, (knot, point)) in self.knots.iter_mut().zip(points).enumerate() {
             // The last point keeps the slope that led to it.
@@ -108,7 +143,8 @@ impl Trajectory {
         }
     }
 
-    /// The reference at a time [s]: linear between stage boundaries. None before the start and past
+    /// The reference at a time [s]: linear between stage boundaries, or as it was
+    /// flown out. None before the start and past
     /// the last stage.
     #[must_use]
     pub fn sample(&self, time: f64) -> Option<Reference> {
@@ -120,6 +156,9 @@ impl Trajectory {
         let stage = (stages.max(0.0) as usize).min(STAGES - 1);
         let share = stages - stage as f64;
         let (from, to) = (&self.knots[stage], &self.knots[stage + 1]);
+        if let Between::Flown(airframe) = &self.between {
+            return Some(flown(airframe, from, to, share));
+        }
         let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
         let air = from.state.air.to_vector() * (1.0 - share) + to.state.air.to_vector() * share;
         Some(Reference {
@@ -134,6 +173,19 @@ impl Trajectory {
             },
         })
     }
+}
+
+/// The motion of the point mass at a share of the way from one knot to the next.
+fn flown(airframe: &Airframe, from: &Reference, to: &Reference, share: f64) -> Reference {
+    let rise = to.state.air.angle_of_attack() - from.state.air.angle_of_attack();
+    let control = PathControl {
+        angle_of_attack_rate: rise / STAGE_PERIOD,
+        thrust: from.feedforward.thrust,
+    };
+    let knot = PathState::of(&from.state);
+    let at = knot.after(airframe, &control, share * STAGE_PERIOD, 2);
+    let (state, feedforward) = at.reference(airframe, &control);
+    Reference { state, feedforward }
 }
 
 impl Default for Trajectory {

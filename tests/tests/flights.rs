@@ -127,7 +127,7 @@ fn interleaving_does_not_change_the_flight() {
 #[test]
 fn a_starved_planner_gives_its_best_so_far() {
     let starved = flown(&Scenario {
-        slices_per_tick: 10,
+        slices_per_tick: 2,
         latency_ticks: 20,
         ..Scenario::new(Preset::Flight, 3)
     });

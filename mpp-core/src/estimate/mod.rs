@@ -46,6 +46,13 @@ impl EkfTuning {
         }
     };
 
+    /// As the sensors and the equations of motion are: little noise in the process, so that the flight
+    /// path angle, which no sensor sees, follows from the equations.
+    pub const SENSORS: Self = Self {
+        process_noise: [1e-4, 1e-6, 1e-3, 1e-6],
+        ..Self::EXACT
+    };
+
     /// The same noise with the exact Jacobian.
     pub const EXACT: Self = Self {
         jacobian: JacobianForm::Exact,

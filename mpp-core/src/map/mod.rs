@@ -5,11 +5,15 @@
 //! at `(ORIGIN_ROW, ORIGIN_COL)`, the low corner of that cell. The grid does not pitch with the
 //! aircraft.
 
+mod clearance;
+mod memory;
 mod walk;
 
 use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use crate::sense::LidarScan;
+pub use clearance::{ClearanceField, FAR};
+pub use memory::MemoryMap;
 pub(crate) use walk::CellWalk;
 
 /// Cells that a walk across the whole grid can pass: the bound of every walk.

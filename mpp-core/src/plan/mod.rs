@@ -1,11 +1,13 @@
 //! Candidate paths: RRT*-AR trees, and their paths as collocation points (paper, section III-A).
 
+mod lattice;
 mod rrt;
 mod tree;
 
 use crate::Rules;
 use crate::config::{KNOTS, ORIGIN_COL, ORIGIN_ROW, PATH_POINTS, SEARCH_ROW};
 use crate::map::GridPoint;
+pub use lattice::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, SIGHT, STATIONS};
 pub use rrt::{Extension, Search};
 pub use tree::{Node, Tree};
 

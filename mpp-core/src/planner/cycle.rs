@@ -34,7 +34,10 @@ impl Planner {
         };
         for _ in 0..SAMPLES_PER_SLICE {
             if self.search.extend(&self.grid, || unit_interval(random)) == Extension::Complete {
-                self.next_candidate();
+                match self.settings.iteration {
+                    Some(_) => self.take_tree_paths(),
+                    None => self.next_candidate(),
+                }
                 return;
             }
         }
@@ -82,10 +85,7 @@ impl Planner {
     }
 
     pub(super) fn refine(&mut self) {
-        let before = self.solver.iterations();
-        let status = self.solver.advance(&self.shared, STEPS_PER_SLICE);
-        self.summary.solver_steps += self.solver.iterations() - before;
-        let Some(status) = status else {
+        let Some(status) = self.solve_some() else {
             return;
         };
         self.summary.candidates += 1;
@@ -95,6 +95,14 @@ impl Planner {
             self.keep_if_best();
         }
         self.next_candidate();
+    }
+
+    /// Some steps of the program; its status at the end.
+    pub(super) fn solve_some(&mut self) -> Option<Status> {
+        let before = self.solver.iterations();
+        let status = self.solver.advance(&self.shared, STEPS_PER_SLICE);
+        self.summary.solver_steps += self.solver.iterations() - before;
+        status
     }
 
     /// Ranks by violation, then by cost.

@@ -10,7 +10,10 @@
 //! Between any two slices the flight loop may run, and at any slice the best trajectory so far can
 //! be taken.
 
+mod candidate;
 mod cycle;
+mod iterated;
+mod judge;
 
 use crate::config::{KNOTS, MAX_PATHS};
 use crate::corridor::Corridor;
@@ -43,7 +46,8 @@ pub enum SetupError {
     Condense(CondenseError),
     /// More paths than [`MAX_PATHS`].
     TooManyPaths,
-    /// A number is not finite, or a penalty not positive.
+    /// A number is not finite, or a penalty not positive; or an iteration lacks penalty or attitude
+    /// rows.
     Number,
 }
 
@@ -83,7 +87,11 @@ pub enum Verdict {
 enum Phase {
     Idle,
     Map,
+    Remember,
+    Lattice,
     Tree,
+    Linearise,
+    Improve,
     Corridor,
     Program,
     Done,
@@ -112,8 +120,10 @@ pub struct Planner {
     solver: Solver,
     candidate: Solution,
     best_length: f64,
+    best_price: f64,
     best: Trajectory,
     summary: PlanSummary,
+    iterated: iterated::Workspace,
 }
 
 impl Planner {
@@ -158,8 +168,10 @@ impl Planner {
             solver: Solver::new(),
             candidate: Solution::new(),
             best_length: f64::INFINITY,
+            best_price: f64::INFINITY,
             best: Trajectory::new(),
             summary: NO_SUMMARY,
+            iterated: iterated::Workspace::new(),
         }
     }
 
@@ -178,7 +190,15 @@ impl Planner {
         let priced = planner
             .penalty
             .is_none_or(|p| p.linear > 0.0 && p.quadratic > 0.0);
-        if !planner.altitude.is_finite() || !priced {
+        let iterable = planner.iteration.is_none_or(|iteration| {
+            let numbers = [iteration.margin, iteration.band, iteration.thrust_max];
+            numbers
+                .iter()
+                .all(|number| *number > 0.0 && number.is_finite())
+                && planner.penalty.is_some()
+                && planner.attitude.is_some()
+        });
+        if !planner.altitude.is_finite() || !priced || !iterable {
             return Err(SetupError::Number);
         }
         let airframe = &settings.airframe;
@@ -196,11 +216,17 @@ impl Planner {
             .condense(&model, &planner.weights)
             .map_err(SetupError::Condense)?;
         self.settings = *planner;
+        if planner.paths == 0 {
+            // The baseline tracks paths as they are.
+            self.settings.iteration = None;
+        }
         self.trim = trim;
         self.airframe = *airframe;
         self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
         // Rows that these settings do not have must not stay from others.
         self.problem.bounds.clear();
+        self.iterated.forget();
+        self.best.clear();
         self.phase = Phase::Idle;
         Ok(())
     }
@@ -227,7 +253,11 @@ impl Planner {
         }
         self.summary = NO_SUMMARY;
         self.best_length = f64::INFINITY;
-        self.phase = Phase::Map;
+        self.best_price = f64::INFINITY;
+        self.phase = match self.settings.iteration {
+            Some(_) => Phase::Remember,
+            None => Phase::Map,
+        };
     }
 
     /// Whether a cycle is under way.
@@ -248,7 +278,11 @@ impl Planner {
                     .rebuild(&self.scan, self.state.air.pitch, self.settings.rules);
                 self.start_tree();
             }
+            Phase::Remember => self.remember(),
+            Phase::Lattice => self.search_lattice(),
             Phase::Tree => self.grow_tree(),
+            Phase::Linearise => self.linearise(),
+            Phase::Improve => self.improve(),
             Phase::Corridor => self.trace_corridor(),
             Phase::Program => self.refine(),
         }

@@ -1,0 +1,89 @@
+//! Half-planes between the segments of a trajectory and the obstacles about it.
+//!
+//! Rays from the collocation points see nothing in between; a face that holds at both ends of a
+//! segment holds all along it. Of the eight directions each occupied cell gets the one that keeps it
+//! farthest from the segment.
+
+use super::{Corridor, DIRECTION_VECTORS};
+use crate::config::{DIRECTIONS, KNOTS, STAGE_PERIOD};
+use crate::map::ClearanceField;
+use crate::vehicle::PathState;
+
+/// Obstacles farther than this from a segment [m] do not matter to it.
+const REACH: f64 = 4.0;
+/// Where nothing else is in the way, a trajectory may move by this much [m].
+const FREE: f64 = 60.0;
+
+/// Directions of [`DIRECTION_VECTORS`] that are up and down.
+const UP: usize = 0;
+const DOWN: usize = 4;
+
+/// What a trajectory keeps to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keep {
+    /// Distance from the centres of occupied cells [m].
+    pub margin: f64,
+    /// Least height [m].
+    pub floor: f64,
+    /// Greatest height [m].
+    pub ceiling: f64,
+}
+
+impl Corridor {
+    /// Separates each segment of a trajectory from the obstacles about it; `cruise` is the airspeed of
+    /// straight and level flight [m/s], which the half-planes are relative to.
+    pub fn separate(
+        &mut self,
+        field: &ClearanceField,
+        knots: &[PathState; KNOTS],
+        cruise: f64,
+        keep: &Keep,
+    ) {
+        let [start, ..] = knots;
+        for (stage, (bounds, knot)) in self.bounds.iter_mut().zip(knots).enumerate() {
+            let level = start.x + cruise * STAGE_PERIOD * stage as f64;
+            for (bound, [up, forward]) in bounds.iter_mut().zip(&DIRECTION_VECTORS) {
+                *bound = up * (knot.z - start.z) + forward * (knot.x - level) + FREE;
+            }
+            bounds[UP] = bounds[UP].min(keep.ceiling - start.z);
+            bounds[DOWN] = bounds[DOWN].min(start.z - keep.floor);
+        }
+        for stage in 0..KNOTS - 1 {
+            let (Some([from, to]), Some([before, after])) = (
+                knots.get(stage..stage + 2),
+                self.bounds.get_mut(stage..stage + 2),
+            ) else {
+                continue;
+            };
+            let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
+            field.surface(range(from.x, to.x), range(from.z, to.z), |x, z| {
+                let (direction, vector) = farthest_direction(from, to, x, z);
+                let [up, forward] = *vector;
+                let mut reach = up * (z - start.z) - keep.margin;
+                reach += forward * (x - start.x - cruise * STAGE_PERIOD * stage as f64);
+                before[direction] = before[direction].min(reach);
+                let later = reach - forward * cruise * STAGE_PERIOD;
+                after[direction] = after[direction].min(later);
+            });
+        }
+    }
+}
+
+/// The direction in which a point is farthest beyond both ends of a segment.
+fn farthest_direction<'a>(
+    from: &PathState,
+    to: &PathState,
+    x: f64,
+    z: f64,
+) -> (usize, &'a [f64; 2]) {
+    let mut farthest = (f64::NEG_INFINITY, (0, &DIRECTION_VECTORS[0]));
+    for (direction, vector) in DIRECTION_VECTORS.iter().enumerate() {
+        let [up, forward] = *vector;
+        let beyond = |end: &PathState| up * (z - end.z) + forward * (x - end.x);
+        let distance = beyond(from).min(beyond(to));
+        if distance > farthest.0 {
+            farthest = (distance, (direction % DIRECTIONS, vector));
+        }
+    }
+    farthest.1
+}

@@ -1,0 +1,177 @@
+//! Distance to what is occupied, for every cell of the map with memory.
+
+use super::memory::{CELL, COLS, MemoryMap, ROWS};
+
+/// Distances are known up to this many cells; beyond, they read as this.
+const REACH: usize = 6;
+/// Greatest distance that is told [m].
+pub const FAR: f64 = CELL * REACH as f64;
+/// Distances are kept in parts of a metre.
+const PARTS: f64 = 64.0;
+
+/// Distance field of one cycle's map.
+#[derive(Clone, Debug)]
+pub struct ClearanceField {
+    distance: [[u8; COLS]; ROWS],
+    along_row: [[u8; COLS]; ROWS],
+    occupied: [u128; ROWS],
+    unknown: [u128; ROWS],
+    first_x: f64,
+    floor: f64,
+}
+
+impl ClearanceField {
+    /// The field of an empty map.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            distance: [[u8::MAX; COLS]; ROWS],
+            along_row: [[u8::MAX; COLS]; ROWS],
+            occupied: [0; ROWS],
+            unknown: [0; ROWS],
+            first_x: 0.0,
+            floor: 0.0,
+        }
+    }
+
+    /// Computes the field of a map: exact distances between cell centres up to [`FAR`] (Meijster,
+    /// Roerdink, Hesselink: "A general algorithm for computing distance transforms in linear time",
+    /// 2000; the scan of rows by brute force, which is as fast at so short a reach).
+    pub fn build(&mut self, map: &MemoryMap) {
+        (self.first_x, self.floor) = (map.first_x(), map.floor());
+        for row in 0..ROWS {
+            (self.occupied[row], self.unknown[row]) = map.row(row);
+            self.along_row[row] = along_row(self.occupied[row]);
+        }
+        for row in 0..ROWS {
+            let mut least = [u16::MAX; COLS];
+            let (low, high) = (row.saturating_sub(REACH), (row + REACH + 1).min(ROWS));
+            for (other, distances) in (low..high).zip(self.along_row.get(low..high).unwrap_or(&[]))
+            {
+                let rise = row.abs_diff(other) as u16;
+                for (least, along) in least.iter_mut().zip(distances) {
+                    let along = u16::from(*along);
+                    *least = (*least).min(along * along + rise * rise);
+                }
+            }
+            for (distance, squared) in self.distance[row].iter_mut().zip(least) {
+                *distance = PART_OF_SQUARE[usize::from(squared).min(REACH * REACH)];
+            }
+        }
+    }
+
+    /// Distance from a point `(x, z)` [m] to the nearest centre of an occupied cell [m], bilinear
+    /// between cell centres and at most [`FAR`]. Beyond the window, that at its edge.
+    #[must_use]
+    pub fn distance(&self, x: f64, z: f64) -> f64 {
+        let (col, right) = split((x - self.first_x) / CELL - 0.5, COLS);
+        let (row, up) = split((z - self.floor) / CELL - 0.5, ROWS);
+        let at = |row: usize, col: usize| f64::from(self.distance[row % ROWS][col % COLS]);
+        let low = at(row, col) * (1.0 - right) + at(row, col + 1) * right;
+        let high = at(row + 1, col) * (1.0 - right) + at(row + 1, col + 1) * right;
+        (low * (1.0 - up) + high * up) * (1.0 / PARTS)
+    }
+
+    /// Whether the cell of a point is in the window and nothing is known of it.
+    #[must_use]
+    pub fn is_unknown(&self, x: f64, z: f64) -> bool {
+        self.bit(&self.unknown, x, z)
+    }
+
+    /// Whether the cell of a point is occupied.
+    #[must_use]
+    pub fn is_occupied(&self, x: f64, z: f64) -> bool {
+        self.bit(&self.occupied, x, z)
+    }
+
+    fn bit(&self, rows: &[u128; ROWS], x: f64, z: f64) -> bool {
+        let (col, row) = (
+            libm::floor((x - self.first_x) / CELL),
+            libm::floor((z - self.floor) / CELL),
+        );
+        if !(0.0..COLS as f64).contains(&col) || !(0.0..ROWS as f64).contains(&row) {
+            return false;
+        }
+        rows[row as usize % ROWS] >> (col as u32 % u128::BITS) & 1 == 1
+    }
+
+    /// The centres of occupied cells with a free neighbour within a box, `x` and `z` from least to
+    /// greatest [m].
+    pub fn surface(&self, x: [f64; 2], z: [f64; 2], mut visit: impl FnMut(f64, f64)) {
+        let cell = |value: f64, edge: f64, cells: usize| {
+            (libm::floor((value - edge) / CELL).max(0.0) as usize).min(cells - 1)
+        };
+        let [first, last] = x.map(|x| cell(x, self.first_x, COLS));
+        let [low, high] = z.map(|z| cell(z, self.floor, ROWS));
+        let kept = (u128::MAX << first) & (u128::MAX >> (COLS - 1 - last.min(COLS - 1)));
+        for row in low..high + 1 {
+            let mut bits = self.surface_row(row) & kept;
+            while bits != 0 {
+                let col = bits.trailing_zeros();
+                bits &= bits - 1;
+                visit(
+                    self.first_x + CELL * (f64::from(col) + 0.5),
+                    self.floor + CELL * (row as f64 + 0.5),
+                );
+            }
+        }
+    }
+
+    fn surface_row(&self, row: usize) -> u128 {
+        let at = |row: usize| self.occupied.get(row).copied().unwrap_or(0);
+        let own = at(row);
+        let above = at(row + 1);
+        let below = row.checked_sub(1).map_or(0, at);
+        own & !(own << 1 & own >> 1 & above & below)
+    }
+}
+
+impl Default for ClearanceField {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Distances [cells] to the nearest occupied cell of a row, capped.
+fn along_row(occupied: u128) -> [u8; COLS] {
+    const CAP: u8 = REACH as u8 + 1;
+    let mut distances = [CAP; COLS];
+    let mut since = CAP;
+    for (col, distance) in distances.iter_mut().enumerate() {
+        let here = occupied >> (col as u32 % u128::BITS) & 1 == 1;
+        since = if here { 0 } else { (since + 1).min(CAP) };
+        *distance = since;
+    }
+    let mut since = CAP;
+    for distance in distances.iter_mut().rev() {
+        since = if *distance == 0 {
+            0
+        } else {
+            (since + 1).min(CAP)
+        };
+        *distance = since.min(*distance);
+    }
+    distances
+}
+
+/// Cell index and share of the way to the next, kept inside.
+fn split(position: f64, cells: usize) -> (usize, f64) {
+    let inside = position.clamp(0.0, (cells - 1) as f64 - 1e-9);
+    let index = inside as usize;
+    (index, inside - index as f64)
+}
+
+/// Distances [1 / PARTS m] by squared distance in cells.
+const PART_OF_SQUARE: [u8; REACH * REACH + 1] = {
+    let mut parts = [0; REACH * REACH + 1];
+    let mut squared = 0;
+    while squared < parts.len() {
+        // The integer root of (PARTS * CELL)^2 times the square.
+        let scale = (PARTS * CELL) as usize;
+        parts[squared] = (squared * scale * scale).isqrt() as u8;
+        squared += 1;
+    }
+    parts
+};
+
+const _: () = assert!(FAR * PARTS < 256.0);

@@ -1,0 +1,329 @@
+//! Smooth paths over a lattice of stations, heights and slopes, by dynamic programming: the
+//! deterministic companion of RRT*-AR.
+//!
+//! From a station to the next a path's slope changes by one step at most, which is what the aircraft
+//! can turn; the height follows from the slopes. One pass from the aircraft and one from the far end
+//! meet at the *via* station, where the cost of the best path through every height is then known.
+//! Its minima are paths that pass obstacles differently.
+
+use crate::map::ClearanceField;
+
+/// Stations, the aircraft's included.
+pub const STATIONS: usize = 17;
+/// Paths of one search.
+pub const MAX_LATTICE_PATHS: usize = 6;
+
+/// The station at which the two passes meet.
+const VIA: usize = 6;
+/// Heights of a station.
+const HEIGHTS: usize = 97;
+/// Distance between heights [m].
+const RISE: f64 = 0.25;
+/// Slopes of a station.
+const SLOPES: usize = 9;
+const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
+const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
+/// Distance between stations at full agility [m], and how much longer it may become.
+const SPACING: f64 = 3.0;
+const STRETCH: f64 = 2.0;
+/// Points of an edge that are looked at, and their heights at half of [`RISE`].
+const QUARTERS: usize = 4;
+const POINTS: usize = 2 * HEIGHTS - 1;
+
+/// Clearance to keep [m], and the price of its square where it is less.
+const MARGIN: f64 = 1.2;
+const MARGIN_PRICE: f64 = 10.0;
+/// Price of a point of which nothing is known, falling to nothing at [`SIGHT`] [m] ahead.
+const UNKNOWN_PRICE: f64 = 5.0;
+/// Distance ahead up to which it matters that nothing is known [m].
+pub const SIGHT: f64 = 20.0;
+/// Prices of a change of slope, of a slope and of a metre from the altitude, squared, per edge.
+const TURN_PRICE: f64 = 1.0;
+const SLOPE_PRICE: f64 = 0.05;
+const ALTITUDE_PRICE: f64 = 0.01;
+/// Distance from floor and ceiling that a path keeps [m].
+const BAND_MARGIN: f64 = 0.5;
+
+/// Costs are whole multiples of a sixteenth, so that sums do not depend on their order.
+const COST_UNIT: f64 = 16.0;
+const NEVER: u32 = 1 << 28;
+const DEAREST: f64 = 1e7;
+
+type Layer = [[u32; SLOPES]; HEIGHTS];
+type Choice = [[u8; SLOPES]; HEIGHTS];
+
+/// A path: its height at each station [m].
+pub type LatticePath = [f64; STATIONS];
+
+/// Where paths start and what they keep to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeTask {
+    /// Downrange start [m].
+    pub x: f64,
+    /// Height of the start [m].
+    pub z: f64,
+    /// Slope at the start [-].
+    pub slope: f64,
+    /// Height to return to [m].
+    pub altitude: f64,
+    /// Greatest distance from it [m].
+    pub band: f64,
+    /// Greatest curvature of a path [1/m].
+    pub curvature: f64,
+}
+
+/// The search and its tables.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    task: LatticeTask,
+    spacing: f64,
+    slope_step: f64,
+    station: usize,
+    /// Costs from the start to, or from the end back to, the station at hand.
+    layer: Layer,
+    /// Costs from the start to the via station.
+    to_via: Layer,
+    /// The slope before (up to the via station) and the slope after (from it on).
+    before: [Choice; VIA + 1],
+    after: [Choice; STATIONS - VIA],
+}
+
+impl Lattice {
+    /// A lattice that has searched nothing.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            task: LatticeTask {
+                x: 0.0,
+                z: 0.0,
+                slope: 0.0,
+                altitude: 0.0,
+                band: 0.0,
+                curvature: 0.0,
+            },
+            spacing: SPACING,
+            slope_step: 0.0,
+            station: STATIONS,
+            layer: [[NEVER; SLOPES]; HEIGHTS],
+            to_via: [[NEVER; SLOPES]; HEIGHTS],
+            before: [[[0; SLOPES]; HEIGHTS]; VIA + 1],
+            after: [[[0; SLOPES]; HEIGHTS]; STATIONS - VIA],
+        }
+    }
+
+    /// Starts a search. An aircraft that turns less gets stations farther apart and finer slopes.
+    pub fn start(&mut self, task: &LatticeTask) {
+        self.task = *task;
+        // One step of slope over one spacing, with RISE = spacing * step / 2 at every spacing.
+        let full = 2.0 * RISE / (SPACING * SPACING);
+        let stretch = libm::sqrt(full / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
+        self.spacing = SPACING * stretch;
+        self.slope_step = 2.0 * RISE / self.spacing;
+        self.station = 0;
+        self.layer = [[NEVER; SLOPES]; HEIGHTS];
+        let steps =
+            libm::round(task.slope / self.slope_step).clamp(-f64::from(LEVEL), LEVEL.into());
+        let slope = (steps as i32 + LEVEL) as usize;
+        if let Some(cost) = self.layer[MIDDLE as usize].get_mut(slope) {
+            *cost = 0;
+        }
+    }
+
+    /// Distance between stations [m].
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Passes over the edges of one station; true while there are more.
+    pub fn advance(&mut self, field: &ClearanceField) -> bool {
+        const LAST: usize = STATIONS - 1;
+        match self.station {
+            station @ 0..VIA => self.forward(field, station),
+            station @ VIA..LAST => {
+                if station == VIA {
+                    self.to_via = self.layer;
+                    self.layer = [[0; SLOPES]; HEIGHTS];
+                }
+                // From the far end back to the via station.
+                self.backward(field, LAST - 1 - (station - VIA));
+            }
+            _ => return false,
+        }
+        self.station += 1;
+        self.station < LAST
+    }
+
+    fn forward(&mut self, field: &ClearanceField, station: usize) {
+        let points = self.prices(field, station);
+        let mut next: Layer = [[NEVER; SLOPES]; HEIGHTS];
+        for (height, costs) in (0..).zip(&self.layer) {
+            for (slope, cost) in (0..).zip(costs).filter(|(_, cost)| **cost < NEVER) {
+                for edge in edges(height, slope) {
+                    let cost = cost + edge.price(&points);
+                    if let Some(place) = entry(&mut next, edge.to)
+                        && cost < *place
+                    {
+                        *place = cost;
+                        let before = self.before.get_mut(station + 1);
+                        if let Some(choice) = before.and_then(|choice| entry(choice, edge.to)) {
+                            *choice = slope as u8;
+                        }
+                    }
+                }
+            }
+        }
+        self.layer = next;
+    }
+
+    fn backward(&mut self, field: &ClearanceField, station: usize) {
+        let points = self.prices(field, station);
+        let mut previous: Layer = [[NEVER; SLOPES]; HEIGHTS];
+        for (height, costs) in (0..).zip(&mut previous) {
+            for (slope, cost) in (0..).zip(costs.iter_mut()) {
+                for edge in edges(height, slope) {
+                    let onward = entry(&mut self.layer, edge.to).map_or(NEVER, |cost| *cost);
+                    let through = onward.saturating_add(edge.price(&points));
+                    if onward < NEVER && through < *cost {
+                        *cost = through;
+                        let after = self.after.get_mut(station - VIA);
+                        if let Some(choice) =
+                            after.and_then(|choice| entry(choice, (height, slope)))
+                        {
+                            *choice = edge.to.1 as u8;
+                        }
+                    }
+                }
+            }
+        }
+        self.layer = previous;
+    }
+
+    /// Prices of the points of a station's edges, by quarter and by height in halves of [`RISE`]; the
+    /// last quarter has the price of the height itself added.
+    fn prices(&self, field: &ClearanceField, station: usize) -> [[u32; POINTS]; QUARTERS] {
+        let mut prices = [[0; POINTS]; QUARTERS];
+        let task = &self.task;
+        for (quarter, prices) in prices.iter_mut().enumerate() {
+            let share = (quarter + 1) as f64 / QUARTERS as f64;
+            let ahead = self.spacing * (station as f64 + share);
+            for (point, price) in prices.iter_mut().enumerate() {
+                let z = task.z + 0.5 * RISE * (point as f64 - f64::from(2 * MIDDLE));
+                let from_altitude = z - task.altitude;
+                let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
+                let lack = (MARGIN - field.distance(task.x + ahead, z)).max(0.0) + outside;
+                let mut cost = MARGIN_PRICE * lack * lack;
+                if ahead < SIGHT && field.is_unknown(task.x + ahead, z) {
+                    cost += UNKNOWN_PRICE * (1.0 - ahead / SIGHT);
+                }
+                if quarter + 1 == QUARTERS {
+                    cost += ALTITUDE_PRICE * from_altitude * from_altitude;
+                }
+                *price = (COST_UNIT * cost).min(DEAREST) as u32;
+            }
+        }
+        prices
+    }
+
+    /// Writes the paths through the via station's best heights, best first, once the search is over.
+    pub fn paths(&mut self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
+        paths.clear();
+        let mut through = [(NEVER, 0); HEIGHTS];
+        let passes = self.to_via.iter().zip(&self.layer);
+        for (best, (to, from)) in through.iter_mut().zip(passes) {
+            for (slope, (to, from)) in (0..).zip(to.iter().zip(from)) {
+                *best = (*best).min((to.saturating_add(*from), slope));
+            }
+        }
+        let mut minima: heapless::Vec<(u32, i32, i32), HEIGHTS> = heapless::Vec::new();
+        for (height, cost) in (0..).zip(through.iter()) {
+            let at = |height: i32| {
+                let place = usize::try_from(height).ok();
+                place
+                    .and_then(|place| through.get(place))
+                    .map_or(NEVER, |cost| cost.0)
+            };
+            if cost.0 < NEVER && cost.0 <= at(height - 1) && cost.0 < at(height + 1) {
+                let _ = minima.push((cost.0, height, cost.1));
+            }
+        }
+        while !paths.is_full()
+            && let Some(best) = minima.iter_mut().min()
+            && best.0 < NEVER
+        {
+            let (_, height, slope) = *best;
+            best.0 = NEVER;
+            let _ = paths.push(self.path(height, slope));
+        }
+    }
+
+    /// The best path through a height and a slope at the via station.
+    fn path(&mut self, height: i32, slope: i32) -> LatticePath {
+        let z = |height: i32| self.task.z + RISE * f64::from(height - MIDDLE);
+        let mut path = [z(height); STATIONS];
+        let (before, onward) = path.split_at_mut(VIA);
+        let mut at = (height, slope);
+        for (place, choice) in before.iter_mut().zip(&mut self.before[1..]).rev() {
+            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+            at = (at.0 - (slope - LEVEL) - (at.1 - LEVEL), slope);
+            *place = z(at.0);
+        }
+        let mut at = (height, slope);
+        for (place, choice) in onward.iter_mut().skip(1).zip(&mut self.after) {
+            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+            at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
+            *place = z(at.0);
+        }
+        path
+    }
+}
+
+impl Default for Lattice {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// From one station's height and slope to the next's.
+struct Edge {
+    from: (i32, i32),
+    to: (i32, i32),
+}
+
+/// The edges from a height and a slope, straight on first.
+fn edges(height: i32, slope: i32) -> impl Iterator<Item = Edge> {
+    [slope, slope - 1, slope + 1]
+        .into_iter()
+        .filter(|next| (0..SLOPES as i32).contains(next))
+        .map(move |next| Edge {
+            from: (height, slope),
+            to: (height + (slope - LEVEL) + (next - LEVEL), next),
+        })
+        .filter(|edge| (0..HEIGHTS as i32).contains(&edge.to.0))
+}
+
+impl Edge {
+    /// The price of its points and of its turn.
+    fn price(&self, points: &[[u32; POINTS]; QUARTERS]) -> u32 {
+        const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
+        let (slope, turn) = (self.from.1 - LEVEL, self.to.1 - self.from.1);
+        let mut price = if turn == 0 { 0 } else { TURN };
+        let next = self.to.1 - LEVEL;
+        price += (COST_UNIT * SLOPE_PRICE * f64::from(next * next)) as u32;
+        for (quarter, points) in (1..).zip(points) {
+            // A parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
+            let height = 2 * self.from.0 + slope * quarter + turn * (quarter * quarter / 8);
+            let place = usize::try_from(height).ok();
+            price += place
+                .and_then(|place| points.get(place))
+                .copied()
+                .unwrap_or(0);
+        }
+        price
+    }
+}
+
+fn entry<T>(layer: &mut [[T; SLOPES]; HEIGHTS], (height, slope): (i32, i32)) -> Option<&mut T> {
+    let row = layer.get_mut(usize::try_from(height).ok()?)?;
+    row.get_mut(usize::try_from(slope).ok()?)
+}

@@ -1,0 +1,133 @@
+//! A candidate of the iterated cycle: how it is flown out, linearised, and told from others.
+
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::ClearanceField;
+use crate::qp::{Dynamics, Solution, StageState};
+use crate::settings::AttitudeLimits;
+use crate::vehicle::{Airframe, PathControl, PathState, Trim};
+use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
+
+/// Angles of the program are in tenths of a radian, so that they weigh about as much as metres.
+pub(super) const ANGLE_SCALE: f64 = 10.0;
+/// Roll-out steps of a stage.
+const STEPS: u8 = 2;
+
+/// A trajectory as the aircraft would fly it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) knots: [PathState; KNOTS],
+    pub(super) controls: [PathControl; STAGES],
+    /// What ranks it; infinite before its first improvement.
+    pub(super) price: f64,
+}
+
+impl Candidate {
+    /// Flies a program's controls from the first knot on, within what the aircraft can do.
+    pub(super) fn roll_out(
+        &mut self,
+        solution: &Solution,
+        airframe: &Airframe,
+        trim: &Trim,
+        limits: &AttitudeLimits,
+        thrust_max: f64,
+    ) {
+        let level = trim.state.angle_of_attack();
+        // Soft rows may ask for somewhat more than the limit.
+        let most = 1.5 * limits.angle_of_attack + 0.05;
+        let [first, later @ ..] = &mut self.knots;
+        let mut state = *first;
+        let stages = self.controls.iter_mut().zip(later).zip(&solution.controls);
+        for ((control, knot), [rate, thrust]) in stages {
+            let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
+            let reached = aimed.max(level - most).min(level + most);
+            *control = PathControl {
+                angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
+                thrust: (trim.control.thrust + thrust).min(thrust_max).max(0.0),
+            };
+            state = state.after(airframe, control, STAGE_PERIOD, STEPS);
+            *knot = state;
+        }
+    }
+}
+
+/// Whether two trajectories pass every obstacle on the same side.
+pub(super) fn same_signature(
+    field: &ClearanceField,
+    one: &[PathState; KNOTS],
+    other: &[PathState; KNOTS],
+) -> bool {
+    const STEP: f64 = 0.5;
+    const STEPS: usize = 64;
+    one.iter().zip(other).all(|(a, b)| {
+        let rise = b.z - a.z;
+        (0..STEPS)
+            .map(|step| STEP * step as f64)
+            .take_while(|passed| *passed <= rise.abs())
+            .all(|passed| !field.is_occupied(a.x, a.z + passed * rise.signum()))
+    })
+}
+
+/// Where the program's deviations are measured from: level flight at trim from the aircraft on.
+pub(super) struct Frame<'a> {
+    pub(super) airframe: &'a Airframe,
+    pub(super) trim: &'a Trim,
+    pub(super) start: PathState,
+}
+
+impl Frame<'_> {
+    /// The program's state: deviation in position and speed, pitch and flight path in tenths of a
+    /// radian; the pitch rate has no part.
+    pub(super) fn deviation(&self, state: &PathState, stage: usize) -> Vector6<f64> {
+        let trim = &self.trim.state;
+        let level = self.start.x + trim.airspeed * STAGE_PERIOD * stage as f64;
+        Vector6::new(
+            state.x - level,
+            state.z - self.start.z,
+            state.airspeed - trim.airspeed,
+            ANGLE_SCALE * (state.flight_path + state.angle_of_attack - trim.pitch),
+            0.0,
+            ANGLE_SCALE * (state.flight_path - trim.flight_path),
+        )
+    }
+
+    /// Dynamics of each stage about a candidate.
+    pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
+        let stages = candidate.knots.iter().zip(&candidate.controls);
+        for (stage, (dynamics, (knot, control))) in dynamics.iter_mut().zip(stages).enumerate() {
+            let (state, input) = knot.sensitivity(self.airframe, control, STAGE_PERIOD);
+            // The program's (pitch, path) from the point mass's (path, angle of attack), and back.
+            let mut a = Matrix6::zeros();
+            let mut b = Matrix6x2::zeros();
+            let columns: [[f64; 5]; 6] = {
+                let column = |index: usize| -> [f64; 5] { state.column(index).into_owned().into() };
+                let [x, z, v, path, alpha] =
+                    [column(0), column(1), column(2), column(3), column(4)];
+                let mut turning = path;
+                for (turning, alpha) in turning.iter_mut().zip(&alpha) {
+                    *turning -= alpha;
+                }
+                let scaled = |column: [f64; 5]| column.map(|entry| entry / ANGLE_SCALE);
+                [x, z, v, scaled(alpha), [0.0; 5], scaled(turning)]
+            };
+            for (index, column) in columns.iter().enumerate() {
+                a.set_column(index, &outputs(column));
+            }
+            for index in 0..2 {
+                let column: [f64; 5] = input.column(index).into_owned().into();
+                b.set_column(index, &outputs(&column));
+            }
+            let next = knot.after(self.airframe, control, STAGE_PERIOD, STEPS);
+            let thrust = control.thrust - self.trim.control.thrust;
+            let offset = self.deviation(&next, stage + 1)
+                - a * self.deviation(knot, stage)
+                - b * Vector2::new(control.angle_of_attack_rate, thrust);
+            *dynamics = Dynamics { a, b, offset };
+        }
+    }
+}
+
+/// The program's state of the point mass's deviations.
+fn outputs([x, z, v, path, alpha]: &[f64; 5]) -> Vector6<f64> {
+    let pitch = ANGLE_SCALE * (path + alpha);
+    StageState::into([*x, *z, *v, pitch, 0.0, ANGLE_SCALE * path])
+}

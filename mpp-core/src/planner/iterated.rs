@@ -1,0 +1,380 @@
+//! The cycle of preset `flight`: a map with memory, few but distinct paths, and rounds of
+//! linearisation about what the aircraft would really fly.
+//!
+//! ```text
+//! begin --> Remember --> Lattice --> Tree --> Linearise <--> Improve --> Done
+//!           map          paths       paths    a candidate    its program, flown out
+//! ```
+//!
+//! Every candidate is improved once; the best few then get further rounds. The nonlinear roll-out of
+//! the controls is what is judged, against the map itself, and what is flown.
+
+use super::candidate::{ANGLE_SCALE, Candidate, Frame, same_signature};
+use super::{FEASIBLE, Phase, Planner};
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::corridor::Keep;
+use crate::map::{ClearanceField, GridPoint, MemoryMap};
+use crate::plan::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, resample};
+use crate::qp::{Dynamics, Status};
+use crate::settings::{AttitudeLimits, Iteration};
+use crate::vehicle::{PathControl, PathState};
+
+/// Candidates of a cycle: the previous plan, the lattice's paths, the tree's.
+const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + TREE_PATHS;
+/// Distinct paths that are taken from the tree.
+const TREE_PATHS: usize = 2;
+/// What programs keep beyond the margin [m], so that their roll-outs still keep it.
+const ROUNDING: f64 = 0.05;
+
+/// Workspace of the cycle.
+#[derive(Clone, Debug)]
+pub(super) struct Workspace {
+    map: MemoryMap,
+    pub(super) field: ClearanceField,
+    lattice: Lattice,
+    candidates: heapless::Vec<Candidate, CANDIDATES>,
+    dynamics: [Dynamics; STAGES],
+    /// Improvements so far.
+    improvements: usize,
+    /// The candidates by price after the first improvement of each.
+    order: [usize; CANDIDATES],
+}
+
+impl Workspace {
+    pub(super) const fn new() -> Self {
+        Self {
+            map: MemoryMap::new(),
+            field: ClearanceField::new(),
+            lattice: Lattice::new(),
+            candidates: heapless::Vec::new(),
+            dynamics: [Dynamics::at_rest(); STAGES],
+            improvements: 0,
+            order: [0; CANDIDATES],
+        }
+    }
+
+    /// Which candidate is improved next: each once, then the best few, each with all its rounds before
+    /// the next.
+    fn turn(&self, iteration: &Iteration) -> Option<usize> {
+        let Some(further) = self.improvements.checked_sub(self.candidates.len()) else {
+            return Some(self.improvements);
+        };
+        let rounds = usize::from(iteration.rounds).saturating_sub(1);
+        let deepened = iteration.deepened.min(self.candidates.len());
+        let best = (0..deepened).find(|place| further < rounds * (place + 1))?;
+        self.order.get(best).copied()
+    }
+
+    /// Forgets the map of an earlier flight.
+    pub(super) fn forget(&mut self) {
+        self.map.clear();
+    }
+}
+
+impl Planner {
+    /// Takes in the scan, and sets out on the previous plan and on the lattice.
+    pub(super) fn remember(&mut self) {
+        let state = &self.state;
+        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
+        else {
+            self.phase = Phase::Done;
+            return;
+        };
+        if !(state.x.is_finite() && state.z.is_finite() && state.air.is_finite()) {
+            // No plan starts there; the map stays as it is.
+            self.phase = Phase::Done;
+            return;
+        }
+        let altitude = self.settings.altitude;
+        let work = &mut self.iterated;
+        work.map.roll(state.x, altitude);
+        work.map
+            .insert(&self.scan, state.x, state.z, state.air.pitch);
+        work.field.build(&work.map);
+        work.candidates.clear();
+        work.improvements = 0;
+        self.take_up_previous();
+        self.iterated.lattice.start(&LatticeTask {
+            x: self.state.x,
+            z: self.state.z,
+            slope: libm::tan(self.state.air.flight_path),
+            altitude,
+            band: iteration.band,
+            curvature: self.curvature(&limits),
+        });
+        self.phase = Phase::Lattice;
+    }
+
+    /// Curvature [1/m] that the angle of attack allows in level flight at cruise.
+    fn curvature(&self, limits: &AttitudeLimits) -> f64 {
+        let a = &self.airframe;
+        0.5 * a.air_density * a.wing_area * a.lift_alpha * limits.angle_of_attack / a.mass
+    }
+
+    /// The previous plan, from here on, is a candidate.
+    fn take_up_previous(&mut self) {
+        if self.best.sample(self.time).is_none() {
+            return;
+        }
+        let cruise = self.trim.state.airspeed;
+        let mut candidate = self.cruising();
+        let mut last = PathState::of(&self.state);
+        for (stage, knot) in candidate.knots.iter_mut().enumerate().skip(1) {
+            let time = self.time + STAGE_PERIOD * stage as f64;
+            *knot = match self.best.sample(time) {
+                Some(reference) => PathState::of(&reference.state),
+                None => PathState {
+                    x: last.x + cruise * STAGE_PERIOD,
+                    z: last.z,
+                    airspeed: cruise,
+                    flight_path: 0.0,
+                    angle_of_attack: self.trim.state.angle_of_attack(),
+                },
+            };
+            last = *knot;
+        }
+        self.propose(candidate);
+    }
+
+    /// One candidate more, if there is room.
+    fn propose(&mut self, candidate: Candidate) {
+        let candidates = &mut self.iterated.candidates;
+        if candidates.len() < self.settings.paths {
+            let _ = candidates.push(candidate);
+        }
+    }
+
+    /// A candidate at cruise, standing where the aircraft is.
+    fn cruising(&self) -> Candidate {
+        let thrust = self.trim.control.thrust;
+        Candidate {
+            knots: [PathState::of(&self.state); KNOTS],
+            controls: [PathControl {
+                angle_of_attack_rate: 0.0,
+                thrust,
+            }; STAGES],
+            price: f64::INFINITY,
+        }
+    }
+
+    /// One station of the lattice; after the last, its paths, and a tree in the same map.
+    pub(super) fn search_lattice(&mut self) {
+        let work = &mut self.iterated;
+        if work.lattice.advance(&work.field) {
+            return;
+        }
+        let mut paths = heapless::Vec::new();
+        work.lattice.paths(&mut paths);
+        for path in &paths {
+            let candidate = self.along(path);
+            self.propose(candidate);
+        }
+        self.project_map();
+        self.start_tree();
+    }
+
+    /// A lattice path, flown at cruise speed.
+    fn along(&self, path: &LatticePath) -> Candidate {
+        let start = PathState::of(&self.state);
+        let spacing = self.iterated.lattice.spacing();
+        let at = |x: f64| {
+            let stations = ((x - start.x) / spacing).clamp(0.0, (path.len() - 2) as f64);
+            let station = stations as usize;
+            let height = |station: usize| path.get(station).copied().unwrap_or(start.z);
+            let (from, to) = (height(station), height(station + 1));
+            let share = (x - start.x) / spacing - station as f64;
+            (from + (to - from) * share, (to - from) / spacing)
+        };
+        let mut candidate = self.cruising();
+        let step = self.trim.state.airspeed * STAGE_PERIOD;
+        let mut x = start.x;
+        for knot in candidate.knots.iter_mut().skip(1) {
+            let slope = at(x).1;
+            x += step / libm::sqrt(1.0 + slope * slope);
+            let (z, slope) = at(x);
+            *knot = self.steady(x, z, libm::atan(slope));
+        }
+        candidate
+    }
+
+    /// A knot at cruise.
+    fn steady(&self, x: f64, z: f64, flight_path: f64) -> PathState {
+        PathState {
+            x,
+            z,
+            airspeed: self.trim.state.airspeed,
+            flight_path,
+            angle_of_attack: self.trim.state.angle_of_attack(),
+        }
+    }
+
+    /// Writes the map with memory to the grid that the tree grows in.
+    fn project_map(&mut self) {
+        let (x, z) = (self.state.x, self.state.z);
+        self.grid.clear();
+        let window = [
+            [x - GridPoint::AIRCRAFT.col, x + 120.0],
+            [z - GridPoint::AIRCRAFT.row, z + 38.0],
+        ];
+        let grid = &mut self.grid;
+        self.iterated.field.surface(window[0], window[1], |x0, z0| {
+            let row = libm::floor(z0 - z + GridPoint::AIRCRAFT.row) as i32;
+            let col = libm::floor(x0 - x + GridPoint::AIRCRAFT.col) as i32;
+            grid.mark(row, col);
+        });
+    }
+
+    /// The tree's paths that pass some obstacle on another side than every candidate so far.
+    pub(super) fn take_tree_paths(&mut self) {
+        let mut from = 0;
+        let mut taken = 0;
+        while taken < TREE_PATHS {
+            let Some(next) = self.search.next_path(from, &mut self.path) else {
+                break;
+            };
+            from = next;
+            self.points = resample(&self.path, self.settings.rules);
+            let mut candidate = self.cruising();
+            let mut before = self.points[0];
+            for (knot, point) in candidate.knots.iter_mut().zip(&self.points).skip(1) {
+                let slope = libm::atan2(point.row - before.row, point.col - before.col);
+                *knot = self.steady(
+                    self.state.x + point.col - GridPoint::AIRCRAFT.col,
+                    self.state.z + point.row - GridPoint::AIRCRAFT.row,
+                    slope,
+                );
+                before = *point;
+            }
+            let work = &mut self.iterated;
+            let field = &work.field;
+            let known = |other: &Candidate| same_signature(field, &candidate.knots, &other.knots);
+            if !work.candidates.iter().any(known) {
+                taken += 1;
+                self.propose(candidate);
+            }
+        }
+        self.phase = Phase::Linearise;
+    }
+
+    /// Sets up the program of the next candidate to improve, about the candidate itself.
+    pub(super) fn linearise(&mut self) {
+        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
+        else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let work = &mut self.iterated;
+        if work.improvements == work.candidates.len() {
+            work.order = order(&work.candidates);
+        }
+        let Some(index) = work.turn(&iteration) else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let Some(candidate) = work.candidates.get(index) else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let frame = Frame {
+            airframe: &self.airframe,
+            trim: &self.trim,
+            start: PathState::of(&self.state),
+        };
+        let keep = Keep {
+            margin: iteration.margin + ROUNDING,
+            floor: self.settings.altitude - iteration.band,
+            ceiling: self.settings.altitude + iteration.band,
+        };
+        let cruise = self.trim.state.airspeed;
+        self.corridor
+            .separate(&work.field, &candidate.knots, cruise, &keep);
+        frame.linearise(candidate, &mut work.dynamics);
+        if self
+            .shared
+            .condense_varying(&work.dynamics, &self.settings.weights)
+            .is_err()
+        {
+            // A candidate without a model is passed over.
+            work.improvements += 1;
+            return;
+        }
+        self.problem.bounds.set_corridor(&self.corridor);
+        let AttitudeLimits {
+            angle_of_attack,
+            flight_path,
+        } = limits;
+        let side = [angle_of_attack, flight_path].map(|limit| ANGLE_SCALE * limit);
+        self.problem
+            .bounds
+            .set_attitude(side, side.map(|limit| -limit));
+        self.problem.initial = frame.deviation(&frame.start, 0).into();
+        self.problem.cost_limit = f64::INFINITY;
+        self.solver.start(&self.shared, &self.problem);
+        self.phase = Phase::Improve;
+    }
+
+    /// Some steps of the program; at its end, the roll-out replaces the candidate.
+    pub(super) fn improve(&mut self) {
+        let Some(status) = self.solve_some() else {
+            return;
+        };
+        self.summary.candidates += 1;
+        let solved = status == Status::Optimal
+            && self.solver.solution(&self.shared, &mut self.candidate) == Status::Optimal;
+        if solved {
+            self.fly_out();
+        }
+        self.iterated.improvements += 1;
+        self.phase = Phase::Linearise;
+    }
+
+    fn fly_out(&mut self) {
+        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
+        else {
+            return;
+        };
+        let mut flown = self.cruising();
+        flown.roll_out(
+            &self.candidate,
+            &self.airframe,
+            &self.trim,
+            &limits,
+            iteration.thrust_max,
+        );
+        let judgement = self.judge(&flown, &iteration);
+        flown.price = judgement.price;
+        self.summary.feasible += usize::from(judgement.lack <= FEASIBLE);
+        if judgement.price < self.best_price {
+            self.best_price = judgement.price;
+            self.summary.cost = judgement.effort;
+            self.summary.violation = judgement.lack;
+            self.best
+                .fly_out(&flown.knots, &flown.controls, &self.airframe, self.time);
+        }
+        let work = &mut self.iterated;
+        if let Some(index) = work.turn(&iteration)
+            && let Some(place) = work.candidates.get_mut(index)
+        {
+            *place = flown;
+        }
+    }
+}
+
+/// Candidates from the cheapest to the dearest.
+fn order(candidates: &[Candidate]) -> [usize; CANDIDATES] {
+    let mut order = [0; CANDIDATES];
+    for (index, candidate) in candidates.iter().enumerate() {
+        let before = |(other, price): (usize, f64)| {
+            price
+                .total_cmp(&candidate.price)
+                .then(other.cmp(&index))
+                .is_lt()
+        };
+        let prices = candidates.iter().map(|other| other.price).enumerate();
+        let place = prices.filter(|other| before(*other)).count();
+        if let Some(place) = order.get_mut(place) {
+            *place = index;
+        }
+    }
+    order
+}

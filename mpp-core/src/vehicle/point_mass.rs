@@ -1,0 +1,184 @@
+//! Motion of the point mass: the equations of motion with the rotation in balance, which it reaches
+//! within a tenth of a second. What plans are flown out by.
+//!
+//! The angle of attack is a state, its rate a control: a plan then never asks for a jump of lift.
+
+use super::{AirState, Airframe, Control, GRAVITY, VehicleState};
+use nalgebra::{Matrix5, SMatrix};
+
+/// Least airspeed of a roll-out [m/s]: the equations divide by it.
+const LEAST_AIRSPEED: f64 = 3.0;
+
+/// State of the point mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathState {
+    /// Downrange distance [m].
+    pub x: f64,
+    /// Height [m].
+    pub z: f64,
+    /// Airspeed [m/s].
+    pub airspeed: f64,
+    /// Flight path angle [rad].
+    pub flight_path: f64,
+    /// Angle of attack [rad].
+    pub angle_of_attack: f64,
+}
+
+/// Control of the point mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathControl {
+    /// Rate of the angle of attack [rad/s].
+    pub angle_of_attack_rate: f64,
+    /// Thrust [N].
+    pub thrust: f64,
+}
+
+impl PathState {
+    /// Of the whole vehicle's state.
+    #[must_use]
+    pub fn of(state: &VehicleState) -> Self {
+        Self {
+            x: state.x,
+            z: state.z,
+            airspeed: state.air.airspeed,
+            flight_path: state.air.flight_path,
+            angle_of_attack: state.air.angle_of_attack(),
+        }
+    }
+
+    /// The state after `dt` [s] of a constant control, in `steps` steps of the classic Runge-Kutta
+    /// method.
+    #[must_use]
+    pub fn after(&self, airframe: &Airframe, control: &PathControl, dt: f64, steps: u8) -> Self {
+        let h = dt / f64::from(steps.max(1));
+        let mut state = *self;
+        for _ in 0..steps.max(1) {
+            state = state.runge_kutta(airframe, control, h);
+        }
+        state
+    }
+
+    fn runge_kutta(&self, airframe: &Airframe, control: &PathControl, h: f64) -> Self {
+        let k1 = self.rate(airframe, control);
+        let k2 = self.moved(&k1, 0.5 * h).rate(airframe, control);
+        let k3 = self.moved(&k2, 0.5 * h).rate(airframe, control);
+        let k4 = self.moved(&k3, h).rate(airframe, control);
+        let ends = self.moved(&k1, h / 6.0).moved(&k4, h / 6.0);
+        ends.moved(&k2, h / 3.0).moved(&k3, h / 3.0)
+    }
+
+    /// Time derivative.
+    #[must_use]
+    pub fn rate(&self, airframe: &Airframe, control: &PathControl) -> Self {
+        let a = airframe;
+        let (sin_path, cos_path) = libm::sincos(self.flight_path);
+        let (sin_alpha, cos_alpha) = libm::sincos(self.angle_of_attack);
+        let v = self.airspeed;
+        let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
+        let lift = a.lift_zero + a.lift_alpha * self.angle_of_attack;
+        let drag = a.drag_zero + a.drag_induced * (lift * lift);
+        Self {
+            x: v * cos_path,
+            z: v * sin_path,
+            airspeed: (control.thrust * cos_alpha - pressure_area * drag) / a.mass
+                - GRAVITY * sin_path,
+            flight_path: (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
+                - GRAVITY * cos_path / v,
+            angle_of_attack: control.angle_of_attack_rate,
+        }
+    }
+
+    /// `self + h rate`
+    fn moved(&self, rate: &Self, h: f64) -> Self {
+        Self {
+            x: self.x + h * rate.x,
+            z: self.z + h * rate.z,
+            airspeed: (self.airspeed + h * rate.airspeed).max(LEAST_AIRSPEED),
+            flight_path: self.flight_path + h * rate.flight_path,
+            angle_of_attack: self.angle_of_attack + h * rate.angle_of_attack,
+        }
+    }
+
+    /// The whole vehicle's state and the controls that keep its rotation in balance.
+    #[must_use]
+    pub fn reference(&self, airframe: &Airframe, control: &PathControl) -> (VehicleState, Control) {
+        let a = airframe;
+        let alpha = self.angle_of_attack;
+        let rate = self.rate(airframe, control);
+        let moment =
+            a.moment_zero + a.moment_alpha * alpha + a.moment_alpha_rate * rate.angle_of_attack;
+        let state = VehicleState {
+            x: self.x,
+            z: self.z,
+            air: AirState {
+                airspeed: self.airspeed,
+                pitch: self.flight_path + alpha,
+                pitch_rate: rate.flight_path + rate.angle_of_attack,
+                flight_path: self.flight_path,
+            },
+        };
+        let feedforward = Control {
+            thrust: control.thrust,
+            elevator: -moment / a.moment_elevator,
+        };
+        (state, feedforward)
+    }
+
+    /// How the state after `dt` [s] depends on state and control, by the matrix exponential (to the
+    /// fourth order) of the Jacobian halfway: 5 x 5 on `(x, z, v, gamma, alpha)` and 5 x 2 on `(alpha
+    /// rate, thrust)`.
+    #[must_use]
+    pub fn sensitivity(
+        &self,
+        airframe: &Airframe,
+        control: &PathControl,
+        dt: f64,
+    ) -> (Matrix5<f64>, SMatrix<f64, 5, 2>) {
+        let middle = self.moved(&self.rate(airframe, control), 0.5 * dt);
+        let (state, input) = middle.jacobian(airframe, control);
+        let step = state * dt;
+        let square = step * step;
+        let mean =
+            Matrix5::identity() + step * 0.5 + square * (1.0 / 6.0) + square * step * (1.0 / 24.0);
+        (Matrix5::identity() + step * mean, mean * input * dt)
+    }
+
+    /// Jacobian of [`Self::rate`] in state and control.
+    #[must_use]
+    pub fn jacobian(
+        &self,
+        airframe: &Airframe,
+        control: &PathControl,
+    ) -> (Matrix5<f64>, SMatrix<f64, 5, 2>) {
+        let a = airframe;
+        let (sin_path, cos_path) = libm::sincos(self.flight_path);
+        let (sin_alpha, cos_alpha) = libm::sincos(self.angle_of_attack);
+        let v = self.airspeed;
+        let density_area = a.air_density * a.wing_area;
+        let pressure_area = 0.5 * density_area * (v * v);
+        let lift = a.lift_zero + a.lift_alpha * self.angle_of_attack;
+        let drag = a.drag_zero + a.drag_induced * (lift * lift);
+        let path_rate = self.rate(airframe, control).flight_path;
+        let speed_alpha = (-control.thrust * sin_alpha
+            - 2.0 * pressure_area * a.drag_induced * lift * a.lift_alpha)
+            / a.mass;
+        let path_alpha = (pressure_area * a.lift_alpha + control.thrust * cos_alpha) / (a.mass * v);
+        #[rustfmt::skip]
+        let state = Matrix5::new(
+            0.0, 0.0, cos_path,                                     -v * sin_path,          0.0,
+            0.0, 0.0, sin_path,                                     v * cos_path,           0.0,
+            0.0, 0.0, -density_area * v * drag / a.mass,            -GRAVITY * cos_path,    speed_alpha,
+            0.0, 0.0, density_area * lift / a.mass - path_rate / v, GRAVITY * sin_path / v, path_alpha,
+            0.0, 0.0, 0.0,                                          0.0,                    0.0,
+        );
+        #[rustfmt::skip]
+        let input = SMatrix::<f64, 5, 2>::new(
+            0.0, 0.0,
+            0.0, 0.0,
+            0.0, cos_alpha / a.mass,
+            0.0, sin_alpha / (a.mass * v),
+            1.0, 0.0,
+        );
+        (state, input)
+    }
+}
