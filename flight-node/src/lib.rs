@@ -17,10 +17,32 @@
 //!
 //! A plan is used `latency_ticks` after its scan and not before, however fast it was found: what
 //! flies does not depend on the machine.
+//!
+//! # Two tasks
+//!
+//! ```text
+//! bytes -> StepTask --- Order ----> PlanTask     1, 2, 3 | 4
+//! bytes <-          <-- Answer ---
+//! ```
+//!
+//! [`StepTask`] has the link and the 100 Hz step, [`PlanTask`] the planner; they share nothing and
+//! send each other values. [`FlightNode`] runs both in one thread. A flight computer runs the step
+//! in an interrupt, at any instruction of the planner, with the same result.
 #![no_std]
 #![forbid(unsafe_code)]
 
 mod convert;
-mod session;
+mod mail;
+mod node;
+mod plan_task;
+mod step_task;
 
-pub use session::FlightNode;
+pub use mail::{Answer, Order, Plan};
+pub use node::FlightNode;
+pub use plan_task::{PlanTask, Progress};
+pub use step_task::{Pace, StepTask};
+
+/// Time of a tick [s].
+fn time(tick: u32) -> f64 {
+    f64::from(tick) * mpp_core::config::TICK_PERIOD
+}

@@ -249,6 +249,11 @@ fn rejection_and_every_cause() {
             "0d4d500109ac0208c86fe27c6b00",
         ),
         (rejection(PlannerBusy), "0c4d500109ac020928dbde6f00"),
+        (
+            rejection(BytesLost { count: 70_000 }),
+            "0f4d500109ac020af0a2046eeb95f600",
+        ),
+        (rejection(PlannerRestarted), "0c4d500109ac020b04bad08100"),
     ]);
 }
 

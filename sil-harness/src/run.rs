@@ -11,8 +11,8 @@ use crate::scenario::{ALTITUDE, Scenario};
 use crate::sensors::AirDataSensors;
 use crate::world::ObstacleField;
 use hil_protocol::{
-    ActuatorCommand, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, PlanReport, Role,
-    SensorFrame, StepReport,
+    ActuatorCommand, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, PlanReport,
+    Rejection, Role, SensorFrame, StepReport,
 };
 use mpp_core::config::{STAGES, TICK_PERIOD};
 use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
@@ -73,30 +73,28 @@ pub fn fly(
     mut watch: impl FnMut(&Moment<'_>),
 ) -> Result<FlightLog, FlyError> {
     let mut aircraft = Aircraft::new(scenario).map_err(FlyError::Trim)?;
-    greet(scenario, link)?;
     let field = scenario.field();
+    let mut log = FlightLog::begin(header(scenario, &field));
+    greet(scenario, link, &mut log.rejections)?;
     let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
     let mut eyes = Eyes::new(scenario);
     let mut score = Score::new(ALTITUDE);
-    let mut log = FlightLog::begin(header(scenario, &field));
     let mut end = None;
     let mut holds_trim = true;
     let mut flown = 0;
     while flown < scenario.ticks && end.is_none() {
         let before = *aircraft.state();
         let measured = sensors.measure(&before);
-        if flown % scenario.replan_ticks == 0 {
-            let ranges = eyes.scan(&before, &field);
-            link.send(&Message::LidarScan(wire_scan(scenario, flown, &ranges)))?;
-        }
-        link.send(&Message::SensorFrame(SensorFrame {
+        let scan = (flown % scenario.replan_ticks == 0)
+            .then(|| wire_scan(scenario, flown, &eyes.scan(&before, &field)));
+        let frame = SensorFrame {
             tick: flown,
             airspeed: measured.airspeed,
             pitch: measured.pitch,
             x: before.x,
             z: before.z,
-        }))?;
-        let answer = receive_answer(link, flown, &mut log.rejections)?;
+        };
+        let answer = exchange(scenario, link, scan, frame, &mut log.rejections)?;
         let wind = aircraft.wind();
         let applied = aircraft.step(control(&answer)).map_err(FlyError::Plant)?;
         let tick = Tick {
@@ -144,23 +142,44 @@ impl Eyes {
 }
 
 /// Hello both ways, and the configuration.
-fn greet(scenario: &Scenario, link: &mut dyn Link) -> Result<(), LinkError> {
-    let own = Hello {
+fn greet(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    rejections: &mut Vec<RejectionEntry>,
+) -> Result<(), LinkError> {
+    link.send(&Message::Hello(own_hello()))?;
+    let peer = loop {
+        match link.receive("hello")? {
+            Message::Hello(peer) => break peer,
+            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
+            other => return Err(unexpected("hello", &other)),
+        }
+    };
+    configure(scenario, link, &peer, rejections)
+}
+
+fn own_hello() -> Hello {
+    Hello {
         role: Role::Harness,
         software: software(),
         tick_period_us: (TICK_PERIOD * 1e6) as u32,
         beams_max: hil_protocol::MAX_BEAMS as u16,
         stages: STAGES as u16,
-    };
-    link.send(&Message::Hello(own))?;
-    let peer = match link.receive("hello")? {
-        Message::Hello(peer) => peer,
-        other => return Err(unexpected("hello", &other)),
-    };
+    }
+}
+
+/// Checks the core that said hello and configures it.
+fn configure(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    peer: &Hello,
+    rejections: &mut Vec<RejectionEntry>,
+) -> Result<(), LinkError> {
     if peer.role != Role::Core {
         let why = "the other side is a harness too: give the address of a core";
         return Err(LinkError::Peer(why.to_owned()));
     }
+    let own = own_hello();
     if peer.tick_period_us != own.tick_period_us
         || usize::from(peer.beams_max) < scenario.lidar.beams
     {
@@ -170,11 +189,59 @@ fn greet(scenario: &Scenario, link: &mut dyn Link) -> Result<(), LinkError> {
         )));
     }
     link.send(&Message::Configure(scenario.configure()))?;
-    match link.receive("the reply to the configuration")? {
-        Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => Ok(()),
-        Message::ConfigureReply(reply) => Err(LinkError::Refused(reply.verdict)),
-        other => Err(unexpected("the reply to the configuration", &other)),
+    let awaited = "the reply to the configuration";
+    loop {
+        match link.receive(awaited)? {
+            Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => {
+                return Ok(());
+            }
+            Message::ConfigureReply(reply) => return Err(LinkError::Refused(reply.verdict)),
+            // A core that starts says hello unasked, and once more when it is greeted.
+            Message::Hello(_) => {}
+            // Of frames that came before the configuration.
+            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
+            other => return Err(unexpected(awaited, &other)),
+        }
     }
+}
+
+/// Sends a tick's measurements and gets the answer. A core that restarts meanwhile, which its
+/// unasked hello tells, is configured anew and gets them once more.
+fn exchange(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    scan: Option<LidarScan>,
+    frame: SensorFrame,
+    rejections: &mut Vec<RejectionEntry>,
+) -> Result<Answer, LinkError> {
+    const RESTARTS: usize = 3;
+    let scan = scan.map(Message::LidarScan);
+    for _ in 0..=RESTARTS {
+        if let Some(scan) = &scan {
+            link.send(scan)?;
+        }
+        link.send(&Message::SensorFrame(frame))?;
+        match receive_answer(link, frame.tick, rejections)? {
+            Received::Answer(answer) => return Ok(*answer),
+            Received::Hello(peer) => {
+                rejections.push(RejectionEntry {
+                    tick: u64::from(frame.tick),
+                    cause: "CoreRestarted".to_owned(),
+                });
+                configure(scenario, link, &peer, rejections)?;
+            }
+        }
+    }
+    Err(LinkError::Peer(format!(
+        "the core restarts again and again at tick {}",
+        frame.tick
+    )))
+}
+
+/// What came instead of an answer, or the answer.
+enum Received {
+    Answer(Box<Answer>),
+    Hello(Hello),
 }
 
 fn unexpected(awaited: &str, message: &Message) -> LinkError {
@@ -189,27 +256,32 @@ fn receive_answer(
     link: &mut dyn Link,
     tick: u32,
     rejections: &mut Vec<RejectionEntry>,
-) -> Result<Answer, LinkError> {
+) -> Result<Received, LinkError> {
     let awaited = format!("the actuator command of tick {tick}");
     let mut step = None;
     let mut plan = None;
     loop {
         match link.receive(&awaited)? {
             Message::ActuatorCommand(command) if command.tick == tick => {
-                return Ok(Answer {
+                return Ok(Received::Answer(Box::new(Answer {
                     command,
                     step,
                     plan,
-                });
+                })));
             }
             Message::StepReport(report) => step = Some(report),
             Message::PlanReport(report) => plan = Some(plan_entry(&report)),
-            Message::Rejection(rejection) => rejections.push(RejectionEntry {
-                tick: u64::from(rejection.tick),
-                cause: format!("{:?}", rejection.cause),
-            }),
+            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
+            Message::Hello(peer) => return Ok(Received::Hello(peer)),
             other => return Err(unexpected(&awaited, &other)),
         }
+    }
+}
+
+fn rejection_entry(rejection: &Rejection) -> RejectionEntry {
+    RejectionEntry {
+        tick: u64::from(rejection.tick),
+        cause: format!("{:?}", rejection.cause),
     }
 }
 

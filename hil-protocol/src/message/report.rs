@@ -109,4 +109,11 @@ pub enum RejectionCause {
     },
     /// A scan came while the planner still works on the one before.
     PlannerBusy,
+    /// More bytes came than could be taken in.
+    BytesLost {
+        /// How many are gone.
+        count: u32,
+    },
+    /// The planner was stuck: it was started anew, and its cycle came to nothing.
+    PlannerRestarted,
 }

@@ -172,7 +172,9 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::NonFiniteSensor,
             RejectionCause::NotConfigured,
             RejectionCause::PlannerBusy,
+            RejectionCause::PlannerRestarted,
         ]),
+        any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
     ]
 }
 

@@ -83,17 +83,28 @@ pub enum Verdict {
     Nothing,
 }
 
+/// What the next slice does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
+pub enum Phase {
+    /// Nothing: no cycle is under way.
     Idle,
+    /// Builds the map.
     Map,
+    /// Iterated: takes the scan into the map with memory.
     Remember,
+    /// Iterated: searches one station of the lattice.
     Lattice,
+    /// Grows a tree.
     Tree,
+    /// Iterated: sets up a candidate's program.
     Linearise,
+    /// Iterated: solves it, and flies it out.
     Improve,
+    /// Traces the corridor of a path.
     Corridor,
+    /// Solves the program of a corridor.
     Program,
+    /// Nothing: the cycle has ended.
     Done,
 }
 
@@ -258,6 +269,12 @@ impl Planner {
             Some(_) => Phase::Remember,
             None => Phase::Map,
         };
+    }
+
+    /// What the next slice does.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
     }
 
     /// Whether a cycle is under way.

@@ -1,0 +1,53 @@
+//! What step and planner tell each other.
+
+use hil_protocol::Configure;
+use mpp_core::planner::{PlanSummary, SetupError, Verdict};
+use mpp_core::sense::LidarScan;
+use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::VehicleState;
+
+/// From the step to the planner.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the scan on"
+)]
+#[derive(Clone, Debug)]
+pub enum Order {
+    /// Sets the planner up, whatever it was doing; answered by [`Answer::SetUp`].
+    SetUp(Configure),
+    /// Starts a cycle; answered by [`Answer::Plan`].
+    Begin {
+        /// The tick of the scan.
+        tick: u32,
+        /// Where the aircraft was then.
+        state: VehicleState,
+        /// What it saw.
+        scan: LidarScan,
+    },
+}
+
+/// From the planner to the step.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the trajectory on"
+)]
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// Whether the planner can fly with the configuration.
+    SetUp(Result<(), SetupError>),
+    /// What a cycle came to.
+    Plan(Plan),
+}
+
+/// What a cycle came to.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The tick of its scan.
+    pub scan_tick: u32,
+    /// What it has to offer.
+    pub verdict: Verdict,
+    /// How it went.
+    pub summary: PlanSummary,
+    /// The best trajectory, if there is one.
+    pub trajectory: Trajectory,
+}

@@ -1,0 +1,131 @@
+//! The planner's side: cycles, slice by slice.
+
+use crate::convert;
+use crate::mail::{Answer, Order, Plan};
+use crate::time;
+use mpp_core::planner::Planner;
+
+/// What a call of [`PlanTask::advance`] came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// Nothing to do until a later tick grants more slices, or an order comes.
+    Waiting,
+    /// A slice was done.
+    Working,
+    /// An answer is there: [`PlanTask::answer`].
+    Answered,
+}
+
+/// A cycle under way.
+#[derive(Clone, Copy, Debug)]
+struct Cycle {
+    tick: u32,
+    slices: u32,
+}
+
+/// The planner and its orders. Large: place it in a `static` or a box.
+///
+/// A cycle gets `slices_per_tick` slices for each tick from its scan until its plan is due. When
+/// they are used up, or there is no more to do, or the tick at which the plan is due has gone by,
+/// it ends with what it has.
+#[derive(Clone, Debug)]
+pub struct PlanTask {
+    planner: Planner,
+    latency: u32,
+    slices_per_tick: u32,
+    cycle: Option<Cycle>,
+    answer: Option<Due>,
+}
+
+/// An answer to be collected.
+#[derive(Clone, Copy, Debug)]
+enum Due {
+    SetUp(Result<(), mpp_core::planner::SetupError>),
+    Plan(u32),
+}
+
+impl PlanTask {
+    /// A task that waits for its first order.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            planner: Planner::new(),
+            latency: 0,
+            slices_per_tick: 0,
+            cycle: None,
+            answer: None,
+        }
+    }
+
+    /// The planner, to look at between slices.
+    #[must_use]
+    pub fn planner(&self) -> &Planner {
+        &self.planner
+    }
+
+    /// Takes an order; drops what was under way.
+    pub fn take(&mut self, order: &Order) {
+        self.cycle = None;
+        self.answer = None;
+        match order {
+            Order::SetUp(configure) => {
+                self.latency = configure.latency_ticks;
+                self.slices_per_tick = configure.slices_per_tick;
+                // The step has checked the configuration before it sent it on.
+                if let Ok(settings) = convert::settings(configure) {
+                    self.answer = Some(Due::SetUp(self.planner.set_up(&settings)));
+                }
+            }
+            Order::Begin { tick, state, scan } => {
+                self.planner.begin(time(*tick), state, scan);
+                self.cycle = Some(Cycle {
+                    tick: *tick,
+                    slices: 0,
+                });
+            }
+        }
+    }
+
+    /// Does at most one slice; `clock` is the last tick that was stepped.
+    pub fn advance(&mut self, clock: u32) -> Progress {
+        if self.answer.is_some() {
+            return Progress::Answered;
+        }
+        let Some(cycle) = &mut self.cycle else {
+            return Progress::Waiting;
+        };
+        let late = clock >= cycle.tick.saturating_add(self.latency);
+        let quota = self.latency.saturating_mul(self.slices_per_tick);
+        if late || cycle.slices >= quota || !self.planner.is_working() {
+            self.answer = Some(Due::Plan(cycle.tick));
+            self.cycle = None;
+            return Progress::Answered;
+        }
+        let ticks = clock.saturating_add(1).saturating_sub(cycle.tick);
+        if cycle.slices >= ticks.saturating_mul(self.slices_per_tick) {
+            return Progress::Waiting;
+        }
+        cycle.slices = cycle.slices.saturating_add(1);
+        self.planner.advance();
+        Progress::Working
+    }
+
+    /// The answer that is there, once.
+    pub fn answer(&mut self) -> Option<Answer> {
+        Some(match self.answer.take()? {
+            Due::SetUp(result) => Answer::SetUp(result),
+            Due::Plan(scan_tick) => Answer::Plan(Plan {
+                scan_tick,
+                verdict: self.planner.finish(),
+                summary: *self.planner.summary(),
+                trajectory: self.planner.best().clone(),
+            }),
+        })
+    }
+}
+
+impl Default for PlanTask {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,305 @@
+//! The step's side: the link, the 100 Hz step, the hand-over of plans.
+
+mod tick;
+
+use crate::convert;
+use crate::mail::{Answer, Order, Plan};
+use hil_protocol::{
+    Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, LidarScan as WireScan, MAX_FRAME,
+    Message, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode,
+};
+use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
+use mpp_core::flight::FlightLoop;
+use mpp_core::health::Health;
+use mpp_core::planner::{PlanSummary, Verdict};
+use mpp_core::sense::LidarScan;
+use mpp_core::trajectory::Trajectory;
+
+/// What happens at the tick at which a plan is due and the planner has not answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// The tick waits: time is the harness's, and stands still. The planner does all its slices.
+    Lockstep,
+    /// The step goes on with the trajectory at hand. The planner ends its cycle at its next slice,
+    /// and the plan is taken over at the tick after.
+    RealTime,
+}
+
+/// A flight under way.
+struct Flight {
+    configure: Configure,
+    /// Whether the planner was set up and the configuration accepted.
+    ready: bool,
+    control: FlightLoop,
+    last_tick: Option<u32>,
+    /// The tick of the scan that the planner works on.
+    cycle: Option<u32>,
+    /// The tick of the last scan that started a cycle.
+    last_cycle: Option<u32>,
+    /// The tick of the trajectory being flown.
+    plan_tick: Option<u32>,
+    /// A checked scan that waits for its sensor frame.
+    scan_tick: Option<u32>,
+}
+
+/// The link and the 100 Hz step. It shares nothing with the planner: what [`StepTask::order`] gives
+/// goes to the [`crate::PlanTask`], what that answers comes back to [`StepTask::answer`].
+pub struct StepTask {
+    pace: Pace,
+    decoder: Decoder,
+    buffer: [u8; MAX_FRAME],
+    scan: LidarScan,
+    flight: Option<Flight>,
+    order: Option<Order>,
+    /// A plan that is not due yet.
+    plan: Option<Plan>,
+    /// The sensor frame that waits for a plan.
+    held: Option<WireFrame>,
+    clock: u32,
+}
+
+impl StepTask {
+    /// A task that waits for a hello.
+    #[must_use]
+    pub const fn new(pace: Pace) -> Self {
+        Self {
+            pace,
+            decoder: Decoder::new(),
+            buffer: [0; MAX_FRAME],
+            scan: LidarScan::new(),
+            flight: None,
+            order: None,
+            plan: None,
+            held: None,
+            clock: 0,
+        }
+    }
+
+    /// Says hello unasked: a core that starts while a flight is under way is noticed by it.
+    pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
+        self.greet(&mut send);
+    }
+
+    /// Takes a byte from the link; `send` gets every frame of the answer, whole. Nothing is to be
+    /// given to a task that [waits](StepTask::waits).
+    pub fn receive(&mut self, byte: u8, mut send: impl FnMut(&[u8])) {
+        match self.decoder.push(byte) {
+            None => {}
+            Some(Ok(message)) => self.handle(&message, &mut send),
+            Some(Err(fault)) => self.reject(RejectionCause::Frame(fault), &mut send),
+        }
+    }
+
+    /// Whether the next byte of the link has to wait for an answer of the planner.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        self.held.is_some() || self.flight.as_ref().is_some_and(|flight| !flight.ready)
+    }
+
+    /// The order for the planner that is there, once.
+    pub fn order(&mut self) -> Option<Order> {
+        self.order.take()
+    }
+
+    /// Takes an answer of the planner.
+    pub fn answer(&mut self, answer: Answer, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        match answer {
+            Answer::Plan(plan) => {
+                // One of a session that has ended is nobody's.
+                if self.flight.as_ref().and_then(|flight| flight.cycle) == Some(plan.scan_tick) {
+                    self.plan = Some(plan);
+                }
+            }
+            Answer::SetUp(result) => self.set_up_done(result.map_err(convert::setup_verdict), send),
+        }
+        if let Some(frame) = self.held.take() {
+            self.tick(&frame, send);
+        }
+    }
+
+    /// The planner was lost and starts anew: its cycle came to nothing.
+    pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        self.order = Some(Order::SetUp(flight.configure));
+        if !flight.ready {
+            return;
+        }
+        let cycle = flight.cycle;
+        self.reject(RejectionCause::PlannerRestarted, send);
+        if let Some(scan_tick) = cycle
+            && self.plan.is_none()
+        {
+            self.plan = Some(Plan {
+                scan_tick,
+                verdict: Verdict::Nothing,
+                summary: PlanSummary {
+                    cost: f64::INFINITY,
+                    violation: f64::INFINITY,
+                    ..PlanSummary::default()
+                },
+                trajectory: Trajectory::new(),
+            });
+        }
+        if let Some(frame) = self.held.take() {
+            self.tick(&frame, send);
+        }
+    }
+
+    /// Bytes of the link were lost before they came here.
+    pub fn bytes_lost(&mut self, count: u32, mut send: impl FnMut(&[u8])) {
+        self.reject(RejectionCause::BytesLost { count }, &mut send);
+    }
+
+    /// The last tick of this flight that was stepped, if any was.
+    #[must_use]
+    pub fn last_tick(&self) -> Option<u32> {
+        self.flight.as_ref().and_then(|flight| flight.last_tick)
+    }
+
+    /// How far the planner may go, in ticks: the clock of [`crate::PlanTask::advance`].
+    #[must_use]
+    pub fn clock(&self) -> u32 {
+        self.clock
+    }
+
+    /// What went wrong so far in this flight; none before it is configured.
+    #[must_use]
+    pub fn health(&self) -> Option<&Health> {
+        self.flight.as_ref().map(|flight| flight.control.health())
+    }
+
+    fn handle(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
+        match message {
+            Message::Hello(_) => self.greet(send),
+            Message::Configure(configure) => self.configure(configure, send),
+            Message::LidarScan(scan) => self.take_scan(scan, send),
+            Message::SensorFrame(frame) => self.sensor_frame(frame, send),
+            other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
+        }
+    }
+
+    fn emit(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
+        // The buffer holds the longest message, so this cannot fail.
+        if let Ok(frame) = encode(message, &mut self.buffer) {
+            send(frame);
+        }
+    }
+
+    fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
+        let tick = self.last_tick().unwrap_or(0);
+        self.emit(&Message::Rejection(Rejection { tick, cause }), send);
+    }
+
+    /// A hello starts a session anew, wherever the last one was.
+    fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
+        self.flight = None;
+        self.plan = None;
+        let hello = Hello {
+            role: Role::Core,
+            software: software(),
+            tick_period_us: (TICK_PERIOD * 1e6) as u32,
+            beams_max: MAX_BEAMS as u16,
+            stages: STAGES as u16,
+        };
+        self.emit(&Message::Hello(hello), send);
+    }
+
+    fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
+        match self.prepare(configure) {
+            Ok(flight) => {
+                self.flight = Some(flight);
+                self.order = Some(Order::SetUp(*configure));
+            }
+            Err(verdict) => self.reply(verdict, send),
+        }
+    }
+
+    /// A flight that waits for the planner to be set up.
+    fn prepare(&self, configure: &Configure) -> Result<Flight, ConfigureVerdict> {
+        if self.flight.is_some() {
+            return Err(ConfigureVerdict::AlreadyConfigured);
+        }
+        let settings = convert::settings(configure)?;
+        Ok(Flight {
+            configure: *configure,
+            ready: false,
+            control: FlightLoop::new(&settings).map_err(convert::setup_verdict)?,
+            last_tick: None,
+            cycle: None,
+            last_cycle: None,
+            plan_tick: None,
+            scan_tick: None,
+        })
+    }
+
+    fn set_up_done(&mut self, result: Result<(), ConfigureVerdict>, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        if flight.ready {
+            // A planner that was restarted in flight.
+            return;
+        }
+        match result {
+            Ok(()) => {
+                flight.ready = true;
+                self.reply(ConfigureVerdict::Accepted, send);
+            }
+            Err(verdict) => {
+                self.flight = None;
+                self.reply(verdict, send);
+            }
+        }
+    }
+
+    fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
+        self.emit(&Message::ConfigureReply(ConfigureReply { verdict }), send);
+    }
+
+    fn take_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let (beams, range_max) = (flight.configure.beams, flight.configure.range_max);
+        convert::scan(wire, &mut self.scan);
+        match self.scan.check(usize::from(beams), f64::from(range_max)) {
+            Ok(()) => flight.scan_tick = Some(wire.tick),
+            Err(error) => {
+                flight.scan_tick = None;
+                self.reject(convert::scan_rejection(error), send);
+            }
+        }
+    }
+
+    fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let expected = flight
+            .last_tick
+            .map_or(frame.tick, |last| last.saturating_add(1));
+        if frame.tick != expected {
+            let found = frame.tick;
+            self.reject(RejectionCause::TickOrder { expected, found }, send);
+            if found < expected {
+                // An old frame: the step for it has been made.
+                return;
+            }
+        }
+        self.tick(frame, send);
+    }
+}
+
+/// This crate's version.
+fn software() -> [u8; 3] {
+    let part = |text: &str| text.parse().unwrap_or(0);
+    [
+        part(env!("CARGO_PKG_VERSION_MAJOR")),
+        part(env!("CARGO_PKG_VERSION_MINOR")),
+        part(env!("CARGO_PKG_VERSION_PATCH")),
+    ]
+}

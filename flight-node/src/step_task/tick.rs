@@ -1,0 +1,153 @@
+//! One tick: take over a plan that is due, step, start a cycle.
+
+use super::{Pace, StepTask};
+use crate::convert;
+use crate::mail::{Order, Plan};
+use crate::time;
+use hil_protocol::SensorFrame as WireFrame;
+use hil_protocol::{ActuatorCommand, Message, PlanOutcome, PlanReport, RejectionCause};
+use mpp_core::estimate::{Innovation, Verdict};
+use mpp_core::planner::PlanSummary;
+
+impl StepTask {
+    /// One tick, as the crate's documentation describes it.
+    pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        if self.plan_is_due(frame.tick) {
+            match self.plan.take() {
+                Some(plan) => self.take_over(frame.tick, &plan, send),
+                None if self.pace == Pace::RealTime => {}
+                None => {
+                    // The slices of all ticks before this one are granted.
+                    self.clock = frame.tick.saturating_sub(1);
+                    self.held = Some(*frame);
+                    return;
+                }
+            }
+        }
+        self.step(frame, send);
+        self.start_cycle(frame.tick, send);
+        self.clock = frame.tick;
+    }
+
+    fn plan_is_due(&self, tick: u32) -> bool {
+        self.flight.as_ref().is_some_and(|flight| {
+            flight
+                .cycle
+                .is_some_and(|scan| tick >= scan.saturating_add(flight.configure.latency_ticks))
+        })
+    }
+
+    /// Takes over what a cycle came to.
+    fn take_over(&mut self, tick: u32, plan: &Plan, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        flight.cycle = None;
+        let scan_tick = plan.scan_tick;
+        let adoption = flight
+            .control
+            .adopt(time(tick), plan.verdict, &plan.trajectory);
+        let outcome = convert::outcome(adoption);
+        if flight.control.trajectory().is_none() {
+            flight.plan_tick = None;
+        } else if outcome != PlanOutcome::KeptPrevious {
+            flight.plan_tick = Some(scan_tick);
+        }
+        let PlanSummary {
+            candidates,
+            feasible,
+            tree_runs,
+            slices,
+            complete,
+            cost,
+            violation,
+            ..
+        } = plan.summary;
+        let report = PlanReport {
+            scan_tick,
+            used_from_tick: tick,
+            outcome,
+            candidates: candidates as u16,
+            feasible: feasible as u16,
+            tree_runs: tree_runs as u16,
+            slices: slices as u32,
+            cost,
+            violation,
+            complete,
+        };
+        self.emit(&Message::PlanReport(report), send);
+    }
+
+    fn step(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        flight.last_tick = Some(frame.tick);
+        let output = flight
+            .control
+            .step(time(frame.tick), &convert::sensor_frame(frame));
+        let age = flight
+            .plan_tick
+            .map_or(0, |plan| frame.tick.saturating_sub(plan));
+        let report = convert::step_report(frame.tick, age, flight.control.estimate(), &output);
+        let command = ActuatorCommand {
+            tick: frame.tick,
+            thrust: output.control.thrust,
+            elevator: output.control.elevator,
+            mode: convert::mode(output.mode),
+        };
+        if let Some(cause) = measurement_rejection(output.innovation, output.position_used) {
+            self.reject(cause, send);
+        }
+        self.emit(&Message::StepReport(report), send);
+        self.emit(&Message::ActuatorCommand(command), send);
+    }
+
+    /// Starts a cycle from the scan of this tick, if one is due.
+    fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        let Some(scan_tick) = flight.scan_tick.take() else {
+            return;
+        };
+        if scan_tick != tick {
+            let cause = RejectionCause::TickOrder {
+                expected: tick,
+                found: scan_tick,
+            };
+            return self.reject(cause, send);
+        }
+        let period = flight.configure.replan_period_ticks;
+        if flight
+            .last_cycle
+            .is_some_and(|last| tick < last.saturating_add(period))
+        {
+            return;
+        }
+        if flight.cycle.is_some() || self.order.is_some() {
+            return self.reject(RejectionCause::PlannerBusy, send);
+        }
+        flight.cycle = Some(tick);
+        flight.last_cycle = Some(tick);
+        self.order = Some(Order::Begin {
+            tick,
+            state: flight.control.state(),
+            scan: self.scan.clone(),
+        });
+    }
+}
+
+fn measurement_rejection(innovation: Innovation, position_used: bool) -> Option<RejectionCause> {
+    let Innovation { airspeed, pitch } = innovation;
+    if !position_used || airspeed == Verdict::NotFinite || pitch == Verdict::NotFinite {
+        Some(RejectionCause::NonFiniteSensor)
+    } else if airspeed == Verdict::Gated || pitch == Verdict::Gated {
+        Some(RejectionCause::InnovationGate {
+            airspeed: airspeed == Verdict::Gated,
+            pitch: pitch == Verdict::Gated,
+        })
+    } else {
+        None
+    }
+}
