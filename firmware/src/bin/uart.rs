@@ -1,0 +1,74 @@
+//! Flies over UART 0, by interrupts.
+#![no_std]
+#![no_main]
+
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{entry, exception};
+use firmware::tasks::{self, StepSide};
+use firmware::{board, uart};
+use flight_node::Pace;
+
+/// Most bytes taken in one run of the step.
+const BYTES_PER_RUN: usize = 2048;
+
+/// Bytes lost that were reported.
+static REPORTED: AtomicU32 = AtomicU32::new(0);
+
+#[entry]
+fn main() -> ! {
+    if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        // SAFETY: interrupts come later.
+        unsafe {
+            tasks::set_up(Pace::Lockstep);
+            tasks::step_side().announce(uart::send);
+        }
+        board::set_priorities(&mut peripherals);
+        board::start_watchdog();
+        board::start_ticking(&mut peripherals);
+        uart::start();
+    }
+    planner_thread()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn planner_thread() -> ! {
+    // SAFETY: called by `main` and, after the thread was dropped, by the restart.
+    unsafe { tasks::plan(SCB::set_pendst, || board::sleep_unless(tasks::has_order)) }
+}
+
+/// The step: every 10 ms, after the last byte of a frame, and after an answer of the planner.
+#[exception]
+fn SysTick() {
+    // SAFETY: this is the step's interrupt.
+    let side = unsafe { tasks::step_side() };
+    side.collect(uart::send);
+    run_link(side);
+    if board::tick_passed() {
+        side.watch_planner(uart::send);
+        board::feed_watchdog();
+    }
+    uart::kick();
+}
+
+fn run_link(side: &mut StepSide) {
+    let lost = uart::lost();
+    let unreported = lost.wrapping_sub(REPORTED.swap(lost, Ordering::Relaxed));
+    if unreported > 0 {
+        side.bytes_lost(unreported, uart::send);
+    }
+    for _ in 0..BYTES_PER_RUN {
+        if side.waits() {
+            return;
+        }
+        let Some(byte) = uart::receive() else {
+            return;
+        };
+        side.receive(byte, uart::send);
+    }
+}
+
+#[exception]
+unsafe fn DefaultHandler(irqn: i16) {
+    uart::interrupt(irqn);
+}

@@ -1,0 +1,216 @@
+//! The two tasks, their mail, and what each does when it gets the processor.
+
+use crate::mailbox::Mailbox;
+use crate::owned::Owned;
+use crate::{faults, mark, restart};
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use flight_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
+use mark::Region;
+
+/// Produced by the step, consumed by the planner.
+static ORDERS: Mailbox<Order> = Mailbox::new();
+/// Produced by the planner, consumed by the step.
+static ANSWERS: Mailbox<Answer> = Mailbox::new();
+/// The last tick that was stepped.
+static CLOCK: AtomicU32 = AtomicU32::new(0);
+/// Counts the planner's doings: as long as it changes, the planner lives.
+static PULSE: AtomicU32 = AtomicU32::new(0);
+/// Whether the planner has hung already.
+static HUNG: AtomicBool = AtomicBool::new(false);
+
+static STEP: Owned<StepSide> = Owned::uninit();
+#[unsafe(link_section = ".axisram")]
+static PLAN: Owned<PlanTask> = Owned::uninit();
+
+/// All that the step's interrupt owns.
+pub struct StepSide {
+    task: StepTask,
+    pulse: u32,
+    silent_for: u32,
+    /// Times that the planner was restarted.
+    pub restarts: u32,
+}
+
+/// Calls of [`StepSide::watch_planner`], one in 10 ms, after which a planner without a pulse is
+/// taken for stuck. Its longest slice takes a tenth of that.
+const SILENCE_LIMIT: u32 = 10;
+
+/// Prepares the step's side.
+///
+/// # Safety
+/// Called once, before any interrupt is enabled.
+pub unsafe fn set_up(pace: Pace) {
+    // SAFETY: nothing else runs yet.
+    unsafe {
+        STEP.write(StepSide {
+            task: StepTask::new(pace),
+            pulse: 0,
+            silent_for: 0,
+            restarts: 0,
+        });
+    }
+}
+
+/// What the step's interrupt owns.
+///
+/// # Safety
+/// Only from the step's interrupt, or before it is enabled.
+pub unsafe fn step_side() -> &'static mut StepSide {
+    // SAFETY: written by `set_up`; one user at a time, as the caller promises.
+    unsafe { STEP.get() }
+}
+
+impl StepSide {
+    /// Says hello unasked.
+    pub fn announce(&mut self, send: impl FnMut(&[u8])) {
+        self.task.announce(send);
+    }
+
+    /// Whether bytes of the link have to wait for the planner.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        self.task.waits()
+    }
+
+    /// The last tick that was stepped, if any was.
+    #[must_use]
+    pub fn last_tick(&self) -> Option<u32> {
+        self.task.last_tick()
+    }
+
+    /// Takes a byte from the link.
+    pub fn receive(&mut self, byte: u8, send: impl FnMut(&[u8])) {
+        let before = self.task.last_tick();
+        mark::begin();
+        self.task.receive(byte, send);
+        self.end_region(byte == 0, before);
+        self.post();
+    }
+
+    /// Takes the planner's answer, if there is one.
+    pub fn collect(&mut self, send: impl FnMut(&[u8])) {
+        // SAFETY: the step is the consumer.
+        if let Some(answer) = unsafe { ANSWERS.take() } {
+            let before = self.task.last_tick();
+            mark::begin();
+            self.task.answer(answer, send);
+            self.end_region(true, before);
+        }
+        self.post();
+    }
+
+    /// Reports lost bytes of the link.
+    pub fn bytes_lost(&mut self, count: u32, send: impl FnMut(&[u8])) {
+        self.task.bytes_lost(count, send);
+    }
+
+    /// To be called every 10 ms: restarts the planner if it is stuck.
+    pub fn watch_planner(&mut self, send: impl FnMut(&[u8])) {
+        let pulse = PULSE.load(Ordering::Relaxed);
+        if pulse != self.pulse {
+            self.pulse = pulse;
+            self.silent_for = 0;
+            return;
+        }
+        self.silent_for = self.silent_for.saturating_add(1);
+        if self.silent_for >= SILENCE_LIMIT {
+            self.silent_for = 0;
+            self.restarts = self.restarts.saturating_add(1);
+            // SAFETY: the step is the consumer. Answers of before are nobody's.
+            drop(unsafe { ANSWERS.take() });
+            self.task.planner_lost(send);
+            self.post();
+            restart::planner();
+        }
+    }
+
+    /// Sends the planner its orders and the time.
+    fn post(&mut self) {
+        if !ORDERS.is_full()
+            && let Some(order) = self.task.order()
+        {
+            // SAFETY: the step is the producer.
+            unsafe { ORDERS.post(order) };
+        }
+        CLOCK.store(self.task.clock(), Ordering::Release);
+    }
+
+    fn end_region(&self, frame: bool, before: Option<u32>) {
+        if self.task.last_tick() != before {
+            mark::end(Region::Step);
+            if faults::step_hangs(self.task.clock()) {
+                loop {
+                    cortex_m::asm::nop();
+                }
+            }
+        } else if frame {
+            mark::end(Region::Frame);
+        } else {
+            mark::end(Region::Byte);
+        }
+    }
+}
+
+/// Whether an order waits for the planner.
+#[must_use]
+pub fn has_order() -> bool {
+    ORDERS.is_full()
+}
+
+/// The planner's thread. `idle` is called when there is nothing to do.
+///
+/// # Safety
+/// Only as the thread, which never runs twice at a time: from `main`, or anew after
+/// [`restart::planner`] has dropped it.
+pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
+    // SAFETY: the thread is the only user, and this the only thread. Zeros are a valid task: it is
+    // made of numbers, truth values, vectors that may be empty, options and enums of them, and no
+    // references. `PlanTask::new()` would pass over the stack, which is smaller. The first order,
+    // `SetUp`, leaves nothing as it was.
+    let task = unsafe {
+        PLAN.write_zeros();
+        PLAN.get()
+    };
+    // What a planner before this one left is not for this one.
+    let mut set_up = false;
+    loop {
+        PULSE.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: the thread is the consumer.
+        if let Some(order) = unsafe { ORDERS.take() } {
+            set_up |= matches!(order, Order::SetUp(_));
+            if set_up {
+                mark::begin();
+                task.take(&order);
+                mark::end(Region::Order);
+            }
+        }
+        let clock = CLOCK.load(Ordering::Acquire);
+        let phase = task.planner().phase();
+        mark::begin();
+        let progress = task.advance(clock);
+        match progress {
+            Progress::Working => {
+                mark::end(Region::of(phase));
+                if faults::planner_hangs(clock) && !HUNG.swap(true, Ordering::Relaxed) {
+                    loop {
+                        cortex_m::asm::nop();
+                    }
+                }
+            }
+            Progress::Waiting => {
+                mark::end(Region::Idle);
+                idle();
+            }
+            Progress::Answered => {
+                if !ANSWERS.is_full()
+                    && let Some(answer) = task.answer()
+                {
+                    // SAFETY: the thread is the producer.
+                    unsafe { ANSWERS.post(answer) };
+                }
+                mark::end(Region::Answer);
+                notify_step();
+            }
+        }
+    }
+}
