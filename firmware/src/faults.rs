@@ -1,6 +1,8 @@
 //! Faults that tests of the emulated image switch on, by changing these words in the image file.
 //! As built they do nothing.
 
+use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
 /// No tick.
 const NEVER: u32 = u32::MAX;
 
@@ -8,25 +10,40 @@ const NEVER: u32 = u32::MAX;
 #[unsafe(no_mangle)]
 static FAULT_PLANNER_HANGS_AFTER: u32 = NEVER;
 
-/// The step hangs after this tick, until the watchdog resets the core.
+/// The step hangs after this tick, before it answers, until the watchdog resets the core; once.
 #[unsafe(no_mangle)]
 static FAULT_STEP_HANGS_AFTER: u32 = NEVER;
+
+/// Whether the planner has hung since the start.
+static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
+/// Whether the step has hung: this memory survives the reset.
+#[unsafe(link_section = ".uninit.faults")]
+static STEP_HUNG: AtomicU32 = AtomicU32::new(0);
+const YES: u32 = 0x5EED_F00D;
 
 fn read(word: &'static u32) -> u32 {
     // SAFETY: a reference. Volatile, because the image may have been changed.
     unsafe { core::ptr::read_volatile(word) }
 }
 
-/// Whether the planner is to hang after this tick.
-#[must_use]
-pub fn planner_hangs(clock: u32) -> bool {
+/// Hangs the planner if this tick is the one.
+pub fn planner(clock: u32) {
     let after = read(&FAULT_PLANNER_HANGS_AFTER);
-    after != NEVER && clock >= after
+    if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
+        hang();
+    }
 }
 
-/// Whether the step is to hang after this tick.
-#[must_use]
-pub fn step_hangs(clock: u32) -> bool {
+/// Hangs the step if this tick is the one.
+pub fn step(clock: u32) {
     let after = read(&FAULT_STEP_HANGS_AFTER);
-    after != NEVER && clock == after
+    if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
+        hang();
+    }
+}
+
+fn hang() -> ! {
+    loop {
+        cortex_m::asm::nop();
+    }
 }

@@ -18,10 +18,12 @@
 
 pub mod board;
 pub mod faults;
+pub mod host;
 mod mailbox;
 pub mod mark;
 mod owned;
 pub mod panic_gate;
+pub mod report;
 pub mod restart;
 mod ring;
 pub mod tasks;

@@ -3,7 +3,7 @@
 use crate::mailbox::Mailbox;
 use crate::owned::Owned;
 use crate::{faults, mark, restart};
-use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use core::sync::atomic::{AtomicU32, Ordering};
 use flight_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
 use mark::Region;
 
@@ -15,8 +15,6 @@ static ANSWERS: Mailbox<Answer> = Mailbox::new();
 static CLOCK: AtomicU32 = AtomicU32::new(0);
 /// Counts the planner's doings: as long as it changes, the planner lives.
 static PULSE: AtomicU32 = AtomicU32::new(0);
-/// Whether the planner has hung already.
-static HUNG: AtomicBool = AtomicBool::new(false);
 
 static STEP: Owned<StepSide> = Owned::uninit();
 #[unsafe(link_section = ".axisram")]
@@ -138,11 +136,7 @@ impl StepSide {
     fn end_region(&self, frame: bool, before: Option<u32>) {
         if self.task.last_tick() != before {
             mark::end(Region::Step);
-            if faults::step_hangs(self.task.clock()) {
-                loop {
-                    cortex_m::asm::nop();
-                }
-            }
+            faults::step(self.task.clock());
         } else if frame {
             mark::end(Region::Frame);
         } else {
@@ -191,11 +185,7 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
         match progress {
             Progress::Working => {
                 mark::end(Region::of(phase));
-                if faults::planner_hangs(clock) && !HUNG.swap(true, Ordering::Relaxed) {
-                    loop {
-                        cortex_m::asm::nop();
-                    }
-                }
+                faults::planner(clock);
             }
             Progress::Waiting => {
                 mark::end(Region::Idle);

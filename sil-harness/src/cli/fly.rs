@@ -3,7 +3,7 @@
 use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, LINK, USAGE, data, talk};
 use crate::figure::flight_svg;
-use crate::link::{Link, LinkError, PipeLink, TcpLink};
+use crate::link::{FifoLink, Link, LinkError, PipeLink, TcpLink};
 use crate::log::FlightLog;
 use crate::outcome::{Class, Outcome};
 use crate::run::{FlyError, fly};
@@ -34,7 +34,8 @@ pub(super) struct FlyArgs {
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
     #[arg(long)]
     replan_hz: Option<f64>,
-    /// Where the core runs: tcp:HOST:PORT [default: in this process]
+    /// Where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and to-harness
+    /// [default: in this process]
     #[arg(long)]
     link: Option<String>,
     /// Send MAVLink 2 telemetry to udp:HOST:PORT, for instance udp:127.0.0.1:14550
@@ -65,13 +66,7 @@ impl FlyArgs {
     fn connect(&self) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
             None => Ok(Box::new(PipeLink::new())),
-            Some(text) => match text.strip_prefix("tcp:") {
-                None => Err(Failure::new(USAGE, "--link: give tcp:HOST:PORT")),
-                Some(address) => match TcpLink::connect(address) {
-                    Ok(link) => Ok(Box::new(link)),
-                    Err(error) => Err(Failure::new(LINK, error)),
-                },
-            },
+            Some(text) => connect(text),
         }
     }
 
@@ -89,6 +84,21 @@ impl FlyArgs {
              mavproxy.py --master=udp:{address}; pymavlink: mavutil.mavlink_connection('udpin:{address}')"
         ));
         Ok(Some(link))
+    }
+}
+
+/// A core that runs elsewhere.
+fn connect(text: &str) -> Result<Box<dyn Link>, Failure> {
+    let failed = |error| Failure::new(LINK, error);
+    match text.split_once(':') {
+        Some(("tcp", address)) => Ok(Box::new(TcpLink::connect(address).map_err(failed)?)),
+        Some(("fifo", directory)) => Ok(Box::new(
+            FifoLink::open(Path::new(directory)).map_err(failed)?,
+        )),
+        _ => Err(Failure::new(
+            USAGE,
+            "--link: give tcp:HOST:PORT or fifo:DIRECTORY",
+        )),
     }
 }
 

@@ -1,9 +1,11 @@
 //! The harness's side of the link to the core, and the core's server.
 
+mod fifo;
 mod pipe;
 mod server;
 mod tcp;
 
+pub use fifo::FifoLink;
 use hil_protocol::{ConfigureVerdict, DecodeError, EncodeError, Message};
 pub use pipe::PipeLink;
 pub use server::serve;

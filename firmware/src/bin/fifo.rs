@@ -1,0 +1,99 @@
+//! Flies over two FIFOs by semihosting: in lockstep for campaigns and measurements, or, if the
+//! command line says `timer`, at 100 Hz by the timer.
+//!
+//! In lockstep the thread asks for the step whenever the planner waits, so the order of everything
+//! is fixed. By the timer the step comes every 10 ms, wherever the planner is; time stands still
+//! while the emulator waits for the harness, as if sensors answered at once.
+#![no_std]
+#![no_main]
+
+use core::sync::atomic::{AtomicBool, Ordering};
+use cortex_m::peripheral::SCB;
+use cortex_m_rt::{entry, exception};
+use firmware::host::{self, Host};
+use firmware::{board, report, tasks};
+use flight_node::Pace;
+
+static TIMED: AtomicBool = AtomicBool::new(false);
+
+#[entry]
+fn main() -> ! {
+    let timed = host::command_line_ends_with(b"timer");
+    TIMED.store(timed, Ordering::Relaxed);
+    let pace = if timed {
+        Pace::RealTime
+    } else {
+        Pace::Lockstep
+    };
+    if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        // SAFETY: interrupts come later.
+        unsafe {
+            tasks::set_up(pace);
+            host::open();
+            let host = host::get();
+            tasks::step_side().announce(|bytes| host.send(bytes));
+            host.flush();
+        }
+        board::set_priorities(&mut peripherals);
+        board::start_timer();
+        if timed {
+            board::start_watchdog();
+            board::start_ticking(&mut peripherals);
+        }
+    }
+    planner_thread()
+}
+
+#[unsafe(no_mangle)]
+extern "C" fn planner_thread() -> ! {
+    // SAFETY: called by `main` and, after the thread was dropped, by the restart.
+    unsafe {
+        if TIMED.load(Ordering::Relaxed) {
+            // Does not sleep: the emulator's time is exact only while instructions run.
+            tasks::plan(|| {}, || {})
+        } else {
+            tasks::plan(SCB::set_pendst, SCB::set_pendst)
+        }
+    }
+}
+
+/// The step.
+#[exception]
+fn SysTick() {
+    // SAFETY: this is the step's interrupt.
+    let (side, host) = unsafe { (tasks::step_side(), host::get()) };
+    let timed = TIMED.load(Ordering::Relaxed);
+    if timed {
+        report::tick(board::now());
+    }
+    let before = side.last_tick();
+    side.collect(|bytes| host.send(bytes));
+    host.flush();
+    // By the timer: one tick of the flight, however many reads it takes.
+    while !side.waits() && side.last_tick() == before {
+        if !take_bytes(host) {
+            report::finish(side.restarts);
+        }
+        while !side.waits()
+            && let Some(byte) = host.next()
+        {
+            side.receive(byte, |bytes| host.send(bytes));
+        }
+        host.flush();
+        if !timed {
+            break;
+        }
+    }
+    if timed {
+        side.watch_planner(|bytes| host.send(bytes));
+        board::feed_watchdog();
+    }
+}
+
+/// Makes sure there are bytes; false at the end of the flight.
+fn take_bytes(host: &mut Host) -> bool {
+    host.has_bytes() || host.read()
+}
+
+#[exception]
+unsafe fn DefaultHandler(_: i16) {}

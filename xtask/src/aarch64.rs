@@ -1,0 +1,127 @@
+//! `aarch64`: the host's own tests and flights, built for 64-bit ARM, in the user-mode emulator.
+
+use crate::flight::Harness;
+use crate::toolchain::{Toolchain, install, output, succeed};
+use crate::work;
+use anyhow::{Context, Result, ensure};
+use std::path::PathBuf;
+use std::process::Command;
+
+const TARGET: &str = "aarch64-unknown-linux-gnu";
+/// Where the emulator finds the C library.
+const SYSROOT: &str = "/usr/aarch64-linux-gnu";
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct Aarch64Args {
+    /// How many seeds to fly, from 1
+    #[arg(long, default_value_t = 1)]
+    flights: u64,
+    /// Fly only: leave out the tests of mpp-core and hil-protocol
+    #[arg(long)]
+    no_tests: bool,
+}
+
+pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
+    install(&[
+        ("/usr/bin/qemu-aarch64", "qemu-user"),
+        ("/usr/bin/aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu"),
+        (
+            "/usr/aarch64-linux-gnu/include/stdio.h",
+            "libc6-dev-arm64-cross",
+        ),
+    ])?;
+    let toolchain = Toolchain::find(TARGET)?;
+    if !args.no_tests {
+        succeed(cargo(&toolchain, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
+    }
+    succeed(cargo(&toolchain, "build")?.args(["--release", "-p", "sil-harness"]))?;
+    let folder = work("aarch64")?;
+    let host = Harness::build(&folder)?;
+    let program = work("")?.join(TARGET).join("release/sil-harness");
+    let wrapper = folder.join("sil-harness");
+    write_wrapper(&wrapper, &program)?;
+    let target = Harness::with_program(wrapper, &folder.join("emulated"));
+    for seed in 1..=args.flights {
+        let arguments = ["--seed".to_owned(), seed.to_string()];
+        let (host, target) = (host.fly(&arguments)?, target.fly(&arguments)?);
+        println!(
+            "seed {seed}: host {}, aarch64 {}",
+            host.hash(),
+            target.hash()
+        );
+        ensure!(host.hash() == target.hash(), "the flights differ");
+    }
+    Ok(())
+}
+
+/// A script that runs a program in the emulator.
+fn write_wrapper(path: &PathBuf, program: &std::path::Path) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    let text = format!(
+        "#!/bin/sh\nexec qemu-aarch64 -L {SYSROOT} '{}' \"$@\"\n",
+        program.display()
+    );
+    std::fs::write(path, text)?;
+    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755))?;
+    Ok(())
+}
+
+fn cargo(toolchain: &Toolchain, subcommand: &str) -> Result<Command> {
+    let mut command = toolchain.cargo(subcommand, "")?;
+    command
+        .arg("--locked")
+        .env(
+            "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER",
+            "aarch64-linux-gnu-gcc",
+        )
+        .env(
+            "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER",
+            format!("qemu-aarch64 -L {SYSROOT}"),
+        );
+    if toolchain.is_debian() {
+        let library = format!("-L {}", standard_library()?.display());
+        command.env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", library);
+    }
+    Ok(command)
+}
+
+/// Debian's standard library for this target, unpacked aside: the package manager knows nothing of
+/// it, and its own state is left alone.
+fn standard_library() -> Result<PathBuf> {
+    let folder = work("aarch64-std")?;
+    let library = folder.join("root/usr/lib/rustlib").join(TARGET).join("lib");
+    if library.is_dir() {
+        return Ok(library);
+    }
+    for part in ["state/lists/partial", "cache/archives/partial"] {
+        std::fs::create_dir_all(folder.join(part))?;
+    }
+    let apt = |arguments: &[&str]| -> Result<()> {
+        let mut command = Command::new("apt-get");
+        for (option, value) in [
+            ("APT::Architecture", "arm64".to_owned()),
+            ("APT::Architectures", "arm64".to_owned()),
+            ("Dir::State", folder.join("state").display().to_string()),
+            ("Dir::Cache", folder.join("cache").display().to_string()),
+            ("Dir::State::status", "/dev/null".to_owned()),
+        ] {
+            command.arg("-o").arg(format!("{option}={value}"));
+        }
+        succeed(command.current_dir(&folder).args(["-qq"]).args(arguments))
+    };
+    // The same version as the compiler's.
+    let version = output(Command::new("dpkg-query").args(["-W", "-f", "${Version}", "rustc-web"]))?;
+    apt(&["update"])?;
+    apt(&["download", &format!("libstd-rust-web-dev={version}")])?;
+    let package = std::fs::read_dir(&folder)?
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .find(|path| path.extension().is_some_and(|extension| extension == "deb"))
+        .context("the package was not downloaded")?;
+    succeed(
+        Command::new("dpkg-deb")
+            .arg("-x")
+            .arg(package)
+            .arg(folder.join("root")),
+    )?;
+    Ok(library)
+}

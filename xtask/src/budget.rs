@@ -1,0 +1,160 @@
+//! `budget`: what a flight computer has to give, measured and checked.
+
+use crate::counts::{Counts, median, plugin};
+use crate::firmware::{self, Image};
+use crate::flight::Harness;
+use crate::qemu::{Emulator, Report, Run};
+use crate::{readme, root, stack, work};
+use anyhow::{Context, Result, bail, ensure};
+use object::{Object, ObjectSection};
+use toml_edit::DocumentMut;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct BudgetArgs {
+    /// Write the figures to docs/budgets.toml, with some air, and the table to the README
+    #[arg(long)]
+    save: bool,
+}
+
+/// A figure and where it stands in docs/budgets.toml, under `firmware`.
+pub(crate) struct Figure {
+    pub(crate) table: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) value: u64,
+}
+
+pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
+    let figures = measure()?;
+    println!("{}", firmware::versions()?);
+    let path = root().join("docs/budgets.toml");
+    let mut document: DocumentMut = std::fs::read_to_string(&path)?.parse()?;
+    if args.save {
+        for figure in &figures {
+            let budget = i64::try_from(with_air(figure.value))?;
+            document["firmware"][figure.table][figure.name] = toml_edit::value(budget);
+        }
+        std::fs::write(&path, document.to_string())?;
+        readme::write(&document)?;
+    }
+    let mut over = 0;
+    for figure in &figures {
+        let budget = budget(&document, figure.table, figure.name)?;
+        let verdict = if figure.value > budget {
+            "OVER BUDGET"
+        } else {
+            "ok"
+        };
+        over += u32::from(figure.value > budget);
+        println!(
+            "{:<12} {:<26} {:>11} of {budget:>11} {verdict}",
+            figure.table, figure.name, figure.value
+        );
+    }
+    if over > 0 {
+        bail!("{over} figures are over budget; cargo xtask budget --save raises it on purpose");
+    }
+    readme::check(&document)
+}
+
+/// A budget of the firmware.
+pub(crate) fn budget(document: &DocumentMut, table: &str, name: &str) -> Result<u64> {
+    document
+        .get("firmware")
+        .and_then(|firmware| firmware.get(table)?.get(name)?.as_integer())
+        .and_then(|budget| u64::try_from(budget).ok())
+        .with_context(|| format!("docs/budgets.toml has no firmware.{table}.{name}"))
+}
+
+/// A budget for a figure: at least 2 % more, for another compiler, and rounded up to two digits.
+fn with_air(value: u64) -> u64 {
+    let value = value + value / 50;
+    let unit = 10_u64.pow(value.max(10).ilog10() - 1);
+    value.div_ceil(unit) * unit
+}
+
+fn measure() -> Result<Vec<Figure>> {
+    firmware::build()?;
+    let mut figures = Vec::new();
+    let mut add = |table, name, value| figures.push(Figure { table, name, value });
+
+    let (flash, static_ram) = sizes()?;
+    let flight = fly("--preset flight --obstacles 20")?;
+    let reference = fly("--preset reference --obstacles 20")?;
+    let dense = fly("--preset flight --obstacles 40")?;
+    let bound = stack::bound(&Image::Uart.path()?)?;
+    let painted = [&flight, &reference, &dense].map(|flown| u64::from(flown.report.stack));
+    let painted = painted.into_iter().max().unwrap_or_default();
+    ensure!(
+        painted <= bound,
+        "{painted} bytes of stack were used, but the bound is {bound}"
+    );
+
+    add("bytes", "flash", flash);
+    add("bytes", "static_ram", static_ram);
+    add("bytes", "stack_painted", painted);
+    add("bytes", "stack_bound", bound);
+    add("bytes", "ram", static_ram + bound);
+    add("step", "mean", flight.counts.step_mean());
+    let worst = [&flight, &reference, &dense].map(|flown| flown.counts.step_worst());
+    add("step", "worst", worst.into_iter().max().unwrap_or_default());
+    for (name, value) in flight.counts.stages_mean() {
+        add("stage_mean", name, value);
+    }
+    for (name, value) in dense.counts.slices_worst() {
+        add("slice_worst", name, value);
+    }
+    add("cycle", "flight_20_median", median(&flight.counts.cycles()));
+    add(
+        "cycle",
+        "reference_20_median",
+        median(&reference.counts.cycles()),
+    );
+    let cycles = dense.counts.cycles();
+    add(
+        "cycle",
+        "flight_40_worst",
+        cycles.last().copied().unwrap_or_default(),
+    );
+    Ok(figures)
+}
+
+/// Flash and static RAM of the image that flies [bytes].
+fn sizes() -> Result<(u64, u64)> {
+    let bytes = std::fs::read(Image::Uart.path()?)?;
+    let file = object::File::parse(&*bytes)?;
+    let size = |names: &[&str]| -> u64 {
+        let sections = names.iter().filter_map(|name| file.section_by_name(name));
+        sections.map(|section| section.size()).sum()
+    };
+    Ok((
+        size(&[".vector_table", ".text", ".rodata", ".data"]),
+        size(&[".data", ".bss", ".uninit", ".axisram"]),
+    ))
+}
+
+struct Flown {
+    counts: Counts,
+    report: Report,
+}
+
+/// Flies seed 1 over FIFOs, which is repeatable to the instruction, and counts.
+fn fly(scenario: &str) -> Result<Flown> {
+    let folder = work("budget")?;
+    let (harness, counter) = (Harness::build(&folder)?, plugin()?);
+    let mut emulator = Emulator::fifo(
+        &Run {
+            image: &Image::Fifo.path()?,
+            folder: &folder,
+            shift: 0,
+            counter: Some(&counter),
+        },
+        false,
+    )?;
+    let arguments: Vec<String> = scenario.split(' ').map(str::to_owned).collect();
+    harness.fly_emulated(&arguments, &mut emulator)?;
+    let report = emulator.report()?;
+    Ok(Flown {
+        counts: Counts::read(&folder)?,
+        report,
+    })
+}

@@ -1,0 +1,126 @@
+//! Instructions by region, from the counting plugin.
+
+use crate::toolchain::succeed;
+use crate::{root, work};
+use anyhow::{Context, Result};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+// The kinds of firmware/src/mark.rs.
+const STEP: u64 = 2;
+const ORDER: u64 = 3;
+const MAP: u64 = 4;
+const TREE: u64 = 5;
+const CORRIDOR: u64 = 6;
+const PROGRAM: u64 = 7;
+const ANSWER: u64 = 8;
+
+/// Builds the plugin.
+pub(crate) fn plugin() -> Result<PathBuf> {
+    let library = work("counter")?.join("libcounter.so");
+    succeed(
+        Command::new("rustc")
+            .args(["--edition", "2024", "-O", "--crate-type", "cdylib", "-o"])
+            .arg(&library)
+            .arg(root().join("xtask/counter/counter.rs")),
+    )?;
+    Ok(library)
+}
+
+/// The regions of a flight.
+#[derive(Debug)]
+pub(crate) struct Counts {
+    regions: Vec<(u64, u64)>,
+    /// All instructions of the run.
+    pub(crate) total: u64,
+}
+
+impl Counts {
+    /// Reads what the plugin wrote to a folder.
+    pub(crate) fn read(folder: &Path) -> Result<Self> {
+        let text = std::fs::read_to_string(folder.join("counts"))?;
+        let (mut regions, mut total) = (Vec::new(), None);
+        for line in text.lines() {
+            let (kind, count) = line.split_once(' ').context("a line of counts")?;
+            let count = count.parse()?;
+            match kind.parse() {
+                Ok(kind) => regions.push((kind, count)),
+                Err(_) => total = Some(count),
+            }
+        }
+        Ok(Self {
+            regions,
+            total: total.context("the emulator wrote no total")?,
+        })
+    }
+
+    fn of(&self, wanted: u64) -> impl Iterator<Item = u64> {
+        self.regions
+            .iter()
+            .filter(move |(kind, _)| *kind == wanted)
+            .map(|(_, count)| *count)
+    }
+
+    fn worst(&self, kind: u64) -> u64 {
+        self.of(kind).max().unwrap_or_default()
+    }
+
+    /// Mean of the 100 Hz step.
+    pub(crate) fn step_mean(&self) -> u64 {
+        let steps = self.of(STEP).count().max(1) as u64;
+        self.of(STEP).sum::<u64>() / steps
+    }
+
+    /// Worst 100 Hz step.
+    pub(crate) fn step_worst(&self) -> u64 {
+        self.worst(STEP)
+    }
+
+    /// Worst slice of each stage, with its name.
+    pub(crate) fn slices_worst(&self) -> [(&'static str, u64); 4] {
+        [
+            ("map_slice_worst", self.worst(MAP)),
+            ("tree_slice_worst", self.worst(TREE)),
+            ("corridor_slice_worst", self.worst(CORRIDOR)),
+            ("program_slice_worst", self.worst(PROGRAM)),
+        ]
+    }
+
+    /// Means of what each stage takes of a cycle, with its name.
+    pub(crate) fn stages_mean(&self) -> [(&'static str, u64); 4] {
+        let cycles = self.cycles().len().max(1) as u64;
+        let mean = |kind| self.of(kind).sum::<u64>() / cycles;
+        [
+            ("map", mean(MAP)),
+            ("tree", mean(TREE)),
+            ("corridor", mean(CORRIDOR)),
+            ("program", mean(PROGRAM)),
+        ]
+    }
+
+    /// Whole cycles, from order to answer, sorted.
+    pub(crate) fn cycles(&self) -> Vec<u64> {
+        let mut cycles = Vec::new();
+        let mut open = None;
+        let mut planned = false;
+        for (kind, count) in &self.regions {
+            match *kind {
+                ORDER => (open, planned) = (Some(*count), false),
+                MAP | TREE | CORRIDOR | PROGRAM => {
+                    planned = true;
+                    open = open.map(|sum| sum + count);
+                }
+                // An order without slices was a set-up.
+                ANSWER if planned => cycles.extend(open.take().map(|sum| sum + count)),
+                _ => {}
+            }
+        }
+        cycles.sort_unstable();
+        cycles
+    }
+}
+
+/// The median of sorted values.
+pub(crate) fn median(sorted: &[u64]) -> u64 {
+    sorted.get(sorted.len() / 2).copied().unwrap_or_default()
+}

@@ -1,0 +1,241 @@
+//! `faults`: what the firmware does when something hangs, and whether its clock holds.
+
+use crate::firmware::{self, Image};
+use crate::flight::{Harness, Outcome};
+use crate::qemu::{Emulator, Report, Run};
+use crate::work;
+use anyhow::{Context, Result, bail, ensure};
+use hil_protocol::{
+    AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Preset, RejectionCause, Role, encode,
+};
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct FaultsArgs {
+    /// Length of the flight by the timer [s]
+    #[arg(long, default_value_t = 60)]
+    duration: u32,
+}
+
+/// Counts of the board's timer in 10 ms.
+const TICK: u32 = 250_000;
+/// A tick after which something hangs: a cycle is under way.
+const HANG: u32 = 410;
+
+pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
+    firmware::build()?;
+    let folder = work("faults")?;
+    let bench = Bench {
+        harness: Harness::build(&folder)?,
+        folder,
+    };
+    bench.timer_holds(args.duration)?;
+    bench.stuck_planner_is_restarted()?;
+    bench.stuck_step_is_reset()?;
+    bench.flood_is_counted()
+}
+
+struct Bench {
+    harness: Harness,
+    folder: PathBuf,
+}
+
+/// A flight whose cycles take several ticks: 300 ms from scan to plan.
+fn spread(duration: u32) -> Vec<String> {
+    format!("--seed 1 --obstacles 20 --duration {duration} --latency-ms 300 --slices-per-tick 37")
+        .split(' ')
+        .map(str::to_owned)
+        .collect()
+}
+
+impl Bench {
+    /// 500 million instructions a second: about those of an STM32H743 at 480 MHz.
+    fn run<'a>(&'a self, image: &'a Path) -> Run<'a> {
+        Run {
+            image,
+            folder: &self.folder,
+            shift: 1,
+            counter: None,
+        }
+    }
+
+    fn fly_by_timer(&self, image: &Path, arguments: &[String]) -> Result<(Outcome, Report)> {
+        let mut emulator = Emulator::fifo(&self.run(image), true)?;
+        let outcome = self.harness.fly_emulated(arguments, &mut emulator)?;
+        Ok((outcome, emulator.report()?))
+    }
+
+    /// The step comes every 10 ms wherever the planner is, and flies as on the host.
+    fn timer_holds(&self, duration: u32) -> Result<()> {
+        let arguments = spread(duration);
+        let host = self.harness.fly(&arguments)?;
+        let (target, report) = self.fly_by_timer(&Image::Fifo.path()?, &arguments)?;
+        println!(
+            "by the timer, {duration} s: {} ticks, {} missed, {} to {} counts apart; {}; hash {} \
+             (host {})",
+            report.ticks,
+            report.missed,
+            report.shortest,
+            report.longest,
+            target.outcome(),
+            target.hash(),
+            host.hash(),
+        );
+        ensure!(report.missed == 0, "ticks were missed");
+        ensure!(report.ticks > 100, "the timer did not run");
+        ensure!(
+            report
+                .shortest
+                .abs_diff(TICK)
+                .max(report.longest.abs_diff(TICK))
+                < TICK / 100,
+            "the step's jitter is more than 0.1 ms"
+        );
+        ensure!(
+            target.hash() == host.hash(),
+            "the flight differs from the host's"
+        );
+        Ok(())
+    }
+
+    /// The planner hangs for good: it is dropped and restarted, no step is missed, and later cycles
+    /// are planned again.
+    fn stuck_planner_is_restarted(&self) -> Result<()> {
+        let image = self.folder.join("planner-hangs");
+        firmware::patched(Image::Fifo, "FAULT_PLANNER_HANGS_AFTER", HANG, &image)?;
+        let (outcome, report) = self.fly_by_timer(&image, &spread(12))?;
+        let plans = outcome.log["plans"]
+            .as_array()
+            .map_or(&[][..], Vec::as_slice);
+        let lost = |plan: &serde_json::Value| plan["candidates"] == 0;
+        let good_after = plans
+            .iter()
+            .filter(|plan| plan["tick"].as_u64() > Some(u64::from(HANG)) && !lost(plan))
+            .count();
+        println!(
+            "stuck planner: {} ticks, {} missed, {} restart, {} plans, {good_after} after it; {}; {}",
+            report.ticks,
+            report.missed,
+            report.restarts,
+            plans.len(),
+            outcome.outcome(),
+            outcome.rejections().join(" "),
+        );
+        ensure!(report.missed == 0, "ticks were missed");
+        ensure!(report.restarts == 1, "the planner was not restarted once");
+        ensure!(
+            outcome.rejections() == ["PlannerRestarted"],
+            "the restart was not reported, or more was"
+        );
+        ensure!(plans.iter().any(lost), "no cycle was lost");
+        ensure!(good_after >= 5, "the restarted planner does not plan");
+        Ok(())
+    }
+
+    /// The step hangs for good: the watchdog resets the core, which says hello, is configured anew
+    /// and flies on.
+    fn stuck_step_is_reset(&self) -> Result<()> {
+        let image = self.folder.join("step-hangs");
+        firmware::patched(Image::Uart, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
+        let mut emulator = Emulator::uart(&self.run(&image))?;
+        let arguments = "--seed 1 --duration 10".split(' ').map(str::to_owned);
+        let outcome = self
+            .harness
+            .fly_emulated(&arguments.collect::<Vec<_>>(), &mut emulator)?;
+        println!(
+            "stuck step: {}, {} replans; {}",
+            outcome.outcome(),
+            outcome.count("replans"),
+            outcome.rejections().join(" ")
+        );
+        ensure!(
+            outcome
+                .rejections()
+                .iter()
+                .filter(|cause| **cause == "CoreRestarted")
+                .count()
+                == 1,
+            "the core was not restarted once"
+        );
+        let plans = outcome.log["plans"].as_array().map_or(0, Vec::len);
+        ensure!(plans >= 9, "the restarted core does not plan");
+        Ok(())
+    }
+
+    /// More bytes than fit come while the core cannot take any: it counts and reports those that
+    /// are lost, and is ready for the next session.
+    fn flood_is_counted(&self) -> Result<()> {
+        let image = Image::Uart.path()?;
+        let emulator = Emulator::uart(&self.run(&image))?;
+        let address = emulator.link().trim_start_matches("tcp:").to_owned();
+        let mut stream = TcpStream::connect(address)?;
+        stream.set_read_timeout(Some(Duration::from_secs(10)))?;
+        // The configuration occupies the planner, and the step waits for it.
+        send(&mut stream, &Message::Configure(CONFIGURE))?;
+        stream.write_all(&[0x55; 20_000])?;
+        stream.write_all(&[0])?;
+        let lost = await_message(&mut stream, |message| match message {
+            Message::Rejection(rejection) => match rejection.cause {
+                RejectionCause::BytesLost { count } => Some(count),
+                _ => None,
+            },
+            _ => None,
+        })?;
+        println!("flood of 20001 bytes: the core reports {lost} lost, and says hello again");
+        ensure!((1..=20_001).contains(&lost), "a count that cannot be");
+        send(&mut stream, &Message::Hello(HELLO))?;
+        await_message(&mut stream, |message| {
+            matches!(message, Message::Hello(hello) if hello.role == Role::Core).then_some(())
+        })
+    }
+}
+
+const HELLO: Hello = Hello {
+    role: Role::Harness,
+    software: [0; 3],
+    tick_period_us: 10_000,
+    beams_max: 100,
+    stages: 18,
+};
+
+const CONFIGURE: Configure = Configure {
+    preset: Preset::Flight,
+    airframe: AirframeId::Reference,
+    paths: 25,
+    replan_period_ticks: 100,
+    latency_ticks: 1,
+    slices_per_tick: 1,
+    seed: 1,
+    beams: 100,
+    range_max: 50.0,
+    altitude: 50.0,
+};
+
+fn send(stream: &mut TcpStream, message: &Message) -> Result<()> {
+    let mut buffer = [0; MAX_FRAME];
+    stream.write_all(encode(message, &mut buffer)?)?;
+    Ok(())
+}
+
+/// Reads until `wanted` finds what it looks for.
+fn await_message<T>(stream: &mut TcpStream, wanted: impl Fn(&Message) -> Option<T>) -> Result<T> {
+    let (mut decoder, mut bytes) = (Decoder::new(), [0; 256]);
+    loop {
+        let count = stream
+            .read(&mut bytes)
+            .context("the core says nothing more")?;
+        if count == 0 {
+            bail!("the core closed the link");
+        }
+        for byte in bytes.iter().take(count) {
+            if let Some(Ok(message)) = decoder.push(*byte)
+                && let Some(found) = wanted(&message)
+            {
+                return Ok(found);
+            }
+        }
+    }
+}

@@ -1,0 +1,151 @@
+//! Flies the harness, with its own core or with an emulated one.
+
+use crate::qemu::Emulator;
+use crate::root;
+use crate::toolchain::succeed;
+use anyhow::{Context, Result, bail};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What a flight came to.
+pub(crate) struct Outcome {
+    /// The result line.
+    pub(crate) line: Value,
+    /// The log.
+    pub(crate) log: Value,
+}
+
+impl Outcome {
+    /// The log's hash.
+    pub(crate) fn hash(&self) -> &str {
+        self.line["log_hash"].as_str().unwrap_or_default()
+    }
+
+    /// A counter of the result line.
+    pub(crate) fn count(&self, name: &str) -> u64 {
+        self.line[name].as_u64().unwrap_or_default()
+    }
+
+    /// How the flight ended.
+    pub(crate) fn outcome(&self) -> &str {
+        self.line["outcome"].as_str().unwrap_or_default()
+    }
+
+    /// Causes of rejection in the log, in order.
+    pub(crate) fn rejections(&self) -> Vec<&str> {
+        let entries = self.log["rejections"].as_array();
+        entries.map_or_else(Vec::new, |entries| {
+            entries
+                .iter()
+                .filter_map(|entry| entry["cause"].as_str())
+                .collect()
+        })
+    }
+}
+
+/// The harness, built.
+pub(crate) struct Harness {
+    program: PathBuf,
+    out: PathBuf,
+}
+
+impl Harness {
+    /// Builds it; logs go to a folder.
+    pub(crate) fn build(out: &Path) -> Result<Self> {
+        let mut cargo = Command::new("cargo");
+        cargo.current_dir(root());
+        succeed(cargo.args([
+            "build",
+            "--quiet",
+            "--release",
+            "--locked",
+            "-p",
+            "sil-harness",
+        ]))?;
+        let metadata = Command::new("cargo")
+            .current_dir(root())
+            .args([
+                "metadata",
+                "--no-deps",
+                "--format-version",
+                "1",
+                "--offline",
+            ])
+            .output()?;
+        let metadata: Value = serde_json::from_slice(&metadata.stdout)?;
+        let target = metadata["target_directory"]
+            .as_str()
+            .context("no target folder")?;
+        Ok(Self {
+            program: Path::new(target).join("release/sil-harness"),
+            out: out.to_owned(),
+        })
+    }
+
+    /// One that is built already.
+    pub(crate) fn with_program(program: PathBuf, out: &Path) -> Self {
+        Self {
+            program,
+            out: out.to_owned(),
+        }
+    }
+
+    fn command(&self, arguments: &[String], out: &Path) -> Command {
+        let mut command = Command::new(&self.program);
+        command
+            .arg("fly")
+            .args(arguments)
+            .arg("--json")
+            .arg("--out")
+            .arg(out);
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    /// A flight with the harness's own core.
+    pub(crate) fn fly(&self, arguments: &[String]) -> Result<Outcome> {
+        finish(self.command(arguments, &self.out.join("host")).spawn()?)
+    }
+
+    /// A flight with an emulated core.
+    pub(crate) fn fly_emulated(
+        &self,
+        arguments: &[String],
+        emulator: &mut Emulator,
+    ) -> Result<Outcome> {
+        let mut command = self.command(arguments, &self.out.join("target"));
+        let mut harness = command.arg("--link").arg(emulator.link()).spawn()?;
+        let mut died = None;
+        // The harness notices a core that died, unless it died before the link was up.
+        while harness.try_wait()?.is_none() {
+            if died.is_none() && emulator.has_ended()? {
+                died = Some(Instant::now());
+            }
+            if died.is_some_and(|when| when.elapsed() > Duration::from_secs(5)) {
+                harness.kill()?;
+                harness.wait()?;
+                bail!("the emulator ended before the flight did");
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        finish(harness)
+    }
+}
+
+fn finish(harness: Child) -> Result<Outcome> {
+    let output = harness.wait_with_output()?;
+    let text = String::from_utf8(output.stdout)?;
+    // 3 and 4 are flights too: collision, extreme state.
+    if !matches!(output.status.code(), Some(0 | 3 | 4)) {
+        bail!(
+            "the flight failed:\n{}",
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+    let line: Value = serde_json::from_str(text.trim()).context("the harness's result line")?;
+    let path = line["log"].as_str().context("no log in the result line")?;
+    let log = serde_json::from_str(&std::fs::read_to_string(path)?)?;
+    Ok(Outcome { line, log })
+}

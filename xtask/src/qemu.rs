@@ -1,0 +1,176 @@
+//! The emulated flight computer.
+
+use crate::toolchain::{install, succeed};
+use anyhow::{Context, Result, bail};
+use std::io::{BufRead, BufReader};
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, Command, Stdio};
+
+/// How an image is run.
+pub(crate) struct Run<'a> {
+    pub(crate) image: &'a Path,
+    /// For FIFOs, report and counts.
+    pub(crate) folder: &'a Path,
+    /// Virtual time of an instruction: `1 << shift` ns. 1 makes 500 million instructions a second.
+    pub(crate) shift: u32,
+    /// The counting plugin.
+    pub(crate) counter: Option<&'a Path>,
+}
+
+/// A running emulator; ends with this value.
+pub(crate) struct Emulator {
+    child: Child,
+    link: String,
+    folder: PathBuf,
+}
+
+/// What an image reports of itself at the end of a flight over FIFOs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Report {
+    /// Bytes of stack.
+    pub(crate) stack: u32,
+    /// Ticks of the timer.
+    pub(crate) ticks: u32,
+    /// Ticks that came more than half a period late.
+    pub(crate) missed: u32,
+    /// Longest time between two ticks [counts of 40 ns].
+    pub(crate) longest: u32,
+    /// Shortest.
+    pub(crate) shortest: u32,
+    /// Times that the planner was restarted.
+    pub(crate) restarts: u32,
+}
+
+impl Emulator {
+    /// Runs the image `uart`; the line is a loopback TCP socket.
+    pub(crate) fn uart(run: &Run<'_>) -> Result<Self> {
+        let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
+        let mut command = machine(run)?;
+        command
+            .arg("-serial")
+            .arg(format!("tcp:127.0.0.1:{port},server=on,wait=on,nodelay=on"))
+            .stderr(Stdio::piped());
+        let mut child = command.spawn().context("running qemu-system-arm")?;
+        let stderr = child.stderr.take();
+        let emulator = Self {
+            child,
+            link: format!("tcp:127.0.0.1:{port}"),
+            folder: run.folder.to_owned(),
+        };
+        wait_for_socket(stderr)?;
+        Ok(emulator)
+    }
+
+    /// Runs the image `fifo`, in lockstep or by its timer.
+    pub(crate) fn fifo(run: &Run<'_>, timer: bool) -> Result<Self> {
+        for name in ["to-core", "to-harness", "report"] {
+            let path = run.folder.join(name);
+            if path.exists() {
+                std::fs::remove_file(&path)?;
+            }
+            if name != "report" {
+                succeed(Command::new("mkfifo").arg(&path))?;
+            }
+        }
+        let pace = if timer { "timer" } else { "lockstep" };
+        let mut command = machine(run)?;
+        command
+            .args(["-serial", "null", "-semihosting-config"])
+            .arg(format!("enable=on,target=native,arg=fifo,arg={pace}"));
+        Ok(Self {
+            child: command.spawn().context("running qemu-system-arm")?,
+            link: format!("fifo:{}", run.folder.display()),
+            folder: run.folder.to_owned(),
+        })
+    }
+
+    /// The harness's `--link`.
+    pub(crate) fn link(&self) -> &str {
+        &self.link
+    }
+
+    /// Whether the emulator is gone.
+    pub(crate) fn has_ended(&mut self) -> Result<bool> {
+        Ok(self.child.try_wait()?.is_some())
+    }
+
+    /// Ends the emulator in order, so that counts are written. The image `fifo` ends by itself.
+    pub(crate) fn end(mut self) -> Result<()> {
+        self.wait()
+    }
+
+    fn wait(&mut self) -> Result<()> {
+        if self.link.starts_with("tcp") {
+            let pid = self.child.id().to_string();
+            succeed(Command::new("kill").args(["-TERM", &pid]))?;
+        }
+        let status = self.child.wait()?;
+        if !status.success() {
+            bail!("the emulator failed: {status}");
+        }
+        Ok(())
+    }
+
+    /// Waits for the image `fifo` to end, and reads its report.
+    pub(crate) fn report(mut self) -> Result<Report> {
+        self.wait()?;
+        let bytes = std::fs::read(self.folder.join("report")).context("the image's report")?;
+        let (words, _) = bytes.as_chunks::<4>();
+        let words: Vec<u32> = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        let [stack, ticks, missed, longest, shortest, restarts] = words[..] else {
+            bail!("the image's report has {} words", words.len());
+        };
+        Ok(Report {
+            stack,
+            ticks,
+            missed,
+            longest,
+            shortest,
+            restarts,
+        })
+    }
+}
+
+impl Drop for Emulator {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn machine(run: &Run<'_>) -> Result<Command> {
+    install(&[("/usr/bin/qemu-system-arm", "qemu-system-arm")])?;
+    let mut command = Command::new("qemu-system-arm");
+    command
+        .current_dir(run.folder)
+        .args(["-M", "mps2-an500", "-cpu", "cortex-m7"])
+        .args(["-display", "none", "-monitor", "none"])
+        .arg("-icount")
+        .arg(format!("shift={}", run.shift))
+        .arg("-kernel")
+        .arg(run.image)
+        .stdin(Stdio::null());
+    if let Some(counter) = run.counter {
+        let out = run.folder.join("counts");
+        // Bytes, idling and interrupts of the UART are summed up only.
+        let plugin = format!("{},out={},skip=9:10:11", counter.display(), out.display());
+        command.arg("-plugin").arg(plugin);
+    }
+    Ok(command)
+}
+
+/// The emulator says when it listens; connecting to find out would take the only connection.
+fn wait_for_socket(stderr: Option<ChildStderr>) -> Result<()> {
+    let mut lines = BufReader::new(stderr.context("no stderr")?);
+    let mut said = String::new();
+    while lines.read_line(&mut said)? > 0 {
+        if said.contains("waiting for connection") {
+            // What it says later is of no interest, but must have somewhere to go.
+            std::thread::spawn(move || std::io::copy(&mut lines, &mut std::io::sink()));
+            return Ok(());
+        }
+    }
+    bail!("the emulator does not listen:\n{said}")
+}

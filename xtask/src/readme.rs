@@ -1,0 +1,94 @@
+//! The README's table of budgets.
+
+use crate::budget::budget;
+use crate::root;
+use anyhow::{Context, Result, ensure};
+use toml_edit::DocumentMut;
+
+const BEGIN: &str = "<!-- budgets: written by `cargo xtask budget --save` -->\n";
+const END: &str = "<!-- end of budgets -->\n";
+
+/// Rows: label, table, name.
+const ROWS: [(&str, &str, &str); 9] = [
+    ("flash", "bytes", "flash"),
+    ("static RAM", "bytes", "static_ram"),
+    ("stack, bound over all paths", "bytes", "stack_bound"),
+    ("100 Hz step with its link, mean", "step", "mean"),
+    ("100 Hz step with its link, worst", "step", "worst"),
+    ("planner slice, worst", "slice_worst", "tree_slice_worst"),
+    (
+        "cycle, `flight`, 20 obstacles, median",
+        "cycle",
+        "flight_20_median",
+    ),
+    (
+        "cycle, `reference`, 20 obstacles, median",
+        "cycle",
+        "reference_20_median",
+    ),
+    (
+        "cycle, `flight`, 40 obstacles, worst",
+        "cycle",
+        "flight_40_worst",
+    ),
+];
+
+fn table(document: &DocumentMut) -> Result<String> {
+    let mut text = "| on a Cortex-M7, 25 candidates | budget |\n|---|---|\n".to_owned();
+    for (label, table, name) in ROWS {
+        let value = match (table, budget(document, table, name)?) {
+            ("bytes", bytes) => format!("{} kB", bytes.div_ceil(1000)),
+            (_, count) if count >= 1_000_000 => {
+                format!("{} million instructions", count.div_ceil(1_000_000))
+            }
+            (_, count) => format!("{} instructions", grouped(count)),
+        };
+        text += &format!("| {label} | {value} |\n");
+    }
+    Ok(text)
+}
+
+/// With commas between thousands.
+fn grouped(value: u64) -> String {
+    let digits = value.to_string();
+    let mut text = String::new();
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// The README's parts before, within and after the table.
+fn parts(text: &str) -> Result<(&str, &str, &str)> {
+    let (before, rest) = text
+        .split_once(BEGIN)
+        .context("README.md has no place for budgets")?;
+    let (within, after) = rest
+        .split_once(END)
+        .context("README.md: the budgets have no end")?;
+    Ok((before, within, after))
+}
+
+/// Writes the table.
+pub(crate) fn write(document: &DocumentMut) -> Result<()> {
+    let path = root().join("README.md");
+    let text = std::fs::read_to_string(&path)?;
+    let (before, _, after) = parts(&text)?;
+    let table = table(document)?;
+    std::fs::write(&path, format!("{before}{BEGIN}{table}{END}{after}"))?;
+    Ok(())
+}
+
+/// Checks that the table says what docs/budgets.toml says.
+pub(crate) fn check(document: &DocumentMut) -> Result<()> {
+    let text = std::fs::read_to_string(root().join("README.md"))?;
+    let (_, within, _) = parts(&text)?;
+    ensure!(
+        within == table(document)?,
+        "README.md's budgets are not those of docs/budgets.toml: cargo xtask budget --save"
+    );
+    Ok(())
+}

@@ -1,0 +1,186 @@
+//! A bound of the stack, from the compiler's frame sizes and the calls in the image.
+//!
+//! The bound is that of the deepest path of the thread, plus that of each interrupt that can come on
+//! top of it, plus the frames that the processor stacks. Recursion and indirect calls have no bound
+//! and are errors.
+
+use crate::toolchain::{install, output};
+use anyhow::{Context, Result, bail};
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::process::Command;
+
+/// The thread, and the handlers that interrupt it and each other.
+const ROOTS: [&str; 3] = ["Reset", "SysTick", "DefaultHandler"];
+/// What the processor stacks for a handler: 26 words with the FPU's, and 4 bytes to align.
+const EXCEPTION_FRAME: u64 = 26 * 4 + 4;
+
+/// Functions of an image by address.
+#[derive(Default)]
+struct Program {
+    names: BTreeMap<u64, String>,
+    frames: BTreeMap<u64, u64>,
+    calls: BTreeMap<u64, BTreeSet<u64>>,
+}
+
+/// The bound of an image [bytes].
+pub(crate) fn bound(image: &Path) -> Result<u64> {
+    let bytes = std::fs::read(image)?;
+    let file = object::File::parse(&*bytes)?;
+    let mut program = Program::default();
+    for symbol in file.symbols() {
+        if symbol.kind() == SymbolKind::Text && symbol.size() > 0 || symbol.name() == Ok("PendSV") {
+            let name = rustc_demangle::demangle(symbol.name()?).to_string();
+            program.names.insert(symbol.address() & !1, name);
+        }
+    }
+    let table = file
+        .section_by_name(".stack_sizes")
+        .context("the image has no .stack_sizes")?;
+    program.frames = frame_sizes(table.data()?);
+    install(&[("/usr/bin/arm-none-eabi-objdump", "binutils-arm-none-eabi")])?;
+    let mut objdump = Command::new("arm-none-eabi-objdump");
+    program.read_calls(&output(
+        objdump.args(["-d", "--no-show-raw-insn"]).arg(image),
+    )?)?;
+
+    let mut sum = 0;
+    for root in ROOTS {
+        let address = program.names.iter().find(|(_, name)| *name == root);
+        let (address, _) = address.with_context(|| format!("no function {root}"))?;
+        sum += program.depth(*address, &mut BTreeMap::new(), &mut Vec::new())?;
+    }
+    Ok(sum + EXCEPTION_FRAME * (ROOTS.len() as u64 - 1))
+}
+
+/// The compiler's table: an address of four bytes, then the size in groups of seven bits.
+fn frame_sizes(mut table: &[u8]) -> BTreeMap<u64, u64> {
+    let mut frames = BTreeMap::new();
+    while let Some((address, rest)) = table.split_first_chunk::<4>() {
+        let (mut size, mut shift) = (0, 0);
+        table = rest;
+        while let Some((byte, rest)) = table.split_first() {
+            size |= u64::from(byte & 0x7F) << shift;
+            shift += 7;
+            table = rest;
+            if byte & 0x80 == 0 {
+                break;
+            }
+        }
+        frames.insert(u64::from(u32::from_le_bytes(*address)) & !1, size);
+    }
+    frames
+}
+
+impl Program {
+    /// Calls, jumps out of a function, and the frames of functions that are not in the table
+    /// (assembly, the compiler's own library).
+    fn read_calls(&mut self, listing: &str) -> Result<()> {
+        let known: BTreeSet<u64> = self.frames.keys().copied().collect();
+        let mut inside = None;
+        for line in listing.lines() {
+            if let Some((address, _)) = line.split_once(" <").filter(|_| line.ends_with(">:")) {
+                let address = u64::from_str_radix(address, 16)?;
+                if self.names.contains_key(&address) {
+                    inside = Some(address);
+                }
+                continue;
+            }
+            let mut fields = line.trim().split('\t');
+            let (Some(_), Some(operation), Some(function)) = (fields.next(), fields.next(), inside)
+            else {
+                continue;
+            };
+            let operands = fields.next().unwrap_or_default();
+            self.read_instruction(
+                function,
+                operation.trim(),
+                operands,
+                known.contains(&function),
+            )?;
+        }
+        Ok(())
+    }
+
+    fn read_instruction(
+        &mut self,
+        function: u64,
+        operation: &str,
+        operands: &str,
+        framed: bool,
+    ) -> Result<()> {
+        if !framed {
+            *self.frames.entry(function).or_default() += pushed(operation, operands);
+        }
+        let target = operands
+            .split_once(" <")
+            .and_then(|(before, _)| before.rsplit([' ', ',']).next())
+            .and_then(|text| u64::from_str_radix(text, 16).ok())
+            .map(|address| address & !1);
+        let is_call = matches!(operation, "bl" | "blx" | "bl.w");
+        let is_branch = operation.starts_with('b') && !operation.starts_with("bi")
+            || operation.starts_with("cb");
+        match target {
+            Some(target)
+                if (is_call || is_branch)
+                    && target != function
+                    && self.names.contains_key(&target) =>
+            {
+                self.calls.entry(function).or_default().insert(target);
+            }
+            None if operation == "blx" || operation == "bx" && operands.trim() != "lr" => {
+                bail!(
+                    "an indirect call in {}: {operation} {operands}",
+                    self.name(function)
+                );
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn name(&self, function: u64) -> &str {
+        self.names.get(&function).map_or("?", String::as_str)
+    }
+
+    /// The deepest path from a function [bytes].
+    fn depth(
+        &self,
+        function: u64,
+        known: &mut BTreeMap<u64, u64>,
+        path: &mut Vec<u64>,
+    ) -> Result<u64> {
+        if let Some(depth) = known.get(&function) {
+            return Ok(*depth);
+        }
+        if path.contains(&function) {
+            bail!("recursion through {}", self.name(function));
+        }
+        path.push(function);
+        let mut deepest = 0;
+        for callee in self.calls.get(&function).into_iter().flatten() {
+            deepest = deepest.max(self.depth(*callee, known, path)?);
+        }
+        path.pop();
+        let depth = deepest + self.frames.get(&function).copied().unwrap_or_default();
+        known.insert(function, depth);
+        Ok(depth)
+    }
+}
+
+/// Bytes that an instruction takes from the stack.
+fn pushed(operation: &str, operands: &str) -> u64 {
+    let registers = || operands.trim_matches(['{', '}', ' ']).split(',').count() as u64;
+    let is_stack = operands.starts_with("sp,") || operands.starts_with("sp!,");
+    match operation.trim_end_matches(".w") {
+        "push" | "stmdb" if operation == "push" || is_stack => 4 * registers(),
+        "vpush" => 16 * 8,
+        "sub" if is_stack => operands
+            .rsplit('#')
+            .next()
+            .and_then(|text| text.split_whitespace().next()?.parse().ok())
+            .unwrap_or_default(),
+        _ => 0,
+    }
+}

@@ -1,0 +1,145 @@
+//! Finds, or installs, what builds and runs ARM code.
+
+use crate::{root, work};
+use anyhow::{Context, Result, bail};
+use std::path::Path;
+use std::process::Command;
+
+/// A cargo that builds for a target.
+pub(crate) struct Toolchain {
+    target: &'static str,
+    /// Debian's, which takes the core library from source; else the installed rustup target.
+    debian: bool,
+}
+
+impl Toolchain {
+    /// The toolchain for a target.
+    pub(crate) fn find(target: &'static str) -> Result<Self> {
+        let debian = !has_rustup_target(target);
+        if debian {
+            install(&[
+                ("/usr/bin/rustc", "rustc-web"),
+                ("/usr/bin/cargo", "cargo-web"),
+                (
+                    "/usr/lib/rustlib/src/rust/library/core/Cargo.toml",
+                    "rust-web-src",
+                ),
+                ("/usr/bin/ld.lld", "lld"),
+            ])
+            .with_context(|| format!("or, with rustup: rustup target add {target}"))?;
+        }
+        Ok(Self { target, debian })
+    }
+
+    /// Whether this is Debian's compiler.
+    pub(crate) fn is_debian(&self) -> bool {
+        self.debian
+    }
+
+    /// `cargo SUBCOMMAND` for the target, in a folder of the repository.
+    pub(crate) fn cargo(&self, subcommand: &str, folder: &str) -> Result<Command> {
+        let mut command = Command::new(if self.debian {
+            "/usr/bin/cargo"
+        } else {
+            "cargo"
+        });
+        command
+            .current_dir(root().join(folder))
+            .arg(subcommand)
+            .args(["--quiet", "--target", self.target])
+            .env("CARGO_TARGET_DIR", work("")?)
+            // Would replace those of .cargo/config.toml.
+            .env_remove("RUSTFLAGS")
+            .env_remove("CARGO_ENCODED_RUSTFLAGS");
+        if self.debian {
+            // Away from rustup's proxies, and with a registry that no other version works on.
+            command
+                .env("PATH", "/usr/bin:/bin")
+                .env("CARGO_HOME", work("cargo-home")?)
+                // The core library from source is not stable.
+                .env("RUSTC_BOOTSTRAP", "1");
+            if !self.target.contains("linux") {
+                // The targets' own linker, rust-lld, is not packaged; this one is the same.
+                let variable = self.target.to_uppercase().replace('-', "_");
+                command
+                    .env(format!("CARGO_TARGET_{variable}_LINKER"), "ld.lld")
+                    .arg("-Zbuild-std=core");
+            }
+        }
+        Ok(command)
+    }
+}
+
+fn has_rustup_target(target: &str) -> bool {
+    let output = Command::new("rustc").args(["--print", "sysroot"]).output();
+    output.is_ok_and(|output| {
+        let sysroot = String::from_utf8_lossy(&output.stdout).trim().to_owned();
+        let lib = Path::new(&sysroot)
+            .join("lib/rustlib")
+            .join(target)
+            .join("lib");
+        // Debian's own sysroot has only what is built there.
+        sysroot != "/usr" && lib.is_dir()
+    })
+}
+
+/// Installs the packages of files that are missing: pairs of file and Debian package.
+pub(crate) fn install(needs: &[(&str, &str)]) -> Result<()> {
+    let missing: Vec<&str> = needs
+        .iter()
+        .filter(|(file, _)| !Path::new(file).exists())
+        .map(|(_, package)| *package)
+        .collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    eprintln!("installing {}", missing.join(", "));
+    let how = format!("sudo apt-get install {}", missing.join(" "));
+    let apt = |arguments: &[&str]| {
+        Command::new("apt-get")
+            .args(arguments)
+            .args(
+                &missing[..if arguments.contains(&"install") {
+                    missing.len()
+                } else {
+                    0
+                }],
+            )
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .stdout(std::process::Stdio::null())
+            .status()
+    };
+    let done = apt(&["update", "-qq"])
+        .and_then(|_| apt(&["install", "-y", "-qq", "--no-install-recommends"]));
+    if !done.is_ok_and(|status| status.success()) {
+        bail!("missing packages, on Debian 12: {how}");
+    }
+    Ok(())
+}
+
+/// Runs a command to its end, which must be good.
+pub(crate) fn succeed(command: &mut Command) -> Result<()> {
+    let status = command
+        .status()
+        .with_context(|| format!("running {:?}", command.get_program()))?;
+    if !status.success() {
+        bail!("{:?} failed: {status}", command.get_program());
+    }
+    Ok(())
+}
+
+/// What a command prints.
+pub(crate) fn output(command: &mut Command) -> Result<String> {
+    let output = command
+        .output()
+        .with_context(|| format!("running {:?}", command.get_program()))?;
+    if !output.status.success() {
+        bail!(
+            "{:?} failed: {}\n{}",
+            command.get_program(),
+            output.status,
+            String::from_utf8_lossy(&output.stderr)
+        );
+    }
+    Ok(String::from_utf8(output.stdout)?)
+}
