@@ -9,6 +9,9 @@ use crate::map::{GridPoint, OccupancyGrid};
 /// Nodes within this distance [m] may be rewired: 1.5 steps.
 const REWIRE_RADIUS: f64 = 1.5 * super::rrt::STEP;
 
+/// Squares of distances [m^2] above this are of nodes beyond the radius, however the root is rounded.
+const CERTAINLY_BEYOND: f64 = 1.001 * REWIRE_RADIUS * REWIRE_RADIUS;
+
 /// Cost [m] added to a node for each of its children near a new node, so that near branches do
 /// not all hang on the same parent: that is what makes routes alternate.
 const CLOSE_PENALTY: f64 = 5.0;
@@ -120,7 +123,8 @@ impl Tree {
         };
         let point = newest.point;
         let current = earlier.len() as u16;
-        let mut neighbours = self.neighbours(current, point, grid, rules);
+        let mut neighbours = heapless::Vec::new();
+        self.find_neighbours(current, point, grid, rules, &mut neighbours);
         let cheapest = neighbours
             .iter()
             .fold(None, |best: Option<(f64, Neighbour)>, n| {
@@ -157,16 +161,22 @@ impl Tree {
         }
     }
 
-    /// The nodes before `current` within the rewiring radius of `point`, with their penalties.
-    fn neighbours(
+    /// Adds the nodes before `current` within the rewiring radius of `point`, with their penalties.
+    /// (Returned by value, the list would be copied each time.)
+    fn find_neighbours(
         &self,
         current: u16,
         point: GridPoint,
         grid: &OccupancyGrid,
         rules: Rules,
-    ) -> heapless::Vec<Neighbour, TREE_NODES> {
-        let mut neighbours: heapless::Vec<Neighbour, TREE_NODES> = heapless::Vec::new();
+        neighbours: &mut heapless::Vec<Neighbour, TREE_NODES>,
+    ) {
         for (index, node) in (0..current).zip(&self.nodes) {
+            // Most nodes are far away, and a flight computer takes the root in software.
+            let (row, col) = (node.point.row - point.row, node.point.col - point.col);
+            if row * row + col * col > CERTAINLY_BEYOND {
+                continue;
+            }
             let distance = node.point.distance(&point);
             let reachable = distance <= REWIRE_RADIUS
                 && (rules == Rules::Authors || grid.segment_is_free(node.point, point));
@@ -191,7 +201,6 @@ impl Tree {
                 near_parent.penalized += CLOSE_PENALTY;
             }
         }
-        neighbours
     }
 
     /// Writes the path from the root over node `index` to the goal that it reached; false when it
