@@ -1,7 +1,8 @@
 //! The link: the same flight over a pipe and over TCP, and everything that can go wrong on it.
 
 use hil_protocol::{
-    ConfigureVerdict, DecodeError, MAX_FRAME, Message, RejectionCause, SensorFrame, encode,
+    ConfigureVerdict, DecodeError, Hello, MAX_FRAME, Message, RejectionCause, Role, SensorFrame,
+    encode,
 };
 use sil_harness::link::{Link, LinkError, PipeLink, TcpLink, serve};
 use sil_harness::log::FlightLog;
@@ -390,4 +391,54 @@ fn an_old_tick_is_not_flown_again() {
     }
     assert_eq!(commands, 2);
     assert!(rejected);
+}
+
+/// The core restarts and says hello, as one that was reset does; the frame that it got is lost.
+fn restart(pipe: &mut PipeLink) {
+    *pipe = PipeLink::new();
+    let hello = Hello {
+        role: Role::Harness,
+        software: [0; 3],
+        tick_period_us: 10_000,
+        beams_max: 100,
+        stages: 18,
+    };
+    assert!(pipe.send(&Message::Hello(hello)).is_ok());
+}
+
+#[test]
+fn a_core_that_restarts_in_flight_is_configured_anew_and_flies_on() {
+    let mut restarted = false;
+    let log = fly_spoilt(|pipe, message| {
+        let now = matches!(message, Message::SensorFrame(frame) if frame.tick == 70) && !restarted;
+        if now {
+            restarted = true;
+            restart(pipe);
+        }
+        now
+    });
+    assert_eq!(causes(&log), ["CoreRestarted"]);
+    assert_eq!(log.ticks.t.len(), 500);
+    // The first plan was lost with the core, which holds level trim until the next one.
+    let tracked = |tick: usize| log.ticks.ref_x[tick].is_some();
+    assert!(tracked(69) && !tracked(70) && !tracked(99) && tracked(110));
+}
+
+#[test]
+fn a_core_that_restarts_again_and_again_is_named() {
+    let mut link = Spoilt {
+        pipe: PipeLink::new(),
+        spoil: |pipe: &mut PipeLink, message: &Message| {
+            let frame = matches!(message, Message::SensorFrame(_));
+            if frame {
+                restart(pipe);
+            }
+            frame
+        },
+    };
+    let error = fly(&short(2), &mut link, |_| {}).map(|_| ()).unwrap_err();
+    assert!(
+        error.to_string().contains("restarts again and again"),
+        "{error}"
+    );
 }

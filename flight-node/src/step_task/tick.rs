@@ -2,7 +2,7 @@
 
 use super::{Pace, StepTask};
 use crate::convert;
-use crate::mail::{Order, Plan};
+use crate::mail::Order;
 use crate::time;
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, Message, PlanOutcome, PlanReport, RejectionCause};
@@ -13,16 +13,13 @@ impl StepTask {
     /// One tick, as the crate's documentation describes it.
     pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
         if self.plan_is_due(frame.tick) {
-            match self.plan.take() {
-                Some(plan) => self.take_over(frame.tick, &plan, send),
-                None if self.pace == Pace::RealTime => {}
-                None => {
-                    // The slices of all ticks before this one are granted.
-                    self.clock = frame.tick.saturating_sub(1);
-                    self.held = Some(*frame);
-                    return;
-                }
+            if self.plan.is_none() && self.pace == Pace::Lockstep {
+                // The slices of all ticks before this one are granted.
+                self.clock = frame.tick.saturating_sub(1);
+                self.held = Some(*frame);
+                return;
             }
+            self.take_over(frame.tick, send);
         }
         self.step(frame, send);
         self.start_cycle(frame.tick, send);
@@ -37,9 +34,9 @@ impl StepTask {
         })
     }
 
-    /// Takes over what a cycle came to.
-    fn take_over(&mut self, tick: u32, plan: &Plan, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
+    /// Takes over what a cycle came to, if it has ended.
+    fn take_over(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+        let (Some(flight), Some(plan)) = (&mut self.flight, &self.plan) else {
             return;
         };
         flight.cycle = None;
@@ -75,6 +72,7 @@ impl StepTask {
             violation,
             complete,
         };
+        self.plan = None;
         self.emit(&Message::PlanReport(report), send);
     }
 

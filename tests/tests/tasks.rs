@@ -1,0 +1,241 @@
+//! Step and planner as two tasks: whatever the order in which they run, what is flown is the same;
+//! and a planner that is late or lost does not hold the step.
+
+use flight_node::{Answer, FlightNode, Order, Pace, PlanTask, Progress, StepTask};
+use hil_protocol::{Decoder, MAX_FRAME, Message, PlanOutcome, RejectionCause, encode};
+use proptest::prelude::*;
+use sil_harness::link::{Link, LinkError, PipeLink};
+use sil_harness::run::fly;
+use sil_harness::scenario::{Preset, Scenario};
+
+/// A link that keeps what the harness sends.
+struct Recorder {
+    pipe: PipeLink,
+    sent: Vec<u8>,
+}
+
+impl Link for Recorder {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        let mut buffer = [0; MAX_FRAME];
+        self.sent.extend_from_slice(encode(message, &mut buffer)?);
+        self.pipe.send(message)
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.pipe.receive(awaited)
+    }
+}
+
+/// What a harness sends in a flight whose plans take 30 ticks.
+fn flight(seconds: u32) -> Vec<u8> {
+    let scenario = Scenario {
+        latency_ticks: 30,
+        slices_per_tick: 20,
+        ticks: 100 * seconds,
+        ..Scenario::new(Preset::Flight, 3)
+    };
+    let mut recorder = Recorder {
+        pipe: PipeLink::new(),
+        sent: Vec::new(),
+    };
+    assert!(fly(&scenario, &mut recorder, |_| {}).is_ok());
+    recorder.sent
+}
+
+/// What a core in one thread answers.
+fn lockstep(input: &[u8]) -> Vec<u8> {
+    let mut node = Box::new(FlightNode::new());
+    let mut sent = Vec::new();
+    node.receive(input, |frame| sent.extend_from_slice(frame));
+    sent
+}
+
+/// Two tasks with a mailbox each way, as a flight computer has them.
+struct Tasks {
+    step: StepTask,
+    plan: Box<PlanTask>,
+    orders: Option<Order>,
+    answers: Option<Answer>,
+    sent: Vec<u8>,
+}
+
+impl Tasks {
+    fn new(pace: Pace) -> Self {
+        Self {
+            step: StepTask::new(pace),
+            plan: Box::new(PlanTask::new()),
+            orders: None,
+            answers: None,
+            sent: Vec::new(),
+        }
+    }
+
+    fn post(&mut self) {
+        if self.orders.is_none() {
+            self.orders = self.step.order();
+        }
+    }
+
+    /// The step's interrupt: the answer that is there, then at most `count` bytes.
+    fn step(&mut self, bytes: &mut &[u8], count: usize) {
+        let sent = &mut self.sent;
+        if let Some(answer) = self.answers.take() {
+            self.step
+                .answer(answer, |frame| sent.extend_from_slice(frame));
+        }
+        self.post();
+        for _ in 0..count {
+            let Some((byte, rest)) = bytes.split_first().filter(|_| !self.step.waits()) else {
+                break;
+            };
+            *bytes = rest;
+            let sent = &mut self.sent;
+            self.step
+                .receive(*byte, |frame| sent.extend_from_slice(frame));
+            self.post();
+        }
+    }
+
+    /// The planner's thread, for at most `count` slices.
+    fn plan(&mut self, count: usize) {
+        for _ in 0..count {
+            if let Some(order) = self.orders.take() {
+                self.plan.take(&order);
+            }
+            match self.plan.advance(self.step.clock()) {
+                Progress::Working => {}
+                Progress::Answered if self.answers.is_none() => self.answers = self.plan.answer(),
+                Progress::Waiting | Progress::Answered => return,
+            }
+        }
+    }
+
+    fn messages(&self) -> Vec<Message> {
+        let mut decoder = Decoder::new();
+        let found = self.sent.iter().filter_map(|byte| decoder.push(*byte));
+        found.filter_map(Result::ok).collect()
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn any_interleaving_sends_the_same_bytes(
+        turns in prop::collection::vec((0..200_usize, 0..60_usize), 50..200),
+    ) {
+        let input = flight(2);
+        let expected = lockstep(&input);
+        let mut tasks = Tasks::new(Pace::Lockstep);
+        let mut bytes = &input[..];
+        // A turn of both afterwards, so that the end is reached whatever was drawn.
+        for (step, plan) in turns.iter().chain([&(1, 1)]).cycle().take(100_000) {
+            tasks.step(&mut bytes, *step);
+            tasks.plan(*plan);
+        }
+        prop_assert!(bytes.is_empty(), "the flight was not flown to its end");
+        prop_assert!(tasks.sent == expected);
+    }
+}
+
+/// Flies by the clock: each tick's frames at once, then as many slices as `slices(tick)` gives.
+fn fly_by_the_clock(input: &[u8], slices: impl Fn(usize) -> usize) -> Vec<Message> {
+    let mut tasks = Tasks::new(Pace::RealTime);
+    let mut ticks = 0;
+    let mut bytes = input;
+    while !bytes.is_empty() {
+        tasks.step(&mut bytes, 1);
+        let stepped = tasks.step.last_tick().map_or(0, |tick| tick as usize + 1);
+        if stepped > ticks || tasks.step.waits() {
+            ticks = stepped;
+            tasks.plan(slices(ticks));
+        }
+    }
+    tasks.messages()
+}
+
+fn commands(messages: &[Message]) -> usize {
+    let is_command = |message: &&Message| matches!(message, Message::ActuatorCommand(_));
+    messages.iter().filter(is_command).count()
+}
+
+#[test]
+fn in_time_the_real_pace_flies_as_in_lockstep() {
+    let input = flight(3);
+    let expected = lockstep(&input);
+    let messages = fly_by_the_clock(&input, |_| 200);
+    let mut decoder = Decoder::new();
+    let decoded = expected.iter().filter_map(|byte| decoder.push(*byte));
+    let decoded: Vec<Message> = decoded.filter_map(Result::ok).collect();
+    assert!(messages == decoded);
+}
+
+#[test]
+fn a_late_planner_ends_with_its_best_and_holds_no_step() {
+    let input = flight(3);
+    // One slice a tick is far from what a cycle takes.
+    let messages = fly_by_the_clock(&input, |tick| if tick == 0 { 10 } else { 2 });
+    assert_eq!(commands(&messages), 300);
+    let plans = messages.iter().filter_map(|message| match message {
+        Message::PlanReport(plan) => Some(plan),
+        _ => None,
+    });
+    let plans: Vec<_> = plans.collect();
+    assert_eq!(plans.len(), 3);
+    for plan in plans {
+        assert!(!plan.complete);
+        assert_eq!(plan.used_from_tick, plan.scan_tick + 31);
+    }
+}
+
+#[test]
+fn a_planner_that_never_answers_is_busy_and_holds_no_step() {
+    let input = flight(3);
+    let messages = fly_by_the_clock(&input, |tick| if tick == 0 { 10 } else { 0 });
+    assert_eq!(commands(&messages), 300);
+    let busy = messages.iter().filter(|message| {
+        matches!(message, Message::Rejection(r) if r.cause == RejectionCause::PlannerBusy)
+    });
+    assert_eq!(busy.count(), 2);
+}
+
+#[test]
+fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
+    let input = flight(3);
+    let mut tasks = Tasks::new(Pace::RealTime);
+    let mut bytes = &input[..];
+    let mut lost = false;
+    while !bytes.is_empty() {
+        tasks.step(&mut bytes, 1);
+        if tasks.step.last_tick() == Some(10) && !lost {
+            lost = true;
+            *tasks.plan = PlanTask::new();
+            tasks.answers = None;
+            let sent = &mut tasks.sent;
+            tasks
+                .step
+                .planner_lost(|frame| sent.extend_from_slice(frame));
+            tasks.post();
+        }
+        // Before that the planner hangs.
+        if lost || tasks.step.waits() {
+            tasks.plan(200);
+        }
+    }
+    let messages = tasks.messages();
+    assert_eq!(commands(&messages), 300);
+    let restarted = messages.iter().filter(|message| {
+        matches!(message, Message::Rejection(r) if r.cause == RejectionCause::PlannerRestarted)
+    });
+    assert_eq!(restarted.count(), 1);
+    let outcomes: Vec<_> = messages
+        .iter()
+        .filter_map(|message| match message {
+            Message::PlanReport(plan) => Some((plan.scan_tick, plan.outcome, plan.candidates > 0)),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(outcomes[0], (0, PlanOutcome::TrimHold, false));
+    assert!(outcomes[1..].iter().all(|(_, _, planned)| *planned));
+    assert_eq!(outcomes.len(), 3);
+}
