@@ -32,6 +32,7 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     ])?;
     let toolchain = Toolchain::find(TARGET)?;
     if !args.no_tests {
+        // Not --release: linking each test with the whole of it optimised takes an hour.
         succeed(cargo(&toolchain, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
     }
     succeed(cargo(&toolchain, "build")?.args(["--release", "-p", "sil-harness"]))?;
@@ -80,7 +81,10 @@ fn cargo(toolchain: &Toolchain, subcommand: &str) -> Result<Command> {
         );
     if toolchain.is_debian() {
         let library = format!("-L {}", standard_library()?.display());
-        command.env("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS", library);
+        for flags in ["RUSTFLAGS", "RUSTDOCFLAGS"] {
+            let variable = format!("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_{flags}");
+            command.env(variable, &library);
+        }
     }
     Ok(command)
 }
