@@ -64,6 +64,8 @@ impl PlanTask {
     }
 
     /// Takes an order; drops what was under way.
+    // Setting up needs a deep stack, which must not lie beneath that of the slices.
+    #[inline(never)]
     pub fn take(&mut self, order: &Order) {
         self.cycle = None;
         self.answer = None;
