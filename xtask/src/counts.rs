@@ -124,3 +124,22 @@ impl Counts {
 pub(crate) fn median(sorted: &[u64]) -> u64 {
     sorted.get(sorted.len() / 2).copied().unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{ANSWER, Counts, MAP, ORDER, PROGRAM, STEP, TREE, median};
+
+    #[test]
+    fn cycles_go_from_order_to_answer_and_steps_between_do_not_count() {
+        let set_up = [(ORDER, 1000), (ANSWER, 10)];
+        let first = [(ORDER, 1), (MAP, 2), (STEP, 500), (TREE, 3), (ANSWER, 4)];
+        let second = [(ORDER, 1), (PROGRAM, 8), (ANSWER, 1)];
+        let counts = Counts {
+            regions: [&set_up[..], &first, &second].concat(),
+            total: 0,
+        };
+        assert_eq!(counts.cycles(), [10, 10]);
+        assert_eq!((counts.step_mean(), counts.step_worst()), (500, 500));
+        assert_eq!(median(&[1, 2, 9]), 2);
+    }
+}

@@ -102,8 +102,9 @@ impl Emulator {
 
     fn wait(&mut self) -> Result<()> {
         if self.link.starts_with("tcp") {
-            let pid = self.child.id().to_string();
-            succeed(Command::new("kill").args(["-TERM", &pid]))?;
+            // The shell's own `kill`: a bare machine has no other.
+            let kill = format!("kill -TERM {}", self.child.id());
+            succeed(Command::new("sh").args(["-c", &kill]))?;
         }
         let status = self.child.wait()?;
         if !status.success() {

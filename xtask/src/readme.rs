@@ -92,3 +92,21 @@ pub(crate) fn check(document: &DocumentMut) -> Result<()> {
     );
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{grouped, parts};
+
+    #[test]
+    fn thousands_are_grouped() {
+        assert_eq!(
+            [7, 1000, 123_456, 1_234_567].map(grouped),
+            ["7", "1,000", "123,456", "1,234,567"]
+        );
+    }
+
+    #[test]
+    fn a_readme_without_a_place_is_an_error() {
+        assert!(parts("no table").is_err());
+    }
+}

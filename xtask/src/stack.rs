@@ -184,3 +184,63 @@ fn pushed(operation: &str, operands: &str) -> u64 {
         _ => 0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Program, frame_sizes, pushed};
+    use std::collections::BTreeMap;
+
+    const LISTING: &str = "\
+00000100 <top>:
+ 100:\tpush\t{r4, lr}
+ 102:\tbl\t200 <middle>
+ 106:\tbl\t300 <leaf>
+ 10a:\tpop\t{r4, pc}
+00000200 <middle>:
+ 200:\tb.w\t300 <leaf>
+00000300 <leaf>:
+ 300:\tbx\tlr
+";
+
+    fn program(listing: &str) -> anyhow::Result<Program> {
+        let names = [(0x100, "top"), (0x200, "middle"), (0x300, "leaf")];
+        let mut program = Program {
+            names: names.map(|(at, name)| (at, name.to_owned())).into(),
+            frames: [(0x200, 16), (0x300, 24)].into(),
+            calls: BTreeMap::new(),
+        };
+        program.read_calls(listing)?;
+        Ok(program)
+    }
+
+    fn depth(listing: &str) -> anyhow::Result<u64> {
+        program(listing)?.depth(0x100, &mut BTreeMap::new(), &mut Vec::new())
+    }
+
+    #[test]
+    fn the_deepest_path_counts() {
+        // `top` is not in the table: its push of two registers is read from the listing.
+        assert!(depth(LISTING).is_ok_and(|depth| depth == 8 + 16 + 24));
+    }
+
+    #[test]
+    fn recursion_and_indirect_calls_have_no_bound() {
+        let recursive = LISTING.replace("bx\tlr", "bl\t100 <top>");
+        assert!(depth(&recursive).is_err());
+        let indirect = LISTING.replace("bx\tlr", "blx\tr3");
+        assert!(depth(&indirect).is_err());
+    }
+
+    #[test]
+    fn frame_sizes_are_read_in_groups_of_seven_bits() {
+        let table = [1, 2, 0, 0, 0xAC, 0x02, 4, 3, 0, 0, 8];
+        assert_eq!(frame_sizes(&table), [(0x200, 300), (0x304, 8)].into());
+    }
+
+    #[test]
+    fn pushes_of_assembly_are_counted() {
+        assert_eq!(pushed("push", "{r4, r5, r6, lr}"), 16);
+        assert_eq!(pushed("sub", "sp, #40\t@ 0x28"), 40);
+        assert_eq!(pushed("sub", "r0, #40"), 0);
+    }
+}

@@ -3,7 +3,7 @@
 use crate::{root, work};
 use anyhow::{Context, Result, bail};
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 /// A cargo that builds for a target.
 pub(crate) struct Toolchain {
@@ -96,25 +96,16 @@ pub(crate) fn install(needs: &[(&str, &str)]) -> Result<()> {
     eprintln!("installing {}", missing.join(", "));
     let how = format!("sudo apt-get install {}", missing.join(" "));
     let apt = |arguments: &[&str]| {
-        Command::new("apt-get")
-            .args(arguments)
-            .args(
-                &missing[..if arguments.contains(&"install") {
-                    missing.len()
-                } else {
-                    0
-                }],
-            )
-            .env("DEBIAN_FRONTEND", "noninteractive")
-            .stdout(std::process::Stdio::null())
-            .status()
+        let mut command = Command::new("apt-get");
+        command.args(arguments).arg("-qq").stdout(Stdio::null());
+        succeed(command.env("DEBIAN_FRONTEND", "noninteractive"))
     };
-    let done = apt(&["update", "-qq"])
-        .and_then(|_| apt(&["install", "-y", "-qq", "--no-install-recommends"]));
-    if !done.is_ok_and(|status| status.success()) {
-        bail!("missing packages, on Debian 12: {how}");
-    }
-    Ok(())
+    apt(&["update"])
+        .and_then(|()| {
+            let install = ["install", "-y", "--no-install-recommends"];
+            apt(&[&install, &missing[..]].concat())
+        })
+        .with_context(|| format!("packages are missing; on Debian 12: {how}"))
 }
 
 /// Runs a command to its end, which must be good.
