@@ -25,6 +25,14 @@ pub enum Region {
     Answer,
     /// An interrupt of the UART.
     Uart,
+    /// A slice that joined a scan to the map's memory.
+    Remember,
+    /// A slice of the search over the lattice.
+    Lattice,
+    /// A slice that linearised about a candidate.
+    Linearise,
+    /// A slice of a candidate's round.
+    Improve,
     /// A byte inside a frame.
     Byte,
     /// The planner's look round for work.
@@ -39,6 +47,10 @@ impl Region {
             Phase::Map => Self::Map,
             Phase::Tree => Self::Tree,
             Phase::Corridor => Self::Corridor,
+            Phase::Remember => Self::Remember,
+            Phase::Lattice => Self::Lattice,
+            Phase::Linearise => Self::Linearise,
+            Phase::Improve => Self::Improve,
             Phase::Idle | Phase::Program | Phase::Done => Self::Program,
         }
     }
@@ -68,6 +80,10 @@ pub fn end(region: Region) {
             Region::Uart => asm!("dbg #9"),
             Region::Byte => asm!("dbg #10"),
             Region::Idle => asm!("dbg #11"),
+            Region::Remember => asm!("dbg #12"),
+            Region::Lattice => asm!("dbg #13"),
+            Region::Linearise => asm!("dbg #14"),
+            Region::Improve => asm!("dbg #15"),
         }
     }
 }

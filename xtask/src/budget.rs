@@ -46,7 +46,7 @@ pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
         };
         over += u32::from(figure.value > budget);
         println!(
-            "{:<12} {:<26} {:>11} of {budget:>11} {verdict}",
+            "{:<21} {:<20} {:>11} of {budget:>11} {verdict}",
             figure.table, figure.name, figure.value
         );
     }
@@ -98,10 +98,16 @@ fn measure() -> Result<Vec<Figure>> {
     let worst = [&flight, &reference, &dense].map(|flown| flown.counts.step_worst());
     add("step", "worst", worst.into_iter().max().unwrap_or_default());
     for (name, value) in flight.counts.stages_mean() {
-        add("stage_mean", name, value);
+        add("stage_mean_flight", name, value);
+    }
+    for (name, value) in reference.counts.stages_mean() {
+        add("stage_mean_reference", name, value);
     }
     for (name, value) in dense.counts.slices_worst() {
-        add("slice_worst", name, value);
+        add("slice_worst_flight", name, value);
+    }
+    for (name, value) in reference.counts.slices_worst() {
+        add("slice_worst_reference", name, value);
     }
     add("cycle", "flight_20_median", median(&flight.counts.cycles()));
     add(

@@ -14,6 +14,22 @@ const TREE: u64 = 5;
 const CORRIDOR: u64 = 6;
 const PROGRAM: u64 = 7;
 const ANSWER: u64 = 8;
+const REMEMBER: u64 = 12;
+const LATTICE: u64 = 13;
+const LINEARISE: u64 = 14;
+const IMPROVE: u64 = 15;
+
+/// The planner's stages, as docs/budgets.toml names them.
+const STAGES: [(&str, u64); 8] = [
+    ("map", MAP),
+    ("tree", TREE),
+    ("corridor", CORRIDOR),
+    ("program", PROGRAM),
+    ("remember", REMEMBER),
+    ("lattice", LATTICE),
+    ("linearise", LINEARISE),
+    ("improve", IMPROVE),
+];
 
 /// Builds the plugin.
 pub(crate) fn plugin() -> Result<PathBuf> {
@@ -76,26 +92,21 @@ impl Counts {
         self.worst(STEP)
     }
 
-    /// Worst slice of each stage, with its name.
-    pub(crate) fn slices_worst(&self) -> [(&'static str, u64); 4] {
-        [
-            ("map_slice_worst", self.worst(MAP)),
-            ("tree_slice_worst", self.worst(TREE)),
-            ("corridor_slice_worst", self.worst(CORRIDOR)),
-            ("program_slice_worst", self.worst(PROGRAM)),
-        ]
+    /// Worst slice of each stage that ran, with its name.
+    pub(crate) fn slices_worst(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        STAGES
+            .iter()
+            .map(|(name, kind)| (*name, self.worst(*kind)))
+            .filter(|(_, count)| *count > 0)
     }
 
-    /// Means of what each stage takes of a cycle, with its name.
-    pub(crate) fn stages_mean(&self) -> [(&'static str, u64); 4] {
+    /// Means of what each stage that ran takes of a cycle, with its name.
+    pub(crate) fn stages_mean(&self) -> impl Iterator<Item = (&'static str, u64)> {
         let cycles = self.cycles().len().max(1) as u64;
-        let mean = |kind| self.of(kind).sum::<u64>() / cycles;
-        [
-            ("map", mean(MAP)),
-            ("tree", mean(TREE)),
-            ("corridor", mean(CORRIDOR)),
-            ("program", mean(PROGRAM)),
-        ]
+        STAGES
+            .iter()
+            .map(move |(name, kind)| (*name, self.of(*kind).sum::<u64>() / cycles))
+            .filter(|(_, count)| *count > 0)
     }
 
     /// Whole cycles, from order to answer, sorted.
@@ -106,7 +117,7 @@ impl Counts {
         for (kind, count) in &self.regions {
             match *kind {
                 ORDER => (open, planned) = (Some(*count), false),
-                MAP | TREE | CORRIDOR | PROGRAM => {
+                kind if STAGES.iter().any(|(_, stage)| *stage == kind) => {
                     planned = true;
                     open = open.map(|sum| sum + count);
                 }

@@ -15,7 +15,7 @@ const ROWS: [(&str, &str, &str); 9] = [
     ("stack, bound over all paths", "bytes", "stack_bound"),
     ("100 Hz step with its link, mean", "step", "mean"),
     ("100 Hz step with its link, worst", "step", "worst"),
-    ("planner slice, worst", "slice_worst", "tree_slice_worst"),
+    ("slice of a program, worst", "slice_worst_flight", "improve"),
     (
         "cycle, `flight`, 20 obstacles, median",
         "cycle",
