@@ -2,14 +2,15 @@
 
 use hil_protocol::{
     AirframeId, Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanOutcome,
-    Preset, RejectionCause, SensorFrame as WireFrame, StepReport,
+    PlanTrajectory, Preset, RejectionCause, SensorFrame as WireFrame, StepReport,
 };
-use mpp_core::config::{MAX_BEAMS, MAX_PATHS};
+use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
 use mpp_core::estimate::Measurement;
 use mpp_core::flight::{Adoption, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::sense::{LidarScan, ScanError, SensorFrame};
 use mpp_core::settings::Settings;
+use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::vehicle::{AirState, Airframe};
 
 /// The settings that a configuration asks for, or what is wrong with it.
@@ -32,6 +33,12 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
             max: MAX_PATHS as u16,
         });
     }
+    check(configure)?;
+    Ok(settings)
+}
+
+/// What is wrong with a configuration, apart from its settings.
+pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
     if configure.replan_period_ticks == 0 {
         return Err(ConfigureVerdict::ReplanPeriod);
     }
@@ -52,7 +59,7 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
     if !configure.altitude.is_finite() {
         return Err(ConfigureVerdict::NonFinite);
     }
-    Ok(settings)
+    Ok(())
 }
 
 /// How a failed set-up is told.
@@ -107,6 +114,20 @@ pub(crate) fn outcome(adoption: Adoption) -> PlanOutcome {
         Adoption::TrimHold => PlanOutcome::TrimHold,
     }
 }
+
+pub(crate) fn trajectory(scan_tick: u32, trajectory: &Trajectory) -> PlanTrajectory {
+    let knot = |reference: &Reference| {
+        let state = &reference.state;
+        [state.x, state.z, state.air.flight_path].map(|value| value as f32)
+    };
+    PlanTrajectory {
+        scan_tick,
+        period: STAGE_PERIOD as f32,
+        knots: trajectory.knots.iter().map(knot).collect(),
+    }
+}
+
+const _: () = assert!(hil_protocol::MAX_KNOTS == KNOTS);
 
 pub(crate) fn mode(mode: Mode) -> ControlMode {
     match mode {

@@ -34,6 +34,7 @@
 mod convert;
 mod mail;
 mod node;
+pub mod parameters;
 mod plan_task;
 mod step_task;
 

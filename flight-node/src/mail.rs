@@ -1,6 +1,6 @@
 //! What step and planner tell each other.
 
-use hil_protocol::Configure;
+use crate::parameters::Tuning;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::trajectory::Trajectory;
@@ -14,7 +14,7 @@ use mpp_core::vehicle::VehicleState;
 #[derive(Clone, Debug)]
 pub enum Order {
     /// Sets the planner up, whatever it was doing; answered by [`Answer::SetUp`].
-    SetUp(Configure),
+    SetUp(Tuning),
     /// Starts a cycle; answered by [`Answer::Plan`].
     Begin {
         /// The tick of the scan.
@@ -23,6 +23,8 @@ pub enum Order {
         state: VehicleState,
         /// What it saw.
         scan: LidarScan,
+        /// The values in force.
+        tuning: Tuning,
     },
 }
 

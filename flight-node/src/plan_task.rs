@@ -1,6 +1,5 @@
 //! The planner's side: cycles, slice by slice.
 
-use crate::convert;
 use crate::mail::{Answer, Order, Plan};
 use crate::time;
 use mpp_core::planner::Planner;
@@ -70,15 +69,18 @@ impl PlanTask {
         self.cycle = None;
         self.answer = None;
         match order {
-            Order::SetUp(configure) => {
-                self.latency = configure.latency_ticks;
-                self.slices_per_tick = configure.slices_per_tick;
-                // The step has checked the configuration before it sent it on.
-                if let Ok(settings) = convert::settings(configure) {
-                    self.answer = Some(Due::SetUp(self.planner.set_up(&settings)));
-                }
+            Order::SetUp(tuning) => {
+                self.answer = Some(Due::SetUp(self.planner.set_up(&tuning.settings)));
             }
-            Order::Begin { tick, state, scan } => {
+            Order::Begin {
+                tick,
+                state,
+                scan,
+                tuning,
+            } => {
+                self.latency = tuning.configure.latency_ticks;
+                self.slices_per_tick = tuning.configure.slices_per_tick;
+                self.planner.retune(&tuning.settings.planner);
                 self.planner.begin(time(*tick), state, scan);
                 self.cycle = Some(Cycle {
                     tick: *tick,

@@ -1,5 +1,5 @@
-//! The link between the flight core and the hardware-in-the-loop harness, and the telemetry that
-//! a ground station reads.
+//! The link between the flight core and the hardware-in-the-loop harness, and the one between the
+//! vehicle and its ground stations.
 //!
 //! The crate knows frames, versions, checksums and messages. It never knows what a value means to
 //! the planner, reads no clock, does no input or output, allocates nothing and has no panic.
@@ -36,11 +36,14 @@
 //!    | <------------------------- Hello -------- |   both check the version and the sizes
 //!    | -------- Configure ---------------------> |
 //!    | <---------------- ConfigureReply -------- |   Accepted, or why not
+//!    | -------- [SetParameter] ----------------> |   any number, then and between ticks;
+//!    | <-------------- [ParameterReply] -------- |   each is answered
 //!    |                                           |
 //!    | -------- [LidarScan] -------------------> |  \
 //!    | -------- SensorFrame -------------------> |   |
 //!    | <------------------- [Rejection] -------- |   |  each tick, 100 Hz;
 //!    | <------------------ [PlanReport] -------- |   |  [..] only when there is one
+//!    | <-------------- [PlanTrajectory] -------- |   |
 //!    | <-------------------- StepReport -------- |   |
 //!    | <--------------- ActuatorCommand -------- |  /
 //! ```
@@ -72,23 +75,26 @@
 //! # Ok::<(), hil_protocol::EncodeError>(())
 //! ```
 //!
-//! Telemetry for ground stations is MAVLink 2 and stands apart, in [`telemetry`].
+//! The link to ground stations is MAVLink 2 and stands apart, in [`mavlink`].
 
 #![no_std]
 #![forbid(unsafe_code)]
 
 mod error;
 mod frame;
+pub mod mavlink;
 mod message;
-pub mod telemetry;
 
 pub use error::{DecodeError, EncodeError};
 pub use frame::{Decoder, MAGIC, MAX_FRAME, PROTOCOL_VERSION, encode};
 pub use message::flight::{
     ActuatorCommand, ControlMode, LidarScan, MAX_BEAMS, SensorFrame, StepReport,
 };
-pub use message::report::{PlanOutcome, PlanReport, Rejection, RejectionCause};
+pub use message::report::{
+    MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
+};
 pub use message::session::{
-    AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, Preset, Role,
+    AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, ParameterReply,
+    ParameterVerdict, Preset, Role, SetParameter,
 };
 pub use message::{MAX_PAYLOAD, Message, id};

@@ -6,9 +6,9 @@ pub(crate) mod session;
 
 use crate::error::{DecodeError, EncodeError};
 use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
-use report::{PlanReport, Rejection};
+use report::{PlanReport, PlanTrajectory, Rejection};
 use serde::de::DeserializeOwned;
-use session::{Configure, ConfigureReply, Hello};
+use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
 
 /// Message ids, the fourth byte of a frame. Append-only: a number is never used again.
 pub mod id {
@@ -30,6 +30,12 @@ pub mod id {
     pub const PLAN_REPORT: u8 = 8;
     /// [`Rejection`](crate::Rejection).
     pub const REJECTION: u8 = 9;
+    /// [`SetParameter`](crate::SetParameter).
+    pub const SET_PARAMETER: u8 = 10;
+    /// [`ParameterReply`](crate::ParameterReply).
+    pub const PARAMETER_REPLY: u8 = 11;
+    /// [`PlanTrajectory`](crate::PlanTrajectory).
+    pub const PLAN_TRAJECTORY: u8 = 12;
 }
 
 /// Everything that can go over the link.
@@ -57,6 +63,12 @@ pub enum Message {
     PlanReport(PlanReport),
     /// Core to harness: an input that was not used, and why.
     Rejection(Rejection),
+    /// Harness to core: another value for a parameter.
+    SetParameter(SetParameter),
+    /// Core to harness: whether it is in force.
+    ParameterReply(ParameterReply),
+    /// Core to harness: the trajectory that a planning cycle chose.
+    PlanTrajectory(PlanTrajectory),
 }
 
 impl Message {
@@ -73,6 +85,9 @@ impl Message {
             Self::StepReport(_) => id::STEP_REPORT,
             Self::PlanReport(_) => id::PLAN_REPORT,
             Self::Rejection(_) => id::REJECTION,
+            Self::SetParameter(_) => id::SET_PARAMETER,
+            Self::ParameterReply(_) => id::PARAMETER_REPLY,
+            Self::PlanTrajectory(_) => id::PLAN_TRAJECTORY,
         }
     }
 
@@ -91,6 +106,9 @@ impl Message {
             Self::StepReport(body) => postcard::to_slice(body, buffer),
             Self::PlanReport(body) => postcard::to_slice(body, buffer),
             Self::Rejection(body) => postcard::to_slice(body, buffer),
+            Self::SetParameter(body) => postcard::to_slice(body, buffer),
+            Self::ParameterReply(body) => postcard::to_slice(body, buffer),
+            Self::PlanTrajectory(body) => postcard::to_slice(body, buffer),
         };
         match written {
             Ok(payload) => Ok(payload),
@@ -110,6 +128,9 @@ impl Message {
             id::STEP_REPORT => Self::StepReport(body(id, payload)?),
             id::PLAN_REPORT => Self::PlanReport(body(id, payload)?),
             id::REJECTION => Self::Rejection(body(id, payload)?),
+            id::SET_PARAMETER => Self::SetParameter(body(id, payload)?),
+            id::PARAMETER_REPLY => Self::ParameterReply(body(id, payload)?),
+            id::PLAN_TRAJECTORY => Self::PlanTrajectory(body(id, payload)?),
             _ => return Err(DecodeError::UnknownId { id }),
         })
     }
@@ -136,6 +157,9 @@ const _: () = {
     assert!(StepReport::MAX_SIZE <= MAX_PAYLOAD);
     assert!(PlanReport::MAX_SIZE <= MAX_PAYLOAD);
     assert!(Rejection::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(SetParameter::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(ParameterReply::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(PlanTrajectory::MAX_SIZE <= MAX_PAYLOAD);
 };
 
 /// The most bytes that postcard needs for one value of a type.

@@ -49,6 +49,9 @@ proptest! {
             Message::StepReport(body) => postcard::to_slice(body, &mut payload),
             Message::PlanReport(body) => postcard::to_slice(body, &mut payload),
             Message::Rejection(body) => postcard::to_slice(body, &mut payload),
+            Message::SetParameter(body) => postcard::to_slice(body, &mut payload),
+            Message::ParameterReply(body) => postcard::to_slice(body, &mut payload),
+            Message::PlanTrajectory(body) => postcard::to_slice(body, &mut payload),
         }
         .unwrap();
         prop_assert_eq!(frame(&message), oracle::frame(b"MP", 1, message.id(), payload));
@@ -181,7 +184,7 @@ fn each_fault_has_its_name() {
             oracle::frame(b"MP", 0, 200, &[1, 2, 3]),
             Version { peer: 0 },
         ),
-        (oracle::frame(b"MP", 1, 10, &reply), UnknownId { id: 10 }),
+        (oracle::frame(b"MP", 1, 13, &reply), UnknownId { id: 13 }),
         (
             oracle::frame(b"MP", 1, id::CONFIGURE_REPLY, &[99]),
             Payload { id: 3 },

@@ -279,3 +279,52 @@ fn rejection_and_every_fault_of_a_frame() {
         ),
     ]);
 }
+
+#[test]
+fn set_parameter() {
+    let message = SetParameter {
+        parameter: 7,
+        value: -0.25,
+    };
+    check(&[(
+        Message::SetParameter(message),
+        "064d50010a07010101010107d0bf99a485a100",
+    )]);
+}
+
+fn parameter_reply(verdict: ParameterVerdict) -> Message {
+    Message::ParameterReply(ParameterReply {
+        parameter: 7,
+        verdict,
+    })
+}
+
+#[test]
+fn parameter_reply_and_every_verdict() {
+    use ParameterVerdict::*;
+    check(&[
+        (parameter_reply(Accepted), "064d50010b07059969bfc100"),
+        (parameter_reply(Unknown), "0b4d50010b07010f59b8b600"),
+        (parameter_reply(Range), "0b4d50010b0702b508b12f00"),
+        (parameter_reply(NotWhole), "0b4d50010b07032338b65800"),
+        (parameter_reply(InFlight), "0b4d50010b070480add2c600"),
+        (parameter_reply(NotConfigured), "0b4d50010b0705169dd5b100"),
+        (
+            parameter_reply(SetUp(ConfigureVerdict::NotTrimmable)),
+            "0c4d50010b070606b77929e400",
+        ),
+    ]);
+}
+
+#[test]
+fn plan_trajectory() {
+    let message = PlanTrajectory {
+        scan_tick: 200,
+        period: 0.25,
+        knots: [[1.5, -2.5, 0.1]; 2].into_iter().collect(),
+    };
+    check(&[(
+        Message::PlanTrajectory(message),
+        "074d50010cc8010104803e020103c03f010720c0cdcccc3d0103c03f010b20c0cdcccc3d6437739500",
+    )]);
+}

@@ -49,6 +49,16 @@ fn of_the_session() {
         verdict: ConfigureVerdict::Beams { max: u16::MAX },
     };
     assert_eq!(payload(&reply), ConfigureReply::MAX_SIZE);
+    let set = SetParameter {
+        parameter: u8::MAX,
+        value: FLOAT,
+    };
+    assert_eq!(payload(&set), SetParameter::MAX_SIZE);
+    let reply = ParameterReply {
+        parameter: u8::MAX,
+        verdict: ParameterVerdict::SetUp(reply.verdict),
+    };
+    assert_eq!(payload(&reply), ParameterReply::MAX_SIZE);
 }
 
 #[test]
@@ -93,6 +103,13 @@ fn of_the_reports() {
         complete: true,
     };
     assert_eq!(payload(&plan), PlanReport::MAX_SIZE);
+    let value = f32::from_bits(0x4142_4344);
+    let trajectory = PlanTrajectory {
+        scan_tick: u32::MAX,
+        period: value,
+        knots: [[value; 3]; MAX_KNOTS].into_iter().collect(),
+    };
+    assert_eq!(payload(&trajectory), PlanTrajectory::MAX_SIZE);
     let cause = RejectionCause::TickOrder {
         expected: u32::MAX,
         found: u32::MAX,

@@ -19,7 +19,7 @@
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
 //! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
 //! * [`campaign`]: many flights over a grid, with intervals.
-//! * [`telemetry`]: MAVLink 2 for ground stations.
+//! * [`ground`]: what people see of a flight and tell it; MAVLink 2.
 //! * [`check_reference`]: core and plant against data recorded from the authors' code.
 //! * [`bench`]: our parts beside others.
 //! * [`cli`]: the command line.
@@ -36,6 +36,7 @@ pub mod check_reference;
 pub mod cli;
 pub mod faults;
 pub mod figure;
+pub mod ground;
 pub mod lidar;
 pub mod link;
 pub mod log;
@@ -46,5 +47,4 @@ pub mod run;
 pub mod scenario;
 pub mod scene;
 pub mod sensors;
-pub mod telemetry;
 pub mod world;

@@ -12,6 +12,7 @@ mod error;
 pub use error::LogError;
 
 use crate::faults::Faults;
+use crate::ground::OrderEntry;
 use crate::lidar::LidarConfig;
 use crate::outcome::{Class, Outcome, Score};
 use crate::scene::Scene;
@@ -38,6 +39,9 @@ pub struct FlightLog {
     pub plans: Vec<PlanEntry>,
     /// Every input that the core refused.
     pub rejections: Vec<RejectionEntry>,
+    /// Every order from the ground that took effect; not written if there was none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub orders: Vec<OrderEntry>,
     /// How it ended.
     pub summary: Summary,
 }
@@ -285,6 +289,7 @@ impl FlightLog {
             ticks: Columns::default(),
             plans: Vec::new(),
             rejections: Vec::new(),
+            orders: Vec::new(),
             summary: Summary {
                 outcome: Outcome::Survived,
                 strict: true,

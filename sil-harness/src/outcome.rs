@@ -31,6 +31,8 @@ pub enum Outcome {
     PitchLimit,
     /// Flight path angle beyond [`FLIGHT_PATH_LIMIT`].
     FlightPathLimit,
+    /// Ended by an order from the ground.
+    Terminated,
 }
 
 impl Outcome {
@@ -41,6 +43,7 @@ impl Outcome {
             Self::Survived => 0,
             Self::Collision => 3,
             Self::PitchLimit | Self::FlightPathLimit => 4,
+            Self::Terminated => 8,
         }
     }
 }
@@ -52,6 +55,7 @@ impl core::fmt::Display for Outcome {
             Self::Collision => "collision",
             Self::PitchLimit => "pitch limit",
             Self::FlightPathLimit => "flight path limit",
+            Self::Terminated => "terminated",
         })
     }
 }
@@ -70,6 +74,8 @@ pub enum Class {
     Pitch,
     /// Flight path angle beyond [`FLIGHT_PATH_LIMIT`] while a plan was flown.
     FlightPath,
+    /// Ended by an order from the ground.
+    Terminated,
     /// Any failure by the paper's rule without a plan: the core held level trim when the flight
     /// ended, or its last planning cycle had nothing to offer, so that an older plan was flown on
     /// or level trim held.
@@ -78,12 +84,13 @@ pub enum Class {
 
 impl Class {
     /// All of them, in the order of the table.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Success,
         Self::LeftBand,
         Self::Collision,
         Self::Pitch,
         Self::FlightPath,
+        Self::Terminated,
         Self::NoPlan,
     ];
 
@@ -93,6 +100,7 @@ impl Class {
         match outcome {
             Outcome::Survived if strict => Self::Success,
             Outcome::Survived => Self::LeftBand,
+            Outcome::Terminated => Self::Terminated,
             _ if planless => Self::NoPlan,
             Outcome::Collision => Self::Collision,
             Outcome::PitchLimit => Self::Pitch,
@@ -109,6 +117,7 @@ impl Class {
             Self::Collision => "collision",
             Self::Pitch => "pitch",
             Self::FlightPath => "flight-path",
+            Self::Terminated => "terminated",
             Self::NoPlan => "no-plan",
         }
     }

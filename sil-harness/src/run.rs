@@ -1,23 +1,25 @@
 //! One flight in lockstep: sensors out, command back, plant on.
 
+mod session;
+mod steering;
+
 use crate::aircraft::Aircraft;
 use crate::faults::LidarFaults;
+use crate::ground::Ground;
 use crate::lidar::Lidar;
 use crate::link::{Link, LinkError};
-use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, RejectionEntry, Tick, finite};
+use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, Tick, finite};
 use crate::outcome::{Outcome, Score};
 use crate::plant::PlantError;
 use crate::scenario::{ALTITUDE, Scenario};
 use crate::sensors::AirDataSensors;
 use crate::world::ObstacleField;
-use hil_protocol::{
-    ActuatorCommand, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, PlanReport,
-    Rejection, Role, SensorFrame, StepReport,
-};
-use mpp_core::config::{STAGES, TICK_PERIOD};
+use hil_protocol::{ControlMode, LidarScan, PlanReport, PlanTrajectory, SensorFrame};
 use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
 use nalgebra::Vector4;
+use session::{Answer, exchange, greet};
 use std::fmt;
+use steering::Steering;
 
 /// Why a flight could not be flown to an outcome.
 #[derive(Debug)]
@@ -52,15 +54,25 @@ impl From<LinkError> for FlyError {
 pub struct Moment<'a> {
     /// The tick as logged.
     pub tick: &'a Tick,
+    /// The scan taken at this tick, if one was.
+    pub scan: Option<&'a LidarScan>,
     /// The plan taken over at this tick, if one was.
     pub plan: Option<&'a PlanEntry>,
+    /// What the core says about it.
+    pub report: Option<&'a PlanReport>,
+    /// Its trajectory.
+    pub trajectory: Option<&'a PlanTrajectory>,
+    /// Inputs refused so far.
+    pub rejections: usize,
 }
 
-/// The core's answer to one tick.
-struct Answer {
-    command: ActuatorCommand,
-    step: Option<StepReport>,
-    plan: Option<PlanEntry>,
+/// A flight with nobody but an onlooker.
+struct Onlooker<F>(F);
+
+impl<F: FnMut(&Moment<'_>)> Ground for Onlooker<F> {
+    fn watch(&mut self, moment: &Moment<'_>) {
+        (self.0)(moment);
+    }
 }
 
 /// Flies a scenario over a link; `watch` sees every tick.
@@ -70,7 +82,19 @@ struct Answer {
 pub fn fly(
     scenario: &Scenario,
     link: &mut dyn Link,
-    mut watch: impl FnMut(&Moment<'_>),
+    watch: impl FnMut(&Moment<'_>),
+) -> Result<FlightLog, FlyError> {
+    fly_with(scenario, link, &mut Onlooker(watch))
+}
+
+/// Flies a scenario over a link, with people on the ground.
+///
+/// # Errors
+/// [`FlyError`]: there is no outcome.
+pub fn fly_with(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    ground: &mut dyn Ground,
 ) -> Result<FlightLog, FlyError> {
     let mut aircraft = Aircraft::new(scenario).map_err(FlyError::Trim)?;
     let field = scenario.field();
@@ -82,10 +106,19 @@ pub fn fly(
     let mut end = None;
     let mut holds_trim = true;
     let mut flown = 0;
+    let mut steering = Steering::new(scenario)?;
+    ground.begin(&steering.tuning, aircraft.state());
+    steering.wait(link, ground, &mut log.rejections)?;
     while flown < scenario.ticks && end.is_none() {
+        steering.obey(link, ground, flown, &mut log.rejections)?;
+        if steering.terminated {
+            end = Some(Outcome::Terminated);
+            break;
+        }
         let before = *aircraft.state();
         let measured = sensors.measure(&before);
-        let scan = (flown % scenario.replan_ticks == 0)
+        let scan = steering
+            .scans(flown)
             .then(|| wire_scan(scenario, flown, &eyes.scan(&before, &field)));
         let frame = SensorFrame {
             tick: flown,
@@ -94,7 +127,9 @@ pub fn fly(
             x: before.x,
             z: before.z,
         };
-        let answer = exchange(scenario, link, scan, frame, &mut log.rejections)?;
+        let rejections = &mut log.rejections;
+        let mut answer = exchange(scenario, &steering, link, scan.as_ref(), frame, rejections)?;
+        steering.limit(&mut answer.command);
         let wind = aircraft.wind();
         let applied = aircraft.step(control(&answer)).map_err(FlyError::Plant)?;
         let tick = Tick {
@@ -102,16 +137,22 @@ pub fn fly(
             wind,
             ..logged(flown, &before, measured, &answer)
         };
-        watch(&Moment {
+        let plan = answer.plan.as_ref().map(plan_entry);
+        ground.watch(&Moment {
             tick: &tick,
-            plan: answer.plan.as_ref(),
+            scan: scan.as_ref(),
+            plan: plan.as_ref(),
+            report: answer.plan.as_ref(),
+            trajectory: answer.trajectory.as_ref(),
+            rejections: log.rejections.len(),
         });
         log.ticks.push(&tick);
-        log.plans.extend(answer.plan);
+        log.plans.extend(plan);
         holds_trim = answer.command.mode == ControlMode::TrimHold;
         end = score.update(&field, &before, aircraft.state());
         flown += 1;
     }
+    log.orders = std::mem::take(&mut steering.orders);
     let outcome = end.unwrap_or(Outcome::Survived);
     log.conclude(outcome, &score, holds_trim);
     log.summary.t_end = Scenario::time(flown);
@@ -138,150 +179,6 @@ impl Eyes {
         let mut ranges = self.lidar.scan(state, field);
         self.faults.spoil(&mut ranges);
         ranges
-    }
-}
-
-/// Hello both ways, and the configuration.
-fn greet(
-    scenario: &Scenario,
-    link: &mut dyn Link,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<(), LinkError> {
-    link.send(&Message::Hello(own_hello()))?;
-    let peer = loop {
-        match link.receive("hello")? {
-            Message::Hello(peer) => break peer,
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            other => return Err(unexpected("hello", &other)),
-        }
-    };
-    configure(scenario, link, &peer, rejections)
-}
-
-fn own_hello() -> Hello {
-    Hello {
-        role: Role::Harness,
-        software: software(),
-        tick_period_us: (TICK_PERIOD * 1e6) as u32,
-        beams_max: hil_protocol::MAX_BEAMS as u16,
-        stages: STAGES as u16,
-    }
-}
-
-/// Checks the core that said hello and configures it.
-fn configure(
-    scenario: &Scenario,
-    link: &mut dyn Link,
-    peer: &Hello,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<(), LinkError> {
-    if peer.role != Role::Core {
-        let why = "the other side is a harness too: give the address of a core";
-        return Err(LinkError::Peer(why.to_owned()));
-    }
-    let own = own_hello();
-    if peer.tick_period_us != own.tick_period_us
-        || usize::from(peer.beams_max) < scenario.lidar.beams
-    {
-        return Err(LinkError::Peer(format!(
-            "the core ticks every {} us and takes {} beams; this harness needs {} us and {} beams",
-            peer.tick_period_us, peer.beams_max, own.tick_period_us, scenario.lidar.beams
-        )));
-    }
-    link.send(&Message::Configure(scenario.configure()))?;
-    let awaited = "the reply to the configuration";
-    loop {
-        match link.receive(awaited)? {
-            Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => {
-                return Ok(());
-            }
-            Message::ConfigureReply(reply) => return Err(LinkError::Refused(reply.verdict)),
-            // A core that starts says hello unasked, and once more when it is greeted.
-            Message::Hello(_) => {}
-            // Of frames that came before the configuration.
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            other => return Err(unexpected(awaited, &other)),
-        }
-    }
-}
-
-/// Sends a tick's measurements and gets the answer. A core that restarts meanwhile, which its
-/// unasked hello tells, is configured anew and gets them once more.
-fn exchange(
-    scenario: &Scenario,
-    link: &mut dyn Link,
-    scan: Option<LidarScan>,
-    frame: SensorFrame,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<Answer, LinkError> {
-    const RESTARTS: usize = 3;
-    let scan = scan.map(Message::LidarScan);
-    for _ in 0..=RESTARTS {
-        if let Some(scan) = &scan {
-            link.send(scan)?;
-        }
-        link.send(&Message::SensorFrame(frame))?;
-        match receive_answer(link, frame.tick, rejections)? {
-            Received::Answer(answer) => return Ok(*answer),
-            Received::Hello(peer) => {
-                rejections.push(RejectionEntry {
-                    tick: u64::from(frame.tick),
-                    cause: "CoreRestarted".to_owned(),
-                });
-                configure(scenario, link, &peer, rejections)?;
-            }
-        }
-    }
-    Err(LinkError::Peer(format!(
-        "the core restarts again and again at tick {}",
-        frame.tick
-    )))
-}
-
-/// What came instead of an answer, or the answer.
-enum Received {
-    Answer(Box<Answer>),
-    Hello(Hello),
-}
-
-fn unexpected(awaited: &str, message: &Message) -> LinkError {
-    LinkError::Unexpected {
-        awaited: awaited.to_owned(),
-        id: message.id(),
-    }
-}
-
-/// Collects what the core sends until its command for this tick.
-fn receive_answer(
-    link: &mut dyn Link,
-    tick: u32,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<Received, LinkError> {
-    let awaited = format!("the actuator command of tick {tick}");
-    let mut step = None;
-    let mut plan = None;
-    loop {
-        match link.receive(&awaited)? {
-            Message::ActuatorCommand(command) if command.tick == tick => {
-                return Ok(Received::Answer(Box::new(Answer {
-                    command,
-                    step,
-                    plan,
-                })));
-            }
-            Message::StepReport(report) => step = Some(report),
-            Message::PlanReport(report) => plan = Some(plan_entry(&report)),
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            Message::Hello(peer) => return Ok(Received::Hello(peer)),
-            other => return Err(unexpected(&awaited, &other)),
-        }
-    }
-}
-
-fn rejection_entry(rejection: &Rejection) -> RejectionEntry {
-    RejectionEntry {
-        tick: u64::from(rejection.tick),
-        cause: format!("{:?}", rejection.cause),
     }
 }
 
@@ -368,14 +265,4 @@ fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
         scene: scenario.scene,
         field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
     }
-}
-
-/// This crate's version.
-fn software() -> [u8; 3] {
-    let part = |text: &str| text.parse().unwrap_or(0);
-    [
-        part(env!("CARGO_PKG_VERSION_MAJOR")),
-        part(env!("CARGO_PKG_VERSION_MINOR")),
-        part(env!("CARGO_PKG_VERSION_PATCH")),
-    ]
 }

@@ -1,9 +1,11 @@
 //! The step's side: the link, the 100 Hz step, the hand-over of plans.
 
 mod tick;
+mod tune;
 
 use crate::convert;
 use crate::mail::{Answer, Order, Plan};
+use crate::parameters::Tuning;
 use hil_protocol::{
     Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, LidarScan as WireScan, MAX_FRAME,
     Message, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode,
@@ -14,6 +16,7 @@ use mpp_core::health::Health;
 use mpp_core::planner::{PlanSummary, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::trajectory::Trajectory;
+use tune::Asker;
 
 /// What happens at the tick at which a plan is due and the planner has not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +30,9 @@ pub enum Pace {
 
 /// A flight under way.
 struct Flight {
-    configure: Configure,
+    tuning: Tuning,
+    /// Who waits for the planner to be set up.
+    asker: Asker,
     /// Whether the planner was set up and the configuration accepted.
     ready: bool,
     control: FlightLoop,
@@ -124,7 +129,7 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return;
         };
-        self.order = Some(Order::SetUp(flight.configure));
+        self.order = Some(Order::SetUp(flight.tuning));
         if !flight.ready {
             return;
         }
@@ -176,6 +181,7 @@ impl StepTask {
         match message {
             Message::Hello(_) => self.greet(send),
             Message::Configure(configure) => self.configure(configure, send),
+            Message::SetParameter(set) => self.set_parameter(set, send),
             Message::LidarScan(scan) => self.take_scan(scan, send),
             Message::SensorFrame(frame) => self.sensor_frame(frame, send),
             other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
@@ -211,8 +217,8 @@ impl StepTask {
     fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
         match self.prepare(configure) {
             Ok(flight) => {
+                self.order = Some(Order::SetUp(flight.tuning));
                 self.flight = Some(flight);
-                self.order = Some(Order::SetUp(*configure));
             }
             Err(verdict) => self.reply(verdict, send),
         }
@@ -223,11 +229,12 @@ impl StepTask {
         if self.flight.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
-        let settings = convert::settings(configure)?;
+        let tuning = Tuning::new(configure)?;
         Ok(Flight {
-            configure: *configure,
+            tuning,
+            asker: Asker::Configure,
             ready: false,
-            control: FlightLoop::new(&settings).map_err(convert::setup_verdict)?,
+            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
             last_tick: None,
             cycle: None,
             last_cycle: None,
@@ -243,6 +250,9 @@ impl StepTask {
         if flight.ready {
             // A planner that was restarted in flight.
             return;
+        }
+        if flight.asker != Asker::Configure {
+            return self.tuned(result, send);
         }
         match result {
             Ok(()) => {
@@ -264,7 +274,10 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return self.reject(RejectionCause::NotConfigured, send);
         };
-        let (beams, range_max) = (flight.configure.beams, flight.configure.range_max);
+        let (beams, range_max) = {
+            let configure = &flight.tuning.configure;
+            (configure.beams, configure.range_max)
+        };
         convert::scan(wire, &mut self.scan);
         match self.scan.check(usize::from(beams), f64::from(range_max)) {
             Ok(()) => flight.scan_tick = Some(wire.tick),

@@ -7,6 +7,7 @@ use crate::time;
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, Message, PlanOutcome, PlanReport, RejectionCause};
 use mpp_core::estimate::{Innovation, Verdict};
+use mpp_core::flight::Adoption;
 use mpp_core::planner::PlanSummary;
 
 impl StepTask {
@@ -28,9 +29,9 @@ impl StepTask {
 
     fn plan_is_due(&self, tick: u32) -> bool {
         self.flight.as_ref().is_some_and(|flight| {
-            flight
-                .cycle
-                .is_some_and(|scan| tick >= scan.saturating_add(flight.configure.latency_ticks))
+            flight.cycle.is_some_and(|scan| {
+                tick >= scan.saturating_add(flight.tuning.configure.latency_ticks)
+            })
         })
     }
 
@@ -72,8 +73,13 @@ impl StepTask {
             violation,
             complete,
         };
+        let flown = matches!(adoption, Adoption::Feasible | Adoption::LeastViolating)
+            .then(|| convert::trajectory(scan_tick, &plan.trajectory));
         self.plan = None;
         self.emit(&Message::PlanReport(report), send);
+        if let Some(trajectory) = flown {
+            self.emit(&Message::PlanTrajectory(trajectory), send);
+        }
     }
 
     fn step(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
@@ -116,7 +122,7 @@ impl StepTask {
             };
             return self.reject(cause, send);
         }
-        let period = flight.configure.replan_period_ticks;
+        let period = flight.tuning.configure.replan_period_ticks;
         if flight
             .last_cycle
             .is_some_and(|last| tick < last.saturating_add(period))
@@ -132,6 +138,7 @@ impl StepTask {
             tick,
             state: flight.control.state(),
             scan: self.scan.clone(),
+            tuning: flight.tuning,
         });
     }
 }

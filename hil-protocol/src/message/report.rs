@@ -2,6 +2,7 @@
 
 use super::size;
 use crate::error::DecodeError;
+use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
 /// Core to harness: how one planning cycle ended.
@@ -45,6 +46,25 @@ pub enum PlanOutcome {
     KeptPrevious = 2,
     /// Nothing to fly: straight and level.
     TrimHold = 3,
+}
+
+/// Core to harness: the trajectory that a planning cycle chose, after its [`PlanReport`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanTrajectory {
+    /// The tick of the scan that it was planned from, at which it starts.
+    pub scan_tick: u32,
+    /// Time from a knot to the next \[s\].
+    pub period: f32,
+    /// Downrange distance \[m\], height \[m\] and flight path angle \[rad\] at each knot.
+    pub knots: Vec<[f32; 3], MAX_KNOTS>,
+}
+
+/// The most knots in a [`PlanTrajectory`].
+pub const MAX_KNOTS: usize = 19;
+
+impl PlanTrajectory {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 3 * size::F32;
 }
 
 /// Core to harness: an input that was not used, and why.

@@ -132,3 +132,56 @@ pub enum ConfigureVerdict {
     /// A session is running; it goes on as it was.
     AlreadyConfigured,
 }
+
+/// Harness to core: another value for one of the core's parameters. Answered by a
+/// [`ParameterReply`].
+///
+/// Between [`ConfigureReply`] and the first [`SensorFrame`](crate::SensorFrame) every parameter can
+/// change; after it, those that the core can change in flight.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SetParameter {
+    /// Which one, a number that the core's software gives it.
+    pub parameter: u8,
+    /// Its value from now on, in its own unit.
+    pub value: f64,
+}
+
+impl SetParameter {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = size::BYTE + size::F64;
+}
+
+/// Core to harness: the answer to a [`SetParameter`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ParameterReply {
+    /// Which one.
+    pub parameter: u8,
+    /// Accepted, or why not.
+    pub verdict: ParameterVerdict,
+}
+
+impl ParameterReply {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = size::BYTE + size::BYTE + ConfigureReply::MAX_SIZE;
+}
+
+/// What the core thinks of a [`SetParameter`]. After anything but `Accepted` it flies on with the
+/// value that it had. The order is what goes over the wire: append only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub enum ParameterVerdict {
+    /// In force: at once before the flight, and from the next planning cycle on in flight.
+    Accepted,
+    /// No such parameter, or not with this preset.
+    Unknown,
+    /// Not a number, or outside the parameter's range.
+    Range,
+    /// A whole number is asked for.
+    NotWhole,
+    /// Can only change before the flight.
+    InFlight,
+    /// There is no configuration yet.
+    NotConfigured,
+    /// With this value the core cannot be set up.
+    SetUp(ConfigureVerdict),
+}

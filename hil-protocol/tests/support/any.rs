@@ -19,6 +19,11 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
         plan_report().prop_map(Message::PlanReport),
         (any::<u32>(), cause())
             .prop_map(|(tick, cause)| Message::Rejection(Rejection { tick, cause })),
+        (any::<u8>(), f64::ANY).prop_map(|(parameter, value)| Message::SetParameter(
+            SetParameter { parameter, value }
+        )),
+        parameter_reply().prop_map(Message::ParameterReply),
+        plan_trajectory().prop_map(Message::PlanTrajectory),
     ]
 }
 
@@ -78,6 +83,24 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::AlreadyConfigured,
         ]),
     ]
+}
+
+fn parameter_reply() -> impl Strategy<Value = ParameterReply> {
+    use ParameterVerdict::*;
+    let verdicts = prop_oneof![
+        select(&[Accepted, Unknown, Range, NotWhole, InFlight, NotConfigured]),
+        verdict().prop_map(SetUp),
+    ];
+    (any::<u8>(), verdicts).prop_map(|(parameter, verdict)| ParameterReply { parameter, verdict })
+}
+
+fn plan_trajectory() -> impl Strategy<Value = PlanTrajectory> {
+    let knots = vec(proptest::array::uniform3(f32::ANY), 0..=MAX_KNOTS);
+    (any::<u32>(), f32::ANY, knots).prop_map(|(scan_tick, period, knots)| PlanTrajectory {
+        scan_tick,
+        period,
+        knots: knots.into_iter().collect(),
+    })
 }
 
 fn sensor_frame() -> impl Strategy<Value = SensorFrame> {

@@ -242,6 +242,27 @@ impl Planner {
         Ok(())
     }
 
+    /// Takes over, for the cycles to come, what needs no other model: paths (at most
+    /// [`MAX_PATHS`]), altitude, padding, penalty and attitude limits.
+    pub fn retune(&mut self, settings: &PlannerSettings) {
+        let PlannerSettings {
+            paths,
+            altitude,
+            padding,
+            penalty,
+            attitude,
+            ..
+        } = *settings;
+        self.settings = PlannerSettings {
+            paths: paths.min(MAX_PATHS),
+            altitude,
+            padding,
+            penalty,
+            attitude,
+            ..self.settings
+        };
+    }
+
     /// Starts a cycle at a time [s] from a state and a checked scan; drops one under way.
     pub fn begin(&mut self, time: f64, state: &VehicleState, scan: &LidarScan) {
         self.time = time;

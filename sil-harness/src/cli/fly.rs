@@ -1,18 +1,17 @@
 //! `fly`: one flight, its log and its picture.
 
+use super::ground::GroundArgs;
 use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, LINK, USAGE, data, talk};
 use crate::figure::flight_svg;
 use crate::link::{FifoLink, Link, LinkError, PipeLink, TcpLink};
 use crate::log::FlightLog;
 use crate::outcome::{Class, Outcome};
-use crate::run::{FlyError, fly};
+use crate::run::{FlyError, fly_with};
 use crate::scenario::{Preset, Scenario};
-use crate::telemetry::TelemetryLink;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct FlyArgs {
@@ -38,12 +37,8 @@ pub(super) struct FlyArgs {
     /// [default: in this process]
     #[arg(long)]
     link: Option<String>,
-    /// Send MAVLink 2 telemetry to udp:HOST:PORT, for instance udp:127.0.0.1:14550
-    #[arg(long)]
-    mavlink: Option<String>,
-    /// Speed against real time, for instance 1 to watch [default: as fast as it goes]
-    #[arg(long)]
-    speed: Option<f64>,
+    #[command(flatten)]
+    ground: GroundArgs,
     /// Print the result as one JSON object
     #[arg(long)]
     json: bool,
@@ -68,22 +63,6 @@ impl FlyArgs {
             None => Ok(Box::new(PipeLink::new())),
             Some(text) => connect(text),
         }
-    }
-
-    fn telemetry(&self) -> Result<Option<TelemetryLink>, Failure> {
-        let Some(text) = self.mavlink.as_deref() else {
-            return Ok(None);
-        };
-        let Some(address) = text.strip_prefix("udp:") else {
-            return Err(Failure::new(USAGE, "--mavlink: give udp:HOST:PORT"));
-        };
-        let link = TelemetryLink::open(address)
-            .map_err(|error| Failure::new(LINK, format!("--mavlink {text}: {error}")))?;
-        talk(format_args!(
-            "MAVLink 2 to {address} as system 1: QGroundControl listens there by itself; \
-             mavproxy.py --master=udp:{address}; pymavlink: mavutil.mavlink_connection('udpin:{address}')"
-        ));
-        Ok(Some(link))
     }
 }
 
@@ -128,13 +107,6 @@ struct ResultLine<'a> {
 
 pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     let scenario = args.scenario()?;
-    if args
-        .speed
-        .is_some_and(|speed| !speed.is_finite() || speed <= 0.0)
-    {
-        return Err(Failure::new(USAGE, "--speed: give a positive number"));
-    }
-    let mut telemetry = args.telemetry()?;
     let mut link = args.connect()?;
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
@@ -145,18 +117,13 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
         args.link.as_deref().unwrap_or("in this process"),
     ));
     let progress = progress_bar(u64::from(scenario.ticks));
-    let begin = Instant::now();
-    let result = fly(&scenario, link.as_mut(), |moment| {
-        progress.inc(1);
-        if let Some(telemetry) = &mut telemetry {
-            telemetry.send(moment);
-        }
-        if let Some(speed) = args.speed {
-            let due = Duration::from_secs_f64(moment.tick.t / speed);
-            std::thread::sleep(due.saturating_sub(begin.elapsed()));
-        }
-    });
-    progress.finish_and_clear();
+    let mut crew = args.ground.open(&scenario, progress)?;
+    let result = fly_with(&scenario, link.as_mut(), &mut crew);
+    let how = match &result {
+        Ok(log) => log.summary.outcome.to_string(),
+        Err(error) => error.to_string(),
+    };
+    crew.ground.end(&how)?;
     let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;
     report(args, &log)
 }

@@ -8,6 +8,8 @@ mod check;
 mod core;
 mod figures;
 mod fly;
+mod ground;
+mod params;
 mod scenario;
 
 use clap::{Parser, Subcommand};
@@ -44,6 +46,8 @@ enum Command {
     Core(core::CoreArgs),
     /// Measure our parts beside others, in one run
     Bench(bench::BenchArgs),
+    /// Print the parameters of a preset, as a file that `fly --params` and ground stations read
+    Params(params::ParamsArgs),
     /// Check core and plant against data recorded from the authors' code
     CheckReference(check::CheckArgs),
 }
@@ -59,6 +63,7 @@ pub fn run() -> ExitCode {
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Params(args)) => params::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),
     };
     match result {

@@ -85,6 +85,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
+        orders: Vec::new(),
         summary: Summary {
             outcome: Outcome::Survived,
             strict: true,

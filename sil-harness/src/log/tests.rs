@@ -87,6 +87,7 @@ fn example() -> FlightLog {
             tick: 1,
             cause: "stale scan".into(),
         }],
+        orders: Vec::new(),
         summary: Summary {
             outcome: Outcome::FlightPathLimit,
             strict: false,

@@ -1,0 +1,91 @@
+//! Messages to frames.
+
+use super::frame::{CHECKSUM, MAX_FRAME, SIGNED, STX_V2, V2_HEADER};
+use super::signing::Signer;
+use mavlink_core::{MavlinkVersion, MessageData, calculate_crc};
+
+/// One MAVLink 2 frame, to be sent as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Datagram {
+    bytes: [u8; MAX_FRAME],
+    length: usize,
+}
+
+impl Datagram {
+    /// The frame.
+    #[must_use]
+    pub fn as_bytes(&self) -> &[u8] {
+        self.bytes.get(..self.length).unwrap_or_default()
+    }
+
+    fn push(&mut self, part: &[u8]) {
+        let end = self.length + part.len();
+        if let Some(place) = self.bytes.get_mut(self.length..end) {
+            place.copy_from_slice(part);
+            self.length = end;
+        }
+    }
+}
+
+/// The sender's side of a stream: numbers the frames, so that a receiver can count the lost ones.
+#[derive(Clone, Debug)]
+pub struct Sender {
+    system: u8,
+    component: u8,
+    sequence: u8,
+}
+
+impl Sender {
+    /// Of a component, its next frame being number 0.
+    #[must_use]
+    pub const fn new(system: u8, component: u8) -> Self {
+        Self {
+            system,
+            component,
+            sequence: 0,
+        }
+    }
+
+    /// The message as the next frame.
+    pub fn frame<M: MessageData>(&mut self, message: &M) -> Datagram {
+        self.build(message, 0)
+    }
+
+    /// The message as the next frame, signed.
+    pub fn signed_frame<M: MessageData>(&mut self, message: &M, signer: &mut Signer) -> Datagram {
+        let mut datagram = self.build(message, SIGNED);
+        let signature = signer.sign(datagram.as_bytes());
+        datagram.push(&signature);
+        datagram
+    }
+
+    fn build<M: MessageData>(&mut self, message: &M, flags: u8) -> Datagram {
+        let mut payload = [0; 255];
+        let length = message.ser(MavlinkVersion::V2, &mut payload);
+        let payload = payload.get(..length).unwrap_or_default();
+        let [a, b, c, _] = M::ID.to_le_bytes();
+        let header: [u8; V2_HEADER] = [
+            STX_V2,
+            length as u8,
+            flags,
+            0,
+            self.sequence,
+            self.system,
+            self.component,
+            a,
+            b,
+            c,
+        ];
+        self.sequence = self.sequence.wrapping_add(1);
+        let mut datagram = Datagram {
+            bytes: [0; MAX_FRAME],
+            length: 0,
+        };
+        datagram.push(&header);
+        datagram.push(payload);
+        let checked = datagram.as_bytes().get(1..).unwrap_or_default();
+        let checksum: [u8; CHECKSUM] = calculate_crc(checked, M::EXTRA_CRC).to_le_bytes();
+        datagram.push(&checksum);
+        datagram
+    }
+}

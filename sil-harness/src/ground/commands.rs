@@ -1,0 +1,211 @@
+//! Commands: every one is acknowledged, those that nobody knows too.
+
+use super::vehicle::{Address, Severity, Vehicle, Waiting};
+use super::{Mode, Order};
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Frame, MessageData};
+
+/// Numbers of MAV_CMD.
+mod number {
+    pub(super) const SET_MODE: u16 = 176;
+    pub(super) const TERMINATE: u16 = 185;
+    pub(super) const ARM: u16 = 400;
+    pub(super) const HOME: u16 = 410;
+    pub(super) const GET_INTERVAL: u16 = 510;
+    pub(super) const SET_INTERVAL: u16 = 511;
+    pub(super) const REQUEST_MESSAGE: u16 = 512;
+    pub(super) const REQUEST_PROTOCOL: u16 = 519;
+    pub(super) const REQUEST_VERSION: u16 = 520;
+}
+
+/// With this second parameter a vehicle disarms in flight.
+const FORCE: f32 = 21196.0;
+/// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED.
+pub(super) const CUSTOM_MODE: u8 = 1;
+
+/// What an acknowledgement says, as MAV_RESULT counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    Accepted = 0,
+    Denied = 2,
+    Unsupported = 3,
+    Failed = 4,
+}
+
+impl Mode {
+    /// Its number in ArduPlane's table, which ground stations use for fixed wings.
+    pub(super) fn number(self) -> u32 {
+        match self {
+            Self::Auto => 10,
+            Self::Cruise => 7,
+        }
+    }
+
+    fn from_number(number: u32) -> Option<Self> {
+        [Self::Auto, Self::Cruise]
+            .into_iter()
+            .find(|mode| mode.number() == number)
+    }
+}
+
+/// A command, however it came.
+struct Command {
+    number: u16,
+    first: f32,
+    second: f32,
+    from: Address,
+}
+
+impl Vehicle {
+    /// Deals with what changes a flight or the link: commands and parameter writes.
+    pub(super) fn handle_command(&mut self, frame: &Frame<'_>, from: Address) {
+        if let Some(long) = frame.decode::<COMMAND_LONG_DATA>() {
+            if self.is_target(long.target_system, long.target_component) {
+                self.command(&Command {
+                    number: long.command,
+                    first: long.param1,
+                    second: long.param2,
+                    from,
+                });
+            }
+        } else if let Some(int) = frame.decode::<COMMAND_INT_DATA>() {
+            if self.is_target(int.target_system, int.target_component) {
+                self.command(&Command {
+                    number: int.command,
+                    first: int.param1,
+                    second: int.param2,
+                    from,
+                });
+            }
+        } else if let Some(write) = frame.decode::<PARAM_SET_DATA>() {
+            if self.is_target(write.target_system, write.target_component) {
+                self.write_parameter(&write);
+            }
+        } else if let Some(set) = frame.decode::<SET_MODE_DATA>()
+            && self.is_target(set.target_system, 0)
+        {
+            match Mode::from_number(set.custom_mode) {
+                Some(mode) => self.order(Order::Mode { mode }, Waiting::Nobody),
+                None => self.say(Severity::Warning, "No such mode: AUTO or CRUISE"),
+            }
+        }
+    }
+
+    fn command(&mut self, command: &Command) {
+        let outcome = match command.number {
+            number::ARM => self.arm(command),
+            number::SET_MODE => self.set_mode(command),
+            number::TERMINATE => self.terminate(command),
+            number::HOME => self.request(HOME_POSITION_DATA::ID),
+            number::GET_INTERVAL => self.tell_interval(command),
+            number::SET_INTERVAL => {
+                let id = id(command.first);
+                accepted_if(self.streams.set(id, command.second))
+            }
+            number::REQUEST_MESSAGE => self.request(id(command.first)),
+            number::REQUEST_PROTOCOL => self.request(PROTOCOL_VERSION_DATA::ID),
+            number::REQUEST_VERSION => self.request(AUTOPILOT_VERSION_DATA::ID),
+            _ => Some(Outcome::Unsupported),
+        };
+        if let Some(outcome) = outcome {
+            self.send_ack(command.number, command.from, outcome);
+        }
+    }
+
+    /// None: the acknowledgement follows when the flight has done it.
+    fn arm(&mut self, command: &Command) -> Option<Outcome> {
+        let on = match command.first {
+            0.0 => false,
+            1.0 => true,
+            _ => return Some(Outcome::Denied),
+        };
+        if !self.flying {
+            self.armed = on;
+            return Some(Outcome::Accepted);
+        }
+        if on == self.armed {
+            return Some(Outcome::Accepted);
+        }
+        let forced = (FORCE..=FORCE).contains(&command.second);
+        if !on && !forced {
+            self.say(Severity::Warning, "Disarm refused: flying");
+            return Some(Outcome::Denied);
+        }
+        self.order(Order::Motor { on }, waiting(command));
+        None
+    }
+
+    fn set_mode(&mut self, command: &Command) -> Option<Outcome> {
+        let custom = id(command.first) & u32::from(CUSTOM_MODE) != 0;
+        let mode = Mode::from_number(id(command.second)).filter(|_| custom);
+        let Some(mode) = mode else {
+            self.say(Severity::Warning, "No such mode: AUTO or CRUISE");
+            return Some(Outcome::Denied);
+        };
+        self.order(Order::Mode { mode }, waiting(command));
+        None
+    }
+
+    fn terminate(&mut self, command: &Command) -> Option<Outcome> {
+        if !self.flying || !(1.0..=1.0).contains(&command.first) {
+            return Some(Outcome::Denied);
+        }
+        self.order(Order::Terminate, waiting(command));
+        None
+    }
+
+    fn tell_interval(&mut self, command: &Command) -> Option<Outcome> {
+        let id = id(command.first);
+        let interval_us = self.streams.interval(id);
+        self.send(&MESSAGE_INTERVAL_DATA {
+            message_id: u16::try_from(id).unwrap_or(u16::MAX),
+            interval_us,
+        });
+        Some(Outcome::Accepted)
+    }
+
+    fn request(&mut self, id: u32) -> Option<Outcome> {
+        accepted_if(self.send_by_id(id))
+    }
+
+    /// What became of an order that was a command.
+    pub(super) fn acknowledge(&mut self, command: u16, to: Address, done: bool) {
+        let outcome = if done {
+            Outcome::Accepted
+        } else {
+            Outcome::Failed
+        };
+        self.send_ack(command, to, outcome);
+    }
+
+    fn send_ack(&mut self, command: u16, to: Address, outcome: Outcome) {
+        self.send(&COMMAND_ACK_DATA {
+            command,
+            result: outcome as u8,
+            target_system: to.system,
+            target_component: to.component,
+            ..COMMAND_ACK_DATA::DEFAULT
+        });
+    }
+}
+
+fn waiting(command: &Command) -> Waiting {
+    Waiting::Command(command.number, command.from)
+}
+
+#[expect(
+    clippy::unnecessary_wraps,
+    reason = "it stands among those that answer later"
+)]
+fn accepted_if(done: bool) -> Option<Outcome> {
+    Some(if done {
+        Outcome::Accepted
+    } else {
+        Outcome::Denied
+    })
+}
+
+/// A whole number that was sent as a float; saturates, and is 0 for what is no number.
+fn id(value: f32) -> u32 {
+    value.round() as u32
+}

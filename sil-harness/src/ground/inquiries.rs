@@ -1,0 +1,271 @@
+//! What anybody may ask, and every message that can be sent on request.
+
+use super::commands::CUSTOM_MODE;
+use super::tlog::EPOCH_US;
+use super::vehicle::{Address, Vehicle};
+use crate::run::Moment;
+use hil_protocol::PlanTrajectory;
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Frame, MessageData};
+
+/// MAV_TYPE_FIXED_WING.
+const FIXED_WING: u8 = 1;
+/// MAV_AUTOPILOT_GENERIC.
+const GENERIC: u8 = 0;
+/// MAV_STATE_STANDBY and MAV_STATE_ACTIVE.
+const STATES: [u8; 2] = [3, 4];
+/// MAV_MODE_FLAG: stabilised, by its own plan, in the loop.
+const MODE_FLAGS: u8 = CUSTOM_MODE | 4 | 16 | 32;
+/// MAV_MODE_FLAG_SAFETY_ARMED.
+const ARMED: u8 = 128;
+/// MAV_SYS_STATUS_SENSOR: airspeed, laser, attitude reference, motors.
+const SENSORS: u32 = 0x10 | 0x100 | 0x20_0000 | 0x8000;
+/// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as they are.
+const CAPABILITIES: u64 = 8 | 2048 | 8192 | 131_072;
+/// Where the field lies, for maps [1e-7 deg, mm]: nowhere in particular.
+const HOME: (i32, i32, i32) = (473_977_420, 85_455_940, 488_000);
+/// Largest thrust that the throttle display knows [N]: it only scales a percentage.
+const FULL_THROTTLE: f64 = 15.0;
+/// Beams of an [`MPP_LIDAR_SCAN_DATA`].
+const BEAMS: usize = MPP_LIDAR_SCAN_DATA::DEFAULT.ranges.len();
+
+impl Vehicle {
+    /// Answers what changes nothing; false if the frame is something else.
+    pub(super) fn handle_inquiry(&mut self, frame: &Frame<'_>, from: Address) -> bool {
+        if let Some(request) = frame.decode::<PARAM_REQUEST_LIST_DATA>() {
+            if self.is_target(request.target_system, request.target_component) {
+                self.list_parameters();
+            }
+        } else if let Some(request) = frame.decode::<PARAM_REQUEST_READ_DATA>() {
+            if self.is_target(request.target_system, request.target_component) {
+                self.read_parameter(&request);
+            }
+        } else if let Some(ping) = frame.decode::<PING_DATA>() {
+            // With a target it is an answer.
+            if ping.target_system == 0 && ping.target_component == 0 {
+                self.send(&PING_DATA {
+                    target_system: from.system,
+                    target_component: from.component,
+                    ..ping
+                });
+            }
+        } else if let Some(sync) = frame.decode::<TIMESYNC_DATA>() {
+            // Else it is an answer.
+            if sync.tc1 == 0 {
+                self.send(&TIMESYNC_DATA {
+                    tc1: i64::from(self.milliseconds()) * 1_000_000,
+                    ts1: sync.ts1,
+                    target_system: from.system,
+                    target_component: from.component,
+                });
+            }
+        } else if let Some(request) = frame.decode::<MISSION_REQUEST_LIST_DATA>() {
+            if self.is_target(request.target_system, request.target_component) {
+                self.send(&MISSION_COUNT_DATA {
+                    target_system: from.system,
+                    target_component: from.component,
+                    count: 0,
+                    mission_type: request.mission_type,
+                    ..MISSION_COUNT_DATA::DEFAULT
+                });
+            }
+        } else if let Some(request) = frame.decode::<REQUEST_DATA_STREAM_DATA>() {
+            if self.is_target(request.target_system, request.target_component) {
+                self.streams.set_group(
+                    request.req_stream_id,
+                    request.req_message_rate,
+                    request.start_stop == 1,
+                );
+            }
+        } else {
+            // Of no consequence, whoever sent it.
+            return frame.id == SYSTEM_TIME_DATA::ID;
+        }
+        true
+    }
+
+    /// Sends a message as things are now; false if it is none that can be had so.
+    pub(super) fn send_by_id(&mut self, id: u32) -> bool {
+        match id {
+            HEARTBEAT_DATA::ID => self.send_heartbeat(),
+            SYS_STATUS_DATA::ID => self.send_system_status(),
+            SYSTEM_TIME_DATA::ID => self.send(&SYSTEM_TIME_DATA {
+                time_unix_usec: EPOCH_US + self.microseconds(),
+                time_boot_ms: self.milliseconds(),
+            }),
+            ATTITUDE_DATA::ID | LOCAL_POSITION_NED_DATA::ID | VFR_HUD_DATA::ID => {
+                self.send_motion(id);
+            }
+            AUTOPILOT_VERSION_DATA::ID => self.send_version(),
+            HOME_POSITION_DATA::ID => self.send_home(),
+            PROTOCOL_VERSION_DATA::ID => self.send(&PROTOCOL_VERSION_DATA {
+                version: 200,
+                min_version: 200,
+                max_version: 200,
+                ..PROTOCOL_VERSION_DATA::DEFAULT
+            }),
+            _ => return false,
+        }
+        true
+    }
+
+    pub(super) fn send_heartbeat(&mut self) {
+        let armed = if self.armed { ARMED } else { 0 };
+        self.send(&HEARTBEAT_DATA {
+            custom_mode: self.mode.number(),
+            mavtype: FIXED_WING,
+            autopilot: GENERIC,
+            base_mode: MODE_FLAGS | armed,
+            system_status: STATES[usize::from(self.armed)],
+            mavlink_version: MINOR_MAVLINK_VERSION,
+        });
+    }
+
+    fn send_system_status(&mut self) {
+        let (_, _, rejections) = self.motion();
+        let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
+        self.send(&SYS_STATUS_DATA {
+            onboard_control_sensors_present: SENSORS,
+            onboard_control_sensors_enabled: SENSORS,
+            onboard_control_sensors_health: SENSORS,
+            // There is no battery.
+            voltage_battery: u16::MAX,
+            current_battery: -1,
+            battery_remaining: -1,
+            errors_comm: count(self.damaged_frames() as usize),
+            errors_count1: count(rejections),
+            errors_count2: count(self.security.refused as usize),
+            ..SYS_STATUS_DATA::DEFAULT
+        });
+    }
+
+    /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
+    /// height; heading is north, roll and yaw are zero.
+    fn send_motion(&mut self, id: u32) {
+        let (air, thrust, _) = self.motion();
+        let air = *air;
+        let (climb, forward) = libm::sincos(air.flight_path);
+        let (climb, forward) = (air.airspeed * climb, air.airspeed * forward);
+        let time_boot_ms = self.milliseconds();
+        match id {
+            ATTITUDE_DATA::ID => self.send(&ATTITUDE_DATA {
+                time_boot_ms,
+                pitch: air.pitch as f32,
+                pitchspeed: air.pitch_rate as f32,
+                ..ATTITUDE_DATA::DEFAULT
+            }),
+            LOCAL_POSITION_NED_DATA::ID => self.send(&LOCAL_POSITION_NED_DATA {
+                time_boot_ms,
+                x: self.state.x as f32,
+                y: 0.0,
+                z: -self.state.z as f32,
+                vx: forward as f32,
+                vy: 0.0,
+                vz: -climb as f32,
+            }),
+            _ => self.send(&VFR_HUD_DATA {
+                airspeed: air.airspeed as f32,
+                groundspeed: forward as f32,
+                heading: 0,
+                throttle: (thrust / FULL_THROTTLE * 100.0).clamp(0.0, 100.0) as u16,
+                alt: self.state.z as f32,
+                climb: climb as f32,
+            }),
+        }
+    }
+
+    fn send_version(&mut self) {
+        let part = |text: &str| text.parse().unwrap_or(0_u8);
+        let version = [
+            0,
+            part(env!("CARGO_PKG_VERSION_PATCH")),
+            part(env!("CARGO_PKG_VERSION_MINOR")),
+            part(env!("CARGO_PKG_VERSION_MAJOR")),
+        ];
+        self.send(&AUTOPILOT_VERSION_DATA {
+            capabilities: CAPABILITIES,
+            flight_sw_version: u32::from_le_bytes(version),
+            uid: u64::from(self.system),
+            ..AUTOPILOT_VERSION_DATA::DEFAULT
+        });
+    }
+
+    fn send_home(&mut self) {
+        let (latitude, longitude, altitude) = HOME;
+        self.send(&HOME_POSITION_DATA {
+            latitude,
+            longitude,
+            altitude,
+            q: [1.0, 0.0, 0.0, 0.0],
+            time_usec: self.microseconds(),
+            ..HOME_POSITION_DATA::DEFAULT
+        });
+    }
+
+    pub(super) fn report_scan(&mut self, moment: &Moment<'_>) {
+        let (Some(scan), Some(tuning)) = (moment.scan, self.tuning) else {
+            return;
+        };
+        let centimetres = |metres: f32| (metres * 100.0).round() as u16;
+        let reach = centimetres(tuning.configure.range_max);
+        let returns = scan.ranges.iter().copied().filter(|range| *range > 0.0);
+        let nearest = returns.reduce(f32::min).map(centimetres);
+        // A scan with more beams than the message is thinned out evenly.
+        let stride = scan.ranges.len().div_ceil(BEAMS).max(1);
+        if self.streams.wants(MPP_LIDAR_SCAN_DATA::ID) {
+            let mut message = MPP_LIDAR_SCAN_DATA {
+                time_boot_ms: self.milliseconds(),
+                tick: scan.tick,
+                angle_min: scan.angle_min,
+                angle_increment: scan.angle_increment * stride as f32,
+                range_max: reach,
+                ranges: [u16::MAX; BEAMS],
+                ..MPP_LIDAR_SCAN_DATA::DEFAULT
+            };
+            for (place, range) in message
+                .ranges
+                .iter_mut()
+                .zip(scan.ranges.iter().step_by(stride))
+            {
+                message.count += 1;
+                if *range > 0.0 {
+                    *place = centimetres(*range);
+                }
+            }
+            self.send(&message);
+        }
+        if self.streams.wants(DISTANCE_SENSOR_DATA::ID) {
+            let beams = scan.ranges.len().saturating_sub(1) as f32;
+            self.send(&DISTANCE_SENSOR_DATA {
+                time_boot_ms: self.milliseconds(),
+                min_distance: 0,
+                max_distance: reach,
+                // Beyond its reach: nothing is there.
+                current_distance: nearest.unwrap_or(reach.saturating_add(1)),
+                covariance: u8::MAX,
+                vertical_fov: beams * scan.angle_increment,
+                quaternion: [1.0, 0.0, 0.0, 0.0],
+                ..DISTANCE_SENSOR_DATA::DEFAULT
+            });
+        }
+    }
+
+    pub(super) fn send_trajectory(&mut self, trajectory: &PlanTrajectory) {
+        let mut message = MPP_TRAJECTORY_DATA {
+            time_boot_ms: self.milliseconds(),
+            scan_tick: trajectory.scan_tick,
+            dt: trajectory.period,
+            count: trajectory.knots.len() as u8,
+            ..MPP_TRAJECTORY_DATA::DEFAULT
+        };
+        let places = message
+            .x
+            .iter_mut()
+            .zip(&mut message.z)
+            .zip(&mut message.gamma);
+        for (((x, z), gamma), knot) in places.zip(&trajectory.knots) {
+            [*x, *z, *gamma] = *knot;
+        }
+        self.send(&message);
+    }
+}

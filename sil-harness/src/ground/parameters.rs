@@ -1,0 +1,137 @@
+//! The parameter protocol: lists, reads and writes.
+//!
+//! Every value is sent as a 32-bit float. A value that comes back unchanged changes nothing, and
+//! any other means the decimal number that a person would have typed.
+
+use super::vehicle::{Severity, Vehicle, Waiting};
+use super::{Order, Refused};
+use flight_node::parameters::{PARAMETERS, Tuning};
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{CharArray, text};
+use std::collections::VecDeque;
+
+/// MAV_PARAM_TYPE_REAL32.
+const REAL32: u8 = 9;
+/// Values sent in a tick while a list is sent: no socket's buffer overflows.
+const A_TICK: usize = 2;
+
+/// Parameters on their way.
+pub(super) struct ParameterSender(VecDeque<u8>);
+
+impl ParameterSender {
+    pub(super) fn new() -> Self {
+        Self(VecDeque::new())
+    }
+
+    /// The numbers to be sent in this tick.
+    pub(super) fn due(&mut self) -> Vec<u8> {
+        self.0.drain(..A_TICK.min(self.0.len())).collect()
+    }
+}
+
+impl Vehicle {
+    /// Answers a request for the whole list, or for one value.
+    pub(super) fn list_parameters(&mut self) {
+        self.parameters.0 = present(self.tuning.as_ref()).into();
+    }
+
+    pub(super) fn read_parameter(&mut self, request: &PARAM_REQUEST_READ_DATA) {
+        let present = present(self.tuning.as_ref());
+        let number = match usize::try_from(request.param_index) {
+            Ok(index) => present.get(index).copied(),
+            Err(_) => number(&request.param_id).filter(|number| present.contains(number)),
+        };
+        if let Some(number) = number {
+            self.send_parameter(number);
+        }
+    }
+
+    pub(super) fn write_parameter(&mut self, write: &PARAM_SET_DATA) {
+        let name = write.param_id.to_str().unwrap_or("?").to_owned();
+        let number = number(&write.param_id);
+        let current = number.and_then(|number| self.tuning.as_ref()?.value(number));
+        let (Some(number), Some(current)) = (number, current) else {
+            self.say(Severity::Warning, &format!("{name}: no such parameter"));
+            return;
+        };
+        if (current as f32).to_bits() == write.param_value.to_bits() {
+            self.send_parameter(number);
+            return;
+        }
+        let value = decimal(write.param_value);
+        self.order(Order::Parameter { name, value }, Waiting::Parameter(number));
+    }
+
+    /// A write is answered by the value in force, whatever became of it.
+    pub(super) fn answer_write(&mut self, number: u8, result: Result<(), Refused>) {
+        self.send_parameter(number);
+        if let (Err(refused), Some(parameter)) = (result, PARAMETERS.get(usize::from(number))) {
+            self.say(Severity::Warning, &format!("{}: {refused}", parameter.name));
+        }
+    }
+
+    pub(super) fn send_parameter(&mut self, number: u8) {
+        let present = present(self.tuning.as_ref());
+        let value = self.tuning.as_ref().and_then(|tuning| tuning.value(number));
+        let index = present.iter().position(|other| *other == number);
+        let parameter = PARAMETERS.get(usize::from(number));
+        if let (Some(value), Some(index), Some(parameter)) = (value, index, parameter) {
+            self.send(&PARAM_VALUE_DATA {
+                param_id: text(parameter.name),
+                param_value: value as f32,
+                param_type: REAL32,
+                param_count: present.len() as u16,
+                param_index: index as u16,
+            });
+        }
+    }
+}
+
+/// Numbers of the parameters that this preset has; their places are what MAVLink calls the index.
+fn present(tuning: Option<&Tuning>) -> Vec<u8> {
+    let numbers = 0..PARAMETERS.len() as u8;
+    numbers
+        .filter(|number| tuning.is_some_and(|tuning| tuning.value(*number).is_some()))
+        .collect()
+}
+
+/// The number of a name.
+fn number(name: &CharArray<16>) -> Option<u8> {
+    let name = name.to_str().ok()?;
+    let place = PARAMETERS
+        .iter()
+        .position(|parameter| parameter.name == name)?;
+    u8::try_from(place).ok()
+}
+
+/// The shortest decimal number that is this float: 0.1, not 0.10000000149.
+fn decimal(value: f32) -> f64 {
+    value.to_string().parse().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_float_means_what_was_typed() {
+        for (float, double) in [
+            (0.1_f32, 0.1_f64),
+            (1e-9, 1e-9),
+            (12.0, 12.0),
+            (-0.35, -0.35),
+        ] {
+            assert_eq!(decimal(float).to_bits(), double.to_bits());
+        }
+        assert!(decimal(f32::NAN).is_nan());
+        assert!(decimal(f32::INFINITY).is_infinite());
+    }
+
+    #[test]
+    fn names_fit_and_are_unique() {
+        for (place, parameter) in PARAMETERS.iter().enumerate() {
+            assert!(parameter.name.len() <= 16, "{}", parameter.name);
+            assert_eq!(number(&text(parameter.name)), Some(place as u8));
+        }
+    }
+}

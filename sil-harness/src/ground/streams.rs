@@ -1,0 +1,158 @@
+//! Which message is sent how often.
+
+use crate::scenario::TICKS_PER_SECOND;
+use hil_protocol::mavlink::MessageData;
+use hil_protocol::mavlink::messages::*;
+
+/// Length of a tick [us].
+const TICK_US: f32 = 1e6 / TICKS_PER_SECOND as f32;
+
+/// When a message is sent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Rate {
+    /// Every so many ticks.
+    Every(u32),
+    /// When there is something new.
+    Event,
+    Never,
+}
+
+/// The messages that are sent without being asked for each time: id and usual rate.
+const USUAL: [(u32, Rate); 11] = [
+    (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
+    (
+        LOCAL_POSITION_NED_DATA::ID,
+        Rate::Every(TICKS_PER_SECOND / 10),
+    ),
+    (VFR_HUD_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
+    (SYSTEM_TIME_DATA::ID, Rate::Never),
+    (DISTANCE_SENSOR_DATA::ID, Rate::Event),
+    (STATUSTEXT_DATA::ID, Rate::Event),
+    (MPP_LIDAR_SCAN_DATA::ID, Rate::Event),
+    (MPP_PLAN_STATUS_DATA::ID, Rate::Event),
+    (MPP_TRAJECTORY_DATA::ID, Rate::Event),
+];
+
+/// The rates in force.
+pub(super) struct Streams(Vec<(u32, Rate)>);
+
+impl Streams {
+    pub(super) fn new() -> Self {
+        Self(USUAL.to_vec())
+    }
+
+    /// Messages that are due at a tick, oldest habits first.
+    pub(super) fn due(&self, tick: u32) -> Vec<u32> {
+        let due = |(id, rate): &(u32, Rate)| match rate {
+            Rate::Every(ticks) => tick.is_multiple_of(*ticks).then_some(*id),
+            Rate::Event | Rate::Never => None,
+        };
+        self.0.iter().filter_map(due).collect()
+    }
+
+    /// Whether a message is sent when there is something new.
+    pub(super) fn wants(&self, id: u32) -> bool {
+        self.0.contains(&(id, Rate::Event))
+    }
+
+    /// Time between two messages [us] as MAVLink counts it: -1 never, 0 unknown to us.
+    pub(super) fn interval(&self, id: u32) -> i32 {
+        match self.0.iter().find(|(own, _)| *own == id) {
+            Some((_, Rate::Every(ticks))) => (*ticks as f32 * TICK_US) as i32,
+            // Each event.
+            Some((_, Rate::Event)) => 1,
+            Some((_, Rate::Never)) => -1,
+            None => 0,
+        }
+    }
+
+    /// Asks for a message every so many microseconds, to the nearest tick: 0 as usual, below 0
+    /// never. False if it is no such message, or one that must not be silenced.
+    pub(super) fn set(&mut self, id: u32, interval: f32) -> bool {
+        let usual = USUAL.iter().find(|(own, _)| *own == id);
+        let stream = self.0.iter_mut().find(|(own, _)| *own == id);
+        let (Some((_, usual)), Some((_, rate))) = (usual, stream) else {
+            return false;
+        };
+        let heartbeat = id == HEARTBEAT_DATA::ID;
+        if !interval.is_finite() || (heartbeat && interval != 0.0) {
+            return false;
+        }
+        *rate = if interval == 0.0 {
+            *usual
+        } else if interval < 0.0 {
+            Rate::Never
+        } else if *usual == Rate::Event {
+            Rate::Event
+        } else {
+            Rate::Every(((interval / TICK_US).round() as u32).max(1))
+        };
+        true
+    }
+
+    /// The older way to ask, by groups and in Hz.
+    pub(super) fn set_group(&mut self, group: u8, hertz: u16, start: bool) {
+        let ids: &[u32] = match group {
+            0 => &[
+                SYS_STATUS_DATA::ID,
+                ATTITUDE_DATA::ID,
+                LOCAL_POSITION_NED_DATA::ID,
+                VFR_HUD_DATA::ID,
+            ],
+            2 => &[SYS_STATUS_DATA::ID],
+            6 => &[LOCAL_POSITION_NED_DATA::ID],
+            10 => &[ATTITUDE_DATA::ID],
+            11 => &[VFR_HUD_DATA::ID],
+            _ => &[],
+        };
+        let interval = match (start, hertz) {
+            (false, _) | (true, 0) => -1.0,
+            (true, hertz) => 1e6 / f32::from(hertz),
+        };
+        for id in ids {
+            self.set(*id, interval);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn intervals_are_kept_to_the_tick() {
+        let mut streams = Streams::new();
+        assert_eq!(streams.interval(ATTITUDE_DATA::ID), 100_000);
+        assert!(streams.set(ATTITUDE_DATA::ID, 20_000.0));
+        assert_eq!(streams.interval(ATTITUDE_DATA::ID), 20_000);
+        let due = (0..100).filter(|tick| streams.due(*tick).contains(&ATTITUDE_DATA::ID));
+        assert_eq!(due.count(), 50);
+        assert!(streams.set(ATTITUDE_DATA::ID, 1.0));
+        assert_eq!(streams.interval(ATTITUDE_DATA::ID), 10_000);
+        assert!(streams.set(ATTITUDE_DATA::ID, -1.0));
+        assert!((0..100).all(|tick| !streams.due(tick).contains(&ATTITUDE_DATA::ID)));
+        assert!(streams.set(ATTITUDE_DATA::ID, 0.0));
+        assert_eq!(streams.interval(ATTITUDE_DATA::ID), 100_000);
+    }
+
+    #[test]
+    fn the_heartbeat_cannot_be_silenced_and_nonsense_is_refused() {
+        let mut streams = Streams::new();
+        assert!(!streams.set(HEARTBEAT_DATA::ID, -1.0));
+        assert!(!streams.set(ATTITUDE_DATA::ID, f32::NAN));
+        assert!(!streams.set(9999, 1e5));
+        streams.set_group(0, 0, false);
+        assert_eq!(streams.due(0), [HEARTBEAT_DATA::ID]);
+    }
+
+    #[test]
+    fn an_event_is_an_event_at_any_interval() {
+        let mut streams = Streams::new();
+        assert!(streams.set(MPP_LIDAR_SCAN_DATA::ID, -1.0));
+        assert!(!streams.wants(MPP_LIDAR_SCAN_DATA::ID));
+        assert!(streams.set(MPP_LIDAR_SCAN_DATA::ID, 5e5));
+        assert!(streams.wants(MPP_LIDAR_SCAN_DATA::ID));
+    }
+}

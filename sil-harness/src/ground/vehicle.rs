@@ -1,0 +1,362 @@
+//! What a ground station sees of a flight: a fixed wing that answers as such vehicles do.
+//!
+//! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks
+//! since the start, those before the flight included.
+
+use super::parameters::ParameterSender;
+use super::security::Security;
+use super::stations::{Change, Stations};
+use super::streams::Streams;
+use super::{Mode, Order, Refused};
+use crate::run::Moment;
+use crate::scenario::TICKS_PER_SECOND;
+use flight_node::parameters::Tuning;
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender, text};
+use hil_protocol::{PlanOutcome, PlanReport};
+use mpp_core::vehicle::{AirState, VehicleState};
+use std::collections::VecDeque;
+
+/// MAV_COMP_ID_AUTOPILOT1.
+pub(super) const COMPONENT: u8 = 1;
+/// MAV_TYPE_GCS.
+const STATION: u8 = 6;
+/// Milliseconds of a tick.
+const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
+
+/// How loud a text is, as MAV_SEVERITY counts.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Severity {
+    Warning = 4,
+    Notice = 5,
+    Info = 6,
+}
+
+/// What is to be known before the start.
+#[derive(Clone)]
+pub struct VehicleConfig {
+    /// 0 is system 1, and so on.
+    pub instance: u8,
+    /// Ticks of silence after which a station is lost; none: never.
+    pub patience: Option<u32>,
+    /// Wait at the start until somebody arms the vehicle.
+    pub hold: bool,
+    /// A key, and the time of the first signature [10 us since 2015-01-01].
+    pub key: Option<(Key, u64)>,
+}
+
+/// A frame on its way to every station.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outgoing {
+    /// As it is sent.
+    pub wire: Datagram,
+    /// Without its signature, which is never the same twice.
+    pub plain: Datagram,
+}
+
+/// Who waits for what becomes of an order.
+pub(super) enum Waiting {
+    /// The sender of a command.
+    Command(u16, Address),
+    /// Everybody, for a parameter's value.
+    Parameter(u8),
+    Nobody,
+}
+
+/// A station or one of its parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Address {
+    pub(super) system: u8,
+    pub(super) component: u8,
+}
+
+/// The vehicle.
+pub struct Vehicle {
+    pub(super) system: u8,
+    sender: Sender,
+    pub(super) security: Security,
+    framer: Framer,
+    pub(super) streams: Streams,
+    stations: Stations,
+    pub(super) parameters: ParameterSender,
+    pub(super) tuning: Option<Tuning>,
+    outbox: Vec<Outgoing>,
+    notes: Vec<String>,
+    orders: Vec<Order>,
+    waiting: VecDeque<Waiting>,
+    /// Ticks since the start.
+    pub(super) now: u32,
+    pub(super) armed: bool,
+    pub(super) flying: bool,
+    pub(super) mode: Mode,
+    pub(super) state: VehicleState,
+    estimate: AirState,
+    thrust: f64,
+    rejections: usize,
+}
+
+impl Vehicle {
+    /// A vehicle at its start.
+    #[must_use]
+    pub fn new(config: &VehicleConfig) -> Self {
+        let system = config.instance.saturating_add(1);
+        Self {
+            system,
+            sender: Sender::new(system, COMPONENT),
+            security: Security::new(config.key.clone()),
+            framer: Framer::new(),
+            streams: Streams::new(),
+            stations: Stations::new(config.patience),
+            parameters: ParameterSender::new(),
+            tuning: None,
+            outbox: Vec::new(),
+            notes: Vec::new(),
+            orders: Vec::new(),
+            waiting: VecDeque::new(),
+            now: 0,
+            armed: !config.hold,
+            flying: false,
+            mode: Mode::Auto,
+            state: VehicleState::default(),
+            estimate: AirState::default(),
+            thrust: 0.0,
+            rejections: 0,
+        }
+    }
+
+    /// The core is configured, the aircraft is at its start.
+    pub fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
+        self.tuning = Some(*tuning);
+        self.state = *start;
+        self.estimate = start.air;
+    }
+
+    /// Values changed that no station asked for.
+    pub fn tuned(&mut self, tuning: &Tuning) {
+        self.tuning = Some(*tuning);
+    }
+
+    /// Whether it may fly.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.armed
+    }
+
+    /// Ticks since the start.
+    #[must_use]
+    pub fn now(&self) -> u32 {
+        self.now
+    }
+
+    /// Commands and writes that were refused because they bear no good signature.
+    #[must_use]
+    pub fn refused_signatures(&self) -> u32 {
+        self.security.refused
+    }
+
+    /// Takes in a datagram from a station; gives the intact frames in it.
+    pub fn receive(&mut self, datagram: &[u8]) -> Vec<Vec<u8>> {
+        let mut frames = Vec::new();
+        let mut framer = std::mem::take(&mut self.framer);
+        framer.receive_datagram(datagram, |frame| {
+            self.handle(frame);
+            frames.push(frame.bytes.to_vec());
+        });
+        self.framer = framer;
+        frames
+    }
+
+    /// The orders that stations gave since the last time.
+    pub fn take_orders(&mut self) -> Vec<Order> {
+        std::mem::take(&mut self.orders)
+    }
+
+    /// What is to be sent.
+    pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
+        std::mem::take(&mut self.outbox)
+    }
+
+    /// What whoever started the vehicle should read.
+    pub fn take_notes(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notes)
+    }
+
+    /// What became of the oldest order that is not settled, and the values in force.
+    pub fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
+        self.tuning = Some(*tuning);
+        if result.is_ok() {
+            match order {
+                Order::Mode { mode } => self.mode = *mode,
+                Order::Motor { on } => self.armed = *on,
+                Order::Parameter { .. } | Order::Terminate => {}
+            }
+        }
+        match self.waiting.pop_front() {
+            Some(Waiting::Command(command, from)) => {
+                self.acknowledge(command, from, result.is_ok());
+            }
+            Some(Waiting::Parameter(number)) => self.answer_write(number, result),
+            Some(Waiting::Nobody) | None => {}
+        }
+    }
+
+    /// One tick at the start, before the flight.
+    pub fn hold(&mut self) {
+        self.pass();
+    }
+
+    /// One tick of the flight.
+    pub fn observe(&mut self, moment: &Moment<'_>) {
+        self.flying = true;
+        self.state = moment.tick.state;
+        self.estimate = moment.tick.estimate;
+        self.thrust = moment.tick.control.thrust;
+        self.rejections = moment.rejections;
+        self.report_scan(moment);
+        if let Some(report) = moment.report {
+            self.report_plan(report);
+        }
+        if let Some(trajectory) = moment.trajectory
+            && self.streams.wants(MPP_TRAJECTORY_DATA::ID)
+        {
+            self.send_trajectory(trajectory);
+        }
+        self.pass();
+    }
+
+    /// The flight is over.
+    pub fn end(&mut self, how: &str) {
+        self.flying = false;
+        self.armed = false;
+        self.say(Severity::Notice, &format!("Flight ended: {how}"));
+        self.send_heartbeat();
+    }
+
+    /// Ends a tick: what is due is sent, and time goes on.
+    fn pass(&mut self) {
+        for id in self.streams.due(self.now) {
+            self.send_by_id(id);
+        }
+        for number in self.parameters.due() {
+            self.send_parameter(number);
+        }
+        for (system, change) in self.stations.missing(self.now) {
+            self.note_station(system, change);
+        }
+        self.now += 1;
+    }
+
+    fn handle(&mut self, frame: &Frame<'_>) {
+        let trusted = self.security.trusts(frame);
+        let from = Address {
+            system: frame.system,
+            component: frame.component,
+        };
+        if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
+            // Nobody without the key shall pass for the station.
+            if trusted && heartbeat.mavtype == STATION {
+                let change = self.stations.hear(frame.system, self.now);
+                if let Some(change) = change {
+                    self.note_station(frame.system, change);
+                }
+            }
+        } else if self.handle_inquiry(frame, from) {
+        } else if !trusted {
+            self.security.refused = self.security.refused.saturating_add(1);
+        } else {
+            self.handle_command(frame, from);
+        }
+    }
+
+    /// Whether a message is meant for this vehicle.
+    pub(super) fn is_target(&self, system: u8, component: u8) -> bool {
+        (system == 0 || system == self.system) && (component == 0 || component == COMPONENT)
+    }
+
+    /// Gives an order; `waiting` hears what becomes of it.
+    pub(super) fn order(&mut self, order: Order, waiting: Waiting) {
+        self.orders.push(order);
+        self.waiting.push_back(waiting);
+    }
+
+    fn note_station(&mut self, system: u8, change: Change) {
+        let (severity, what) = match change {
+            Change::Came => (Severity::Info, "connected"),
+            Change::Lost => (Severity::Warning, "lost, flying on"),
+            Change::Returned => (Severity::Notice, "is back"),
+        };
+        let line = format!("Ground station {system} {what}");
+        self.say(severity, &line);
+        let seconds = f64::from(self.now) / f64::from(TICKS_PER_SECOND);
+        self.notes.push(format!("{seconds:.2} s: {line}"));
+    }
+
+    fn report_plan(&mut self, report: &PlanReport) {
+        let count = report.candidates;
+        let line = match report.outcome {
+            PlanOutcome::Adopted => None,
+            PlanOutcome::LeastViolating => {
+                Some(format!("None of {count} feasible: least violating"))
+            }
+            PlanOutcome::KeptPrevious => Some(format!("None of {count} feasible: last plan kept")),
+            PlanOutcome::TrimHold => Some(format!("None of {count} feasible: straight and level")),
+        };
+        if let Some(line) = line {
+            self.say(Severity::Warning, &line);
+        }
+        if !report.complete {
+            let line = format!("Planner deadline missed, {} slices used", report.slices);
+            self.say(Severity::Warning, &line);
+        }
+        if self.streams.wants(MPP_PLAN_STATUS_DATA::ID) {
+            self.send(&MPP_PLAN_STATUS_DATA {
+                time_boot_ms: self.milliseconds(),
+                scan_tick: report.scan_tick,
+                used_from_tick: report.used_from_tick,
+                slices: report.slices,
+                cost: report.cost as f32,
+                violation: report.violation as f32,
+                candidates: report.candidates,
+                feasible: report.feasible,
+                tree_runs: report.tree_runs,
+                outcome: report.outcome as u8,
+                complete: u8::from(report.complete),
+            });
+        }
+    }
+
+    pub(super) fn say(&mut self, severity: Severity, line: &str) {
+        if self.streams.wants(STATUSTEXT_DATA::ID) {
+            self.send(&STATUSTEXT_DATA {
+                severity: severity as u8,
+                text: text(line),
+                ..STATUSTEXT_DATA::DEFAULT
+            });
+        }
+    }
+
+    pub(super) fn send<M: MessageData>(&mut self, message: &M) {
+        let plain = self.sender.clone().frame(message);
+        let wire = self.security.frame(&mut self.sender, message);
+        self.outbox.push(Outgoing { wire, plain });
+    }
+
+    /// Time since the start [ms].
+    pub(super) fn milliseconds(&self) -> u32 {
+        self.now.saturating_mul(TICK_MS)
+    }
+
+    /// Time since the start [us].
+    #[must_use]
+    pub fn microseconds(&self) -> u64 {
+        u64::from(self.now) * u64::from(TICK_MS) * 1000
+    }
+
+    pub(super) fn motion(&self) -> (&AirState, f64, usize) {
+        (&self.estimate, self.thrust, self.rejections)
+    }
+
+    pub(super) fn damaged_frames(&self) -> u32 {
+        self.framer.counters().damaged
+    }
+}

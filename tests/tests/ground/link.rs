@@ -1,0 +1,204 @@
+//! The link itself: bad, silent, signed, recorded.
+
+use crate::radio::{CONFIG, Channel, Radio, command, heartbeat, scenario, write};
+use hil_protocol::mavlink::Key;
+use hil_protocol::mavlink::messages::*;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use sil_harness::ground::vehicle::VehicleConfig;
+use sil_harness::link::PipeLink;
+use sil_harness::run::fly;
+
+/// Loses a fifth, sends a fifth twice, damages a fifth and keeps a fifth for later.
+fn bad(seed: u64) -> Channel {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut kept: Vec<Vec<u8>> = Vec::new();
+    Box::new(move |datagrams| {
+        let mut arrived = Vec::new();
+        for mut datagram in datagrams {
+            match random.next_u32() % 10 {
+                0 | 1 => {}
+                2 | 3 => arrived.extend([datagram.clone(), datagram]),
+                4 | 5 => {
+                    let at = random.next_u32() as usize % datagram.len();
+                    datagram[at] ^= 1 << (random.next_u32() % 8);
+                    arrived.push(datagram);
+                }
+                6 | 7 => {
+                    kept.push(datagram);
+                    if kept.len() > 3 {
+                        arrived.push(kept.remove(random.next_u32() as usize % kept.len()));
+                    }
+                }
+                _ => arrived.push(datagram),
+            }
+        }
+        arrived
+    })
+}
+
+/// Everything that a station may say without changing the flight, once a second.
+fn chatter(radio: &mut Radio) {
+    for second in 0..12 {
+        let tick = 100 * second;
+        radio
+            .at(tick, &heartbeat())
+            .at(tick + 1, &PARAM_REQUEST_LIST_DATA::DEFAULT)
+            .at(tick + 2, &PING_DATA::DEFAULT)
+            .at(tick + 3, &command(42_424, 0.0, 0.0))
+            .at(tick + 4, &command(511, 30.0, 20_000.0))
+            .at(tick + 5, &command(512, 148.0, 0.0))
+            .at(tick + 6, &MISSION_REQUEST_LIST_DATA::DEFAULT)
+            .at(tick + 7, &write("MPP_PATHS", 99.0))
+            .at(tick + 8, &write("LQR_R_ELEVATOR", 1.0))
+            .at(tick + 9, &command(400, 0.0, 0.0))
+            .at(tick + 10, &TIMESYNC_DATA::DEFAULT);
+    }
+}
+
+#[test]
+fn no_link_and_the_worst_link_fly_the_same_bytes() {
+    let alone = fly(&scenario(), &mut PipeLink::new(), |_| {})
+        .unwrap()
+        .hash()
+        .unwrap();
+    for seed in 0..4 {
+        let mut radio = Radio::new(&CONFIG);
+        chatter(&mut radio);
+        if seed > 0 {
+            (radio.up, radio.down) = (bad(seed), bad(100 + seed));
+        }
+        let log = radio.fly(&scenario());
+        assert_eq!(log.hash().unwrap(), alone, "seed {seed}");
+        assert!(log.orders.is_empty());
+        assert!(
+            radio.acks().len() > 20,
+            "seed {seed}: {}",
+            radio.acks().len()
+        );
+    }
+}
+
+/// An order that comes twice, or is damaged on the way, is carried out once or not at all.
+#[test]
+fn a_repeated_order_is_one_order() {
+    let mut radio = Radio::new(&CONFIG);
+    for tick in 300..310 {
+        radio
+            .at(tick, &write("MPP_ALT_M", 52.0))
+            .at(tick, &command(176, 1.0, 7.0));
+    }
+    radio.up = bad(7);
+    let log = radio.fly(&scenario());
+    assert_eq!(log.orders.len(), 2, "{:?}", log.orders);
+}
+
+#[test]
+fn a_station_is_lost_and_returns_in_simulated_time() {
+    let mut radio = Radio::new(&CONFIG);
+    for tick in [0, 100, 200, 900, 1000] {
+        radio.at(tick, &heartbeat());
+    }
+    let alone = fly(&scenario(), &mut PipeLink::new(), |_| {})
+        .unwrap()
+        .hash()
+        .unwrap();
+    let log = radio.fly(&scenario());
+    assert_eq!(log.hash().unwrap(), alone);
+    let stations: Vec<_> = radio
+        .texts()
+        .into_iter()
+        .filter(|(_, text)| text.contains("station"))
+        .collect();
+    let expected = [
+        (0, "Ground station 255 connected".to_owned()),
+        (701, "Ground station 255 lost, flying on".to_owned()),
+        (900, "Ground station 255 is back".to_owned()),
+    ];
+    assert_eq!(stations, expected);
+    assert_eq!(radio.notes[1], "7.01 s: Ground station 255 lost, flying on");
+}
+
+#[test]
+fn a_recording_has_the_same_bytes_each_time() {
+    let record = || {
+        let mut radio = Radio::new(&CONFIG);
+        radio.fly(&scenario());
+        radio.tlog.finish().unwrap()
+    };
+    let first = record();
+    assert!(first == record());
+    // 2026-01-01T00:00:00Z.
+    let time = u64::from_be_bytes(*first.first_chunk().unwrap());
+    assert_eq!(time, 1_767_225_600_000_000);
+    assert_eq!(first[8], 0xFD);
+}
+
+const NOW: u64 = 36_000_000_000_000;
+
+fn keyed() -> VehicleConfig {
+    VehicleConfig {
+        key: Some((Key::of_passphrase("secret"), NOW)),
+        ..CONFIG
+    }
+}
+
+#[test]
+fn with_a_key_only_its_holder_commands() {
+    let mut radio = Radio::new(&keyed());
+    radio
+        .at(100, &command(176, 1.0, 7.0))
+        .at(110, &write("MPP_ALT_M", 60.0))
+        .at(
+            120,
+            &PARAM_REQUEST_READ_DATA {
+                param_id: hil_protocol::mavlink::text("MPP_ALT_M"),
+                param_index: -1,
+                ..PARAM_REQUEST_READ_DATA::DEFAULT
+            },
+        );
+    radio.signed_at(
+        200,
+        &command(176, 1.0, 7.0),
+        Key::of_passphrase("guess"),
+        NOW,
+    );
+    radio.signed_at(
+        300,
+        &command(176, 1.0, 10.0),
+        Key::of_passphrase("secret"),
+        NOW + 1,
+    );
+    radio.signed_at(
+        400,
+        &write("MPP_ALT_M", 52.0),
+        Key::of_passphrase("secret"),
+        NOW + 2,
+    );
+    let log = radio.fly(&scenario());
+    // Reading is free.
+    assert_eq!(
+        radio.values(),
+        [
+            ("MPP_ALT_M".to_owned(), 50.0),
+            ("MPP_ALT_M".to_owned(), 52.0)
+        ]
+    );
+    assert_eq!(radio.acks(), [(176, 0)]);
+    assert_eq!(log.orders.len(), 1, "{:?}", log.orders);
+    assert_eq!(radio.vehicle.refused_signatures(), 3);
+    let errors = radio.all(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.errors_count2),
+        _ => None,
+    });
+    assert_eq!(errors.last().unwrap().1, 3);
+}
+
+/// A station without the key cannot pass for one that is there.
+#[test]
+fn an_unsigned_heartbeat_is_nobodys() {
+    let mut radio = Radio::new(&keyed());
+    radio.at(0, &heartbeat());
+    radio.fly(&scenario());
+    assert!(radio.notes.is_empty(), "{:?}", radio.notes);
+}

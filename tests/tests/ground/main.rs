@@ -1,0 +1,10 @@
+//! Flights with ground stations: what they see, what they can change, and what they cannot.
+
+#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+#![expect(clippy::float_cmp, reason = "what is told is what is, to the last bit")]
+
+mod commands;
+mod link;
+mod parameters;
+mod radio;
+mod telemetry;

@@ -1,0 +1,223 @@
+//! A station that speaks at chosen ticks, over a link that may be bad.
+
+use flight_node::parameters::Tuning;
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Framer, Key, MessageData, Sender, Signer, text};
+use mpp_core::vehicle::VehicleState;
+use sil_harness::ground::tlog::TlogWriter;
+use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
+use sil_harness::ground::{Ground, Order, Refused};
+use sil_harness::link::PipeLink;
+use sil_harness::log::FlightLog;
+use sil_harness::run::{Moment, fly_with};
+use sil_harness::scenario::{Preset, Scenario};
+
+pub(crate) const CONFIG: VehicleConfig = VehicleConfig {
+    instance: 0,
+    patience: Some(500),
+    hold: false,
+    key: None,
+};
+
+pub(crate) fn scenario() -> Scenario {
+    Scenario {
+        ticks: 1200,
+        ..Scenario::new(Preset::Flight, 1)
+    }
+}
+
+/// What a link does to the datagrams of one direction.
+pub(crate) type Channel = Box<dyn FnMut(Vec<Vec<u8>>) -> Vec<Vec<u8>>>;
+
+/// A vehicle, a station that sends at given ticks, and all that the station hears.
+pub(crate) struct Radio {
+    pub(crate) vehicle: Vehicle,
+    /// Tick of the flight and datagram; -1 is before the flight.
+    script: Vec<(i64, Vec<u8>)>,
+    pub(crate) up: Channel,
+    pub(crate) down: Channel,
+    framer: Framer,
+    /// Ticks since the start, and message.
+    pub(crate) heard: Vec<(u32, MavMessage)>,
+    pub(crate) tlog: TlogWriter<Vec<u8>>,
+    pub(crate) notes: Vec<String>,
+    held: u32,
+}
+
+impl Radio {
+    pub(crate) fn new(config: &VehicleConfig) -> Self {
+        Self {
+            vehicle: Vehicle::new(config),
+            script: Vec::new(),
+            up: Box::new(|datagrams| datagrams),
+            down: Box::new(|datagrams| datagrams),
+            framer: Framer::new(),
+            heard: Vec::new(),
+            tlog: TlogWriter::new(Vec::new()),
+            notes: Vec::new(),
+            held: 0,
+        }
+    }
+
+    /// Sends a message before a tick is flown.
+    pub(crate) fn at<M: MessageData>(&mut self, tick: i64, message: &M) -> &mut Self {
+        let frame = Sender::new(255, 190).frame(message);
+        self.script.push((tick, frame.as_bytes().to_vec()));
+        self
+    }
+
+    /// The same, signed at a time.
+    pub(crate) fn signed_at<M: MessageData>(
+        &mut self,
+        tick: i64,
+        message: &M,
+        key: Key,
+        time: u64,
+    ) {
+        let frame = Sender::new(255, 190).signed_frame(message, &mut Signer::new(key, 1, time));
+        self.script.push((tick, frame.as_bytes().to_vec()));
+    }
+
+    /// Flies, and gives the log.
+    pub(crate) fn fly(&mut self, scenario: &Scenario) -> FlightLog {
+        self.script.sort_by_key(|(tick, _)| *tick);
+        fly_with(scenario, &mut PipeLink::new(), self).unwrap()
+    }
+
+    /// Every message of a kind, with its time.
+    pub(crate) fn all<T>(&self, pick: impl Fn(&MavMessage) -> Option<T>) -> Vec<(u32, T)> {
+        let heard = self.heard.iter();
+        heard
+            .filter_map(|(tick, message)| Some((*tick, pick(message)?)))
+            .collect()
+    }
+
+    /// Command and result of every acknowledgement.
+    pub(crate) fn acks(&self) -> Vec<(u16, u8)> {
+        let ack = |message: &MavMessage| match message {
+            MavMessage::COMMAND_ACK(ack) => Some((ack.command, ack.result)),
+            _ => None,
+        };
+        self.all(ack).into_iter().map(|(_, ack)| ack).collect()
+    }
+
+    /// Every text.
+    pub(crate) fn texts(&self) -> Vec<(u32, String)> {
+        self.all(|message| match message {
+            MavMessage::STATUSTEXT(status) => Some(status.text.to_str().unwrap().to_owned()),
+            _ => None,
+        })
+    }
+
+    /// Name and value of every parameter that was told.
+    pub(crate) fn values(&self) -> Vec<(String, f32)> {
+        let value = |message: &MavMessage| match message {
+            MavMessage::PARAM_VALUE(value) => Some((
+                value.param_id.to_str().unwrap().to_owned(),
+                value.param_value,
+            )),
+            _ => None,
+        };
+        self.all(value)
+            .into_iter()
+            .map(|(_, value)| value)
+            .collect()
+    }
+
+    fn speak(&mut self, tick: i64) {
+        let due = self.script.iter().take_while(|(at, _)| *at <= tick).count();
+        let datagrams = self
+            .script
+            .drain(..due)
+            .map(|(_, datagram)| datagram)
+            .collect();
+        for datagram in (self.up)(datagrams) {
+            self.vehicle.receive(&datagram);
+        }
+    }
+
+    fn listen(&mut self, now: u32, since_start: u64) {
+        let outgoing = self.vehicle.take_outgoing();
+        for frame in &outgoing {
+            self.tlog
+                .write(since_start, frame.plain.as_bytes())
+                .unwrap();
+        }
+        let datagrams = outgoing.iter().map(|frame| frame.wire.as_bytes().to_vec());
+        for datagram in (self.down)(datagrams.collect()) {
+            let heard = &mut self.heard;
+            self.framer.receive_datagram(&datagram, |frame| {
+                heard.push((now, message(frame.id, frame.payload)));
+            });
+        }
+        self.notes.extend(self.vehicle.take_notes());
+    }
+}
+
+fn message(id: u32, payload: &[u8]) -> MavMessage {
+    use mavlink_core::{MavlinkVersion, Message};
+    MavMessage::parse(MavlinkVersion::V2, id, payload).unwrap()
+}
+
+impl Ground for Radio {
+    fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
+        self.vehicle.begin(tuning, start);
+    }
+
+    fn orders(&mut self, tick: u32) -> Vec<Order> {
+        let at_start = !self.vehicle.is_armed() && tick == 0;
+        self.speak(if at_start { -1 } else { i64::from(tick) });
+        self.vehicle.take_orders()
+    }
+
+    fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
+        self.vehicle.settled(order, result, tuning);
+    }
+
+    fn ready(&mut self) -> bool {
+        self.held += 1;
+        assert!(self.held < 1000, "nobody arms the vehicle");
+        if self.vehicle.is_armed() {
+            return true;
+        }
+        let (now, since_start) = (self.vehicle.now(), self.vehicle.microseconds());
+        self.vehicle.hold();
+        self.listen(now, since_start);
+        false
+    }
+
+    fn watch(&mut self, moment: &Moment<'_>) {
+        let (now, since_start) = (self.vehicle.now(), self.vehicle.microseconds());
+        self.vehicle.observe(moment);
+        self.listen(now, since_start);
+    }
+}
+
+pub(crate) fn command(number: u16, first: f32, second: f32) -> COMMAND_LONG_DATA {
+    COMMAND_LONG_DATA {
+        command: number,
+        param1: first,
+        param2: second,
+        target_system: 1,
+        target_component: 1,
+        ..COMMAND_LONG_DATA::DEFAULT
+    }
+}
+
+pub(crate) fn write(name: &str, value: f32) -> PARAM_SET_DATA {
+    PARAM_SET_DATA {
+        param_id: text(name),
+        param_value: value,
+        param_type: 9,
+        target_system: 1,
+        target_component: 1,
+    }
+}
+
+pub(crate) fn heartbeat() -> HEARTBEAT_DATA {
+    HEARTBEAT_DATA {
+        mavtype: 6,
+        autopilot: 8,
+        ..HEARTBEAT_DATA::DEFAULT
+    }
+}

@@ -1,0 +1,207 @@
+//! What a station sees is what the log holds.
+
+use crate::radio::{CONFIG, Radio, scenario};
+use hil_protocol::LidarScan;
+use hil_protocol::mavlink::messages::*;
+use sil_harness::ground::{Ground, Order};
+use sil_harness::link::PipeLink;
+use sil_harness::run::{Moment, fly_with};
+use sil_harness::scenario::Scenario;
+
+/// A radio, and what the plant and the core had to say.
+struct Witness {
+    radio: Radio,
+    scans: Vec<LidarScan>,
+    knots: Vec<(u32, Vec<[f32; 3]>)>,
+    /// Cycles that were not done at their deadline.
+    missed: usize,
+}
+
+impl Ground for Witness {
+    fn begin(
+        &mut self,
+        tuning: &flight_node::parameters::Tuning,
+        start: &mpp_core::vehicle::VehicleState,
+    ) {
+        self.radio.begin(tuning, start);
+    }
+
+    fn orders(&mut self, tick: u32) -> Vec<Order> {
+        self.radio.orders(tick)
+    }
+
+    fn watch(&mut self, moment: &Moment<'_>) {
+        self.scans.extend(moment.scan.cloned());
+        self.knots
+            .extend(moment.trajectory.map(|t| (t.scan_tick, t.knots.to_vec())));
+        self.missed += usize::from(moment.report.is_some_and(|report| !report.complete));
+        self.radio.watch(moment);
+    }
+}
+
+fn witnessed(scenario: &Scenario) -> (Witness, sil_harness::log::FlightLog) {
+    let mut witness = Witness {
+        radio: Radio::new(&CONFIG),
+        scans: Vec::new(),
+        knots: Vec::new(),
+        missed: 0,
+    };
+    let log = fly_with(scenario, &mut PipeLink::new(), &mut witness).unwrap();
+    (witness, log)
+}
+
+#[test]
+fn scans_and_plans_are_those_of_the_flight() {
+    let (
+        Witness {
+            radio,
+            scans,
+            knots,
+            ..
+        },
+        log,
+    ) = witnessed(&scenario());
+    let told = radio.all(|message| match message {
+        MavMessage::MPP_LIDAR_SCAN(scan) => Some(scan.clone()),
+        _ => None,
+    });
+    assert_eq!(told.len(), scans.len());
+    for ((_, told), scan) in told.iter().zip(&scans) {
+        assert_eq!(
+            (told.tick, usize::from(told.count)),
+            (scan.tick, scan.ranges.len())
+        );
+        assert_eq!(told.angle_increment, scan.angle_increment);
+        for (range, told) in scan.ranges.iter().zip(&told.ranges) {
+            let expected = if *range > 0.0 {
+                (range * 100.0).round() as u16
+            } else {
+                u16::MAX
+            };
+            assert_eq!(*told, expected);
+        }
+    }
+    let plans = radio.all(|message| match message {
+        MavMessage::MPP_PLAN_STATUS(plan) => Some(plan.clone()),
+        _ => None,
+    });
+    assert_eq!(plans.len(), log.plans.len());
+    for ((_, told), plan) in plans.iter().zip(&log.plans) {
+        assert_eq!(u64::from(told.scan_tick), plan.tick);
+        assert_eq!(Some(u64::from(told.used_from_tick)), plan.used_from_tick);
+        assert_eq!(u32::from(told.candidates), plan.candidates);
+        assert_eq!(u32::from(told.feasible), plan.feasible);
+        assert_eq!(Some(told.cost), plan.cost.map(|cost| cost as f32));
+        let names = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold"];
+        assert_eq!(names[usize::from(told.outcome)], plan.outcome);
+    }
+    let trajectories = radio.all(|message| match message {
+        MavMessage::MPP_TRAJECTORY(trajectory) => Some(trajectory.clone()),
+        _ => None,
+    });
+    assert_eq!(trajectories.len(), knots.len());
+    for ((_, told), (scan_tick, knots)) in trajectories.iter().zip(&knots) {
+        assert_eq!(
+            (told.scan_tick, usize::from(told.count)),
+            (*scan_tick, knots.len())
+        );
+        for (place, knot) in knots.iter().enumerate() {
+            assert_eq!([told.x[place], told.z[place], told.gamma[place]], *knot);
+            // The log samples the same trajectory at the knots that were flown.
+            let tick = *scan_tick as usize + 25 * place;
+            let flown = place > 0 && place < 4 && tick < log.ticks.t.len();
+            if flown
+                && log
+                    .plans
+                    .iter()
+                    .all(|plan| plan.used_from_tick != Some(tick as u64))
+            {
+                let reference = log.ticks.ref_z[tick].unwrap();
+                assert!((reference - f64::from(knot[1])).abs() < 1e-4, "{tick}");
+            }
+        }
+    }
+}
+
+#[test]
+fn motion_is_that_of_the_log() {
+    let (Witness { radio, .. }, log) = witnessed(&scenario());
+    let positions = radio.all(|message| match message {
+        MavMessage::LOCAL_POSITION_NED(position) => Some(position.clone()),
+        _ => None,
+    });
+    assert_eq!(positions.len(), 120);
+    for (tick, told) in positions {
+        let row = tick as usize;
+        assert_eq!(told.time_boot_ms, 10 * tick);
+        assert_eq!(
+            (told.x, told.z),
+            (log.ticks.x[row] as f32, -log.ticks.z[row] as f32)
+        );
+        let speed = libm::hypot(told.vx.into(), told.vz.into());
+        assert!((speed - log.ticks.est_airspeed[row]).abs() < 1e-4);
+    }
+    let attitudes = radio.all(|message| match message {
+        MavMessage::ATTITUDE(attitude) => Some(attitude.pitch),
+        _ => None,
+    });
+    for (tick, pitch) in attitudes {
+        assert_eq!(pitch, log.ticks.est_pitch[tick as usize] as f32);
+    }
+}
+
+/// A wall of a field: there are cycles without a feasible candidate.
+#[test]
+fn every_cycle_without_a_feasible_plan_is_told() {
+    let dense = Scenario {
+        obstacles: 60,
+        ..scenario()
+    };
+    let (Witness { radio, .. }, log) = witnessed(&dense);
+    let without = log
+        .plans
+        .iter()
+        .filter(|plan| plan.outcome != "Adopted")
+        .count();
+    let told = radio
+        .texts()
+        .iter()
+        .filter(|(_, text)| text.contains("feasible"))
+        .count();
+    assert!(without > 0);
+    assert_eq!(told, without);
+
+    let starved = Scenario {
+        slices_per_tick: 10,
+        latency_ticks: 20,
+        ..scenario()
+    };
+    let (Witness { radio, missed, .. }, _) = witnessed(&starved);
+    let told = radio
+        .texts()
+        .iter()
+        .filter(|(_, text)| text.contains("deadline"))
+        .count();
+    assert!(missed > 0);
+    assert_eq!(told, missed);
+}
+
+#[test]
+fn the_distance_is_the_nearest_return() {
+    let (Witness { radio, scans, .. }, _) = witnessed(&scenario());
+    let told = radio.all(|message| match message {
+        MavMessage::DISTANCE_SENSOR(distance) => Some(distance.current_distance),
+        _ => None,
+    });
+    assert_eq!(told.len(), scans.len());
+    for ((_, told), scan) in told.into_iter().zip(&scans) {
+        let nearest = scan
+            .ranges
+            .iter()
+            .copied()
+            .filter(|range| *range > 0.0)
+            .reduce(f32::min);
+        let expected = nearest.map_or(told, |range| (range * 100.0).round() as u16);
+        assert_eq!(told, expected);
+    }
+}
