@@ -27,7 +27,8 @@
 //!
 //! Frames and units: `x` downrange [m], `z` up [m], angles [rad] positive nose-up, speeds [m/s],
 //! time [s]. Every transcendental goes through `libm`, every random number through a seeded
-//! generator; only the command line reads a clock, to pace a flight for human eyes.
+//! generator; only the command line reads a clock, to pace a flight for human eyes and to date
+//! signatures.
 
 pub mod aircraft;
 pub mod bench;

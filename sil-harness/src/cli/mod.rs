@@ -1,6 +1,7 @@
 //! The command line: data on stdout, talk on stderr.
 //!
-//! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link.
+//! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link,
+//! 8 terminated from the ground.
 
 mod bench;
 mod campaign;

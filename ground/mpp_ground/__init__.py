@@ -1,0 +1,1 @@
+"""Ground station of the MPP vehicle."""

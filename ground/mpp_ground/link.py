@@ -1,0 +1,155 @@
+"""A connection to one vehicle: commands and parameters that are answered or fail by name."""
+
+import hashlib
+import threading
+import time
+
+from .dialect import load
+
+mavlink = load()
+
+from pymavlink import mavutil
+
+COMPONENT = 1
+RESULTS = {
+    number: entry.name.removeprefix("MAV_RESULT_")
+    for number, entry in mavlink.enums["MAV_RESULT"].items()
+}
+
+
+class GroundError(Exception):
+    """What the vehicle refused, or did not answer."""
+
+
+class Vehicle:
+    """A vehicle at a pymavlink address, for instance udpin:127.0.0.1:14550."""
+
+    def __init__(self, address, system=None, passphrase=None, patience=10.0, heartbeat=True):
+        self.master = mavutil.mavlink_connection(address, source_system=255, source_component=190)
+        if passphrase is not None:
+            self.master.setup_signing(hashlib.sha256(passphrase.encode()).digest(), sign_outgoing=True)
+        self.patience = patience
+        self.stopped = threading.Event()
+        self.system = self.find(system)
+        self.master.target_system, self.master.target_component = self.system, COMPONENT
+        self.beat()
+        if heartbeat:
+            threading.Thread(target=self.keep_beating, daemon=True).start()
+
+    def find(self, system):
+        """Waits for a vehicle's heartbeat; the sender of the first one, unless a system is asked for."""
+        deadline = time.monotonic() + self.patience
+        while time.monotonic() < deadline:
+            message = self.master.recv_match(type="HEARTBEAT", blocking=True, timeout=0.5)
+            if message is None or message.type == mavlink.MAV_TYPE_GCS:
+                continue
+            if system in (None, message.get_srcSystem()):
+                return message.get_srcSystem()
+        who = "no vehicle" if system is None else f"no vehicle with system id {system}"
+        raise GroundError(f"{who} was heard for {self.patience:g} s")
+
+    def beat(self):
+        self.master.mav.heartbeat_send(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, 0)
+
+    def keep_beating(self):
+        while not self.stopped.wait(1.0):
+            self.beat()
+
+    def close(self):
+        self.stopped.set()
+        self.master.close()
+
+    def receive(self, types=None, timeout=1.0):
+        """The next message of the vehicle, of one of these types; None if none comes in time."""
+        deadline = time.monotonic() + timeout
+        while (left := deadline - time.monotonic()) > 0:
+            message = self.master.recv_match(type=types, blocking=True, timeout=left)
+            if message is not None and message.get_srcSystem() == self.system:
+                return message
+        return None
+
+    def ask(self, send, types, accept, what, attempts=5):
+        """Sends until an answer comes that `accept` takes: datagrams get lost."""
+        for _ in range(attempts):
+            send()
+            deadline = time.monotonic() + 1.0
+            while (left := deadline - time.monotonic()) > 0:
+                message = self.receive(types, left)
+                if message is not None and accept(message):
+                    return message
+        raise GroundError(f"no answer to {what}")
+
+    def command(self, command, *parameters):
+        """Sends a command; returns the acknowledgement's result by name."""
+        values = [float(value) for value in parameters] + [0.0] * (7 - len(parameters))
+        mav = self.master.mav
+        ack = self.ask(
+            lambda: mav.command_long_send(self.system, COMPONENT, command, 0, *values),
+            "COMMAND_ACK",
+            lambda ack: ack.command == command,
+            f"command {command}",
+        )
+        return RESULTS.get(ack.result, str(ack.result))
+
+    def demand(self, command, *parameters):
+        """A command that has to be accepted."""
+        result = self.command(command, *parameters)
+        if result != "ACCEPTED":
+            raise GroundError(f"command {command}: {result}")
+
+    def request(self, name):
+        """A message that is sent on request."""
+        number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
+        self.demand(mavlink.MAV_CMD_REQUEST_MESSAGE, number)
+        message = self.receive(name, 2.0) or self.master.messages.get(name)
+        if message is None:
+            raise GroundError(f"{name} did not come")
+        return message
+
+    def parameters(self):
+        """Every parameter, name to value, in the vehicle's order."""
+        found, count = {}, None
+        mav = self.master.mav
+        for attempt in range(5):
+            if count is None:
+                mav.param_request_list_send(self.system, COMPONENT)
+            else:
+                for index in set(range(count)) - set(found):
+                    mav.param_request_read_send(self.system, COMPONENT, b"", index)
+            while (message := self.receive("PARAM_VALUE", 0.5)) is not None:
+                count = message.param_count
+                if message.param_index < count:
+                    found[message.param_index] = (message.param_id, message.param_value)
+                if len(found) == count:
+                    return dict(found[index] for index in range(count))
+        raise GroundError(f"{len(found)} of {count or 'the'} parameters came")
+
+    def read(self, name):
+        mav = self.master.mav
+        return self.ask(
+            lambda: mav.param_request_read_send(self.system, COMPONENT, name.encode(), -1),
+            "PARAM_VALUE",
+            lambda value: value.param_id == name,
+            f"a read of {name}",
+        ).param_value
+
+    def write(self, name, value):
+        """Sets a parameter; raises if the value in force is another."""
+        mav = self.master.mav
+        real32 = mavlink.MAV_PARAM_TYPE_REAL32
+        answer = self.ask(
+            lambda: mav.param_set_send(self.system, COMPONENT, name.encode(), value, real32),
+            "PARAM_VALUE",
+            lambda answer: answer.param_id == name,
+            f"a write of {name}",
+        )
+        if abs(answer.param_value - value) > 1e-6 * max(1.0, abs(value)):
+            raise GroundError(f"{name} stays {answer.param_value:g}: {value:g} is refused{self.why(name)}")
+        return answer.param_value
+
+    def why(self, name):
+        """What the vehicle says about a refused write, if it says anything."""
+        text = self.receive("STATUSTEXT", 0.5)
+        if text is not None and text.text.startswith(name):
+            return f" ({text.text.removeprefix(name).strip(': ')})"
+        return ""

@@ -1,0 +1,162 @@
+"""The package against a flight in real time."""
+
+import json
+
+import pytest
+
+from mpp_ground import paramfile, plot
+from mpp_ground.cli import main
+from mpp_ground.link import GroundError, Vehicle, mavlink
+
+
+@pytest.fixture
+def held(simulate):
+    simulation = simulate("--hold", "--speed", "4", "--duration", "12")
+    vehicle = Vehicle(simulation.address)
+    yield simulation, vehicle
+    vehicle.close()
+
+
+def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate, tmp_path):
+    simulation, vehicle = held
+    values = vehicle.parameters()
+    assert values["MPP_PATHS"] == 25 and len(values) == 28
+    assert vehicle.write("LQR_R_ELEVATOR", 0.6) == pytest.approx(0.6)
+    assert vehicle.read("LQR_R_ELEVATOR") == pytest.approx(0.6)
+    with pytest.raises(GroundError, match="MPP_PATHS stays 25: 99 is refused .out of range."):
+        vehicle.write("MPP_PATHS", 99)
+    vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    assert vehicle.receive("MPP_PLAN_STATUS", 5.0).candidates == 25
+    assert vehicle.write("MPP_PATHS", 12) == 12
+    with pytest.raises(GroundError, match="not in flight"):
+        vehicle.write("LQR_R_ELEVATOR", 0.7)
+    assert vehicle.command(31_000) == "UNSUPPORTED"
+    code, out, _ = simulation.result()
+    result = json.loads(out)
+    assert code in (0, 3, 4)
+
+    log = json.loads(open(result["log"]).read())
+    orders = [(order["name"], order["value"]) for order in log["orders"]]
+    assert orders == [("LQR_R_ELEVATOR", 0.6), ("MPP_PATHS", 12.0)]
+    again = simulate("--orders", result["log"], "--duration", "12")
+    _, out, _ = again.result()
+    assert json.loads(out)["log_hash"] == result["log_hash"]
+
+
+def test_what_is_heard_is_what_is_logged(simulate):
+    simulation = simulate("--hold", "--speed", "2", "--duration", "6")
+    vehicle = Vehicle(simulation.address)
+    vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    plans, scans = [], []
+    while (message := vehicle.receive(["MPP_PLAN_STATUS", "MPP_LIDAR_SCAN"], 2.0)) is not None:
+        (plans if message.get_type() == "MPP_PLAN_STATUS" else scans).append(message)
+    vehicle.close()
+    _, out, _ = simulation.result()
+    log = json.loads(open(json.loads(out)["log"]).read())
+    outcomes = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold"]
+    told = [(p.scan_tick, p.used_from_tick, p.candidates, p.feasible, outcomes[p.outcome]) for p in plans]
+    names = ("tick", "used_from_tick", "candidates", "feasible", "outcome")
+    assert told == [tuple(plan[name] for name in names) for plan in log["plans"]]
+    for told, plan in zip(plans, log["plans"]):
+        assert told.cost == pytest.approx(plan["cost"], rel=1e-6)
+    assert [scan.tick for scan in scans] == [plan["tick"] for plan in log["plans"]]
+    for scan in scans:
+        hits = plot.returns({
+            "MPP_LIDAR_SCAN": [scan],
+            "LOCAL_POSITION_NED": [Pose(scan, log)],
+            "ATTITUDE": [Pose(scan, log)],
+        })
+        for x, z in hits:
+            # On the edge of an obstacle of the log, but for the lidar's noise.
+            edge = min(abs(((x - o["x"]) ** 2 + (z - o["z"]) ** 2) ** 0.5 - o["radius"]) for o in log["header"]["field"])
+            assert edge < 1.5, (scan.tick, x, z)
+
+
+class Pose:
+    """Where the log says that the aircraft was at a scan."""
+
+    def __init__(self, scan, log):
+        ticks = log["ticks"]
+        self.time_boot_ms = scan.time_boot_ms
+        self.x, self.z = ticks["x"][scan.tick], -ticks["z"][scan.tick]
+        self.pitch = ticks["pitch"][scan.tick]
+
+
+def test_an_interval_is_kept(simulate):
+    simulation = simulate("--hold", "--speed", "1", "--duration", "30")
+    vehicle = Vehicle(simulation.address)
+    for hertz in (50, 5):
+        vehicle.demand(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 1e6 / hertz)
+        vehicle.receive("ATTITUDE", 1.0)
+        first = vehicle.receive("ATTITUDE", 1.0)
+        for _ in range(2 * hertz):
+            last = vehicle.receive("ATTITUDE", 1.0)
+        assert (last.time_boot_ms - first.time_boot_ms) == pytest.approx(2000, abs=2000 / hertz + 1)
+    vehicle.close()
+
+
+def test_with_a_key_only_its_holder_commands(simulate, tmp_path):
+    key = tmp_path / "key"
+    key.write_text("correct horse\n")
+    simulation = simulate("--hold", "--speed", "4", "--duration", "5", "--mavlink-key", str(key))
+    stranger = Vehicle(simulation.address)
+    assert len(stranger.parameters()) == 28
+    stranger.patience = 1
+    with pytest.raises(GroundError, match="no answer"):
+        stranger.ask(lambda: stranger.master.arducopter_arm(), "COMMAND_ACK", lambda ack: True, "arm", attempts=1)
+    stranger.close()
+    holder = Vehicle(simulation.address, passphrase="correct horse")
+    assert holder.write("MPP_PATHS", 11) == 11
+    holder.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    holder.close()
+    code, _, err = simulation.result()
+    assert "commands or writes were refused: no good signature" in err
+
+
+def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
+    simulation = simulate("--hold", "--speed", "1", "--duration", "60")
+
+    def run(*arguments):
+        code = main(["--connect", simulation.address, *arguments])
+        return code, capsys.readouterr().out
+
+    saved = tmp_path / "saved.parm"
+    assert run("params", "save", str(saved)) == (0, "")
+    assert dict(paramfile.values(saved.read_text()))["MPP_ALT_M"] == 50
+    assert run("params", "set", "MPP_ALT_M", "51.5") == (0, "MPP_ALT_M,51.5\n")
+    assert run("params", "get", "MPP_ALT_M") == (0, "MPP_ALT_M,51.5\n")
+    code, out = run("params", "load", str(saved))
+    assert code == 0 and "MPP_ALT_M,50\n" in out
+    assert run("params", "set", "MPP_ALT_M", "-3")[0] == 1
+    assert "capabilities" in run("command", "request", "autopilot_version")[1]
+    assert run("command", "interval", "attitude", "25")[0] == 0
+    assert run("command", "interval", "no_such_thing", "25")[0] == 1
+    assert run("command", "mode", "cruise")[0] == 0
+    assert run("command", "mode", "auto")[0] == 0
+    assert run("command", "arm")[0] == 0
+    assert run("command", "disarm")[0] == 1
+    tlog = tmp_path / "a.tlog"
+    assert run("record", str(tlog), "--seconds", "1.5")[0] == 0
+    out = run("monitor", "--once")[1]
+    assert "AUTO, armed" in out and "ATTITUDE" in out
+    assert run("command", "terminate")[0] == 0
+    code, out, _ = simulation.result()
+    assert code == 8 and json.loads(out)["outcome"] == "terminated"
+
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "a.png"
+    assert run("plot", str(tlog), "--out", str(picture))[0] == 0
+    assert picture.stat().st_size > 20_000
+
+
+def test_a_silent_vehicle_is_an_error():
+    with pytest.raises(GroundError, match="no vehicle was heard"):
+        Vehicle("udpin:127.0.0.1:0", patience=0.5)
+
+
+def test_parameter_files():
+    values = {"A": 0.1, "LONG_NAME": 12.0}
+    assert paramfile.values(paramfile.text(values)) == [("A", 0.1), ("LONG_NAME", 12.0)]
+    assert paramfile.values("# x\nA   1 # y\n\n") == [("A", 1.0)]
+    with pytest.raises(GroundError, match="line 2"):
+        paramfile.values("A,1\nB\n")
