@@ -48,7 +48,7 @@ def plot(tlog, out):
 
     found = read(tlog)
     figure, (side, speed, pitch, plans) = pyplot.subplots(
-        4, 1, figsize=(10, 11), height_ratios=[3, 1, 1, 1], layout="constrained"
+        4, 1, figsize=(11, 9), layout="constrained"
     )
     points = returns(found)
     side.plot([x for x, _ in points], [z for _, z in points], ".", ms=2, color=STYLE["return"], label="returns")
@@ -58,7 +58,7 @@ def plot(tlog, out):
     positions = found["LOCAL_POSITION_NED"]
     side.plot([p.x for p in positions], [-p.z for p in positions], lw=2, color=STYLE["path"], label="flown")
     side.set(xlabel="downrange [m]", ylabel="height [m]", aspect="equal")
-    side.legend(loc="upper right")
+    side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=3, frameon=False)
 
     # VFR_HUD has no time of its own.
     times = [message._timestamp for message in found["VFR_HUD"]]

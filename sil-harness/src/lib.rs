@@ -17,6 +17,7 @@
 //! * [`outcome`]: the success rule of the paper, and a strict one.
 //! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
+//! * [`picture`]: one flight as a page for a browser, recorded or live.
 //! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
 //! * [`campaign`]: many flights over a grid, with intervals.
 //! * [`ground`]: what people see of a flight and tell it; MAVLink 2.
@@ -42,6 +43,7 @@ pub mod lidar;
 pub mod link;
 pub mod log;
 pub mod outcome;
+pub mod picture;
 pub mod plant;
 pub mod random;
 pub mod run;

@@ -248,7 +248,8 @@ fn control(answer: &Answer) -> Control {
     }
 }
 
-fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
+/// What a flight's log begins with.
+pub(crate) fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
     Header {
         package_version: env!("CARGO_PKG_VERSION").to_owned(),
         seed: scenario.seed,

@@ -27,7 +27,8 @@ def test_mavproxy_reads_tunes_arms_and_records(simulate, tmp_path):
     # It keeps its settings there.
     environment = {"HOME": str(tmp_path), "PATH": str(TOOLS) + ":/usr/bin:/bin"}
     proxy = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
+        cwd=tmp_path,
     )
     try:
         # Parameters come before they can be set.

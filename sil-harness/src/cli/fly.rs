@@ -119,11 +119,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     let progress = progress_bar(u64::from(scenario.ticks));
     let mut crew = args.ground.open(&scenario, progress)?;
     let result = fly_with(&scenario, link.as_mut(), &mut crew);
-    let how = match &result {
-        Ok(log) => log.summary.outcome.to_string(),
-        Err(error) => error.to_string(),
-    };
-    crew.ground.end(&how)?;
+    crew.ground.end(&result)?;
     let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;
     report(args, &log)
 }

@@ -5,7 +5,8 @@ use crate::ground::transport::{Transport, address, usual_addresses};
 use crate::ground::vehicle::{Vehicle, VehicleConfig};
 use crate::ground::{Again, Ground, Order, OrderEntry, Refused, param_file};
 use crate::log::FlightLog;
-use crate::run::Moment;
+use crate::picture::live::Live;
+use crate::run::{FlyError, Moment, header};
 use crate::scenario::{Scenario, TICKS_PER_SECOND};
 use flight_node::parameters::{PARAMETERS, Tuning};
 use hil_protocol::mavlink::Key;
@@ -45,12 +46,15 @@ pub(super) struct GroundArgs {
     /// Give the orders of this flight's log again, at the same ticks
     #[arg(long, value_name = "LOG", conflicts_with = "params")]
     orders: Option<PathBuf>,
-    /// Speed against real time, for instance 1 to watch, or max
-    #[arg(long, default_value = "max", value_parser = speed)]
-    speed: Speed,
+    /// Show the flight as it happens on a page at this address, at the pace of real time
+    #[arg(long, num_args = 0..=1, default_missing_value = "127.0.0.1:8088", value_name = "HOST:PORT")]
+    live: Option<String>,
+    /// Speed against real time, for instance 1, or max [default: max, with --live 1]
+    #[arg(long, value_parser = speed)]
+    speed: Option<Speed>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Speed {
     Max,
     Times(f64),
@@ -65,6 +69,25 @@ fn speed(text: &str) -> Result<Speed, String> {
 }
 
 impl GroundArgs {
+    fn speed(&self) -> Speed {
+        match (self.speed, &self.live) {
+            (Some(speed), _) => speed,
+            (None, Some(_)) => Speed::Times(1.0),
+            (None, None) => Speed::Max,
+        }
+    }
+
+    fn live(&self, scenario: &Scenario) -> Result<Option<Live>, Failure> {
+        let Some(address) = &self.live else {
+            return Ok(None);
+        };
+        let refused = |why: String| Failure::new(LINK, format!("--live {address}: {why}"));
+        let header = header(scenario, &scenario.field());
+        let live = Live::open(address, &header).map_err(|error| refused(error.to_string()))?;
+        talk(format_args!("live at http://{}/", live.address()));
+        Ok(Some(live))
+    }
+
     /// Everybody who has a say in the flight.
     pub(super) fn open(
         &self,
@@ -74,8 +97,10 @@ impl GroundArgs {
         let crew = Crew {
             orders: self.first_orders(scenario)?,
             unsettled: 0,
+            tuning: None,
+            live: self.live(scenario)?,
             transport: self.transport()?,
-            pacer: Pacer::new(self.speed),
+            pacer: Pacer::new(self.speed()),
             progress,
         };
         Ok(match self.again()? {
@@ -90,7 +115,7 @@ impl GroundArgs {
         }
         let vehicle = Vehicle::new(&VehicleConfig {
             instance: self.instance,
-            patience: match self.speed {
+            patience: match self.speed() {
                 // A station's second is any number of ours.
                 Speed::Max => None,
                 Speed::Times(times) => {
@@ -215,6 +240,8 @@ fn client_lines(instance: u8, peer: &str) -> String {
 
 /// Keeps a flight at its pace.
 struct Pacer {
+    /// As the command line has it.
+    started: Speed,
     speed: Speed,
     begin: Instant,
     ticks: u32,
@@ -223,9 +250,31 @@ struct Pacer {
 impl Pacer {
     fn new(speed: Speed) -> Self {
         Self {
+            started: speed,
             speed,
             begin: Instant::now(),
             ticks: 0,
+        }
+    }
+
+    /// Does what the pages of a live flight ask for: waits while they pause, and takes their speed.
+    fn obey(&mut self, live: &Live) {
+        let mut wish = live.wish();
+        let paused = wish.pause;
+        while wish.pause {
+            std::thread::sleep(Duration::from_millis(20));
+            wish = live.wish();
+        }
+        let speed = match wish.speed {
+            None => self.started,
+            Some(times) if times.is_finite() => Speed::Times(times),
+            Some(_) => Speed::Max,
+        };
+        if paused || speed != self.speed {
+            *self = Self {
+                started: self.started,
+                ..Self::new(speed)
+            };
         }
     }
 
@@ -248,6 +297,9 @@ pub(super) struct Crew {
     orders: Vec<Order>,
     /// How many orders of our own are given and not settled.
     unsettled: usize,
+    /// The values in force.
+    tuning: Option<Tuning>,
+    live: Option<Live>,
     transport: Option<Transport>,
     pacer: Pacer,
     progress: ProgressBar,
@@ -255,13 +307,20 @@ pub(super) struct Crew {
 
 impl Crew {
     /// The flight is over.
-    pub(super) fn end(self, how: &str) -> Result<(), Failure> {
+    pub(super) fn end(self, result: &Result<FlightLog, FlyError>) -> Result<(), Failure> {
         self.progress.finish_and_clear();
+        let how = match result {
+            Ok(log) => log.summary.outcome.to_string(),
+            Err(error) => error.to_string(),
+        };
+        if let (Some(live), Ok(log)) = (self.live, result) {
+            live.end(&log.summary);
+        }
         let Some(transport) = self.transport else {
             return Ok(());
         };
         let vehicle = transport
-            .end(how)
+            .end(&how)
             .map_err(|error| Failure::new(FAILURE, format!("--tlog: {error}")))?;
         if vehicle.refused_signatures() > 0 {
             talk(format_args!(
@@ -275,6 +334,7 @@ impl Crew {
 
 impl Ground for Crew {
     fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
+        self.tuning = Some(*tuning);
         if let Some(transport) = &mut self.transport {
             transport.begin(tuning, start);
         }
@@ -290,6 +350,7 @@ impl Ground for Crew {
     }
 
     fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
+        self.tuning = Some(*tuning);
         if self.unsettled > 0 {
             self.unsettled -= 1;
             if let Err(refused) = result {
@@ -319,6 +380,10 @@ impl Ground for Crew {
         self.progress.inc(1);
         if let Some(transport) = &mut self.transport {
             transport.watch(moment);
+        }
+        if let (Some(live), Some(tuning)) = (&mut self.live, &self.tuning) {
+            live.watch(moment, tuning);
+            self.pacer.obey(live);
         }
         self.pacer.wait(false);
     }

@@ -11,6 +11,7 @@ mod figures;
 mod fly;
 mod ground;
 mod params;
+mod replay;
 mod scenario;
 
 use clap::{Parser, Subcommand};
@@ -47,6 +48,8 @@ enum Command {
     Core(core::CoreArgs),
     /// Measure our parts beside others, in one run
     Bench(bench::BenchArgs),
+    /// Make a page of a recorded flight, to step through in a browser
+    Replay(replay::ReplayArgs),
     /// Print the parameters of a preset, as a file that `fly --params` and ground stations read
     Params(params::ParamsArgs),
     /// Check core and plant against data recorded from the authors' code
@@ -64,6 +67,7 @@ pub fn run() -> ExitCode {
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Params(args)) => params::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),
     };

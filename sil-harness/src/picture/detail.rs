@@ -1,0 +1,221 @@
+//! What the planner saw and considered in each cycle, for people to look at.
+//!
+//! The core tells only what it chose. The same planner, given the same scans and states, goes
+//! through the same candidates here, one slice at a time.
+
+use crate::run::Moment;
+use flight_node::parameters::Tuning;
+use hil_protocol::LidarScan as WireScan;
+use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
+use mpp_core::corridor::DIRECTION_VECTORS;
+use mpp_core::map::GridPoint;
+use mpp_core::planner::{Planner, SetupError};
+use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::VehicleState;
+use serde::{Deserialize, Serialize};
+
+/// A place `(x, z)` in the world [m], to the centimetre.
+pub type Place = (f64, f64);
+
+/// Half of the side of a square that unbounded corridors are cut to [m].
+const SQUARE: f64 = 25.0;
+
+/// One planning cycle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlanDetail {
+    /// The tick of its scan.
+    pub tick: u32,
+    /// Where the aircraft was.
+    pub from: Place,
+    /// Where beams ended.
+    pub hits: Vec<Place>,
+    /// Low corners of the occupied cells, 1 m x 1 m.
+    pub cells: Vec<Place>,
+    /// Collocation points of every candidate path.
+    pub paths: Vec<Vec<Place>>,
+    /// The candidate that was chosen.
+    pub chosen: Option<usize>,
+    /// Its corridor, a polygon for each stage boundary; empty where nothing is left.
+    pub corridor: Vec<Vec<Place>>,
+    /// The trajectory that was chosen.
+    pub trajectory: Vec<Place>,
+}
+
+/// A planner to look into.
+pub struct Inspector {
+    planner: Box<Planner>,
+}
+
+impl Inspector {
+    /// Of a flight that begins with these values.
+    ///
+    /// # Errors
+    /// When the core could not be set up either.
+    pub fn new(tuning: &Tuning) -> Result<Self, SetupError> {
+        let mut planner = Box::new(Planner::new());
+        planner.set_up(&tuning.settings)?;
+        Ok(Self { planner })
+    }
+
+    /// The cycle that begins at this moment, if a scan was taken; `tuning` is what is in force.
+    pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
+        let scan = moment.scan?;
+        let state = VehicleState {
+            air: moment.tick.estimate,
+            ..moment.tick.state
+        };
+        let planner = &mut self.planner;
+        planner.retune(&tuning.settings.planner);
+        planner.begin(moment.tick.t, &state, &core_scan(scan));
+
+        let mut detail = PlanDetail {
+            tick: scan.tick,
+            from: place(state.x, state.z),
+            ..PlanDetail::default()
+        };
+        let mut corridor = None;
+        let mut best = f64::INFINITY;
+        let mut best_violation = f64::INFINITY;
+        for _ in 0..slices(tuning) {
+            let refining = planner.program().is_some();
+            let more = planner.advance();
+            if let Some(problem) = planner.program()
+                && !refining
+            {
+                let points = planner.points().iter();
+                detail
+                    .paths
+                    .push(points.map(|p| world(&state, *p)).collect());
+                corridor = Some(problem.bounds);
+            }
+            let summary = planner.summary();
+            if (summary.cost, summary.violation) != (best, best_violation) {
+                (best, best_violation) = (summary.cost, summary.violation);
+                detail.chosen = detail.paths.len().checked_sub(1);
+                if let (Some(bounds), Some(path)) = (&corridor, detail.paths.last()) {
+                    let cruise = planner.trim().state.airspeed;
+                    detail.corridor = polygons(&bounds.0, &state, cruise, path);
+                }
+            }
+            if !more {
+                break;
+            }
+        }
+        detail.cells = cells(planner, &state);
+        detail.hits = hits(scan, &state);
+        if best.is_finite() {
+            let knots = planner.best().knots.iter();
+            detail.trajectory = knots.map(|k| place(k.state.x, k.state.z)).collect();
+        }
+        let _ = planner.finish();
+        Some(detail)
+    }
+}
+
+/// Slices that a cycle may use.
+fn slices(tuning: &Tuning) -> u64 {
+    let configure = &tuning.configure;
+    u64::from(configure.latency_ticks) * u64::from(configure.slices_per_tick)
+}
+
+fn core_scan(wire: &WireScan) -> LidarScan {
+    let mut scan = LidarScan::new();
+    scan.angle_min = f64::from(wire.angle_min);
+    scan.angle_increment = f64::from(wire.angle_increment);
+    scan.ranges.clone_from(&wire.ranges);
+    scan
+}
+
+fn place(x: f64, z: f64) -> Place {
+    let centimetres = |value: f64| (value * 100.0).round() / 100.0;
+    (centimetres(x), centimetres(z))
+}
+
+/// A point of the grid in the world.
+fn world(state: &VehicleState, point: GridPoint) -> Place {
+    let origin = GridPoint::AIRCRAFT;
+    place(
+        state.x + point.col - origin.col,
+        state.z + point.row - origin.row,
+    )
+}
+
+fn cells(planner: &Planner, state: &VehicleState) -> Vec<Place> {
+    let mut cells = Vec::new();
+    for row in 0..GRID_ROWS {
+        for col in 0..GRID_COLS {
+            if planner.grid().occupied(row as i32, col as i32) {
+                let (row, col) = (row as f64, col as f64);
+                cells.push(world(state, GridPoint { row, col }));
+            }
+        }
+    }
+    cells
+}
+
+fn hits(scan: &WireScan, state: &VehicleState) -> Vec<Place> {
+    let beams = scan.ranges.iter().zip(0_u16..);
+    beams
+        .filter(|(range, _)| **range > 0.0)
+        .map(|(range, beam)| {
+            let body = scan.angle_min + scan.angle_increment * f32::from(beam);
+            let (up, ahead) = libm::sincos(state.air.pitch + f64::from(body));
+            let range = f64::from(*range);
+            place(state.x + range * ahead, state.z + range * up)
+        })
+        .collect()
+}
+
+/// What the eight half-planes of each stage boundary leave of a square about its path.
+fn polygons(bounds: &[f64], state: &VehicleState, cruise: f64, path: &[Place]) -> Vec<Vec<Place>> {
+    let stages = bounds.chunks(DIRECTIONS).take(KNOTS).zip(path).enumerate();
+    stages
+        .map(|(stage, (bounds, (x, z)))| {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let mut polygon: Vec<Place> = corners
+                .iter()
+                .map(|(right, up)| (x + SQUARE * right, z + SQUARE * up))
+                .collect();
+            let level = (state.x + cruise * STAGE_PERIOD * stage as f64, state.z);
+            for ([up, ahead], bound) in DIRECTION_VECTORS.iter().zip(bounds) {
+                polygon = cut(&polygon, |(x, z)| {
+                    bound - ahead * (x - level.0) - up * (z - level.1)
+                });
+            }
+            polygon.iter().map(|(x, z)| place(*x, *z)).collect()
+        })
+        .collect()
+}
+
+/// The part of a convex polygon where `inside` is not negative.
+fn cut(polygon: &[Place], inside: impl Fn(Place) -> f64) -> Vec<Place> {
+    let mut kept = Vec::new();
+    for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (a, b) = (inside(*from), inside(*to));
+        if a >= 0.0 {
+            kept.push(*from);
+        }
+        if (a >= 0.0) != (b >= 0.0) {
+            let share = a / (a - b);
+            kept.push((
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            ));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_is_cut_by_a_half_plane() {
+        let square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let left = cut(&square, |(x, _)| 1.0 - x);
+        assert_eq!(left, [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)]);
+        assert!(cut(&square, |_| -1.0).is_empty());
+        assert_eq!(cut(&square, |_| f64::INFINITY), square);
+    }
+}

@@ -1,0 +1,234 @@
+"""The pages of flights in headless Chromium: no error, what they say is what the log holds."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+import urllib.request
+from pathlib import Path
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+ROOT = Path(__file__).resolve().parents[2]
+BINARY = Path(os.environ.get("SIL_HARNESS", ROOT / "target" / "release" / "sil-harness"))
+CHROMIUM = shutil.which("chromium")
+SHOTS = os.environ.get("SCREENSHOTS")
+PHONE = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed")
+    with playwright.sync_playwright() as p:
+        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser):
+    """Opens a page; afterwards it must have complained of nothing and asked nobody else."""
+    pages, complaints = [], []
+
+    def open_(url, **options):
+        page = browser.new_page(**options)
+        own = url.split("#")[0]
+        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
+        page.goto(url)
+        pages.append(page)
+        return page
+
+    yield open_
+    for page in pages:
+        page.close()
+    assert complaints == []
+
+
+def fly(out, *arguments):
+    subprocess.run([BINARY, "fly", "--out", out, *arguments], check=False, capture_output=True)
+    (log,) = out.glob("*.json")
+    return log, json.loads(log.read_text())
+
+
+def page_of(log):
+    page = log.with_suffix(".html")
+    subprocess.run([BINARY, "replay", log, "--out", page], check=True, capture_output=True)
+    return page
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory):
+    path, log = fly(tmp_path_factory.mktemp("flight"), "--seed", "1")
+    return page_of(path), log
+
+
+def value(page, name):
+    return page.inner_text(f"#v-{name}")
+
+
+def says_what_the_log_holds(page, log, tick):
+    ticks = log["ticks"]
+    assert page.input_value("#time") == str(tick)
+    assert page.inner_text("#clock") == f"{ticks['t'][tick]:.2f} s"
+    assert float(value(page, "downrange").split()[0]) == pytest.approx(ticks["x"][tick], abs=0.0051)
+    assert float(value(page, "height").split()[0]) == pytest.approx(ticks["z"][tick], abs=0.0051)
+    assert float(value(page, "airspeed").split()[0]) == pytest.approx(ticks["airspeed"][tick], abs=0.0051)
+    assert float(value(page, "thrust").split()[0]) == pytest.approx(ticks["thrust"][tick], abs=0.0051)
+    flown = [plan for plan in log["plans"] if plan["used_from_tick"] <= tick]
+    if flown:
+        assert value(page, "candidates") == str(flown[-1]["candidates"])
+        assert value(page, "feasible") == str(flown[-1]["feasible"])
+        assert value(page, "plan") == f"{len(flown)} of {len(log['plans'])}"
+        assert float(value(page, "cost")) == pytest.approx(flown[-1]["cost"], abs=0.0051)
+
+
+def pixels(page):
+    return page.evaluate("document.getElementById('view').toDataURL()")
+
+
+def shot(page, name):
+    if SHOTS:
+        page.screenshot(path=f"{SHOTS}/{name}.png", full_page=True)
+
+
+def test_the_text_is_the_logs_and_the_slider_moves_the_aircraft(flight, open_page):
+    page, log = flight
+    page = open_page(page.as_uri())
+    title = page.inner_text("#title")
+    for part in ["seed 1", "survived after 20.00 s", f"{log['summary']['feasible']} feasible"]:
+        assert part in title
+    shapes = set()
+    for tick in (0, 700, 1234, 1999):
+        page.locator("#time").fill(str(tick))
+        says_what_the_log_holds(page, log, tick)
+        shapes.add(pixels(page))
+    assert len(shapes) == 4
+    page.locator("#time").fill("1234")
+    shot(page, "light")
+
+
+def test_keys_buttons_layers_and_links(flight, open_page):
+    page, log = flight
+    page = open_page(page.as_uri() + "#t=7.30")
+    says_what_the_log_holds(page, log, 730)
+    starts = [plan["used_from_tick"] for plan in log["plans"]]
+    page.keyboard.press("]")
+    after = min(tick for tick in starts if tick > 730)
+    says_what_the_log_holds(page, log, after)
+    page.keyboard.press("[")
+    says_what_the_log_holds(page, log, max(tick for tick in starts if tick < after))
+    page.keyboard.press("End")
+    says_what_the_log_holds(page, log, 1999)
+    page.keyboard.press("ArrowLeft")
+    says_what_the_log_holds(page, log, 1989)
+    page.keyboard.press("Home")
+    page.click("#next")
+    says_what_the_log_holds(page, log, starts[0] if starts[0] > 0 else starts[1])
+    page.evaluate("location.hash = '#t=12.3'")
+    page.wait_for_function("document.getElementById('time').value === '1230'")
+    assert page.get_attribute("#link", "href") == "#t=12.30"
+    seen = {pixels(page)}
+    for layer in ["field", "scan", "occupancy", "candidates", "corridor", "plan", "reference", "flown"]:
+        page.click(f"#layer-{layer}")
+        picture = pixels(page)
+        assert picture not in seen, layer
+        seen.add(picture)
+    page.keyboard.press("1")
+    assert page.is_checked("#layer-field")
+    page.keyboard.press("Home")
+    page.keyboard.press(" ")
+    page.wait_for_function("Number(document.getElementById('time').value) > 50")
+    page.keyboard.press(" ")
+    assert re.fullmatch(r".*#t=\d+\.\d\d", page.url)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_a_phone_shows_it_all_without_scrolling_sideways(flight, open_page, scheme):
+    page, _ = flight
+    page = open_page(page.as_uri() + "#t=7.3", viewport=PHONE, color_scheme=scheme)
+    assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
+    ground = page.evaluate("getComputedStyle(document.body).backgroundColor")
+    assert ground == ("rgb(255, 255, 255)" if scheme == "light" else "rgb(20, 23, 26)")
+    shot(page, f"phone-{scheme}")
+
+
+def test_what_the_planner_considered_is_what_it_reported(flight):
+    page, log = flight
+    text = page.read_text()
+    (line,) = [line for line in text.splitlines() if line.startswith("const DATA = ")]
+    data = json.loads(line.removeprefix("const DATA = ").removesuffix(";"))
+    assert data["log"] == log
+    assert [detail["tick"] for detail in data["details"]] == [plan["tick"] for plan in log["plans"]]
+    for detail, plan in zip(data["details"], log["plans"]):
+        assert len(detail["paths"]) == plan["candidates"]
+        assert (detail["chosen"] is not None) == (plan["cost"] is not None)
+        assert len(detail["trajectory"]) == 19
+
+
+def test_a_flight_that_cannot_be_flown_again_has_a_page_without_candidates(flight, open_page, tmp_path):
+    _, log = flight
+    log = json.loads(json.dumps(log))
+    log["ticks"]["z"][5] += 1e-9
+    path = tmp_path / "other.json"
+    path.write_text(json.dumps(log))
+    page = open_page(page_of(path).as_uri())
+    assert page.is_disabled("#layer-scan") and not page.is_disabled("#layer-flown")
+    says_what_the_log_holds(page, log, 0)
+
+
+@pytest.fixture
+def live(tmp_path):
+    process = subprocess.Popen(
+        [BINARY, "fly", "--live", "127.0.0.1:0", "--duration", "8", "--json", "--out", tmp_path],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )
+    for line in process.stderr:
+        if found := re.search(r"live at (http://127\.0\.0\.1:\d+/)", line):
+            yield process, found[1], tmp_path
+            break
+    process.kill()
+    process.communicate()
+
+
+def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, tmp_path):
+    process, url, out = live
+    page = open_page(url)
+    page.wait_for_function("Number(document.getElementById('time').value) > 150", timeout=20_000)
+    shot(page, "live")
+    assert page.inner_text("#v-candidates") == "25"
+    page.click("#play")
+    page.wait_for_timeout(400)
+    held = page.input_value("#time")
+    page.wait_for_timeout(600)
+    assert page.input_value("#time") == held
+    page.select_option("#speed", "max")
+    page.click("#play")
+    page.wait_for_function("document.title.includes('after 8.00 s')", timeout=20_000)
+    out_, _ = process.communicate(timeout=20)
+    result = json.loads(out_)
+    log = json.loads(Path(result["log"]).read_text())
+    says_what_the_log_holds(page, log, 799)
+    _, alone = fly(tmp_path / "alone", "--duration", "8")
+    assert alone == log
+
+
+def test_the_server_refuses_what_it_does_not_know(live):
+    _, url, _ = live
+
+    def status(path, method="GET"):
+        request = urllib.request.Request(url + path, method=method)
+        try:
+            return urllib.request.urlopen(request, timeout=5).status
+        except urllib.error.HTTPError as error:
+            return error.code
+
+    assert status("") == 200
+    assert status("passwd") == 404
+    assert status("control?speed=-1", "POST") == 400
+    assert status("control?pause=0", "POST") == 204
