@@ -20,9 +20,8 @@ def free_port():
 class Simulation:
     """A running flight; `address` is where it sends to."""
 
-    def __init__(self, out, *arguments):
-        self.out = out
-        self.port = free_port()
+    def __init__(self, out, *arguments, port=None):
+        self.port = port or free_port()
         self.address = f"udpin:127.0.0.1:{self.port}"
         self.process = subprocess.Popen(
             [BINARY, "fly", "--mavlink", f"udp:127.0.0.1:{self.port}", "--json", "--out", out, *arguments],
@@ -48,8 +47,8 @@ def simulate(tmp_path):
         pytest.fail(f"no {BINARY}: cargo build --release -p sil-harness")
     running = []
 
-    def start(*arguments):
-        running.append(Simulation(tmp_path / "out", *arguments))
+    def start(*arguments, port=None):
+        running.append(Simulation(tmp_path / "out", *arguments, port=port))
         return running[-1]
 
     yield start

@@ -79,6 +79,20 @@ def test_an_interval_change_is_measured(vehicle):
     assert rate() == pytest.approx(50, rel=0.3)
 
 
+def test_tens_of_vehicles_are_told_apart(simulate):
+    first = simulate("--hold", "--instance", "0")
+    for instance in range(1, 20):
+        simulate("--hold", "--instance", str(instance), port=first.port)
+    master = mavutil.mavlink_connection(first.address)
+    deadline, systems = time.monotonic() + 20, set()
+    while len(systems) < 20 and time.monotonic() < deadline:
+        message = master.recv_match(type="HEARTBEAT", blocking=True, timeout=1)
+        if message is not None:
+            systems.add(message.get_srcSystem())
+    master.close()
+    assert systems == set(range(1, 21))
+
+
 def known(generator, mav):
     """A frame of a message that the vehicle's dialect has."""
     mav.srcSystem, mav.srcComponent = generator.randrange(256), generator.randrange(256)

@@ -32,10 +32,10 @@ pub(super) struct GroundArgs {
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=253))]
     instance: u8,
     /// Wait at the start until a ground station arms the vehicle
-    #[arg(long, requires = "mavlink")]
+    #[arg(long)]
     hold: bool,
     /// Obey only commands signed with the passphrase in this file's first line
-    #[arg(long, value_name = "FILE", requires = "mavlink")]
+    #[arg(long, value_name = "FILE")]
     mavlink_key: Option<PathBuf>,
     /// Record the telemetry in this file
     #[arg(long, value_name = "FILE")]
@@ -46,7 +46,8 @@ pub(super) struct GroundArgs {
     /// Give the orders of this flight's log again, at the same ticks
     #[arg(long, value_name = "LOG", conflicts_with = "params")]
     orders: Option<PathBuf>,
-    /// Show the flight as it happens on a page at this address, at the pace of real time
+    /// Show the flight as it happens on a page at this address, at the pace of real time and with
+    /// --mavlink
     #[arg(long, num_args = 0..=1, default_missing_value = "127.0.0.1:8088", value_name = "HOST:PORT")]
     live: Option<String>,
     /// Speed against real time, for instance 1, or max [default: max, with --live 1]
@@ -110,7 +111,12 @@ impl GroundArgs {
     }
 
     fn transport(&self) -> Result<Option<Transport>, Failure> {
-        if self.mavlink.is_empty() && self.tlog.is_none() {
+        let connected = !self.mavlink.is_empty() || self.live.is_some();
+        if !connected && (self.hold || self.mavlink_key.is_some()) {
+            let why = "--hold, --mavlink-key: nobody could arm or command without --mavlink";
+            return Err(Failure::new(USAGE, why));
+        }
+        if !connected && self.tlog.is_none() {
             return Ok(None);
         }
         let vehicle = Vehicle::new(&VehicleConfig {
@@ -126,7 +132,7 @@ impl GroundArgs {
             key: self.key()?,
         });
         let mut transport = Transport::new(vehicle, |note| talk(note));
-        if !self.mavlink.is_empty() {
+        if connected {
             let peers = self.peers()?;
             for peer in &peers {
                 talk(client_lines(self.instance, &peer.to_string()));
@@ -142,6 +148,9 @@ impl GroundArgs {
     }
 
     fn peers(&self) -> Result<Vec<std::net::SocketAddr>, Failure> {
+        if self.mavlink.is_empty() {
+            return Ok(usual_addresses(self.instance));
+        }
         let mut peers = Vec::new();
         for text in &self.mavlink {
             if text == "usual" {
