@@ -5,7 +5,7 @@
 use crate::convert;
 use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::settings::{Cruise, Settings};
+use mpp_core::settings::{Cruise, Iteration, Settings};
 
 /// A configuration, and the settings that it and later changes of parameters came to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,12 @@ impl Tuning {
         if in_flight && !parameter.in_flight {
             return Err(ParameterVerdict::InFlight);
         }
+        let tracked = self.settings.planner.paths == 0;
         (parameter.set)(&mut self, value);
+        // Paths that are tracked as they are, and others, are planned by different cycles.
+        if in_flight && tracked != (self.settings.planner.paths == 0) {
+            return Err(ParameterVerdict::InFlight);
+        }
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
         Ok(self)
     }
@@ -134,8 +139,19 @@ fn ticks(seconds: f64) -> u32 {
     libm::round(seconds / TICK_PERIOD) as u32
 }
 
+/// A value of the rounds of linearisation, if the preset has them.
+fn iteration(tuning: &Tuning, get: fn(&Iteration) -> f64) -> Option<f64> {
+    tuning.settings.planner.iteration.as_ref().map(get)
+}
+
+fn change(tuning: &mut Tuning, set: impl FnOnce(&mut Iteration)) {
+    if let Some(iteration) = &mut tuning.settings.planner.iteration {
+        set(iteration);
+    }
+}
+
 /// All parameters. Presets differ in which of them they have.
-pub const PARAMETERS: [Parameter; 29] = [
+pub const PARAMETERS: [Parameter; 35] = [
     Parameter {
         name: "MPP_PATHS",
         unit: "candidate paths",
@@ -338,4 +354,50 @@ pub const PARAMETERS: [Parameter; 29] = [
         BEFORE,
         estimator.gate
     ),
+    number!("LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], BEFORE, cross_track),
+    Parameter {
+        name: "MPP_ROUNDS",
+        unit: "rounds of linearisation",
+        range: [1.0, 20.0],
+        step: Some(1.0),
+        in_flight: BEFORE,
+        get: |tuning| iteration(tuning, |iteration| f64::from(iteration.rounds)),
+        set: |tuning, value| change(tuning, |iteration| iteration.rounds = value as u8),
+    },
+    Parameter {
+        name: "MPP_DEEPENED",
+        unit: "candidates",
+        range: [0.0, mpp_core::config::MAX_PATHS as f64],
+        step: Some(1.0),
+        in_flight: BEFORE,
+        get: |tuning| iteration(tuning, |iteration| iteration.deepened as f64),
+        set: |tuning, value| change(tuning, |iteration| iteration.deepened = value as usize),
+    },
+    Parameter {
+        name: "MPP_MARGIN_M",
+        unit: "m",
+        range: [0.1, 5.0],
+        step: None,
+        in_flight: BEFORE,
+        get: |tuning| iteration(tuning, |iteration| iteration.margin),
+        set: |tuning, value| change(tuning, |iteration| iteration.margin = value),
+    },
+    Parameter {
+        name: "MPP_BAND_M",
+        unit: "m",
+        range: [2.0, 100.0],
+        step: None,
+        in_flight: BEFORE,
+        get: |tuning| iteration(tuning, |iteration| iteration.band),
+        set: |tuning, value| change(tuning, |iteration| iteration.band = value),
+    },
+    Parameter {
+        name: "MPP_THRUST_N",
+        unit: "N",
+        range: [1.0, 100.0],
+        step: None,
+        in_flight: BEFORE,
+        get: |tuning| iteration(tuning, |iteration| iteration.thrust_max),
+        set: |tuning, value| change(tuning, |iteration| iteration.thrust_max = value),
+    },
 ];

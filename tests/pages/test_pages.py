@@ -201,7 +201,7 @@ def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, 
     page = open_page(url)
     page.wait_for_function("Number(document.getElementById('time').value) > 150", timeout=20_000)
     shot(page, "live")
-    assert page.inner_text("#v-candidates") == "25"
+    assert int(page.inner_text("#v-candidates")) > 0
     page.click("#play")
     page.wait_for_timeout(400)
     held = page.input_value("#time")

@@ -45,7 +45,7 @@ def test_mavproxy_reads_tunes_arms_and_records(simulate, tmp_path):
     finally:
         if proxy.poll() is None:
             proxy.kill()
-    assert "Received 28 parameters" in said, said
+    assert "Received 34 parameters" in said, said
 
     def dump(kind):
         command = [sys.executable, tool("mavlogdump.py"), "--types", kind, str(log)]

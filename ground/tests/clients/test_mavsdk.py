@@ -22,7 +22,7 @@ def test_mavsdk_finds_tunes_arms_and_watches(simulate):
 
         param = Param(system)
         values = {p.name: p.value for p in param.get_all_params().float_params}
-        assert len(values) == 28 and values["MPP_ALT_M"] == 50
+        assert len(values) == 34 and values["MPP_ALT_M"] == 50
         param.set_param_float("MPP_ALT_M", 51.5)
         assert param.get_param_float("MPP_ALT_M") == 51.5
         with pytest.raises(ParamError):

@@ -43,7 +43,7 @@ def test_it_is_a_fixed_wing_that_is_read_tuned_and_armed(vehicle):
 
     vehicle.param_fetch_all()
     names = set()
-    while len(names) < 28:
+    while len(names) < 34:
         value = vehicle.recv_match(type="PARAM_VALUE", blocking=True, timeout=3)
         assert value is not None and value.param_type == mavlink.MAV_PARAM_TYPE_REAL32
         names.add(value.param_id)

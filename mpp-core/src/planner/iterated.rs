@@ -65,6 +65,12 @@ impl Workspace {
         self.order.get(best).copied()
     }
 
+    /// Where the candidate that is improved now leads, in the world [m].
+    pub(super) fn path(&self, iteration: &Iteration) -> Option<[(f64, f64); KNOTS]> {
+        let candidate = self.candidates.get(self.turn(iteration)?)?;
+        Some(candidate.knots.each_ref().map(|knot| (knot.x, knot.z)))
+    }
+
     /// Forgets the map of an earlier flight.
     pub(super) fn forget(&mut self) {
         self.map.clear();

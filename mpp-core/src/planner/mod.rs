@@ -370,6 +370,23 @@ impl Planner {
         (self.phase == Phase::Program).then_some(&self.problem)
     }
 
+    /// Where the candidate at hand leads, `(x, z)` at the stage boundaries in the world [m], and its
+    /// program, while that is being solved.
+    #[must_use]
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+        let path = match self.phase {
+            Phase::Program => {
+                let origin = GridPoint::AIRCRAFT;
+                let VehicleState { x, z, .. } = self.state;
+                self.points
+                    .map(|point| (x + point.col - origin.col, z + point.row - origin.row))
+            }
+            Phase::Improve => self.iterated.path(self.settings.iteration.as_ref()?)?,
+            _ => return None,
+        };
+        Some((path, &self.problem))
+    }
+
     /// Collocation points of the candidate at hand.
     #[must_use]
     pub fn points(&self) -> &CollocationPoints {

@@ -77,15 +77,12 @@ impl Inspector {
         let mut best = f64::INFINITY;
         let mut best_violation = f64::INFINITY;
         for _ in 0..slices(tuning) {
-            let refining = planner.program().is_some();
+            let refining = planner.candidate().is_some();
             let more = planner.advance();
-            if let Some(problem) = planner.program()
+            if let Some((path, problem)) = planner.candidate()
                 && !refining
             {
-                let points = planner.points().iter();
-                detail
-                    .paths
-                    .push(points.map(|p| world(&state, *p)).collect());
+                detail.paths.push(path.map(|(x, z)| place(x, z)).into());
                 corridor = Some(problem.bounds);
             }
             let summary = planner.summary();

@@ -109,7 +109,11 @@ fn a_refused_write_is_answered_with_the_value_in_force() {
         .at(120, &write("LQR_R_ELEVATOR", 0.7))
         .at(130, &write("MPP_PATHS", 12.0))
         .at(140, &write("NO_SUCH_THING", 1.0));
-    let log = radio.fly(&scenario());
+    // A preset that refines as many candidates as it is told to.
+    let log = radio.fly(&Scenario {
+        ticks: 1200,
+        ..Scenario::new(Preset::Paper, 1)
+    });
     let told = |name: &str, value| (name.to_owned(), value);
     let expected = [
         told("MPP_PATHS", 25.0),

@@ -6,7 +6,7 @@ use hil_protocol::mavlink::messages::*;
 use sil_harness::ground::{Ground, Order};
 use sil_harness::link::PipeLink;
 use sil_harness::run::{Moment, fly_with};
-use sil_harness::scenario::Scenario;
+use sil_harness::scenario::{Preset, Scenario};
 
 /// A radio, and what the plant and the core had to say.
 struct Witness {
@@ -155,7 +155,8 @@ fn motion_is_that_of_the_log() {
 fn every_cycle_without_a_feasible_plan_is_told() {
     let dense = Scenario {
         obstacles: 60,
-        ..scenario()
+        ticks: 1200,
+        ..Scenario::new(Preset::Paper, 1)
     };
     let (Witness { radio, .. }, log) = witnessed(&dense);
     let without = log
@@ -174,7 +175,8 @@ fn every_cycle_without_a_feasible_plan_is_told() {
     let starved = Scenario {
         slices_per_tick: 10,
         latency_ticks: 20,
-        ..scenario()
+        ticks: 1200,
+        ..Scenario::new(Preset::Paper, 1)
     };
     let (Witness { radio, missed, .. }, _) = witnessed(&starved);
     let told = radio
