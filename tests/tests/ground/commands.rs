@@ -9,7 +9,7 @@ use sil_harness::link::{Link, LinkError, PipeLink, TcpLink, serve};
 use sil_harness::log::FlightLog;
 use sil_harness::outcome::Outcome;
 use sil_harness::run::{fly, fly_with};
-use sil_harness::scenario::Scenario;
+use sil_harness::scenario::{Preset, Scenario};
 use std::net::TcpListener;
 use std::time::Duration;
 
@@ -169,7 +169,12 @@ fn a_core_that_restarts_is_told_every_value_again() {
         pipe: PipeLink::new(),
         at: Some(150),
     };
-    let log = fly_with(&scenario(), &mut link, &mut radio).unwrap();
+    // A preset that refines as many candidates as it is told to.
+    let paper = Scenario {
+        ticks: 1200,
+        ..Scenario::new(Preset::Paper, 1)
+    };
+    let log = fly_with(&paper, &mut link, &mut radio).unwrap();
     assert_eq!(log.rejections[0].cause, "CoreRestarted");
     let late = log.plans.iter().filter(|plan| plan.tick > 150);
     assert!(late.clone().count() > 5);
