@@ -36,7 +36,7 @@ const MARGIN_PRICE: f64 = 10.0;
 /// Price of a point of which nothing is known, falling to nothing at [`SIGHT`] [m] ahead.
 const UNKNOWN_PRICE: f64 = 5.0;
 /// Distance ahead up to which it matters that nothing is known [m].
-pub const SIGHT: f64 = 20.0;
+pub const SIGHT: f64 = 26.0;
 /// Prices of a change of slope, of a slope and of a metre from the altitude, squared, per edge.
 const TURN_PRICE: f64 = 1.0;
 const SLOPE_PRICE: f64 = 0.05;
