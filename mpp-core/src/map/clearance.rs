@@ -98,12 +98,12 @@ impl ClearanceField {
     /// The centres of occupied cells with a free neighbour within a box, `x` and `z` from least to
     /// greatest [m].
     pub fn surface(&self, x: [f64; 2], z: [f64; 2], mut visit: impl FnMut(f64, f64)) {
-        let cell = |value: f64, edge: f64, cells: usize| {
-            (libm::floor((value - edge) / CELL).max(0.0) as usize).min(cells - 1)
+        let (Some([first, last]), Some([low, high])) =
+            (cells(x, self.first_x, COLS), cells(z, self.floor, ROWS))
+        else {
+            return;
         };
-        let [first, last] = x.map(|x| cell(x, self.first_x, COLS));
-        let [low, high] = z.map(|z| cell(z, self.floor, ROWS));
-        let kept = (u128::MAX << first) & (u128::MAX >> (COLS - 1 - last.min(COLS - 1)));
+        let kept = (u128::MAX << first) & (u128::MAX >> (COLS - 1 - last));
         for row in low..high + 1 {
             let mut bits = self.surface_row(row) & kept;
             while bits != 0 {
@@ -152,6 +152,13 @@ fn along_row(occupied: u128) -> [u8; COLS] {
         *distance = since.min(*distance);
     }
     distances
+}
+
+/// First and last cell of a range [m], as far as it is in the window.
+fn cells([least, greatest]: [f64; 2], edge: f64, count: usize) -> Option<[usize; 2]> {
+    let [first, last] = [least, greatest].map(|value| libm::floor((value - edge) / CELL));
+    let inside = last >= 0.0 && first < count as f64;
+    inside.then(|| [first.max(0.0) as usize, (last as usize).min(count - 1)])
 }
 
 /// Cell index and share of the way to the next, kept inside.

@@ -66,11 +66,12 @@ impl MemoryMap {
         self.started = false;
     }
 
-    /// Moves the window along with an aircraft at `x` [m]; the first time, it is laid about
-    /// `altitude` [m].
+    /// Moves the window along with an aircraft at `x` [m]; the first time, and when the aircraft is
+    /// behind it (after a position that was far wrong), it is laid anew about `altitude` [m].
     pub fn roll(&mut self, x: f64, altitude: f64) {
         let first = (libm::floor(x / CELL) as i32).saturating_sub(BEHIND);
-        if !self.started {
+        let behind = first < self.first_col.saturating_sub(BEHIND);
+        if !self.started || behind {
             self.evidence = [[0; COLS]; ROWS];
             self.floor = altitude - 0.5 * CELL * ROWS as f64;
             self.first_col = first;

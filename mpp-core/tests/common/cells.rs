@@ -1,0 +1,33 @@
+//! Cells of a map with memory.
+
+use mpp_core::map::MemoryMap;
+
+/// Edge of a cell [m], columns and rows of the window.
+pub(crate) const CELL: f64 = 0.5;
+pub(crate) const COLS: usize = 128;
+pub(crate) const ROWS: usize = 64;
+
+/// Whether a cell of the window is occupied; outside of it nothing is.
+pub(crate) fn occupied(map: &MemoryMap, row: i32, col: i32) -> bool {
+    let inside = (0..COLS as i32).contains(&col) && (0..ROWS as i32).contains(&row);
+    inside && map.row(row as usize).0 >> col & 1 == 1
+}
+
+/// Centres of the occupied cells, by row and column.
+pub(crate) fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
+    let mut centres = Vec::new();
+    for row in 0..ROWS as i32 {
+        for col in (0..COLS as i32).filter(|col| occupied(map, row, *col)) {
+            centres.push(centre(map, row, col));
+        }
+    }
+    centres
+}
+
+/// Centre of a cell of the window [m].
+pub(crate) fn centre(map: &MemoryMap, row: i32, col: i32) -> (f64, f64) {
+    (
+        map.first_x() + CELL * (f64::from(col) + 0.5),
+        map.floor() + CELL * (f64::from(row) + 0.5),
+    )
+}

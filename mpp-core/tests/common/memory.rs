@@ -1,0 +1,38 @@
+//! Maps with memory, built from scans.
+
+use crate::common::draw::Draw;
+use mpp_core::map::{ClearanceField, MemoryMap};
+use mpp_core::sense::LidarScan;
+
+/// A scan of 100 beams over 100 degrees; ten at a time see an arc at a random range, or nothing.
+pub(crate) fn noise(draw: &mut Draw) -> LidarScan {
+    let degree = core::f64::consts::PI / 180.0;
+    let mut scan = LidarScan::new();
+    (scan.angle_min, scan.angle_increment) = (-50.0 * degree, degree);
+    let mut range = 0.0;
+    for beam in 0..100 {
+        if beam % 10 == 0 {
+            range = draw.between(-20.0, 45.0).max(0.0) as f32;
+        }
+        assert!(scan.ranges.push(range).is_ok());
+    }
+    scan
+}
+
+/// A map that took in some such scans about `(x, 50)`.
+pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
+    let mut map = MemoryMap::new();
+    map.roll(x, 50.0);
+    for _ in 0..scans {
+        let (z, pitch) = (draw.between(42.0, 58.0), draw.between(-0.3, 0.3));
+        map.insert(&noise(draw), x, z, pitch);
+    }
+    map
+}
+
+/// Its field.
+pub(crate) fn field(map: &MemoryMap) -> ClearanceField {
+    let mut field = ClearanceField::new();
+    field.build(map);
+    field
+}

@@ -1,0 +1,207 @@
+//! What the map with memory keeps, unlearns and forgets.
+
+mod common {
+    pub(crate) mod cells;
+    pub(crate) mod draw;
+    pub(crate) mod memory;
+}
+
+use common::cells::{CELL, COLS, ROWS, centres};
+use common::draw::Draw;
+use common::memory::{field, noise, random_map};
+use mpp_core::map::MemoryMap;
+use mpp_core::sense::LidarScan;
+
+/// One beam along the body axis; range 0 is a beam that did not return.
+fn beam(range: f32) -> LidarScan {
+    let mut scan = LidarScan::new();
+    assert!(scan.ranges.push(range).is_ok());
+    scan
+}
+
+/// A map about `(100, 50)`.
+fn started() -> MemoryMap {
+    let mut map = MemoryMap::new();
+    map.roll(100.0, 50.0);
+    map
+}
+
+/// All of it that can be seen.
+fn rows(map: &MemoryMap) -> Vec<(u128, u128)> {
+    (0..ROWS).map(|row| map.row(row)).collect()
+}
+
+#[test]
+fn a_hit_is_marked_where_the_beam_ended_with_a_shadow_of_a_metre() {
+    for (pitch, range) in [(0.0, 20.1), (0.4, 15.3), (-0.5, 25.7), (0.1, 0.4)] {
+        let mut map = started();
+        map.insert(&beam(range), 100.2, 50.2, pitch);
+        let known = field(&map);
+        let (up, ahead) = libm::sincos(pitch);
+        let at = |along: f64| (100.2 + along * ahead, 50.2 + along * up);
+        let range = f64::from(range);
+        for along in [0.0, 0.5, 1.0] {
+            let (x, z) = at(range + along);
+            assert!(known.is_occupied(x, z), "{along} behind the hit");
+        }
+        for (x, z) in centres(&map) {
+            let off = (x - 100.2) * ahead + (z - 50.2) * up - range;
+            let beside = (z - 50.2) * ahead - (x - 100.2) * up;
+            assert!((-CELL..1.0 + CELL).contains(&off) && beside.abs() < CELL);
+        }
+        // Known free up to a metre and 3 % before it, unknown elsewhere.
+        let (x, z) = at(0.5 * (range - 1.6));
+        assert!(range < 2.0 || !known.is_unknown(x, z) && !known.is_occupied(x, z));
+        let (x, z) = at(range + 2.5);
+        assert!(known.is_unknown(x, z));
+    }
+}
+
+#[test]
+fn a_hit_stays_when_it_is_out_of_sight() {
+    let mut map = started();
+    map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+    let before = centres(&map);
+    assert!(!before.is_empty());
+    for step in 1..100 {
+        let x = 100.0 + 0.25 * f64::from(step);
+        map.roll(x, 50.0);
+        // The aircraft looks up, past it.
+        map.insert(&beam(0.0), x, 51.0, 0.6);
+    }
+    assert_eq!(centres(&map), before);
+}
+
+#[test]
+fn passing_beams_clear_a_false_hit_and_the_more_often_it_was_seen_the_later() {
+    let passes_to_clear = |hits: usize, passing: f32| {
+        let mut map = started();
+        for _ in 0..hits {
+            map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+        }
+        assert!(field(&map).is_occupied(120.3, 50.2));
+        (1..40).find(|_| {
+            map.insert(&beam(passing), 100.2, 50.2, 0.0);
+            !field(&map).is_occupied(120.3, 50.2)
+        })
+    };
+    let (once, often) = (passes_to_clear(1, 35.0), passes_to_clear(10, 35.0));
+    assert!(once.is_some() && once < often, "{once:?} {often:?}");
+    // Evidence is bounded: what was seen a hundred times is unlearned as fast as what was ten times.
+    assert_eq!(often, passes_to_clear(100, 35.0));
+    // A beam that never returned may have been lost: it says less.
+    let unanswered = passes_to_clear(1, 0.0);
+    assert!(once < unanswered && unanswered.is_some(), "{unanswered:?}");
+    // A hit right behind does not clear: its range may be wrong by that much.
+    assert_eq!(passes_to_clear(1, 20.9), None);
+}
+
+#[test]
+fn one_hit_on_what_was_free_long_is_believed() {
+    let mut map = started();
+    for _ in 0..100 {
+        map.insert(&beam(35.0), 100.2, 50.2, 0.0);
+    }
+    let hits = (1..10).find(|_| {
+        map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+        field(&map).is_occupied(120.3, 50.2)
+    });
+    assert!(hits.is_some_and(|hits| hits <= 3), "{hits:?}");
+}
+
+#[test]
+fn unanswered_beams_are_sight_of_forty_metres() {
+    let mut map = started();
+    map.insert(&beam(0.0), 100.2, 50.2, 0.0);
+    let known = field(&map);
+    assert!(centres(&map).is_empty());
+    for step in 1..80 {
+        let along = 0.5 * f64::from(step);
+        assert!(!known.is_unknown(100.2 + along, 50.2), "{along}");
+    }
+    assert!(known.is_unknown(100.2 + 41.0, 50.2));
+    assert!(known.is_unknown(100.2 + 20.0, 51.2), "beside the beam");
+}
+
+#[test]
+fn the_window_rolls_along_and_loses_only_what_it_left() {
+    for seed in 0..10 {
+        let mut draw = Draw::new(seed);
+        let x = draw.between(-200.0, 2000.0);
+        let mut map = random_map(&mut draw, x, 3);
+        let before = rows(&map);
+        let first = map.first_x();
+        assert!((first..first + 64.0).contains(&x) && x - first >= 8.0 - CELL);
+        let ahead = draw.between(0.0, 70.0);
+        map.roll(x + ahead, 50.0);
+        let columns = ((map.first_x() - first) / CELL) as u32;
+        assert!((f64::from(columns) * CELL - ahead).abs() <= CELL);
+        for (row, (occupied, unknown)) in before.iter().enumerate() {
+            let kept = |bits: u128| bits.checked_shr(columns).unwrap_or(0);
+            let fresh = u128::MAX.checked_shl(COLS as u32 - columns.min(COLS as u32));
+            let fresh = if columns == 0 { 0 } else { fresh.unwrap_or(0) };
+            assert_eq!(map.row(row), (kept(*occupied), kept(*unknown) | fresh));
+        }
+        // A little back, and nothing is lost.
+        let there = rows(&map);
+        map.roll(x + ahead - 3.0, 50.0);
+        assert_eq!(rows(&map), there);
+    }
+}
+
+/// One position far ahead must not leave the aircraft without a map.
+#[test]
+fn an_aircraft_behind_its_window_gets_a_new_one() {
+    for wrong in [170.0, 1e6, 1e300] {
+        let mut map = random_map(&mut Draw::new(7), 100.0, 1);
+        map.roll(wrong, 50.0);
+        map.roll(100.0, 50.0);
+        assert!(
+            (map.first_x()..map.first_x() + 10.0).contains(&100.0),
+            "{wrong}"
+        );
+        map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+        assert!(field(&map).is_occupied(120.3, 50.2));
+    }
+}
+
+#[test]
+fn a_cleared_map_is_as_new_wherever_it_starts_again() {
+    let mut map = random_map(&mut Draw::new(7), 900.0, 3);
+    map.clear();
+    let mut new = MemoryMap::new();
+    for map in [&mut map, &mut new] {
+        map.roll(30.0, 80.0);
+    }
+    assert_eq!((map.first_x(), map.floor()), (new.first_x(), new.floor()));
+    assert_eq!(rows(&map), rows(&new));
+    assert!(centres(&map).is_empty());
+    assert!(
+        (map.floor() - 64.0).abs() < 1e-12,
+        "the window is laid about the altitude"
+    );
+}
+
+#[test]
+fn no_number_is_too_wild() {
+    let mut draw = Draw::new(8);
+    let wild = [
+        f64::NAN,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        1e300,
+        -1e300,
+        1e9,
+        -1e9,
+    ];
+    for first in wild {
+        for second in wild {
+            let mut map = MemoryMap::new();
+            map.roll(first, 50.0);
+            map.insert(&noise(&mut draw), second, first, 0.0);
+            map.roll(second, 50.0);
+            map.insert(&noise(&mut draw), second, 50.0, second);
+            assert!(field(&map).distance(second, 50.0).is_nan() || rows(&map).len() == ROWS);
+        }
+    }
+}
