@@ -80,7 +80,8 @@ impl PlanTask {
             } => {
                 self.latency = tuning.configure.latency_ticks;
                 self.slices_per_tick = tuning.configure.slices_per_tick;
-                self.planner.retune(&tuning.settings.planner);
+                // Values are checked as they are ordered: what is not taken here was never in force.
+                let _ = self.planner.retune(&tuning.settings.planner);
                 self.planner.begin(time(*tick), state, scan);
                 self.cycle = Some(Cycle {
                     tick: *tick,

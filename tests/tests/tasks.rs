@@ -174,7 +174,7 @@ fn in_time_the_real_pace_flies_as_in_lockstep() {
 fn a_late_planner_ends_with_its_best_and_holds_no_step() {
     let input = flight(3);
     // One slice a tick is far from what a cycle takes.
-    let messages = fly_by_the_clock(&input, |tick| if tick == 0 { 10 } else { 2 });
+    let messages = fly_by_the_clock(&input, |tick| if tick == 0 { 10 } else { 1 });
     assert_eq!(commands(&messages), 300);
     let plans = messages.iter().filter_map(|message| match message {
         Message::PlanReport(plan) => Some(plan),

@@ -195,23 +195,7 @@ impl Planner {
         self.random = None;
         self.phase = Phase::Idle;
         let planner = &settings.planner;
-        if planner.paths > MAX_PATHS {
-            return Err(SetupError::TooManyPaths);
-        }
-        let priced = planner
-            .penalty
-            .is_none_or(|p| p.linear > 0.0 && p.quadratic > 0.0);
-        let iterable = planner.iteration.is_none_or(|iteration| {
-            let numbers = [iteration.margin, iteration.band, iteration.thrust_max];
-            numbers
-                .iter()
-                .all(|number| *number > 0.0 && number.is_finite())
-                && planner.penalty.is_some()
-                && planner.attitude.is_some()
-        });
-        if !planner.altitude.is_finite() || !priced || !iterable {
-            return Err(SetupError::Number);
-        }
+        check(planner)?;
         let airframe = &settings.airframe;
         let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
         let linear = linearize(airframe, &trim.state, trim.control, planner.jacobian);
@@ -244,7 +228,10 @@ impl Planner {
 
     /// Takes over, for the cycles to come, what needs no other model: paths (at most
     /// [`MAX_PATHS`]), altitude, padding, penalty and attitude limits.
-    pub fn retune(&mut self, settings: &PlannerSettings) {
+    ///
+    /// # Errors
+    /// [`SetupError`]: they stay as they were.
+    pub fn retune(&mut self, settings: &PlannerSettings) -> Result<(), SetupError> {
         let PlannerSettings {
             paths,
             altitude,
@@ -253,14 +240,17 @@ impl Planner {
             attitude,
             ..
         } = *settings;
-        self.settings = PlannerSettings {
-            paths: paths.min(MAX_PATHS),
+        let retuned = PlannerSettings {
+            paths,
             altitude,
             padding,
             penalty,
             attitude,
             ..self.settings
         };
+        check(&retuned)?;
+        self.settings = retuned;
+        Ok(())
     }
 
     /// Starts a cycle at a time [s] from a state and a checked scan; drops one under way.
@@ -398,6 +388,28 @@ impl Planner {
     pub fn trim(&self) -> &Trim {
         &self.trim
     }
+}
+
+/// Whether a planner can go by these settings.
+fn check(planner: &PlannerSettings) -> Result<(), SetupError> {
+    if planner.paths > MAX_PATHS {
+        return Err(SetupError::TooManyPaths);
+    }
+    let priced = planner
+        .penalty
+        .is_none_or(|p| p.linear > 0.0 && p.quadratic > 0.0);
+    let iterable = planner.iteration.is_none_or(|iteration| {
+        let numbers = [iteration.margin, iteration.band, iteration.thrust_max];
+        numbers
+            .iter()
+            .all(|number| *number > 0.0 && number.is_finite())
+            && planner.penalty.is_some()
+            && planner.attitude.is_some()
+    });
+    if !planner.altitude.is_finite() || !priced || !iterable {
+        return Err(SetupError::Number);
+    }
+    Ok(())
 }
 
 impl Default for Planner {

@@ -65,7 +65,8 @@ impl Inspector {
             ..moment.tick.state
         };
         let planner = &mut self.planner;
-        planner.retune(&tuning.settings.planner);
+        // As the core: what it refuses was never in force.
+        let _ = planner.retune(&tuning.settings.planner);
         planner.begin(moment.tick.t, &state, &core_scan(scan));
 
         let mut detail = PlanDetail {
