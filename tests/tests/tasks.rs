@@ -1,8 +1,11 @@
 //! Step and planner as two tasks: whatever the order in which they run, what is flown is the same;
 //! and a planner that is late or lost does not hold the step.
 
+use flight_node::parameters::PARAMETERS;
 use flight_node::{Answer, FlightNode, Order, Pace, PlanTask, Progress, StepTask};
-use hil_protocol::{Decoder, MAX_FRAME, Message, PlanOutcome, RejectionCause, encode};
+use hil_protocol::{
+    Decoder, MAX_FRAME, Message, PlanOutcome, RejectionCause, SetParameter, encode,
+};
 use proptest::prelude::*;
 use sil_harness::link::{Link, LinkError, PipeLink};
 use sil_harness::run::fly;
@@ -183,7 +186,7 @@ fn a_late_planner_ends_with_its_best_and_holds_no_step() {
     let plans: Vec<_> = plans.collect();
     assert_eq!(plans.len(), 3);
     for plan in plans {
-        assert!(!plan.complete);
+        assert!(!plan.complete, "{plan:?}");
         assert_eq!(plan.used_from_tick, plan.scan_tick + 31);
     }
 }
@@ -238,4 +241,49 @@ fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
     assert_eq!(outcomes[0], (0, PlanOutcome::TrimHold, false));
     assert!(outcomes[1..].iter().all(|(_, _, planned)| *planned));
     assert_eq!(outcomes.len(), 3);
+}
+
+/// The same with a message after the sensor frame of a tick.
+fn with_message_after(input: &[u8], tick: u32, message: &Message) -> Vec<u8> {
+    let mut decoder = Decoder::new();
+    let mut buffer = [0; MAX_FRAME];
+    let frame = encode(message, &mut buffer).unwrap_or_default();
+    let mut output = Vec::new();
+    for byte in input {
+        output.push(*byte);
+        if let Some(Ok(Message::SensorFrame(sensors))) = decoder.push(*byte)
+            && sensors.tick == tick
+        {
+            output.extend_from_slice(frame);
+        }
+    }
+    output
+}
+
+#[test]
+fn another_latency_is_for_the_cycles_to_come() {
+    let name = |parameter: &flight_node::parameters::Parameter| parameter.name == "MPP_LATENCY_S";
+    let parameter = PARAMETERS.iter().position(name).unwrap() as u8;
+    let input = flight(3);
+    for (seconds, ticks) in [(0.1, 10), (0.5, 50)] {
+        let set = Message::SetParameter(SetParameter {
+            parameter,
+            value: seconds,
+        });
+        let answer = lockstep(&with_message_after(&input, 5, &set));
+        let mut decoder = Decoder::new();
+        let decoded = answer.iter().filter_map(|byte| decoder.push(*byte));
+        let messages: Vec<Message> = decoded.filter_map(Result::ok).collect();
+        assert_eq!(commands(&messages), 300);
+        let used = messages.iter().filter_map(|message| match message {
+            Message::PlanReport(plan) => Some((plan.scan_tick, plan.used_from_tick)),
+            _ => None,
+        });
+        let expected = [(0, 30), (100, 100 + ticks), (200, 200 + ticks)];
+        assert!(
+            used.clone().eq(expected),
+            "{seconds} s: {:?}",
+            used.collect::<Vec<_>>()
+        );
+    }
 }

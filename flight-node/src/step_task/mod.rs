@@ -28,6 +28,15 @@ pub enum Pace {
     RealTime,
 }
 
+/// What the planner works on.
+#[derive(Clone, Copy)]
+struct Cycle {
+    /// The tick of its scan.
+    scan: u32,
+    /// The tick at which its plan is due.
+    due: u32,
+}
+
 /// A flight under way.
 struct Flight {
     tuning: Tuning,
@@ -37,8 +46,7 @@ struct Flight {
     ready: bool,
     control: FlightLoop,
     last_tick: Option<u32>,
-    /// The tick of the scan that the planner works on.
-    cycle: Option<u32>,
+    cycle: Option<Cycle>,
     /// The tick of the last scan that started a cycle.
     last_cycle: Option<u32>,
     /// The tick of the trajectory being flown.
@@ -112,7 +120,8 @@ impl StepTask {
         match answer {
             Answer::Plan(plan) => {
                 // One of a session that has ended is nobody's.
-                if self.flight.as_ref().and_then(|flight| flight.cycle) == Some(plan.scan_tick) {
+                let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
+                if cycle.is_some_and(|cycle| cycle.scan == plan.scan_tick) {
                     self.plan = Some(plan);
                 }
             }
@@ -135,7 +144,9 @@ impl StepTask {
         }
         let cycle = flight.cycle;
         self.reject(RejectionCause::PlannerRestarted, send);
-        if let Some(scan_tick) = cycle
+        if let Some(Cycle {
+            scan: scan_tick, ..
+        }) = cycle
             && self.plan.is_none()
         {
             self.plan = Some(Plan {

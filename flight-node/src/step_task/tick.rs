@@ -1,6 +1,6 @@
 //! One tick: take over a plan that is due, step, start a cycle.
 
-use super::{Pace, StepTask};
+use super::{Cycle, Pace, StepTask};
 use crate::convert;
 use crate::mail::Order;
 use crate::time;
@@ -28,11 +28,9 @@ impl StepTask {
     }
 
     fn plan_is_due(&self, tick: u32) -> bool {
-        self.flight.as_ref().is_some_and(|flight| {
-            flight.cycle.is_some_and(|scan| {
-                tick >= scan.saturating_add(flight.tuning.configure.latency_ticks)
-            })
-        })
+        self.flight
+            .as_ref()
+            .is_some_and(|flight| flight.cycle.is_some_and(|cycle| tick >= cycle.due))
     }
 
     /// Takes over what a cycle came to, if it has ended.
@@ -132,7 +130,11 @@ impl StepTask {
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
-        flight.cycle = Some(tick);
+        // As the planner is told: what the latency changes to meanwhile is for the next cycle.
+        flight.cycle = Some(Cycle {
+            scan: tick,
+            due: tick.saturating_add(flight.tuning.configure.latency_ticks),
+        });
         flight.last_cycle = Some(tick);
         self.order = Some(Order::Begin {
             tick,
