@@ -32,7 +32,7 @@ impl Tuning {
     #[must_use]
     pub fn value(&self, parameter: u8) -> Option<f64> {
         let parameter = PARAMETERS.get(usize::from(parameter))?;
-        (parameter.get)(self)
+        get(parameter.name, self)
     }
 
     /// The same with one value changed.
@@ -47,7 +47,7 @@ impl Tuning {
     ) -> Result<Self, ParameterVerdict> {
         let parameter = PARAMETERS
             .get(usize::from(number))
-            .filter(|parameter| (parameter.get)(&self).is_some())
+            .filter(|parameter| get(parameter.name, &self).is_some())
             .ok_or(ParameterVerdict::Unknown)?;
         let [least, most] = parameter.range;
         // Not a number is in no range.
@@ -62,7 +62,7 @@ impl Tuning {
             return Err(ParameterVerdict::InFlight);
         }
         let tracked = self.settings.planner.paths == 0;
-        (parameter.set)(&mut self, value);
+        set(parameter.name, &mut self, value);
         // Paths that are tracked as they are, and others, are planned by different cycles.
         if in_flight && tracked != (self.settings.planner.paths == 0) {
             return Err(ParameterVerdict::InFlight);
@@ -87,40 +87,42 @@ pub struct Parameter {
     /// planning cycle on. The others are built into the regulator, the estimator or the planner's
     /// model before the flight.
     pub in_flight: bool,
-    get: fn(&Tuning) -> Option<f64>,
-    set: fn(&mut Tuning, f64),
 }
 
-/// A parameter that is a number of the settings.
-macro_rules! number {
-    ($name:literal, $unit:literal, $range:expr, $in_flight:expr, $($field:ident $([$index:literal])?).+) => {
-        Parameter {
+/// The table of parameters, and how each is read and written. By name, so that nothing is called
+/// through a pointer: the stack stays bounded.
+macro_rules! parameters {
+    ($count:literal: $(
+        $name:literal, $unit:literal, $range:expr, $step:expr, $in_flight:expr,
+        |$of:ident| $get:expr, |$to:ident, $value:ident| $set:expr;
+    )*) => {
+        /// All parameters. Presets differ in which of them they have.
+        pub const PARAMETERS: [Parameter; $count] = [$(Parameter {
             name: $name,
             unit: $unit,
             range: $range,
-            step: None,
+            step: $step,
             in_flight: $in_flight,
-            get: |tuning| Some(tuning.settings.$($field $([$index])?).+),
-            set: |tuning, value| tuning.settings.$($field $([$index])?).+ = value,
-        }
-    };
-}
+        }),*];
 
-/// A parameter that only some presets have.
-macro_rules! optional {
-    ($name:literal, $unit:literal, $range:expr, $owner:ident, $field:ident) => {
-        Parameter {
-            name: $name,
-            unit: $unit,
-            range: $range,
-            step: None,
-            in_flight: true,
-            get: |tuning| tuning.settings.planner.$owner.map(|owner| owner.$field),
-            set: |tuning, value| {
-                if let Some(owner) = &mut tuning.settings.planner.$owner {
-                    owner.$field = value;
-                }
-            },
+        fn get(name: &str, tuning: &Tuning) -> Option<f64> {
+            match name {
+                $($name => {
+                    let $of = tuning;
+                    $get
+                })*
+                _ => None,
+            }
+        }
+
+        fn set(name: &str, tuning: &mut Tuning, value: f64) {
+            match name {
+                $($name => {
+                    let ($to, $value) = (tuning, value);
+                    $set;
+                })*
+                _ => {}
+            }
         }
     };
 }
@@ -140,7 +142,7 @@ fn ticks(seconds: f64) -> u32 {
 }
 
 /// A value of the rounds of linearisation, if the preset has them.
-fn iteration(tuning: &Tuning, get: fn(&Iteration) -> f64) -> Option<f64> {
+fn iteration(tuning: &Tuning, get: impl FnOnce(&Iteration) -> f64) -> Option<f64> {
     tuning.settings.planner.iteration.as_ref().map(get)
 }
 
@@ -150,254 +152,121 @@ fn change(tuning: &mut Tuning, set: impl FnOnce(&mut Iteration)) {
     }
 }
 
-/// All parameters. Presets differ in which of them they have.
-pub const PARAMETERS: [Parameter; 35] = [
-    Parameter {
-        name: "MPP_PATHS",
-        unit: "candidate paths",
-        range: [0.0, mpp_core::config::MAX_PATHS as f64],
-        step: Some(1.0),
-        in_flight: ANY_TIME,
-        get: |tuning| Some(tuning.settings.planner.paths as f64),
-        set: |tuning, value| tuning.settings.planner.paths = value as usize,
-    },
-    Parameter {
-        name: "MPP_REPLAN_S",
-        unit: "s",
-        range: [0.1, 60.0],
-        step: Some(TICK_PERIOD),
-        in_flight: ANY_TIME,
-        get: |tuning| seconds(tuning.configure.replan_period_ticks),
-        set: |tuning, value| tuning.configure.replan_period_ticks = ticks(value),
-    },
-    Parameter {
-        name: "MPP_LATENCY_S",
-        unit: "s",
-        range: [0.01, 60.0],
-        step: Some(TICK_PERIOD),
-        in_flight: ANY_TIME,
-        get: |tuning| seconds(tuning.configure.latency_ticks),
-        set: |tuning, value| tuning.configure.latency_ticks = ticks(value),
-    },
-    Parameter {
-        name: "MPP_SLICES",
-        unit: "slices a tick; 0: all",
-        range: [0.0, 1e6],
-        step: Some(1.0),
-        in_flight: ANY_TIME,
-        get: |tuning| match tuning.configure.slices_per_tick {
+parameters! { 35:
+    "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
+        |tuning| Some(tuning.settings.planner.paths as f64),
+        |tuning, value| tuning.settings.planner.paths = value as usize;
+    "MPP_REPLAN_S", "s", [0.1, 60.0], Some(TICK_PERIOD), ANY_TIME,
+        |tuning| seconds(tuning.configure.replan_period_ticks),
+        |tuning, value| tuning.configure.replan_period_ticks = ticks(value);
+    "MPP_LATENCY_S", "s", [0.01, 60.0], Some(TICK_PERIOD), ANY_TIME,
+        |tuning| seconds(tuning.configure.latency_ticks),
+        |tuning, value| tuning.configure.latency_ticks = ticks(value);
+    "MPP_SLICES", "slices a tick; 0: all", [0.0, 1e6], Some(1.0), ANY_TIME,
+        |tuning| match tuning.configure.slices_per_tick {
             u32::MAX => Some(0.0),
             slices => Some(f64::from(slices)),
         },
-        set: |tuning, value| {
+        |tuning, value| {
             tuning.configure.slices_per_tick = match value as u32 {
                 0 => u32::MAX,
                 slices => slices,
             };
-        },
-    },
-    number!("MPP_ALT_M", "m", [0.0, 1000.0], ANY_TIME, planner.altitude),
-    number!(
-        "MPP_PAD_NEAR_M",
-        "m",
-        [0.0, 10.0],
-        ANY_TIME,
-        planner.padding.near
-    ),
-    number!(
-        "MPP_PAD_FAR_M",
-        "m",
-        [0.0, 10.0],
-        ANY_TIME,
-        planner.padding.far
-    ),
-    optional!(
-        "MPP_ALPHA_LIM",
-        "rad",
-        [0.02, 0.5],
-        attitude,
-        angle_of_attack
-    ),
-    optional!("MPP_GAMMA_LIM", "rad", [0.05, 0.78], attitude, flight_path),
-    optional!("MPP_PEN_LIN", "1/m", [1e-3, 1e8], penalty, linear),
-    optional!("MPP_PEN_QUAD", "1/m^2", [1e-3, 1e8], penalty, quadratic),
-    number!(
-        "MPP_W_ELEVATOR",
-        "1",
-        [1e-3, 1e6],
-        BEFORE,
-        planner.weights.control[0]
-    ),
-    number!(
-        "MPP_W_THRUST",
-        "1/N^2",
-        [1e-3, 1e6],
-        BEFORE,
-        planner.weights.control[1]
-    ),
-    number!(
-        "MPP_W_TERMINAL",
-        "1",
-        [0.0, 1e6],
-        BEFORE,
-        planner.weights.terminal
-    ),
-    Parameter {
-        name: "MPP_CRUISE_MS",
-        unit: "m/s",
-        range: [8.0, 20.0],
-        step: None,
-        in_flight: BEFORE,
-        get: |tuning| match tuning.settings.cruise {
+        };
+    "MPP_ALT_M", "m", [0.0, 1000.0], None, ANY_TIME,
+        |tuning| Some(tuning.settings.planner.altitude),
+        |tuning, value| tuning.settings.planner.altitude = value;
+    "MPP_PAD_NEAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+        |tuning| Some(tuning.settings.planner.padding.near),
+        |tuning, value| tuning.settings.planner.padding.near = value;
+    "MPP_PAD_FAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+        |tuning| Some(tuning.settings.planner.padding.far),
+        |tuning, value| tuning.settings.planner.padding.far = value;
+    "MPP_ALPHA_LIM", "rad", [0.02, 0.5], None, ANY_TIME,
+        |tuning| tuning.settings.planner.attitude.map(|owner| owner.angle_of_attack),
+        |tuning, value| if let Some(owner) = &mut tuning.settings.planner.attitude { owner.angle_of_attack = value; };
+    "MPP_GAMMA_LIM", "rad", [0.05, 0.78], None, ANY_TIME,
+        |tuning| tuning.settings.planner.attitude.map(|owner| owner.flight_path),
+        |tuning, value| if let Some(owner) = &mut tuning.settings.planner.attitude { owner.flight_path = value; };
+    "MPP_PEN_LIN", "1/m", [1e-3, 1e8], None, ANY_TIME,
+        |tuning| tuning.settings.planner.penalty.map(|owner| owner.linear),
+        |tuning, value| if let Some(owner) = &mut tuning.settings.planner.penalty { owner.linear = value; };
+    "MPP_PEN_QUAD", "1/m^2", [1e-3, 1e8], None, ANY_TIME,
+        |tuning| tuning.settings.planner.penalty.map(|owner| owner.quadratic),
+        |tuning, value| if let Some(owner) = &mut tuning.settings.planner.penalty { owner.quadratic = value; };
+    "MPP_W_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.control[0]),
+        |tuning, value| tuning.settings.planner.weights.control[0] = value;
+    "MPP_W_THRUST", "1/N^2", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.control[1]),
+        |tuning, value| tuning.settings.planner.weights.control[1] = value;
+    "MPP_W_TERMINAL", "1", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.terminal),
+        |tuning, value| tuning.settings.planner.weights.terminal = value;
+    "MPP_CRUISE_MS", "m/s", [8.0, 20.0], None, BEFORE,
+        |tuning| match tuning.settings.cruise {
             Cruise::Airspeed(airspeed) => Some(airspeed),
             Cruise::Authors => None,
         },
-        set: |tuning, value| tuning.settings.cruise = Cruise::Airspeed(value),
-    },
-    Parameter {
-        name: "LQR_THRUST_N",
-        unit: "N",
-        range: [0.0, 50.0],
-        step: None,
-        in_flight: BEFORE,
-        get: |tuning| tuning.settings.design_thrust,
-        set: |tuning, value| tuning.settings.design_thrust = Some(value),
-    },
-    number!(
-        "LQR_Q_SPEED",
-        "s^2/m^2",
-        [0.0, 1e6],
-        BEFORE,
-        regulator.state[0]
-    ),
-    number!(
-        "LQR_Q_PITCH",
-        "1/rad^2",
-        [0.0, 1e6],
-        BEFORE,
-        regulator.state[1]
-    ),
-    number!(
-        "LQR_Q_RATE",
-        "s^2/rad^2",
-        [0.0, 1e6],
-        BEFORE,
-        regulator.state[2]
-    ),
-    number!(
-        "LQR_Q_PATH",
-        "1/rad^2",
-        [0.0, 1e6],
-        BEFORE,
-        regulator.state[3]
-    ),
-    number!(
-        "LQR_R_ELEVATOR",
-        "1",
-        [1e-3, 1e6],
-        BEFORE,
-        regulator.elevator
-    ),
-    number!(
-        "EKF_Q_SPEED",
-        "m^2/s^2",
-        [0.0, 100.0],
-        BEFORE,
-        estimator.process_noise[0]
-    ),
-    number!(
-        "EKF_Q_PITCH",
-        "rad^2",
-        [0.0, 10.0],
-        BEFORE,
-        estimator.process_noise[1]
-    ),
-    number!(
-        "EKF_Q_RATE",
-        "rad^2/s^2",
-        [0.0, 10.0],
-        BEFORE,
-        estimator.process_noise[2]
-    ),
-    number!(
-        "EKF_Q_PATH",
-        "rad^2",
-        [0.0, 10.0],
-        BEFORE,
-        estimator.process_noise[3]
-    ),
-    number!(
-        "EKF_R_SPEED",
-        "m^2/s^2",
-        [1e-9, 100.0],
-        BEFORE,
-        estimator.airspeed_variance
-    ),
-    number!(
-        "EKF_R_PITCH",
-        "rad^2",
-        [1e-9, 10.0],
-        BEFORE,
-        estimator.pitch_variance
-    ),
-    number!(
-        "EKF_P_START",
-        "-",
-        [1e-9, 10.0],
-        BEFORE,
-        estimator.initial_variance
-    ),
-    number!(
-        "EKF_GATE",
-        "standard deviations",
-        [1.0, 1000.0],
-        BEFORE,
-        estimator.gate
-    ),
-    number!("LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], BEFORE, cross_track),
-    Parameter {
-        name: "MPP_ROUNDS",
-        unit: "rounds of linearisation",
-        range: [1.0, 20.0],
-        step: Some(1.0),
-        in_flight: BEFORE,
-        get: |tuning| iteration(tuning, |iteration| f64::from(iteration.rounds)),
-        set: |tuning, value| change(tuning, |iteration| iteration.rounds = value as u8),
-    },
-    Parameter {
-        name: "MPP_DEEPENED",
-        unit: "candidates",
-        range: [0.0, mpp_core::config::MAX_PATHS as f64],
-        step: Some(1.0),
-        in_flight: BEFORE,
-        get: |tuning| iteration(tuning, |iteration| iteration.deepened as f64),
-        set: |tuning, value| change(tuning, |iteration| iteration.deepened = value as usize),
-    },
-    Parameter {
-        name: "MPP_MARGIN_M",
-        unit: "m",
-        range: [0.1, 5.0],
-        step: None,
-        in_flight: BEFORE,
-        get: |tuning| iteration(tuning, |iteration| iteration.margin),
-        set: |tuning, value| change(tuning, |iteration| iteration.margin = value),
-    },
-    Parameter {
-        name: "MPP_BAND_M",
-        unit: "m",
-        range: [2.0, 100.0],
-        step: None,
-        in_flight: BEFORE,
-        get: |tuning| iteration(tuning, |iteration| iteration.band),
-        set: |tuning, value| change(tuning, |iteration| iteration.band = value),
-    },
-    Parameter {
-        name: "MPP_THRUST_N",
-        unit: "N",
-        range: [1.0, 100.0],
-        step: None,
-        in_flight: BEFORE,
-        get: |tuning| iteration(tuning, |iteration| iteration.thrust_max),
-        set: |tuning, value| change(tuning, |iteration| iteration.thrust_max = value),
-    },
-];
+        |tuning, value| tuning.settings.cruise = Cruise::Airspeed(value);
+    "LQR_THRUST_N", "N", [0.0, 50.0], None, BEFORE,
+        |tuning| tuning.settings.design_thrust,
+        |tuning, value| tuning.settings.design_thrust = Some(value);
+    "LQR_Q_SPEED", "s^2/m^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[0]),
+        |tuning, value| tuning.settings.regulator.state[0] = value;
+    "LQR_Q_PITCH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[1]),
+        |tuning, value| tuning.settings.regulator.state[1] = value;
+    "LQR_Q_RATE", "s^2/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[2]),
+        |tuning, value| tuning.settings.regulator.state[2] = value;
+    "LQR_Q_PATH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[3]),
+        |tuning, value| tuning.settings.regulator.state[3] = value;
+    "LQR_R_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.elevator),
+        |tuning, value| tuning.settings.regulator.elevator = value;
+    "EKF_Q_SPEED", "m^2/s^2", [0.0, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[0]),
+        |tuning, value| tuning.settings.estimator.process_noise[0] = value;
+    "EKF_Q_PITCH", "rad^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[1]),
+        |tuning, value| tuning.settings.estimator.process_noise[1] = value;
+    "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[2]),
+        |tuning, value| tuning.settings.estimator.process_noise[2] = value;
+    "EKF_Q_PATH", "rad^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[3]),
+        |tuning, value| tuning.settings.estimator.process_noise[3] = value;
+    "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.airspeed_variance),
+        |tuning, value| tuning.settings.estimator.airspeed_variance = value;
+    "EKF_R_PITCH", "rad^2", [1e-9, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.pitch_variance),
+        |tuning, value| tuning.settings.estimator.pitch_variance = value;
+    "EKF_P_START", "-", [1e-9, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.initial_variance),
+        |tuning, value| tuning.settings.estimator.initial_variance = value;
+    "EKF_GATE", "standard deviations", [1.0, 1000.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.gate),
+        |tuning, value| tuning.settings.estimator.gate = value;
+    "LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], None, BEFORE,
+        |tuning| Some(tuning.settings.cross_track),
+        |tuning, value| tuning.settings.cross_track = value;
+    "MPP_ROUNDS", "rounds of linearisation", [1.0, 20.0], Some(1.0), BEFORE,
+        |tuning| iteration(tuning, |iteration| f64::from(iteration.rounds)),
+        |tuning, value| change(tuning, |iteration| iteration.rounds = value as u8);
+    "MPP_DEEPENED", "candidates", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), BEFORE,
+        |tuning| iteration(tuning, |iteration| iteration.deepened as f64),
+        |tuning, value| change(tuning, |iteration| iteration.deepened = value as usize);
+    "MPP_MARGIN_M", "m", [0.1, 5.0], None, BEFORE,
+        |tuning| iteration(tuning, |iteration| iteration.margin),
+        |tuning, value| change(tuning, |iteration| iteration.margin = value);
+    "MPP_BAND_M", "m", [2.0, 100.0], None, BEFORE,
+        |tuning| iteration(tuning, |iteration| iteration.band),
+        |tuning, value| change(tuning, |iteration| iteration.band = value);
+    "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
+        |tuning| iteration(tuning, |iteration| iteration.thrust_max),
+        |tuning, value| change(tuning, |iteration| iteration.thrust_max = value);
+}

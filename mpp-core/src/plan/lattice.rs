@@ -4,7 +4,7 @@
 //! From a station to the next a path's slope changes by one step at most, which is what the aircraft
 //! can turn; the height follows from the slopes. One pass from the aircraft and one from the far end
 //! meet at the *via* station, where the cost of the best path through every height is then known.
-//! Its minima are paths that pass obstacles differently.
+//! Its minima are paths that pass obstacles differently, or the same ones at other heights.
 
 use crate::map::ClearanceField;
 

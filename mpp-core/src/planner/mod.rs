@@ -75,9 +75,10 @@ pub struct PlanSummary {
 /// What the cycle has to offer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// A trajectory that keeps every row.
+    /// A trajectory that keeps every row; with an iteration, one that keeps its margin.
     Feasible,
-    /// None does; the best one violates rows least.
+    /// The best one does not: none does, or, with an iteration, those that do cost more than the little
+    /// that is missing here.
     LeastViolating,
     /// No candidate gave any trajectory.
     Nothing,
