@@ -34,7 +34,7 @@ def test_mavproxy_reads_tunes_arms_and_records(simulate, tmp_path):
         # Parameters come before they can be set.
         for pause, line in [
             (7, "param set MPP_PATHS 12"), (1, "param set MPP_PATHS 99"), (2, "arm throttle"), (1, "long 511 30 20000"),
-            (1, "long 31999 1"), (1, "wp list"), (1, "mode CRUISE"), (1, "param save saved.parm"), (1, ""),
+            (1, "long 31999 1"), (1, "wp list"), (1, "mode CRUISE"), (4, "param save saved.parm"), (2, ""),
         ]:
             time.sleep(pause)
             proxy.stdin.write(line + "\n")
