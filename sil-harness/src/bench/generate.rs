@@ -75,6 +75,8 @@ fn collect(
         Preset::Paper => Settings::paper(),
         Preset::Flight => Settings::flight(),
     };
+    // Rounds of linearisation have a model each; these programs share one, soft rows and all.
+    settings.planner.iteration = None;
     settings.planner.seed = scenario.seed;
     let mut planner = Box::new(Planner::new());
     planner.set_up(&settings).map_err(GenerateError::SetUp)?;
