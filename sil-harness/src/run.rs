@@ -17,7 +17,7 @@ use crate::world::ObstacleField;
 use hil_protocol::{ControlMode, LidarScan, PlanReport, PlanTrajectory, SensorFrame};
 use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
 use nalgebra::Vector4;
-use session::{Answer, exchange, greet};
+use session::{Answer, Session};
 use std::fmt;
 use steering::Steering;
 
@@ -99,7 +99,7 @@ pub fn fly_with(
     let mut aircraft = Aircraft::new(scenario).map_err(FlyError::Trim)?;
     let field = scenario.field();
     let mut log = FlightLog::begin(header(scenario, &field));
-    greet(scenario, link, &mut log.rejections)?;
+    let mut session = Session::open(scenario, link)?;
     let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
     let mut eyes = Eyes::new(scenario);
     let mut score = Score::new(ALTITUDE);
@@ -108,9 +108,10 @@ pub fn fly_with(
     let mut flown = 0;
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, aircraft.state());
-    steering.wait(link, ground, &mut log.rejections)?;
+    steering.wait(&mut session, ground)?;
     while flown < scenario.ticks && end.is_none() {
-        steering.obey(link, ground, flown, &mut log.rejections)?;
+        session.tick = flown;
+        steering.obey(&mut session, ground)?;
         if steering.terminated {
             end = Some(Outcome::Terminated);
             break;
@@ -127,8 +128,7 @@ pub fn fly_with(
             x: before.x,
             z: before.z,
         };
-        let rejections = &mut log.rejections;
-        let mut answer = exchange(scenario, &steering, link, scan.as_ref(), frame, rejections)?;
+        let mut answer = session.fly(scan.as_ref(), frame)?;
         steering.limit(&mut answer.command);
         let wind = aircraft.wind();
         let applied = aircraft.step(control(&answer)).map_err(FlyError::Plant)?;
@@ -144,7 +144,7 @@ pub fn fly_with(
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
-            rejections: log.rejections.len(),
+            rejections: session.rejections.len(),
         });
         log.ticks.push(&tick);
         log.plans.extend(plan);
@@ -152,6 +152,7 @@ pub fn fly_with(
         end = score.update(&field, &before, aircraft.state());
         flown += 1;
     }
+    log.rejections = session.rejections;
     log.orders = std::mem::take(&mut steering.orders);
     let outcome = end.unwrap_or(Outcome::Survived);
     log.conclude(outcome, &score, holds_trim);

@@ -1,14 +1,21 @@
-//! The session with the core: greeting, configuration, ticks; and again after it restarts.
+//! The session with the core: whatever is asked is answered, by a core that was configured.
+//!
+//! A core that restarts says hello unasked. Whatever was awaited at that moment, it is configured
+//! anew, told every value that it had taken, and asked again.
 
-use super::steering::Steering;
 use crate::link::{Link, LinkError};
 use crate::log::RejectionEntry;
 use crate::scenario::Scenario;
+use flight_node::parameters::PARAMETERS;
 use hil_protocol::{
-    ActuatorCommand, ConfigureVerdict, Hello, LidarScan, Message, PlanReport, PlanTrajectory,
-    Rejection, Role, SensorFrame, StepReport,
+    ActuatorCommand, ConfigureReply, ConfigureVerdict, Hello, LidarScan, Message, ParameterReply,
+    ParameterVerdict, PlanReport, PlanTrajectory, Rejection, Role, SensorFrame, SetParameter,
+    StepReport,
 };
 use mpp_core::config::{STAGES, TICK_PERIOD};
+
+/// How often a core may restart before one answer.
+const RESTARTS: usize = 3;
 
 /// The core's answer to one tick.
 pub(super) struct Answer {
@@ -18,21 +25,244 @@ pub(super) struct Answer {
     pub(super) trajectory: Option<PlanTrajectory>,
 }
 
-/// Hello both ways, and the configuration.
-pub(super) fn greet(
-    scenario: &Scenario,
-    link: &mut dyn Link,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<(), LinkError> {
-    link.send(&Message::Hello(own_hello()))?;
-    let peer = loop {
-        match link.receive("hello")? {
-            Message::Hello(peer) => break peer,
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            other => return Err(unexpected("hello", &other)),
+/// What came of an answer before the command that ends it.
+#[derive(Default)]
+struct Draft {
+    step: Option<StepReport>,
+    plan: Option<PlanReport>,
+    trajectory: Option<PlanTrajectory>,
+}
+
+/// What a message is to whoever waits for an answer.
+enum Part<T> {
+    /// Something before its end, or nothing of interest.
+    More,
+    /// Its end.
+    Last(T),
+    /// It has no place there.
+    None,
+}
+
+/// A core, and what it was told.
+pub(super) struct Session<'a> {
+    scenario: &'a Scenario,
+    link: &'a mut dyn Link,
+    /// Whether the core was once configured; a hello before that is no restart.
+    open: bool,
+    /// Whether the core that is there now accepted the configuration.
+    configured: bool,
+    /// Every value that the core took, in that order.
+    values: Vec<SetParameter>,
+    /// The tick that is flown next.
+    pub(super) tick: u32,
+    /// Every input that the core refused, and its restarts.
+    pub(super) rejections: Vec<RejectionEntry>,
+}
+
+impl<'a> Session<'a> {
+    /// Hello both ways, and the configuration.
+    pub(super) fn open(scenario: &'a Scenario, link: &'a mut dyn Link) -> Result<Self, LinkError> {
+        let mut session = Self {
+            scenario,
+            link,
+            open: false,
+            configured: false,
+            values: Vec::new(),
+            tick: 0,
+            rejections: Vec::new(),
+        };
+        let hello = [Message::Hello(own_hello())];
+        let nothing_else = |(): &mut (), _: &Message| Part::<()>::None;
+        session.once("hello", &hello, &nothing_else)?;
+        session.ready()?;
+        session.open = true;
+        Ok(session)
+    }
+
+    /// Asks the core for another value.
+    pub(super) fn set(&mut self, set: SetParameter) -> Result<ParameterVerdict, LinkError> {
+        let question = [Message::SetParameter(set)];
+        let verdict = self.ask("the reply to a parameter", &question, verdict_on(set))?;
+        if verdict == ParameterVerdict::Accepted {
+            self.values.push(set);
         }
-    };
-    configure(scenario, link, &peer, rejections)
+        Ok(verdict)
+    }
+
+    /// Sends a tick's measurements and gets the answer.
+    pub(super) fn fly(
+        &mut self,
+        scan: Option<&LidarScan>,
+        frame: SensorFrame,
+    ) -> Result<Answer, LinkError> {
+        let scan = scan.map(|scan| Message::LidarScan(scan.clone()));
+        let questions: Vec<_> = scan
+            .into_iter()
+            .chain([Message::SensorFrame(frame)])
+            .collect();
+        let awaited = format!("the actuator command of tick {}", frame.tick);
+        self.ask(&awaited, &questions, |draft: &mut Draft, message| {
+            match message {
+                Message::ActuatorCommand(command) if command.tick == frame.tick => {
+                    let Draft {
+                        step,
+                        plan,
+                        trajectory,
+                    } = std::mem::take(draft);
+                    return Part::Last(Answer {
+                        command: *command,
+                        step,
+                        plan,
+                        trajectory,
+                    });
+                }
+                Message::StepReport(report) => draft.step = Some(*report),
+                Message::PlanReport(report) => draft.plan = Some(*report),
+                Message::PlanTrajectory(knots) => draft.trajectory = Some(knots.clone()),
+                _ => return Part::None,
+            }
+            Part::More
+        })
+    }
+
+    /// Sends questions until `take` has made an answer of what comes back, starting over with each
+    /// core that starts.
+    fn ask<D: Default, T>(
+        &mut self,
+        awaited: &str,
+        questions: &[Message],
+        take: impl Fn(&mut D, &Message) -> Part<T>,
+    ) -> Result<T, LinkError> {
+        for _ in 0..=RESTARTS {
+            self.ready()?;
+            if let Some(answer) = self.once(awaited, questions, &take)? {
+                return Ok(answer);
+            }
+        }
+        Err(self.restless())
+    }
+
+    /// The same for the core that is there now; none if another one says hello meanwhile.
+    fn once<D: Default, T>(
+        &mut self,
+        awaited: &str,
+        questions: &[Message],
+        take: &impl Fn(&mut D, &Message) -> Part<T>,
+    ) -> Result<Option<T>, LinkError> {
+        for question in questions {
+            self.link.send(question)?;
+        }
+        let mut draft = D::default();
+        loop {
+            match self.link.receive(awaited)? {
+                Message::Hello(peer) => {
+                    self.greeted(&peer)?;
+                    return Ok(None);
+                }
+                Message::Rejection(rejection) => self.rejections.push(entry(&rejection)),
+                // A configuration reached the core that started after it was sent, and the one
+                // that was sent then, too.
+                Message::ConfigureReply(ConfigureReply {
+                    verdict: ConfigureVerdict::AlreadyConfigured,
+                }) if self.configured => {}
+                message => match take(&mut draft, &message) {
+                    Part::More => {}
+                    Part::Last(answer) => return Ok(Some(answer)),
+                    Part::None => {
+                        return Err(LinkError::Unexpected {
+                            awaited: awaited.to_owned(),
+                            id: message.id(),
+                        });
+                    }
+                },
+            }
+        }
+    }
+
+    /// A core that knows nothing yet has said hello.
+    fn greeted(&mut self, peer: &Hello) -> Result<(), LinkError> {
+        self.configured = false;
+        if self.open {
+            self.rejections.push(RejectionEntry {
+                tick: u64::from(self.tick),
+                cause: "CoreRestarted".to_owned(),
+            });
+        }
+        check(peer, self.scenario.lidar.beams)
+    }
+
+    /// Sees to it that the core is configured and has every value.
+    fn ready(&mut self) -> Result<(), LinkError> {
+        for _ in 0..=RESTARTS {
+            if self.configured || self.configure()? {
+                return Ok(());
+            }
+        }
+        Err(self.restless())
+    }
+
+    /// Configures the core; false if another one says hello meanwhile.
+    fn configure(&mut self) -> Result<bool, LinkError> {
+        let question = [Message::Configure(self.scenario.configure())];
+        let awaited = "the reply to the configuration";
+        let verdict = self.once(awaited, &question, &|(): &mut (), message| match message {
+            Message::ConfigureReply(reply) => Part::Last(reply.verdict),
+            // It reached the core before its configuration did.
+            Message::ParameterReply(ParameterReply {
+                verdict: ParameterVerdict::NotConfigured,
+                ..
+            }) => Part::More,
+            _ => Part::None,
+        })?;
+        match verdict {
+            Some(ConfigureVerdict::Accepted) => self.configured = true,
+            Some(refused) => return Err(LinkError::Refused(refused)),
+            None => return Ok(false),
+        }
+        for set in self.values.clone() {
+            let question = [Message::SetParameter(set)];
+            match self.once("the reply to a parameter", &question, &verdict_on(set))? {
+                Some(ParameterVerdict::Accepted) => {}
+                Some(refused) => return Err(relapsed(set, refused)),
+                None => return Ok(false),
+            }
+        }
+        Ok(true)
+    }
+
+    fn restless(&self) -> LinkError {
+        LinkError::Peer(format!(
+            "the core restarts again and again at tick {}",
+            self.tick
+        ))
+    }
+}
+
+/// Takes the verdict on a value.
+fn verdict_on(set: SetParameter) -> impl Fn(&mut (), &Message) -> Part<ParameterVerdict> {
+    move |(), message| match message {
+        Message::ParameterReply(reply) if reply.parameter == set.parameter => {
+            Part::Last(reply.verdict)
+        }
+        _ => Part::None,
+    }
+}
+
+fn relapsed(set: SetParameter, verdict: ParameterVerdict) -> LinkError {
+    let SetParameter { parameter, value } = set;
+    let name = PARAMETERS
+        .get(usize::from(parameter))
+        .map_or("?", |parameter| parameter.name);
+    LinkError::Peer(format!(
+        "the core restarted and now refuses {name} = {value}: {verdict:?}"
+    ))
+}
+
+fn entry(rejection: &Rejection) -> RejectionEntry {
+    RejectionEntry {
+        tick: u64::from(rejection.tick),
+        cause: format!("{:?}", rejection.cause),
+    }
 }
 
 fn own_hello() -> Hello {
@@ -45,126 +275,21 @@ fn own_hello() -> Hello {
     }
 }
 
-/// Checks the core that said hello and configures it.
-fn configure(
-    scenario: &Scenario,
-    link: &mut dyn Link,
-    peer: &Hello,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<(), LinkError> {
+/// Whether the core that said hello suits a flight with so many beams.
+fn check(peer: &Hello, beams: usize) -> Result<(), LinkError> {
     if peer.role != Role::Core {
         let why = "the other side is a harness too: give the address of a core";
         return Err(LinkError::Peer(why.to_owned()));
     }
     let own = own_hello();
-    if peer.tick_period_us != own.tick_period_us
-        || usize::from(peer.beams_max) < scenario.lidar.beams
-    {
+    if peer.tick_period_us != own.tick_period_us || usize::from(peer.beams_max) < beams {
         return Err(LinkError::Peer(format!(
-            "the core ticks every {} us and takes {} beams; this harness needs {} us and {} beams",
-            peer.tick_period_us, peer.beams_max, own.tick_period_us, scenario.lidar.beams
+            "the core ticks every {} us and takes {} beams; this harness needs {} us and {beams} \
+             beams",
+            peer.tick_period_us, peer.beams_max, own.tick_period_us
         )));
     }
-    link.send(&Message::Configure(scenario.configure()))?;
-    let awaited = "the reply to the configuration";
-    loop {
-        match link.receive(awaited)? {
-            Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => {
-                return Ok(());
-            }
-            Message::ConfigureReply(reply) => return Err(LinkError::Refused(reply.verdict)),
-            // A core that starts says hello unasked, and once more when it is greeted.
-            Message::Hello(_) => {}
-            // Of frames that came before the configuration.
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            other => return Err(unexpected(awaited, &other)),
-        }
-    }
-}
-
-/// Sends a tick's measurements and gets the answer. A core that restarts meanwhile, which its
-/// unasked hello tells, is configured anew and gets them once more.
-pub(super) fn exchange(
-    scenario: &Scenario,
-    steering: &Steering,
-    link: &mut dyn Link,
-    scan: Option<&LidarScan>,
-    frame: SensorFrame,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<Answer, LinkError> {
-    const RESTARTS: usize = 3;
-    let scan = scan.map(|scan| Message::LidarScan(scan.clone()));
-    for _ in 0..=RESTARTS {
-        if let Some(scan) = &scan {
-            link.send(scan)?;
-        }
-        link.send(&Message::SensorFrame(frame))?;
-        match receive_answer(link, frame.tick, rejections)? {
-            Received::Answer(answer) => return Ok(*answer),
-            Received::Hello(peer) => {
-                rejections.push(RejectionEntry {
-                    tick: u64::from(frame.tick),
-                    cause: "CoreRestarted".to_owned(),
-                });
-                configure(scenario, link, &peer, rejections)?;
-                steering.restore(link, rejections)?;
-            }
-        }
-    }
-    Err(LinkError::Peer(format!(
-        "the core restarts again and again at tick {}",
-        frame.tick
-    )))
-}
-
-/// What came instead of an answer, or the answer.
-enum Received {
-    Answer(Box<Answer>),
-    Hello(Hello),
-}
-
-pub(super) fn unexpected(awaited: &str, message: &Message) -> LinkError {
-    LinkError::Unexpected {
-        awaited: awaited.to_owned(),
-        id: message.id(),
-    }
-}
-
-/// Collects what the core sends until its command for this tick.
-fn receive_answer(
-    link: &mut dyn Link,
-    tick: u32,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<Received, LinkError> {
-    let awaited = format!("the actuator command of tick {tick}");
-    let mut step = None;
-    let mut plan = None;
-    let mut trajectory = None;
-    loop {
-        match link.receive(&awaited)? {
-            Message::ActuatorCommand(command) if command.tick == tick => {
-                return Ok(Received::Answer(Box::new(Answer {
-                    command,
-                    step,
-                    plan,
-                    trajectory,
-                })));
-            }
-            Message::StepReport(report) => step = Some(report),
-            Message::PlanReport(report) => plan = Some(report),
-            Message::PlanTrajectory(knots) => trajectory = Some(knots),
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            Message::Hello(peer) => return Ok(Received::Hello(peer)),
-            other => return Err(unexpected(&awaited, &other)),
-        }
-    }
-}
-
-pub(super) fn rejection_entry(rejection: &Rejection) -> RejectionEntry {
-    RejectionEntry {
-        tick: u64::from(rejection.tick),
-        cause: format!("{:?}", rejection.cause),
-    }
+    Ok(())
 }
 
 /// This crate's version.

@@ -1,13 +1,12 @@
 //! Orders from the ground, carried out between two ticks.
 
 use super::FlyError;
-use super::session::{rejection_entry, unexpected};
+use super::session::Session;
 use crate::ground::{Ground, Mode, Order, OrderEntry, Refused};
-use crate::link::{Link, LinkError};
-use crate::log::RejectionEntry;
+use crate::link::LinkError;
 use crate::scenario::Scenario;
 use flight_node::parameters::{PARAMETERS, Tuning};
-use hil_protocol::{ActuatorCommand, Message, ParameterVerdict, SetParameter};
+use hil_protocol::{ActuatorCommand, ParameterVerdict, SetParameter};
 
 /// What the orders so far have come to.
 pub(super) struct Steering {
@@ -38,12 +37,11 @@ impl Steering {
     /// Carries out what the ground orders before the flight, until it may begin.
     pub(super) fn wait(
         &mut self,
-        link: &mut dyn Link,
+        session: &mut Session<'_>,
         ground: &mut dyn Ground,
-        rejections: &mut Vec<RejectionEntry>,
     ) -> Result<(), LinkError> {
         loop {
-            self.obey(link, ground, 0, rejections)?;
+            self.obey(session, ground)?;
             if ground.ready() {
                 return Ok(());
             }
@@ -53,18 +51,16 @@ impl Steering {
     /// Carries out what the ground orders before a tick.
     pub(super) fn obey(
         &mut self,
-        link: &mut dyn Link,
+        session: &mut Session<'_>,
         ground: &mut dyn Ground,
-        tick: u32,
-        rejections: &mut Vec<RejectionEntry>,
     ) -> Result<(), LinkError> {
-        for order in ground.orders(tick) {
+        for order in ground.orders(session.tick) {
             let before = (self.tuning, self.mode, self.motor, self.terminated);
-            let result = self.carry_out(link, &order, tick > 0, rejections)?;
+            let result = self.carry_out(session, &order)?;
             ground.settled(&order, result, &self.tuning);
             // What comes twice changes nothing the second time.
             if before != (self.tuning, self.mode, self.motor, self.terminated) {
-                let tick = u64::from(tick);
+                let tick = u64::from(session.tick);
                 self.orders.push(OrderEntry { tick, order });
             }
         }
@@ -89,22 +85,11 @@ impl Steering {
 
     fn carry_out(
         &mut self,
-        link: &mut dyn Link,
+        session: &mut Session<'_>,
         order: &Order,
-        in_flight: bool,
-        rejections: &mut Vec<RejectionEntry>,
     ) -> Result<Result<(), Refused>, LinkError> {
         match order {
-            Order::Parameter { name, value } => {
-                let Some(parameter) = number(name) else {
-                    return Ok(Err(Refused::UnknownParameter));
-                };
-                let set = SetParameter {
-                    parameter,
-                    value: *value,
-                };
-                return self.set(link, set, in_flight, rejections);
-            }
+            Order::Parameter { name, value } => return self.set(session, name, *value),
             Order::Mode { mode } => self.mode = *mode,
             Order::Motor { on } => self.motor = *on,
             Order::Terminate => self.terminated = true,
@@ -112,53 +97,26 @@ impl Steering {
         Ok(Ok(()))
     }
 
+    /// Looks at a value by the same table as the core, which then has the last word.
     fn set(
         &mut self,
-        link: &mut dyn Link,
-        set: SetParameter,
-        in_flight: bool,
-        rejections: &mut Vec<RejectionEntry>,
+        session: &mut Session<'_>,
+        name: &str,
+        value: f64,
     ) -> Result<Result<(), Refused>, LinkError> {
-        let verdict = exchange(link, set, rejections)?;
+        let Some(parameter) = number(name) else {
+            return Ok(Err(Refused::UnknownParameter));
+        };
+        let tuning = match self.tuning.with(parameter, value, session.tick > 0) {
+            Ok(tuning) => tuning,
+            Err(verdict) => return Ok(Err(Refused::Parameter(verdict))),
+        };
+        let verdict = session.set(SetParameter { parameter, value })?;
         if verdict != ParameterVerdict::Accepted {
             return Ok(Err(Refused::Parameter(verdict)));
         }
-        let SetParameter { parameter, value } = set;
-        match self.tuning.with(parameter, value, in_flight) {
-            Ok(tuning) => {
-                self.tuning = tuning;
-                Ok(Ok(()))
-            }
-            // The core took it by a table that differs from ours.
-            Err(_) => Err(LinkError::Peer(format!(
-                "the core took {value} for parameter {parameter}, which this harness does not \
-                 know: update the older side"
-            ))),
-        }
-    }
-
-    /// Tells a core that was configured anew every value that was ordered so far.
-    pub(super) fn restore(
-        &self,
-        link: &mut dyn Link,
-        rejections: &mut Vec<RejectionEntry>,
-    ) -> Result<(), LinkError> {
-        for entry in &self.orders {
-            let Order::Parameter { name, value } = &entry.order else {
-                continue;
-            };
-            let Some(parameter) = number(name) else {
-                continue;
-            };
-            let value = *value;
-            let verdict = exchange(link, SetParameter { parameter, value }, rejections)?;
-            if verdict != ParameterVerdict::Accepted {
-                return Err(LinkError::Peer(format!(
-                    "the core restarted and now refuses {name} = {value}: {verdict:?}"
-                )));
-            }
-        }
-        Ok(())
+        self.tuning = tuning;
+        Ok(Ok(()))
     }
 }
 
@@ -168,21 +126,4 @@ fn number(name: &str) -> Option<u8> {
         .iter()
         .position(|parameter| parameter.name == name)?;
     u8::try_from(place).ok()
-}
-
-/// Asks the core for another value.
-fn exchange(
-    link: &mut dyn Link,
-    set: SetParameter,
-    rejections: &mut Vec<RejectionEntry>,
-) -> Result<ParameterVerdict, LinkError> {
-    const AWAITED: &str = "the reply to a parameter";
-    link.send(&Message::SetParameter(set))?;
-    loop {
-        match link.receive(AWAITED)? {
-            Message::ParameterReply(reply) => return Ok(reply.verdict),
-            Message::Rejection(rejection) => rejections.push(rejection_entry(&rejection)),
-            other => return Err(unexpected(AWAITED, &other)),
-        }
-    }
 }

@@ -2,14 +2,13 @@
 
 use crate::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
-use hil_protocol::{Hello, Message, Role};
 use sil_harness::ground::vehicle::VehicleConfig;
 use sil_harness::ground::{Again, Mode, Order, OrderEntry};
-use sil_harness::link::{Link, LinkError, PipeLink, TcpLink, serve};
+use sil_harness::link::{PipeLink, TcpLink, serve};
 use sil_harness::log::FlightLog;
 use sil_harness::outcome::Outcome;
 use sil_harness::run::{fly, fly_with};
-use sil_harness::scenario::{Preset, Scenario};
+use sil_harness::scenario::Scenario;
 use std::net::TcpListener;
 use std::time::Duration;
 
@@ -132,53 +131,6 @@ fn orders_reach_a_core_over_tcp() {
         over_tcp.hash().unwrap(),
         eventful().fly(&scenario()).hash().unwrap()
     );
-}
-
-/// A core that is reset before a tick is flown, and says hello.
-struct Reset {
-    pipe: PipeLink,
-    at: Option<u32>,
-}
-
-impl Link for Reset {
-    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
-        if matches!(message, Message::SensorFrame(frame) if Some(frame.tick) == self.at) {
-            self.at = None;
-            self.pipe = PipeLink::new();
-            return self.pipe.send(&Message::Hello(Hello {
-                role: Role::Harness,
-                software: [0; 3],
-                tick_period_us: 10_000,
-                beams_max: 100,
-                stages: 18,
-            }));
-        }
-        self.pipe.send(message)
-    }
-
-    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
-        self.pipe.receive(awaited)
-    }
-}
-
-#[test]
-fn a_core_that_restarts_is_told_every_value_again() {
-    let mut radio = Radio::new(&CONFIG);
-    radio.at(30, &write("MPP_PATHS", 12.0));
-    let mut link = Reset {
-        pipe: PipeLink::new(),
-        at: Some(150),
-    };
-    // A preset that refines as many candidates as it is told to.
-    let paper = Scenario {
-        ticks: 1200,
-        ..Scenario::new(Preset::Paper, 1)
-    };
-    let log = fly_with(&paper, &mut link, &mut radio).unwrap();
-    assert_eq!(log.rejections[0].cause, "CoreRestarted");
-    let late = log.plans.iter().filter(|plan| plan.tick > 150);
-    assert!(late.clone().count() > 5);
-    assert!(late.into_iter().all(|plan| plan.candidates == 12));
 }
 
 #[test]

@@ -1,0 +1,194 @@
+//! What the harness sends is spoilt on the way: rejected, logged, and the flight goes on.
+
+use crate::{Spoilt, causes, short};
+use hil_protocol::{ConfigureVerdict, MAX_FRAME, Message, RejectionCause, SensorFrame, encode};
+use sil_harness::link::{Link, PipeLink};
+use sil_harness::log::FlightLog;
+use sil_harness::outcome::Outcome;
+use sil_harness::run::fly;
+
+#[expect(clippy::unwrap_used, reason = "spoilt input must not stop a flight")]
+fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
+    let mut link = Spoilt {
+        pipe: PipeLink::new(),
+        spoil,
+    };
+    fly(&short(2), &mut link, |_| {}).unwrap()
+}
+
+/// Every tenth sensor frame holds values that are no numbers: each is rejected and logged, and the
+/// flight goes on.
+#[test]
+fn values_that_are_no_numbers_are_rejected_and_logged() {
+    let log = fly_spoilt(|pipe, message| {
+        let Message::SensorFrame(frame) = message else {
+            return false;
+        };
+        if frame.tick % 10 != 3 {
+            return false;
+        }
+        let bad = SensorFrame {
+            airspeed: f64::NAN,
+            pitch: if frame.tick % 20 == 3 {
+                f64::INFINITY
+            } else {
+                frame.pitch
+            },
+            x: if frame.tick % 30 == 3 {
+                f64::NAN
+            } else {
+                frame.x
+            },
+            ..*frame
+        };
+        pipe.send(&Message::SensorFrame(bad)).is_ok()
+    });
+    assert_eq!(log.summary.outcome, Outcome::Survived);
+    assert_eq!(log.rejections.len(), 50);
+    assert!(causes(&log).iter().all(|cause| *cause == "NonFiniteSensor"));
+    assert!(
+        log.ticks
+            .elevator
+            .iter()
+            .all(|elevator| elevator.is_finite())
+    );
+}
+
+#[test]
+fn an_absurd_airspeed_is_gated_and_logged() {
+    let log = fly_spoilt(|pipe, message| {
+        let Message::SensorFrame(frame) = message else {
+            return false;
+        };
+        let bad = SensorFrame {
+            airspeed: 400.0,
+            ..*frame
+        };
+        frame.tick == 200 && pipe.send(&Message::SensorFrame(bad)).is_ok()
+    });
+    assert_eq!(
+        causes(&log),
+        ["InnovationGate { airspeed: true, pitch: false }"]
+    );
+    assert_eq!(log.summary.outcome, Outcome::Survived);
+}
+
+#[test]
+fn scans_that_cannot_be_used_are_rejected_and_logged() {
+    let log = fly_spoilt(|pipe, message| {
+        let Message::LidarScan(scan) = message else {
+            return false;
+        };
+        let mut bad = scan.clone();
+        match scan.tick {
+            100 => bad.ranges.truncate(99),
+            200 => bad.ranges[7] = f32::NAN,
+            300 => bad.ranges[8] = -1.0,
+            400 => bad.tick = 399,
+            _ => return false,
+        }
+        pipe.send(&Message::LidarScan(bad)).is_ok()
+    });
+    assert_eq!(
+        causes(&log),
+        [
+            "ScanLength { expected: 100, found: 99 }",
+            "ScanNotFinite { beam: 7 }",
+            "ScanRange { beam: 8 }",
+            "TickOrder { expected: 400, found: 399 }",
+        ]
+    );
+    // The plans of those scans are missing, and the one before is flown on.
+    assert_eq!(log.plans.len(), 1);
+}
+
+#[test]
+fn garbage_and_damaged_frames_are_rejected_and_logged() {
+    let log = fly_spoilt(|pipe, message| {
+        let Message::SensorFrame(frame) = message else {
+            return false;
+        };
+        let mut buffer = [0; MAX_FRAME];
+        let bytes = encode(message, &mut buffer).unwrap();
+        match frame.tick {
+            50 => pipe.send_bytes(&[0xFF, 0xAA, 0x12, 0x00]),
+            60 => pipe.send_bytes(&[&bytes[..bytes.len() / 2], &[0]].concat()),
+            70 => {
+                let mut damaged = bytes.to_vec();
+                damaged[9] ^= 0x10;
+                pipe.send_bytes(&damaged);
+            }
+            80 => pipe.send_bytes(&vec![0x55; 4000]),
+            _ => {}
+        }
+        // A delimiter ends what noise left behind; the frame itself then comes whole.
+        pipe.send_bytes(&[0]);
+        false
+    });
+    assert_eq!(log.rejections.len(), 4, "{:?}", log.rejections);
+    assert!(causes(&log).iter().all(|cause| cause.starts_with("Frame(")));
+    assert_eq!(causes(&log)[3], "Frame(TooLong)");
+    assert_eq!(log.summary.outcome, Outcome::Survived);
+}
+
+/// A core without a configuration says so, and one with a flight under way refuses another.
+#[test]
+fn messages_out_of_place_are_rejected() {
+    let mut pipe = PipeLink::new();
+    let frame = SensorFrame {
+        tick: 0,
+        airspeed: 12.0,
+        pitch: 0.1,
+        x: 0.0,
+        z: 50.0,
+    };
+    pipe.send(&Message::SensorFrame(frame)).unwrap();
+    let answer = pipe.receive("a rejection").unwrap();
+    assert!(
+        matches!(&answer, Message::Rejection(r) if r.cause == RejectionCause::NotConfigured),
+        "{answer:?}"
+    );
+    let configure = Message::Configure(short(1).configure());
+    pipe.send(&configure).unwrap();
+    assert!(
+        matches!(pipe.receive("a reply"), Ok(Message::ConfigureReply(r)) if r.verdict == ConfigureVerdict::Accepted)
+    );
+    pipe.send(&configure).unwrap();
+    assert!(
+        matches!(pipe.receive("a reply"), Ok(Message::ConfigureReply(r)) if r.verdict == ConfigureVerdict::AlreadyConfigured)
+    );
+    // What only a core may say.
+    pipe.send(&answer).unwrap();
+    assert!(
+        matches!(pipe.receive("a rejection"), Ok(Message::Rejection(r)) if r.cause == RejectionCause::UnexpectedMessage { id: answer.id() })
+    );
+}
+
+/// A tick that comes twice is answered once.
+#[test]
+fn an_old_tick_is_not_flown_again() {
+    let mut pipe = PipeLink::new();
+    pipe.send(&Message::Configure(short(1).configure()))
+        .unwrap();
+    let frame = |tick| {
+        Message::SensorFrame(SensorFrame {
+            tick,
+            airspeed: 12.0,
+            pitch: 0.156,
+            x: 0.0,
+            z: 50.0,
+        })
+    };
+    for tick in [0, 1, 1] {
+        pipe.send(&frame(tick)).unwrap();
+    }
+    let mut commands = 0;
+    let mut rejected = false;
+    while let Ok(message) = pipe.receive("anything") {
+        commands += usize::from(matches!(message, Message::ActuatorCommand(_)));
+        rejected |= matches!(message, Message::Rejection(r)
+            if r.cause == RejectionCause::TickOrder { expected: 2, found: 1 });
+    }
+    assert_eq!(commands, 2);
+    assert!(rejected);
+}

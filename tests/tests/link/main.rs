@@ -1,0 +1,207 @@
+//! The link: the same flight over a pipe and over TCP, and everything that can go wrong on it.
+
+mod input;
+mod restarts;
+
+use hil_protocol::{ConfigureVerdict, DecodeError, Message};
+use sil_harness::link::{Link, LinkError, PipeLink, TcpLink, serve};
+use sil_harness::log::FlightLog;
+use sil_harness::run::{FlyError, fly};
+use sil_harness::scenario::{Preset, Scenario};
+use std::io::{Read, Write};
+use std::net::{TcpListener, TcpStream};
+use std::thread;
+use std::time::Duration;
+
+const PATIENCE: Duration = Duration::from_millis(300);
+
+fn short(seed: u64) -> Scenario {
+    Scenario {
+        ticks: 500,
+        ..Scenario::new(Preset::Flight, seed)
+    }
+}
+
+/// A pipe on which what the harness sends is spoilt on the way.
+struct Spoilt<F: FnMut(&mut PipeLink, &Message) -> bool> {
+    pipe: PipeLink,
+    /// True when it has dealt with the message itself.
+    spoil: F,
+}
+
+impl<F: FnMut(&mut PipeLink, &Message) -> bool> Link for Spoilt<F> {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        if (self.spoil)(&mut self.pipe, message) {
+            return Ok(());
+        }
+        self.pipe.send(message)
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.pipe.receive(awaited)
+    }
+}
+
+fn causes(log: &FlightLog) -> Vec<&str> {
+    log.rejections
+        .iter()
+        .map(|rejection| rejection.cause.as_str())
+        .collect()
+}
+
+#[expect(clippy::unwrap_used, reason = "loopback")]
+fn local_listener() -> (TcpListener, String) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap().to_string();
+    (listener, address)
+}
+
+#[test]
+fn a_core_behind_tcp_flies_the_same_bytes() {
+    let (listener, address) = local_listener();
+    let core = thread::spawn(move || serve(&listener, true, Duration::from_secs(20), |_| {}));
+    let over_tcp = fly(&short(5), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap();
+    core.join().unwrap().unwrap();
+    let over_pipe = fly(&short(5), &mut PipeLink::new(), |_| {}).unwrap();
+    assert_eq!(over_tcp.to_json().unwrap(), over_pipe.to_json().unwrap());
+}
+
+#[test]
+fn a_silent_core_is_named_and_not_waited_for_forever() {
+    let (listener, address) = local_listener();
+    let stream = TcpStream::connect(&address).unwrap();
+    let _accepted_and_silent = listener.accept().unwrap();
+    let mut link = TcpLink::over(stream, address.clone(), PATIENCE).unwrap();
+    let error = fly(&short(1), &mut link, |_| {}).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        matches!(error, FlyError::Link(LinkError::Silent { .. })),
+        "{text}"
+    );
+    assert!(
+        text.contains("harness waits for hello from the core at"),
+        "{text}"
+    );
+    assert!(text.contains(&address), "{text}");
+}
+
+#[test]
+fn a_core_that_dies_in_flight_is_named() {
+    let (listener, address) = local_listener();
+    let core = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        let mut node = Box::new(flight_node::FlightNode::new());
+        let mut bytes = [0; 4096];
+        let mut frames = 0;
+        while frames < 40 {
+            let count = stream.read(&mut bytes).unwrap();
+            node.receive(&bytes[..count], |frame| {
+                frames += 1;
+                stream.write_all(frame).unwrap();
+            });
+        }
+    });
+    let error = fly(&short(1), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap_err();
+    core.join().unwrap();
+    let text = error.to_string();
+    assert!(
+        matches!(
+            error,
+            FlyError::Link(LinkError::Closed { .. } | LinkError::Io(..))
+        ),
+        "{text}"
+    );
+    assert!(text.contains("core"), "{text}");
+}
+
+#[test]
+fn a_silent_harness_is_named_by_the_core() {
+    let (listener, address) = local_listener();
+    let _silent = TcpStream::connect(&address).unwrap();
+    let error = serve(&listener, true, PATIENCE, |_| {}).unwrap_err();
+    let text = error.to_string();
+    assert!(
+        text.contains("core waits for the next frame from the harness"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_core_of_another_version_is_refused_by_name() {
+    let (listener, address) = local_listener();
+    let core = thread::spawn(move || {
+        let (mut stream, _) = listener.accept().unwrap();
+        // A frame of protocol version 9: header, CRC-32 and COBS by hand.
+        let plain = [0x4D, 0x50, 9, 1];
+        let mut frame = vec![0x09];
+        frame.extend(plain);
+        frame.extend(crc32(&plain).to_le_bytes());
+        frame.push(0);
+        assert!(!frame[1..9].contains(&0));
+        stream.write_all(&frame).unwrap();
+        let _ = stream.read(&mut [0; 64]);
+    });
+    let error = fly(&short(1), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap_err();
+    core.join().unwrap();
+    let FlyError::Link(LinkError::Frame(DecodeError::Version { peer: 9 })) = error else {
+        panic!("{error}");
+    };
+    assert!(error.to_string().contains("protocol 9"), "{error}");
+}
+
+/// Bit by bit, as its definition reads.
+fn crc32(bytes: &[u8]) -> u32 {
+    let mut crc = !0_u32;
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 {
+                crc >> 1 ^ 0xEDB8_8320
+            } else {
+                crc >> 1
+            };
+        }
+    }
+    !crc
+}
+
+#[test]
+fn a_configuration_that_makes_no_sense_is_refused() {
+    let wrong = [
+        (
+            Scenario {
+                paths: 51,
+                ..short(1)
+            },
+            ConfigureVerdict::TooManyPaths { max: 50 },
+        ),
+        (
+            Scenario {
+                latency_ticks: 0,
+                ..short(1)
+            },
+            ConfigureVerdict::Latency,
+        ),
+        (
+            Scenario {
+                latency_ticks: 101,
+                ..short(1)
+            },
+            ConfigureVerdict::Latency,
+        ),
+        (
+            Scenario {
+                slices_per_tick: 0,
+                ..short(1)
+            },
+            ConfigureVerdict::SlicesPerTick,
+        ),
+    ];
+    for (scenario, verdict) in wrong {
+        let error = fly(&scenario, &mut PipeLink::new(), |_| {}).unwrap_err();
+        assert!(
+            matches!(&error, FlyError::Link(LinkError::Refused(found)) if *found == verdict),
+            "{error}"
+        );
+    }
+}
