@@ -6,7 +6,7 @@ use cobs::CobsEncoder;
 use crc::{CRC_32_ISO_HDLC, Crc};
 
 /// The version of the link that this crate speaks.
-pub const PROTOCOL_VERSION: u8 = 1;
+pub const PROTOCOL_VERSION: u8 = 2;
 
 /// The first two bytes of a frame before COBS: "MP".
 pub const MAGIC: [u8; 2] = *b"MP";

@@ -60,6 +60,13 @@
 //! * ids and variants are only ever appended, never moved or used again, so that a number means
 //!   the same in every recording. `tests/frozen_bytes.rs` holds the bytes of all of them.
 //!
+//! A version is open until a release speaks it; until then changes gather in its row.
+//!
+//! | version | release | what changed |
+//! |---|---|---|
+//! | 1 | none | messages 1 to 9 |
+//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`] |
+//!
 //! # Use
 //!
 //! ```

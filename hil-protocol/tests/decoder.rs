@@ -54,7 +54,7 @@ proptest! {
             Message::PlanTrajectory(body) => postcard::to_slice(body, &mut payload),
         }
         .unwrap();
-        prop_assert_eq!(frame(&message), oracle::frame(b"MP", 1, message.id(), payload));
+        prop_assert_eq!(frame(&message), oracle::frame(b"MP", PROTOCOL_VERSION, message.id(), payload));
     }
 
     #[test]
@@ -83,7 +83,7 @@ proptest! {
 
     #[test]
     fn any_payload_is_a_message_or_a_named_fault(id in any::<u8>(), payload in vec(any::<u8>(), 0..300)) {
-        let received = found(&oracle::frame(b"MP", 1, id, &payload));
+        let received = found(&oracle::frame(b"MP", PROTOCOL_VERSION, id, &payload));
         prop_assert_eq!(received.len(), 1);
         match &received[0] {
             Ok(message) => prop_assert_eq!(message.id(), id),
@@ -168,29 +168,35 @@ fn an_overlong_frame_is_one_error_at_its_end() {
 fn each_fault_has_its_name() {
     use DecodeError::*;
     let reply = [0];
-    let mut damaged = oracle::frame(b"MP", 1, id::CONFIGURE_REPLY, &reply);
+    let mut damaged = oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &reply);
     damaged[6] ^= 2;
     let cases: [(Vec<u8>, DecodeError); 10] = [
         (vec![5, 1, 0], Cobs),
         (vec![4, 1, 2, 3, 0], TooShort),
         (vec![8, 1, 2, 3, 4, 5, 6, 7, 0], TooShort),
-        (oracle::frame(b"MQ", 1, id::CONFIGURE_REPLY, &reply), Magic),
+        (
+            oracle::frame(b"MQ", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &reply),
+            Magic,
+        ),
         (damaged, Crc),
         (
-            oracle::frame(b"MP", 2, id::CONFIGURE_REPLY, &reply),
-            Version { peer: 2 },
+            oracle::frame(b"MP", 1, id::CONFIGURE_REPLY, &reply),
+            Version { peer: 1 },
         ),
         (
             oracle::frame(b"MP", 0, 200, &[1, 2, 3]),
             Version { peer: 0 },
         ),
-        (oracle::frame(b"MP", 1, 13, &reply), UnknownId { id: 13 }),
         (
-            oracle::frame(b"MP", 1, id::CONFIGURE_REPLY, &[99]),
+            oracle::frame(b"MP", PROTOCOL_VERSION, 13, &reply),
+            UnknownId { id: 13 },
+        ),
+        (
+            oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &[99]),
             Payload { id: 3 },
         ),
         (
-            oracle::frame(b"MP", 1, id::CONFIGURE_REPLY, &[0, 0]),
+            oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &[0, 0]),
             TrailingBytes { id: 3 },
         ),
     ];
@@ -203,7 +209,7 @@ fn each_fault_has_its_name() {
 fn a_damaged_version_is_damage_not_another_version() {
     let mut bytes = frame(&scan());
     assert_eq!(bytes[3], PROTOCOL_VERSION);
-    bytes[3] = 2;
+    bytes[3] ^= 3;
     assert_eq!(found(&bytes), [Err(DecodeError::Crc)]);
 }
 
@@ -211,14 +217,19 @@ fn a_damaged_version_is_damage_not_another_version() {
 fn a_list_longer_than_its_room_is_a_payload_fault() {
     // Tick, two angles, and a count of 129; a frame with all their bytes would be too long.
     let payload = [&[0; 9], [0x81, 0x01].as_slice(), &[0; 4 * 128]].concat();
-    let received = found(&oracle::frame(b"MP", 1, id::LIDAR_SCAN, &payload));
+    let received = found(&oracle::frame(
+        b"MP",
+        PROTOCOL_VERSION,
+        id::LIDAR_SCAN,
+        &payload,
+    ));
     assert_eq!(received, [Err(DecodeError::Payload { id: id::LIDAR_SCAN })]);
 }
 
 #[test]
 fn another_version_is_told_in_a_sentence() {
     assert_eq!(
-        DecodeError::Version { peer: 2 }.to_string(),
-        "peer speaks link protocol 2, this side speaks 1: update the older side"
+        DecodeError::Version { peer: 1 }.to_string(),
+        "peer speaks link protocol 1, this side speaks 2: update the older side"
     );
 }
