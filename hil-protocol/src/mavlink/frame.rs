@@ -60,11 +60,12 @@ impl Frame<'_> {
 pub(super) enum Claim<'a> {
     /// Not a frame.
     No,
-    /// Not an intact frame of a known message, though it says so.
-    Damaged,
     /// Perhaps a frame: the rest has not come yet.
     Incomplete,
-    /// By its header a frame of this many bytes, of a message without a known checksum.
+    /// By its header a frame of this many bytes, but its checksum is wrong.
+    Damaged(usize),
+    /// A frame of this many bytes, of a message that the dialect does not have: its checksum is
+    /// right for some message, which it is by chance once in 256 times.
     Unknown(usize),
     /// A frame.
     Intact(Frame<'a>),
@@ -126,18 +127,6 @@ struct Header {
 fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> Claim<'a> {
     let end = header.length + payload;
     let total = end + CHECKSUM + tail;
-    let Some(extra) = extra_crc(header.id) else {
-        // Nobody uses compatibility flags or longer ids, and MAVLink 1 has no flags at all: what
-        // cannot be told from noise is not passed over.
-        let plausible = header.version == MavlinkVersion::V2
-            && bytes.get(3) == Some(&0)
-            && header.id <= u32::from(u16::MAX);
-        return if plausible {
-            Claim::Unknown(total)
-        } else {
-            Claim::No
-        };
-    };
     let (Some(frame), Some(checked), Some(body), Some([low, high])) = (
         bytes.get(..total),
         bytes.get(1..end),
@@ -146,8 +135,11 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
     ) else {
         return Claim::Incomplete;
     };
-    if calculate_crc(checked, extra) != u16::from_le_bytes([*low, *high]) {
-        return Claim::Damaged;
+    let sum = u16::from_le_bytes([*low, *high]);
+    match extra_crc(header.id) {
+        Some(extra) if calculate_crc(checked, extra) == sum => {}
+        None if is_some_messages(checked, sum) => return Claim::Unknown(total),
+        _ => return Claim::Damaged(total),
     }
     Claim::Intact(Frame {
         system: header.system,
@@ -160,9 +152,40 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
     })
 }
 
+/// Whether there is a message whose checksum over these bytes this is.
+///
+/// A checksum ends with one byte that only who knows the message has. Its effect is what the CRC's
+/// table holds for it, and of that the high byte is another for each of the 256.
+fn is_some_messages(checked: &[u8], sum: u16) -> bool {
+    let effect = calculate_crc(checked, 0) ^ sum;
+    let high = effect >> 8;
+    let mixed = high ^ high >> 5;
+    effect == mixed << 8 ^ mixed << 3 ^ mixed >> 4
+}
+
 /// What a message's checksum is seeded with; none if the dialect does not have the message.
 fn extra_crc(id: u32) -> Option<u8> {
     MavMessage::all_ids()
         .contains(&id)
         .then(|| MavMessage::extra_crc(id))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Beside all 256 messages that there could be.
+    #[test]
+    fn a_checksum_is_some_messages_or_nobodys() {
+        let mut bytes = [0; 40];
+        for (length, factor) in (0..40).zip(0_u8..) {
+            bytes[length] = factor.wrapping_mul(factor ^ 0x5A);
+            let checked = &bytes[..length];
+            for extra in 0..=u8::MAX {
+                assert!(is_some_messages(checked, calculate_crc(checked, extra)));
+            }
+            let right = (0..=u16::MAX).filter(|sum| is_some_messages(checked, *sum));
+            assert_eq!(right.count(), 256);
+        }
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::frame::{Claim, Frame, MAX_FRAME, claim};
 
-/// Two frames that cannot be checked, and the first byte of one behind them.
-const ROOM: usize = 2 * MAX_FRAME + 1;
+/// An unknown frame, and what follows it.
+const ROOM: usize = 2 * MAX_FRAME;
 
 /// What a stream held besides frames. Full counters stay full.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -23,17 +23,24 @@ pub struct Counters {
 /// It goes from length to length: what lies inside a frame is never taken for another. A frame
 /// whose checksum is wrong is gone through byte by byte, so that nothing is lost with it.
 ///
-/// The checksum of an unknown message cannot be checked. Such a frame is passed over only if an
-/// intact frame, or another unknown one that ends where a frame begins, follows it at once; else
-/// its inside is gone through too. So an unknown frame holds up nothing, and noise that looks like
-/// one hides nothing.
+/// A frame of an unknown message is passed over if its checksum is right for some message and a
+/// frame, or the stream's end, follows it at once. One whose end was lost looks like that once in
+/// 256 times, and then only if a frame begins where it says that its own end is. If both hold, the
+/// frames in between stay unseen: the same bytes could be an unknown message that carries them,
+/// and no receiver without its definition can tell. It is better to miss an order than to obey one
+/// that somebody carries past.
 ///
-/// Noise can hold up a frame, but not by more than [`MAX_FRAME`] bytes, or twice that if it looks
-/// like an unknown frame.
+/// A frame is given out with its last byte if what goes before it ends where it says, intact,
+/// damaged or unknown. Else noise that looks like the beginning of a frame can hold it up, by no
+/// more than [`MAX_FRAME`] bytes, or twice that if it looks like an unknown frame to its end.
 #[derive(Clone, Debug)]
 pub struct Framer {
     bytes: [u8; ROOM],
     length: usize,
+    /// Where a damaged frame says that its end is; the first one that nothing speaks against yet.
+    boundary: Option<usize>,
+    /// Up to here everything is judged as if the stream ended here: an intact frame follows.
+    closed: usize,
     counters: Counters,
 }
 
@@ -44,6 +51,8 @@ impl Framer {
         Self {
             bytes: [0; ROOM],
             length: 0,
+            boundary: None,
+            closed: 0,
             counters: Counters {
                 frames: 0,
                 unknown: 0,
@@ -82,12 +91,22 @@ impl Framer {
     /// Ends the stream: nothing more comes that could complete what was begun.
     pub fn end(&mut self, mut take: impl FnMut(&Frame<'_>)) {
         self.sift(true, &mut take);
+        (self.boundary, self.closed) = (None, 0);
     }
 
     /// Goes on from the first byte as far as it can be judged, and drops what was.
     fn sift(&mut self, ended: bool, take: &mut impl FnMut(&Frame<'_>)) {
         let mut start = 0;
-        while let Some(rest @ [_, ..]) = self.bytes.get(start..self.length) {
+        loop {
+            self.look_ahead(start);
+            let (end, ended) = if start < self.closed {
+                (self.closed, true)
+            } else {
+                (self.length, ended)
+            };
+            let Some(rest @ [_, ..]) = self.bytes.get(start..end) else {
+                break;
+            };
             let (step, counter) = match verdict(rest, ended) {
                 Verdict::Wait => break,
                 Verdict::Frame(frame) => {
@@ -95,7 +114,10 @@ impl Framer {
                     (frame.bytes.len(), &mut self.counters.frames)
                 }
                 Verdict::Unknown(length) => (length, &mut self.counters.unknown),
-                Verdict::Damaged => (1, &mut self.counters.damaged),
+                Verdict::Damaged(length) => {
+                    self.boundary.get_or_insert(start + length);
+                    (1, &mut self.counters.damaged)
+                }
                 Verdict::Noise => (1, &mut self.counters.noise),
             };
             *counter = counter.saturating_add(1);
@@ -104,6 +126,30 @@ impl Framer {
         if start > 0 {
             self.bytes.copy_within(start..self.length, 0);
             self.length -= start;
+            self.closed = self.closed.saturating_sub(start);
+            self.boundary = self.boundary.and_then(|at| at.checked_sub(start));
+        }
+    }
+
+    /// Whether an intact frame begins where a damaged one, and perhaps others behind it, ends.
+    fn look_ahead(&mut self, start: usize) {
+        // Each step leads on by the length of a frame.
+        while let Some(at) = self.boundary {
+            let next = match self.bytes.get(at..self.length) {
+                // It was passed, or reached and will be judged as any byte.
+                _ if at <= start => return self.boundary = None,
+                None | Some([]) => return,
+                Some(next) => next,
+            };
+            self.boundary = match claim(next) {
+                Claim::Incomplete => return,
+                Claim::Damaged(length) | Claim::Unknown(length) => Some(at + length),
+                Claim::Intact(_) => {
+                    self.closed = at;
+                    None
+                }
+                Claim::No => None,
+            };
         }
     }
 }
@@ -118,7 +164,7 @@ enum Verdict<'a> {
     /// It takes more bytes to tell.
     Wait,
     Noise,
-    Damaged,
+    Damaged(usize),
     Unknown(usize),
     Frame(Frame<'a>),
 }
@@ -126,34 +172,27 @@ enum Verdict<'a> {
 fn verdict(bytes: &[u8], ended: bool) -> Verdict<'_> {
     match claim(bytes) {
         Claim::No => Verdict::Noise,
-        Claim::Damaged => Verdict::Damaged,
+        Claim::Damaged(length) => Verdict::Damaged(length),
         Claim::Intact(frame) => Verdict::Frame(frame),
         Claim::Incomplete if ended => Verdict::Noise,
         Claim::Incomplete => Verdict::Wait,
-        Claim::Unknown(length) => match follower(bytes, length, ended) {
+        Claim::Unknown(length) => match is_followed(bytes.get(length..), ended) {
             None => Verdict::Wait,
             Some(true) => Verdict::Unknown(length),
-            Some(false) => Verdict::Noise,
+            Some(false) => Verdict::Damaged(length),
         },
     }
 }
 
 /// Whether what follows an unknown frame speaks for it; none: too early to tell.
-fn follower(bytes: &[u8], length: usize, ended: bool) -> Option<bool> {
-    match bytes.get(length..) {
-        // Its own end has not come.
-        None => ended.then_some(false),
-        // The end of a stream is as good as a frame.
-        Some([]) => ended.then_some(true),
-        Some(next) => match claim(next) {
-            Claim::No | Claim::Damaged => Some(false),
-            Claim::Intact(_) => Some(true),
-            Claim::Incomplete => ended.then_some(false),
-            Claim::Unknown(second) => match next.get(second..) {
-                None => ended.then_some(false),
-                Some([]) => ended.then_some(true),
-                Some(third) => Some(!matches!(claim(third), Claim::No)),
-            },
-        },
+fn is_followed(next: Option<&[u8]>, ended: bool) -> Option<bool> {
+    // The end of a stream is as good as a frame.
+    let Some(next @ [_, ..]) = next else {
+        return ended.then_some(true);
+    };
+    match claim(next) {
+        Claim::No | Claim::Damaged(_) => Some(false),
+        Claim::Intact(_) | Claim::Unknown(_) => Some(true),
+        Claim::Incomplete => ended.then_some(true),
     }
 }

@@ -1,12 +1,13 @@
 //! The framer beside an oracle, and beside the reader of `mavlink-core`.
 
-use crate::oracle::{Span, frames};
+use crate::oracle::{Shape, Span, crc, shape, unknown};
 use crate::streams::{Maker, Stream};
 use hil_protocol::mavlink::messages::{HEARTBEAT_DATA, MavMessage};
 use hil_protocol::mavlink::{Frame, Framer, MAX_FRAME, Sender};
 use mavlink::{MAVLinkMessageRaw, MavlinkReader};
 
 /// A frame as it came out.
+#[derive(Debug, PartialEq)]
 struct Found {
     bytes: Vec<u8>,
     /// How many bytes had come by then.
@@ -44,104 +45,166 @@ fn stock(stream: &[u8]) -> Vec<Vec<u8>> {
 }
 
 #[test]
-fn in_pieces_of_any_length_the_oracle_finds_the_same() {
+fn pieces_of_any_length_hold_the_same_frames_and_each_is_one() {
     for seed in 0..2000 {
         let mut maker = Maker::new(seed);
         let stream = match seed % 2 {
             0 => maker.mixed(20).bytes,
             _ => maker.malice(2000),
         };
-        let expected: Vec<_> = frames(&stream)
-            .0
-            .into_iter()
-            .map(|span| &stream[span])
-            .collect();
-        for piece in [1, 7, 280, stream.len()] {
-            let found = found(&stream, piece);
-            assert!(
-                found
-                    .iter()
-                    .map(|found| &found.bytes[..])
-                    .eq(expected.iter().copied()),
-                "seed {seed}"
-            );
+        let whole = found(&stream, stream.len());
+        for piece in [1, 7, 280] {
+            let pieces = found(&stream, piece);
+            let bytes = |found: &[Found]| -> Vec<Vec<u8>> {
+                found.iter().map(|found| found.bytes.clone()).collect()
+            };
+            assert!(bytes(&pieces) == bytes(&whole), "seed {seed}");
         }
+        places(&stream, &whole);
     }
+}
+
+/// Where the frames that came out stand: intact, one behind the other.
+fn places(stream: &[u8], found: &[Found]) -> Vec<Span> {
+    let mut from = 0;
+    let mut places = Vec::new();
+    for found in found {
+        let length = found.bytes.len();
+        let mut rest = stream[from..].windows(length);
+        let at = from + rest.position(|window| window == found.bytes).unwrap();
+        let Some(Shape::Frame(span)) = shape(stream, at) else {
+            unreachable!("no frame at {at}");
+        };
+        assert_eq!(span.len(), length);
+        from = span.end;
+        places.push(span);
+    }
+    places
 }
 
 /// Nothing is invented but what a checksum of 16 bits lets through by chance, and nothing is lost
-/// but what such a chance covers, or what stands where an unknown frame says its
-/// payload is, with an intact frame right behind: nobody without that message's checksum can tell.
+/// but what such a chance covers, or what an unknown frame covers whose checksum is right for one
+/// of the 256 messages that it could be: see the test below.
 #[test]
 fn every_planted_frame_comes_out_and_no_other() {
-    let (mut all, mut hidden, mut chance) = (0, 0, 0);
+    let (mut all, mut lost, mut chance) = (0, 0, 0);
     for seed in 0..3000 {
         let Stream { bytes, planted } = Maker::new(seed).mixed(30);
-        let (found, mut cover) = frames(&bytes);
-        let by_chance = found.into_iter().filter(|span| !planted.contains(span));
-        let before = cover.len();
-        cover.extend(by_chance);
-        chance += cover.len() - before;
-        let (found, _) = frames(&bytes);
-        for lost in planted.iter().filter(|span| !found.contains(span)) {
-            let covers = |span: &Span| span.start < lost.end && lost.start < span.end;
-            assert!(cover.iter().any(covers), "seed {seed}");
-            hidden += 1;
+        let found = places(&bytes, &found(&bytes, bytes.len()));
+        let by_chance = found.iter().filter(|span| !planted.contains(span)).cloned();
+        let by_chance: Vec<_> = by_chance.collect();
+        chance += by_chance.len();
+        for missing in planted.iter().filter(|span| !found.contains(span)) {
+            let covers: Vec<_> = by_chance.iter().cloned().chain(unknown(&bytes)).collect();
+            // One that was sent twice and came out once: nobody can say which it was.
+            let mut twins = planted
+                .iter()
+                .filter(|p| bytes[(*p).clone()] == bytes[missing.clone()]);
+            let covered = |span: &Span| {
+                covers
+                    .iter()
+                    .any(|c| c.start < span.end && span.start < c.end)
+            };
+            assert!(twins.any(covered), "seed {seed}");
+            lost += 1;
         }
         all += planted.len();
     }
-    println!("of {all} frames {hidden} were covered; {chance} checksums were right by chance");
-    assert!(hidden * 500 < all && chance <= 5);
+    println!("of {all} frames {lost} were covered; {chance} checksums were right by chance");
+    assert!(lost <= 1 && chance <= 5);
 }
 
-/// Among intact frames, whatever their messages, each is given out with its last byte.
+/// An unknown message that carries a frame, and an unknown frame that lost its end before that frame
+/// came: they are the same bytes. Whoever gives the frame out invents one in the first case, whoever
+/// does not misses one in the second; without the message's definition there is no third.
 #[test]
-fn intact_frames_do_not_hold_up_one_another() {
-    for seed in 0..1000 {
-        let Stream { bytes, planted } = Maker::new(seed).intact(30);
-        let came = found(&bytes, 1).into_iter().map(|found| found.come);
-        assert!(
-            came.eq(planted.into_iter().map(|span| span.end)),
-            "seed {seed}"
-        );
+fn two_histories_with_the_same_bytes_cannot_both_be_served() {
+    let mut sender = Sender::new(255, 190);
+    let mut frame = || sender.frame(&HEARTBEAT_DATA::DEFAULT).as_bytes().to_vec();
+    let (carried, next) = (frame(), frame());
+    let header = [0xFD, 40, 0, 0, 7, 1, 1, 0x39, 0x30, 0];
+
+    let mut carrying = [&header[..], &[5; 9], &carried, &[6; 10]].concat();
+    carrying.extend(crc(&carrying, 77).to_le_bytes());
+    let carrying = [&carrying[..], &next].concat();
+
+    let cut = [&header[..], &[5; 9]].concat();
+    let noise = [&[6; 10][..], &carrying[50..52]].concat();
+    let lost_its_end = [&cut[..], &carried, &noise, &next].concat();
+
+    assert_eq!(carrying, lost_its_end);
+    let alone = |bytes| Found {
+        bytes,
+        come: carrying.len(),
+    };
+    assert!(found(&carrying, 1) == [alone(next.clone())]);
+
+    // What cannot be an unknown message hides nothing: a checksum that no message has.
+    let mut broken = carrying.clone();
+    while matches!(shape(&broken, 0), Some(Shape::Unknown(_))) {
+        broken[50] ^= 1;
+        broken[51] = broken[51].wrapping_add(1);
+    }
+    let come = found(&broken, 1).into_iter().map(|found| found.bytes);
+    assert!(come.eq([carried.clone(), next]));
+    // Or no frame where it says that its end is.
+    let mut unfollowed = carrying.clone();
+    unfollowed.insert(52, 0);
+    assert_eq!(found(&unfollowed, 1).len(), 2);
+}
+
+/// Among frames that end where they say, whatever their messages and checksums, each is given out
+/// with its last byte.
+#[test]
+fn frames_do_not_hold_up_one_another() {
+    for seed in 0..2000 {
+        let Stream { bytes, planted } = Maker::new(seed).whole(30, seed % 2 == 1);
+        let found = found(&bytes, 1);
+        let late: Vec<_> = found
+            .iter()
+            .zip(&planted)
+            .filter(|(found, span)| found.come != span.end)
+            .collect();
+        assert_eq!((found.len(), late.len()), (planted.len(), 0), "seed {seed}");
     }
 }
 
 #[test]
 fn noise_holds_up_a_frame_by_a_bounded_number_of_bytes() {
-    let mut longest = 0;
+    let (mut all, mut late, mut longest) = (0, 0, 0);
     for seed in 0..2000 {
         let stream = Maker::new(seed).mixed(30).bytes;
-        for (found, span) in found(&stream, 1).iter().zip(frames(&stream).0) {
-            longest = longest.max(found.come - span.end);
+        let found = found(&stream, 1);
+        for (span, found) in places(&stream, &found).into_iter().zip(&found) {
+            let wait = found.come - span.end;
+            longest = longest.max(found.come - span.start);
+            late += usize::from(wait > 0);
+            all += 1;
         }
     }
-    println!("longest hold-up: {longest} bytes");
+    println!("{late} of {all} frames were late; out within {longest} bytes of their first");
     assert!(longest <= 2 * MAX_FRAME, "{longest}");
 }
 
-/// The stock reader looks for frames inside unknown ones, so it finds those few as well; of all
+/// The stock reader looks for frames inside unknown ones, so it may find one of those; of all
 /// others it finds no more.
 #[test]
 fn the_stock_reader_finds_no_more_planted_frames() {
-    let (mut theirs, mut ours) = (0, 0);
+    let (mut theirs, mut ours, mut only_theirs) = (0, 0, 0);
     for seed in 0..2000 {
         let Stream { bytes, planted } = Maker::new(seed).mixed(30);
-        let (found, unknown) = frames(&bytes);
+        let found = places(&bytes, &found(&bytes, bytes.len()));
         let stock = stock(&bytes);
-        ours += found.len();
         for span in planted {
-            let inside = unknown.iter().any(|unknown| unknown.contains(&span.start));
             let theirs_too = stock.iter().any(|frame| frame == &bytes[span.clone()]);
+            let ours_too = found.contains(&span);
             theirs += usize::from(theirs_too);
-            assert!(
-                !theirs_too || inside || found.contains(&span),
-                "seed {seed}"
-            );
+            ours += usize::from(ours_too);
+            only_theirs += usize::from(theirs_too && !ours_too);
         }
     }
     println!("planted frames found: {ours}, by the stock reader {theirs}");
-    assert!(1000 * ours > 998 * theirs);
+    assert!(ours > theirs && only_theirs == 0, "{only_theirs}");
 }
 
 /// Such a frame held back thirteen heartbeats in the stock reader.

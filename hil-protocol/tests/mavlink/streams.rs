@@ -91,28 +91,57 @@ impl Maker {
 
     /// A frame of a message that the dialect does not have, full of false beginnings.
     pub(crate) fn unknown(&mut self) -> Vec<u8> {
-        let id = loop {
-            let id = self.below(65_536) as u32;
-            if seed(id).is_none() {
-                break id.to_le_bytes();
+        let length = self.below(256);
+        let mut frame = match self.below(4) {
+            0 => vec![0xFE, length as u8, 0, 2, 3, self.unknown_id(256)[0]],
+            _ => {
+                let id = self.unknown_id(65_536);
+                vec![0xFD, length as u8, 0, 0, 1, 2, 3, id[0], id[1], id[2]]
             }
         };
-        let length = self.below(256);
-        let mut frame = vec![0xFD, length as u8, 0, 0, 1, 2, 3, id[0], id[1], id[2]];
-        frame.extend(self.malice(length + 2));
+        frame.extend(self.malice(length));
+        let sum = crc(&frame, self.below(256) as u8);
+        frame.extend(sum.to_le_bytes());
         frame
     }
 
-    /// Intact frames only, of known and unknown messages.
-    pub(crate) fn intact(&mut self, pieces: usize) -> Stream {
+    fn unknown_id(&mut self, below: usize) -> [u8; 4] {
+        loop {
+            let id = self.below(below) as u32;
+            if seed(id).is_none() {
+                return id.to_le_bytes();
+            }
+        }
+    }
+
+    /// A frame that ends where it says, but not as it was sent.
+    fn damaged(&mut self) -> Vec<u8> {
+        let mut frame = if self.below(2) == 0 {
+            self.unknown()
+        } else {
+            self.known()
+        };
+        let header = if frame[0] == 0xFD { 10 } else { 6 };
+        let inside = usize::from(frame[1]) + 2;
+        for _ in 0..3 {
+            let at = header + self.below(inside);
+            frame[at] ^= 1 << self.below(8);
+        }
+        frame
+    }
+
+    /// Frames that end where they say, of known and unknown messages; some of them, if that is
+    /// wanted, with a wrong checksum.
+    pub(crate) fn whole(&mut self, pieces: usize, damaged: bool) -> Stream {
         let mut stream = Stream::default();
         for _ in 0..pieces {
-            if self.below(3) == 0 {
-                let frame = self.unknown();
-                stream.bytes.extend(frame);
-            } else {
-                let frame = self.known();
-                stream.plant(&frame);
+            match self.below(if damaged { 5 } else { 4 }) {
+                0..3 => {
+                    let frame = self.known();
+                    stream.plant(&frame);
+                }
+                3 => stream.bytes.extend(self.unknown()),
+                _ => stream.bytes.extend(self.damaged()),
             }
         }
         stream
