@@ -68,11 +68,12 @@ class Vehicle:
                 return message
         return None
 
-    def ask(self, send, types, accept, what, attempts=5):
-        """Sends until an answer comes that `accept` takes: datagrams get lost."""
-        for _ in range(attempts):
+    def ask(self, send, types, accept, what):
+        """Sends once a second until an answer comes that `accept` takes: datagrams get lost."""
+        end = time.monotonic() + self.patience
+        while (now := time.monotonic()) < end:
             send()
-            deadline = time.monotonic() + 1.0
+            deadline = min(now + 1.0, end)
             while (left := deadline - time.monotonic()) > 0:
                 message = self.receive(types, left)
                 if message is not None and accept(message):
@@ -110,7 +111,8 @@ class Vehicle:
         """Every parameter, name to value, in the vehicle's order."""
         found, count = {}, None
         mav = self.master.mav
-        for attempt in range(5):
+        end = time.monotonic() + self.patience
+        while time.monotonic() < end:
             if count is None:
                 mav.param_request_list_send(self.system, COMPONENT)
             else:
@@ -149,7 +151,8 @@ class Vehicle:
 
     def why(self, name):
         """What the vehicle says about a refused write, if it says anything."""
-        text = self.receive("STATUSTEXT", 0.5)
-        if text is not None and text.text.startswith(name):
-            return f" ({text.text.removeprefix(name).strip(': ')})"
+        end = time.monotonic() + 1.0
+        while (text := self.receive("STATUSTEXT", end - time.monotonic())) is not None:
+            if text.text.startswith(name):
+                return f" ({text.text.removeprefix(name).strip(': ')})"
         return ""

@@ -23,7 +23,8 @@ def monitor(vehicle, out, seconds=None, once=False):
             if kind == "STATUSTEXT":
                 texts = (texts + [message.text])[-5:]
         now = time.monotonic()
-        if now - shown >= 1.0:
+        # A single table waits for the heartbeat, which comes once a second.
+        if now - shown >= 1.0 and not (once and "HEARTBEAT" not in latest):
             shown = now
             rates = {kind: count / (now - begin) for kind, count in counts.items()}
             clear = "\x1b[H\x1b[J" if out.isatty() else ""

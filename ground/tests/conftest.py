@@ -1,14 +1,23 @@
-"""A vehicle to test against: the simulation, held at its start until it is armed."""
+"""Vehicles to test against: the simulation, held at its start until it is armed.
+
+It flies at the pace of real time, the tests at theirs: nothing here depends on how long anything
+takes. Whatever is awaited is awaited for a minute; what is measured is measured in the flight's time.
+"""
 
 import os
 import socket
 import subprocess
+import time
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BINARY = Path(os.environ.get("SIL_HARNESS", ROOT / "target" / "release" / "sil-harness"))
+# Nothing takes so long, on however slow a machine.
+LIMIT = 60.0
+# A flight that lasts until it is ended, and that nothing stands in the way of.
+LASTING = ("--hold", "--speed", "1", "--duration", "3600", "--obstacles", "0")
 
 
 def free_port():
@@ -17,22 +26,39 @@ def free_port():
         return probe.getsockname()[1]
 
 
-class Simulation:
-    """A running flight; `address` is where it sends to."""
+def until(condition, what):
+    """Waits until the condition holds; gives what it gave then."""
+    deadline = time.monotonic() + LIMIT
+    while not (result := condition()):
+        assert time.monotonic() < deadline, f"waited {LIMIT:g} s for {what}"
+        time.sleep(0.05)
+    return result
 
-    def __init__(self, out, *arguments, port=None):
+
+def parameters(preset="flight"):
+    """What the parameters of a flight are, by the program's own list."""
+    command = [BINARY, "params", "--preset", preset]
+    lines = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
+    return {name: float(value) for name, value in (line.split(",") for line in lines)}
+
+
+class Simulation:
+    """A running flight; `address` is where it sends to, and to `others`."""
+
+    def __init__(self, out, *arguments, port=None, others=()):
         self.port = port or free_port()
         self.address = f"udpin:127.0.0.1:{self.port}"
+        peers = ",".join(f"udp:127.0.0.1:{port}" for port in (self.port, *others))
         self.process = subprocess.Popen(
-            [BINARY, "fly", "--mavlink", f"udp:127.0.0.1:{self.port}", "--json", "--out", out, *arguments],
+            [BINARY, "fly", "--mavlink", peers, "--json", "--out", out, *arguments],
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,
         )
 
-    def result(self, timeout=60):
+    def result(self):
         """Exit code and what was printed, when the flight has ended by itself."""
-        out, err = self.process.communicate(timeout=timeout)
+        out, err = self.process.communicate(timeout=LIMIT)
         return self.process.returncode, out, err
 
     def stop(self):
@@ -47,8 +73,8 @@ def simulate(tmp_path):
         pytest.fail(f"no {BINARY}: cargo build --release -p sil-harness")
     running = []
 
-    def start(*arguments, port=None):
-        running.append(Simulation(tmp_path / "out", *arguments, port=port))
+    def start(*arguments, port=None, others=()):
+        running.append(Simulation(tmp_path / "out", *arguments, port=port, others=others))
         return running[-1]
 
     yield start

@@ -1,8 +1,11 @@
 """The package against a flight in real time."""
 
 import json
+import statistics
 
 import pytest
+
+from conftest import LASTING, LIMIT, parameters
 
 from mpp_ground import paramfile, plot
 from mpp_ground.cli import main
@@ -11,45 +14,54 @@ from mpp_ground.link import GroundError, Vehicle, mavlink
 
 @pytest.fixture
 def held(simulate):
-    simulation = simulate("--hold", "--speed", "4", "--duration", "12")
-    vehicle = Vehicle(simulation.address)
+    simulation = simulate("--hold", "--speed", "1", "--duration", "3600", "--preset", "paper")
+    vehicle = Vehicle(simulation.address, patience=LIMIT)
     yield simulation, vehicle
     vehicle.close()
 
 
-def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate, tmp_path):
+def end(vehicle):
+    vehicle.demand(mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1)
+
+
+def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate):
     simulation, vehicle = held
-    values = vehicle.parameters()
-    assert values["MPP_PATHS"] == 25 and len(values) == 34
+    assert vehicle.parameters() == pytest.approx(parameters("paper"), rel=1e-6)
     assert vehicle.write("LQR_R_ELEVATOR", 0.6) == pytest.approx(0.6)
     assert vehicle.read("LQR_R_ELEVATOR") == pytest.approx(0.6)
     with pytest.raises(GroundError, match="MPP_PATHS stays 25: 99 is refused .out of range."):
         vehicle.write("MPP_PATHS", 99)
     vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-    assert vehicle.receive("MPP_PLAN_STATUS", 5.0).candidates > 0
+    assert vehicle.receive("MPP_PLAN_STATUS", LIMIT).candidates > 0
     assert vehicle.write("MPP_PATHS", 12) == 12
     with pytest.raises(GroundError, match="not in flight"):
         vehicle.write("LQR_R_ELEVATOR", 0.7)
     assert vehicle.command(31_000) == "UNSUPPORTED"
+    while vehicle.receive("MPP_PLAN_STATUS", LIMIT).candidates != 12:
+        pass
+    end(vehicle)
     code, out, _ = simulation.result()
     result = json.loads(out)
-    assert code in (0, 3, 4)
+    assert (code, result["outcome"]) == (8, "terminated")
 
     log = json.loads(open(result["log"]).read())
-    orders = [(order["name"], order["value"]) for order in log["orders"]]
+    orders = [(order["name"], order["value"]) for order in log["orders"] if order["order"] == "parameter"]
     assert orders == [("LQR_R_ELEVATOR", 0.6), ("MPP_PATHS", 12.0)]
-    again = simulate("--orders", result["log"], "--duration", "12")
+    again = simulate("--orders", result["log"], "--duration", "3600", "--preset", "paper")
     _, out, _ = again.result()
     assert json.loads(out)["log_hash"] == result["log_hash"]
 
 
 def test_what_is_heard_is_what_is_logged(simulate):
     simulation = simulate("--hold", "--speed", "2", "--duration", "6")
-    vehicle = Vehicle(simulation.address)
+    vehicle = Vehicle(simulation.address, patience=LIMIT)
     vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     plans, scans = [], []
-    while (message := vehicle.receive(["MPP_PLAN_STATUS", "MPP_LIDAR_SCAN"], 2.0)) is not None:
-        (plans if message.get_type() == "MPP_PLAN_STATUS" else scans).append(message)
+    while (message := vehicle.receive(["MPP_PLAN_STATUS", "MPP_LIDAR_SCAN", "STATUSTEXT"], LIMIT)) is not None:
+        if message.get_type() != "STATUSTEXT":
+            (plans if message.get_type() == "MPP_PLAN_STATUS" else scans).append(message)
+        elif message.text.startswith("Flight ended"):
+            break
     vehicle.close()
     _, out, _ = simulation.result()
     log = json.loads(open(json.loads(out)["log"]).read())
@@ -83,38 +95,38 @@ class Pose:
 
 
 def test_an_interval_is_kept(simulate):
-    simulation = simulate("--hold", "--speed", "1", "--duration", "30")
-    vehicle = Vehicle(simulation.address)
-    for hertz in (50, 5):
-        vehicle.demand(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 1e6 / hertz)
-        vehicle.receive("ATTITUDE", 1.0)
-        first = vehicle.receive("ATTITUDE", 1.0)
-        for _ in range(2 * hertz):
-            last = vehicle.receive("ATTITUDE", 1.0)
-        assert (last.time_boot_ms - first.time_boot_ms) == pytest.approx(2000, abs=2000 / hertz + 1)
+    simulation = simulate(*LASTING)
+    vehicle = Vehicle(simulation.address, patience=LIMIT)
+    for milliseconds in (20, 200):
+        vehicle.demand(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 1e3 * milliseconds)
+        # What was sent before comes first.
+        times = [vehicle.receive("ATTITUDE", LIMIT).time_boot_ms for _ in range(40)]
+        assert statistics.median(b - a for a, b in zip(times[10:], times[11:])) == milliseconds
     vehicle.close()
 
 
 def test_with_a_key_only_its_holder_commands(simulate, tmp_path):
     key = tmp_path / "key"
     key.write_text("correct horse\n")
-    simulation = simulate("--hold", "--speed", "4", "--duration", "5", "--mavlink-key", str(key))
-    stranger = Vehicle(simulation.address)
-    assert len(stranger.parameters()) == 34
-    stranger.patience = 1
-    with pytest.raises(GroundError, match="no answer"):
-        stranger.ask(lambda: stranger.master.arducopter_arm(), "COMMAND_ACK", lambda ack: True, "arm", attempts=1)
+    simulation = simulate(*LASTING, "--mavlink-key", str(key))
+    stranger = Vehicle(simulation.address, patience=LIMIT)
+    assert len(stranger.parameters()) == len(parameters())
+    stranger.patience = 1.0
+    with pytest.raises(GroundError, match="no answer to command 400"):
+        stranger.command(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     stranger.close()
-    holder = Vehicle(simulation.address, passphrase="correct horse")
+    holder = Vehicle(simulation.address, passphrase="correct horse", patience=LIMIT)
     assert holder.write("MPP_PATHS", 11) == 11
     holder.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
+    assert holder.receive("MPP_PLAN_STATUS", LIMIT) is not None
+    end(holder)
     holder.close()
     code, _, err = simulation.result()
-    assert "commands or writes were refused: no good signature" in err
+    assert code == 8 and "1 commands or writes were refused: no good signature" in err
 
 
 def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
-    simulation = simulate("--hold", "--speed", "1", "--duration", "60")
+    simulation = simulate(*LASTING)
 
     def run(*arguments):
         code = main(["--connect", simulation.address, *arguments])

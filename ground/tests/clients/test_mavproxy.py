@@ -1,12 +1,16 @@
 """MAVProxy, driven as from a keyboard; what happened is read from its own log."""
 
+import re
 import shutil
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
+
+from conftest import LASTING, LIMIT, parameters, until
 
 TOOLS = Path(sys.executable).parent
 
@@ -16,46 +20,91 @@ def tool(name):
     return str(path) if path.exists() else shutil.which(name)
 
 
-@pytest.mark.skipif(tool("mavproxy.py") is None, reason="MAVProxy is not installed")
-def test_mavproxy_reads_tunes_arms_and_records(simulate, tmp_path):
-    simulation = simulate("--hold", "--speed", "1", "--duration", "60")
-    log = tmp_path / "mav.tlog"
-    command = [
-        sys.executable, tool("mavproxy.py"), f"--master=udp:127.0.0.1:{simulation.port}", f"--logfile={log}",
-        f"--state-basedir={tmp_path}", "--default-modules=log,link,arm,mode,param,misc,cmdlong,wp",
-    ]
-    # It keeps its settings there.
-    environment = {"HOME": str(tmp_path), "PATH": str(TOOLS) + ":/usr/bin:/bin"}
-    proxy = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment,
-        cwd=tmp_path,
-    )
-    try:
-        # Parameters come before they can be set.
-        for pause, line in [
-            (7, "param set MPP_PATHS 12"), (1, "param set MPP_PATHS 99"), (2, "arm throttle"), (1, "long 511 30 20000"),
-            (1, "long 31999 1"), (1, "wp list"), (1, "mode CRUISE"), (4, "param save saved.parm"), (2, ""),
-        ]:
-            time.sleep(pause)
-            proxy.stdin.write(line + "\n")
-            proxy.stdin.flush()
-        proxy.stdin.close()
-        proxy.wait(timeout=20)
-        said = proxy.stdout.read()
-    finally:
-        if proxy.poll() is None:
-            proxy.kill()
-    assert "Received 34 parameters" in said, said
+class Proxy:
+    """A running MAVProxy: lines go in, and what it says is kept."""
 
-    def dump(kind):
-        command = [sys.executable, tool("mavlogdump.py"), "--types", kind, str(log)]
+    def __init__(self, port, directory):
+        self.log = directory / "mav.tlog"
+        command = [
+            sys.executable, "-u", tool("mavproxy.py"), f"--master=udp:127.0.0.1:{port}", f"--logfile={self.log}",
+            f"--state-basedir={directory}", "--default-modules=log,link,arm,mode,param,misc,cmdlong,wp",
+        ]
+        # It keeps its settings there.
+        environment = {"HOME": str(directory), "PATH": str(TOOLS) + ":/usr/bin:/bin"}
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            env=environment, cwd=directory,
+        )
+        self.said = ""
+        self.typed = 0
+        self.reader = threading.Thread(target=self.read, daemon=True)
+        self.reader.start()
+
+    def read(self):
+        while text := self.process.stdout.readline():
+            self.said += text
+
+    def hears(self, text):
+        """Waits until it has said this since the last line was typed."""
+        until(lambda: text in self.said[self.typed:], f"MAVProxy to say {text!r}")
+
+    def type(self, line):
+        self.typed = len(self.said)
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.wait(timeout=LIMIT)
+        self.reader.join(timeout=LIMIT)
+
+    def logged(self, kind):
+        command = [sys.executable, tool("mavlogdump.py"), "--types", kind, str(self.log)]
         return subprocess.run(command, capture_output=True, text=True, check=True).stdout
 
-    paths = [line for line in dump("PARAM_VALUE").splitlines() if "MPP_PATHS" in line]
+
+@pytest.fixture
+def proxy(simulate, tmp_path):
+    simulation = simulate(*LASTING)
+    proxy = Proxy(simulation.port, tmp_path)
+    yield proxy
+    if proxy.process.poll() is None:
+        proxy.process.kill()
+        proxy.process.wait()
+
+
+@pytest.mark.skipif(tool("mavproxy.py") is None, reason="MAVProxy is not installed")
+def test_mavproxy_reads_tunes_arms_and_records(proxy):
+    proxy.hears(f"Received {len(parameters())} parameters")
+    proxy.type("param set MPP_PATHS 12")
+
+    def is_set():
+        proxy.type("param show MPP_PATHS")
+        time.sleep(0.5)
+        return re.search(r"MPP_PATHS +12\.0", proxy.said)
+
+    until(is_set, "MPP_PATHS to be 12")
+    proxy.type("param set MPP_PATHS 99")
+    proxy.hears("MPP_PATHS: out of range")
+    proxy.type("arm throttle")
+    proxy.hears("Got COMMAND_ACK: COMPONENT_ARM_DISARM: ACCEPTED")
+    proxy.hears("ARMED")
+    proxy.type("long 511 30 20000")
+    proxy.hears("Got COMMAND_ACK: SET_MESSAGE_INTERVAL: ACCEPTED")
+    proxy.type("long 31999 1")
+    proxy.hears("command : 31999, result : 3")
+    proxy.type("wp list")
+    proxy.hears("Requesting 0 waypoints")
+    proxy.type("mode CRUISE")
+    proxy.hears("Mode CRUISE")
+    proxy.type("param save saved.parm")
+    proxy.hears(f"Saved {len(parameters())} parameters to saved.parm")
+    proxy.end()
+
+    paths = [line for line in proxy.logged("PARAM_VALUE").splitlines() if "MPP_PATHS" in line]
     assert "param_value : 25.0" in paths[0] and "param_value : 12.0" in paths[-1], paths
-    acks = dump("COMMAND_ACK")
+    acks = proxy.logged("COMMAND_ACK")
     for command, result in [(400, 0), (511, 0), (31_999, 3), (176, 0)]:
         assert f"command : {command}, result : {result}" in acks, acks
-    assert "count : 0" in dump("MISSION_COUNT")
-    heartbeats = dump("HEARTBEAT").splitlines()
-    assert any("custom_mode : 7" in line for line in heartbeats)
+    assert "count : 0" in proxy.logged("MISSION_COUNT")
+    assert "custom_mode : 7" in proxy.logged("HEARTBEAT")

@@ -2,13 +2,13 @@
 
 import os
 import random
+import statistics
 import subprocess
-import time
 from pathlib import Path
 
 import pytest
 
-from conftest import ROOT
+from conftest import LASTING, LIMIT, ROOT, parameters, until
 from mpp_ground.dialect import load
 
 mavlink = load()
@@ -20,18 +20,28 @@ FRAMES = Path(os.environ.get("FRAMES", ROOT / "target" / "release" / "examples" 
 
 @pytest.fixture
 def vehicle(simulate):
-    simulation = simulate("--hold", "--speed", "1", "--duration", "60", "--instance", "4")
+    simulation = simulate(*LASTING, "--instance", "4")
     master = mavutil.mavlink_connection(simulation.address, source_system=254)
-    assert master.wait_heartbeat(timeout=10) is not None
+    assert master.wait_heartbeat(timeout=LIMIT) is not None
     yield master
     master.close()
 
 
+def awaited(master, kind, accept=lambda message: True):
+    """The next message of a kind that is accepted."""
+    def look():
+        message = master.recv_match(type=kind, blocking=True, timeout=1)
+        return message if message is not None and accept(message) else None
+
+    return until(look, kind)
+
+
 def ack(master, command):
-    while (message := master.recv_match(type="COMMAND_ACK", blocking=True, timeout=3)) is not None:
-        if message.command == command:
-            return message.result
-    return None
+    return awaited(master, "COMMAND_ACK", lambda message: message.command == command).result
+
+
+def value(master, name):
+    return awaited(master, "PARAM_VALUE", lambda message: message.param_id == name).param_value
 
 
 def test_it_is_a_fixed_wing_that_is_read_tuned_and_armed(vehicle):
@@ -41,17 +51,19 @@ def test_it_is_a_fixed_wing_that_is_read_tuned_and_armed(vehicle):
     assert heartbeat.autopilot == mavlink.MAV_AUTOPILOT_GENERIC
     assert vehicle.flightmode == "AUTO"
 
+    expected = parameters()
     vehicle.param_fetch_all()
-    names = set()
-    while len(names) < 34:
-        value = vehicle.recv_match(type="PARAM_VALUE", blocking=True, timeout=3)
-        assert value is not None and value.param_type == mavlink.MAV_PARAM_TYPE_REAL32
-        names.add(value.param_id)
+    found = {}
+    while len(found) < len(expected):
+        message = awaited(vehicle, "PARAM_VALUE")
+        assert message.param_type == mavlink.MAV_PARAM_TYPE_REAL32
+        assert message.param_count == len(expected)
+        found[message.param_id] = message.param_value
+    assert found == pytest.approx(expected, rel=1e-6)
     vehicle.param_set_send("MPP_PATHS", 17)
-    assert vehicle.recv_match(type="PARAM_VALUE", blocking=True, timeout=3).param_value == 17
+    assert value(vehicle, "MPP_PATHS") == 17
     vehicle.param_fetch_one("MPP_PATHS")
-    assert vehicle.recv_match(type="PARAM_VALUE", blocking=True, timeout=3).param_value == 17
-
+    assert value(vehicle, "MPP_PATHS") == 17
     vehicle.mav.command_long_send(5, 1, 31_999, 0, *[0] * 7)
     assert ack(vehicle, 31_999) == mavlink.MAV_RESULT_UNSUPPORTED
     vehicle.mav.command_int_send(5, 1, 0, 31_998, 0, 0, *[0] * 7)
@@ -60,23 +72,19 @@ def test_it_is_a_fixed_wing_that_is_read_tuned_and_armed(vehicle):
     assert ack(vehicle, mavlink.MAV_CMD_COMPONENT_ARM_DISARM) == mavlink.MAV_RESULT_ACCEPTED
     vehicle.motors_armed_wait()
     vehicle.set_mode("CRUISE")
-    deadline = time.monotonic() + 5
-    while vehicle.flightmode != "CRUISE" and time.monotonic() < deadline:
-        vehicle.recv_match(type="HEARTBEAT", blocking=True, timeout=1)
-    assert vehicle.flightmode == "CRUISE"
+    awaited(vehicle, "HEARTBEAT", lambda heartbeat: vehicle.flightmode == "CRUISE")
 
 
 def test_an_interval_change_is_measured(vehicle):
-    def rate(seconds=2.0):
-        end, count = time.monotonic() + seconds, 0
-        while time.monotonic() < end:
-            count += vehicle.recv_match(type="ATTITUDE", blocking=True, timeout=0.5) is not None
-        return count / seconds
+    def interval():
+        """Milliseconds between attitudes, by the vehicle's clock; a datagram may be lost."""
+        times = [awaited(vehicle, "ATTITUDE").time_boot_ms for _ in range(40)]
+        return statistics.median(b - a for a, b in zip(times[5:], times[6:]))
 
-    assert rate() == pytest.approx(10, rel=0.3)
+    assert interval() == 100
     vehicle.mav.command_long_send(5, 1, 511, 0, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000, *[0] * 5)
     assert ack(vehicle, 511) == mavlink.MAV_RESULT_ACCEPTED
-    assert rate() == pytest.approx(50, rel=0.3)
+    assert interval() == 20
 
 
 def test_tens_of_vehicles_are_told_apart(simulate):
@@ -84,11 +92,14 @@ def test_tens_of_vehicles_are_told_apart(simulate):
     for instance in range(1, 20):
         simulate("--hold", "--instance", str(instance), port=first.port)
     master = mavutil.mavlink_connection(first.address)
-    deadline, systems = time.monotonic() + 20, set()
-    while len(systems) < 20 and time.monotonic() < deadline:
+    systems = set()
+
+    def all_heard():
         message = master.recv_match(type="HEARTBEAT", blocking=True, timeout=1)
-        if message is not None:
-            systems.add(message.get_srcSystem())
+        systems.update([] if message is None else [message.get_srcSystem()])
+        return len(systems) == 20
+
+    until(all_heard, "twenty vehicles")
     master.close()
     assert systems == set(range(1, 21))
 
@@ -112,10 +123,13 @@ def known(generator, mav):
 
 
 def unknown(generator):
+    """A frame of a message that the vehicle's dialect does not have, full of false beginnings."""
     length = generator.randrange(256)
     number = generator.randrange(55_000, 65_000).to_bytes(3, "little")
-    body = bytes(generator.choice([0xFD, 0xFE, 0, 1, generator.randrange(256)]) for _ in range(length + 2))
-    return bytes([0xFD, length, 0, 0, 1, 2, 3]) + number + body
+    body = bytes(generator.choice([0xFD, 0xFE, 0, 1, generator.randrange(256)]) for _ in range(length))
+    frame = bytes([0xFD, length, 0, 0, 1, 2, 3]) + number + body
+    crc = mavlink.x25crc(frame[1:] + bytes([generator.randrange(256)])).crc
+    return frame + crc.to_bytes(2, "little")
 
 
 def stream(seed):
@@ -136,28 +150,26 @@ def stream(seed):
             at = generator.randrange(len(frame))
             out += frame[:at] + bytes([frame[at] ^ 1 << generator.randrange(8)]) + frame[at + 1:]
         elif kind == 6:
-            out += unknown(generator)
+            frame = unknown(generator)
+            out += frame[: generator.choice([len(frame), generator.randrange(len(frame))])]
         else:
             out += generator.randbytes(generator.randrange(300))
     return out, planted
 
 
-def test_the_framer_finds_all_that_pymavlink_finds_and_more():
-    ours_total, theirs_total, planted_total, missed = 0, 0, 0, 0
+def test_the_framer_finds_all_that_was_sent_and_more_than_pymavlink():
+    ours_total, theirs_total, planted_total = 0, 0, 0
     for seed in range(40):
         bytes_, planted = stream(seed)
         lines = subprocess.run([FRAMES], input=bytes_, capture_output=True, check=True).stdout.split()
         ours = [bytes.fromhex(line.decode()) for line in lines]
+        assert ours == planted, seed
         parser = mavlink.MAVLink(None)
         parser.robust_parsing = True
         theirs = [bytes(m.get_msgbuf()) for m in parser.parse_buffer(bytes_) or [] if m.get_type() != "BAD_DATA"]
-        theirs = [frame for frame in theirs if frame in planted]
-        assert [frame for frame in ours if frame not in planted] == [], seed
-        missed += sum(frame not in ours for frame in theirs)
-        ours_total, theirs_total, planted_total = ours_total + len(ours), theirs_total + len(theirs), planted_total + len(planted)
+        theirs_total += sum(frame in planted for frame in theirs)
+        ours_total, planted_total = ours_total + len(ours), planted_total + len(planted)
     print(f"{planted_total} frames: framer {ours_total}, pymavlink {theirs_total}")
-    # Only what stands where an unknown frame says that its payload is.
-    assert missed <= 2 and ours_total >= planted_total - 5
     assert ours_total > theirs_total
 
 

@@ -19,8 +19,8 @@ use std::time::Duration;
 const BATCH: usize = 5;
 /// Longest head of a request that is read [bytes].
 const HEAD: u64 = 8192;
-/// How long the end of a flight waits for those who look.
-const FAREWELL: Duration = Duration::from_secs(2);
+/// How long the end of a flight waits for those who look; one that takes nothing any more is left.
+const FAREWELL: Duration = Duration::from_secs(10);
 
 /// What a page asks for.
 #[derive(Clone, Copy, Debug, PartialEq)]
