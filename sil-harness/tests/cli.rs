@@ -300,7 +300,7 @@ fn telemetry_goes_out_over_udp() {
     // Two seconds of everything; one heartbeat and a text at the end.
     let mut ids = std::collections::BTreeMap::new();
     let mut datagram = [0; 300];
-    for _ in 0..74 {
+    for _ in 0..84 {
         let length = ground.recv(&mut datagram).unwrap();
         assert!(length > 9 && datagram[0] == 0xFD, "MAVLink 2 magic");
         let id = u32::from_le_bytes([datagram[7], datagram[8], datagram[9], 0]);
@@ -311,6 +311,7 @@ fn telemetry_goes_out_over_udp() {
         (1, 2),
         (30, 20),
         (32, 20),
+        (33, 10),
         (74, 20),
         (132, 2),
         (253, 1),

@@ -76,6 +76,7 @@ def proxy(simulate, tmp_path):
 @pytest.mark.skipif(tool("mavproxy.py") is None, reason="MAVProxy is not installed")
 def test_mavproxy_reads_tunes_arms_and_records(proxy):
     proxy.hears(f"Received {len(parameters())} parameters")
+    proxy.type("set flushlogs True")
     proxy.type("param set MPP_PATHS 12")
 
     def is_set():
@@ -99,6 +100,8 @@ def test_mavproxy_reads_tunes_arms_and_records(proxy):
     proxy.hears("Mode CRUISE")
     proxy.type("param save saved.parm")
     proxy.hears(f"Saved {len(parameters())} parameters to saved.parm")
+    # What it has not written when it ends is lost.
+    until(lambda: "custom_mode : 7" in proxy.logged("HEARTBEAT"), "CRUISE in MAVProxy's log")
     proxy.end()
 
     paths = [line for line in proxy.logged("PARAM_VALUE").splitlines() if "MPP_PATHS" in line]
@@ -107,4 +110,3 @@ def test_mavproxy_reads_tunes_arms_and_records(proxy):
     for command, result in [(400, 0), (511, 0), (31_999, 3), (176, 0)]:
         assert f"command : {command}, result : {result}" in acks, acks
     assert "count : 0" in proxy.logged("MISSION_COUNT")
-    assert "custom_mode : 7" in proxy.logged("HEARTBEAT")

@@ -81,7 +81,6 @@ pub enum Refusal {
 #[derive(Clone)]
 pub struct Verifier {
     key: Key,
-    /// Newest time seen [10 us since 2015-01-01].
     newest: u64,
     streams: heapless::Vec<Stream, STREAMS>,
 }
@@ -103,6 +102,17 @@ impl Verifier {
             newest: time,
             streams: heapless::Vec::new(),
         }
+    }
+
+    /// Moves the time on; it never goes back.
+    pub fn set_time(&mut self, time: u64) {
+        self.newest = self.newest.max(time);
+    }
+
+    /// The newest time that was set or seen [10 us since 2015-01-01].
+    #[must_use]
+    pub const fn time(&self) -> u64 {
+        self.newest
     }
 
     /// Whether the frame is signed with the key and is no repetition.

@@ -1,27 +1,25 @@
 //! Flags of a flight with people on the ground.
 
-use super::{FAILURE, Failure, LINK, USAGE, talk};
-use crate::ground::transport::{Transport, address, usual_addresses};
+mod crew;
+mod pacer;
+
+use super::{Failure, LINK, USAGE, talk};
+use crate::ground::transport::{Transport, address, signing_time, usual_addresses};
 use crate::ground::vehicle::{Vehicle, VehicleConfig};
-use crate::ground::{Again, Ground, Order, OrderEntry, Refused, param_file};
+use crate::ground::{Again, Order, OrderEntry, Refused, param_file};
 use crate::log::FlightLog;
 use crate::picture::live::Live;
-use crate::run::{FlyError, Moment, header};
-use crate::scenario::{Scenario, TICKS_PER_SECOND};
+use crate::run::header;
+use crate::scenario::Scenario;
+use crew::Crew;
 use flight_node::parameters::{PARAMETERS, Tuning};
 use hil_protocol::mavlink::Key;
 use indicatif::ProgressBar;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::Planner;
-use mpp_core::vehicle::VehicleState;
+use pacer::{Pacer, Speed, speed};
 use std::fs::File;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
-
-/// Simulated seconds of a station's silence after which it is lost, at the pace of real time.
-const PATIENCE: u32 = 5;
-/// 2015-01-01T00:00:00Z, from which signatures count [s since 1970].
-const SIGNING_EPOCH: u64 = 1_420_070_400;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct GroundArgs {
@@ -53,20 +51,6 @@ pub(super) struct GroundArgs {
     /// Speed against real time, for instance 1, or max [default: max, with --live 1]
     #[arg(long, value_parser = speed)]
     speed: Option<Speed>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Speed {
-    Max,
-    Times(f64),
-}
-
-fn speed(text: &str) -> Result<Speed, String> {
-    match text.parse::<f64>() {
-        _ if text == "max" => Ok(Speed::Max),
-        Ok(times) if times.is_finite() && times > 0.0 => Ok(Speed::Times(times)),
-        _ => Err("give a positive number, or max".to_owned()),
-    }
 }
 
 impl GroundArgs {
@@ -104,10 +88,7 @@ impl GroundArgs {
             pacer: Pacer::new(self.speed()),
             progress,
         };
-        Ok(match self.again()? {
-            Some(orders) => Again::new(Some(orders), crew),
-            None => Again::new(None, crew),
-        })
+        Ok(Again::new(self.again()?, crew))
     }
 
     fn transport(&self) -> Result<Option<Transport>, Failure> {
@@ -121,13 +102,7 @@ impl GroundArgs {
         }
         let vehicle = Vehicle::new(&VehicleConfig {
             instance: self.instance,
-            patience: match self.speed() {
-                // A station's second is any number of ours.
-                Speed::Max => None,
-                Speed::Times(times) => {
-                    Some((f64::from(PATIENCE * TICKS_PER_SECOND) * times.max(1.0)) as u32)
-                }
-            },
+            patience: self.speed().patience(),
             hold: self.hold,
             key: self.key()?,
         });
@@ -180,12 +155,7 @@ impl GroundArgs {
                 "no passphrase in the first line",
             ));
         }
-        let since_1970 = SystemTime::UNIX_EPOCH
-            .elapsed()
-            .unwrap_or_default()
-            .as_secs();
-        let time = since_1970.saturating_sub(SIGNING_EPOCH) * 100_000;
-        Ok(Some((Key::of_passphrase(passphrase), time)))
+        Ok(Some((Key::of_passphrase(passphrase), signing_time())))
     }
 
     /// The orders of a log.
@@ -245,155 +215,4 @@ fn client_lines(instance: u8, peer: &str) -> String {
          \x20 mavsdk: add_any_connection('udpin://{peer}')\n\
          \x20 mpp-ground --connect udpin:{peer} monitor"
     )
-}
-
-/// Keeps a flight at its pace.
-struct Pacer {
-    /// As the command line has it.
-    started: Speed,
-    speed: Speed,
-    begin: Instant,
-    ticks: u32,
-}
-
-impl Pacer {
-    fn new(speed: Speed) -> Self {
-        Self {
-            started: speed,
-            speed,
-            begin: Instant::now(),
-            ticks: 0,
-        }
-    }
-
-    /// Does what the pages of a live flight ask for: waits while they pause, and takes their speed.
-    fn obey(&mut self, live: &Live) {
-        let mut wish = live.wish();
-        let paused = wish.pause;
-        while wish.pause {
-            std::thread::sleep(Duration::from_millis(20));
-            wish = live.wish();
-        }
-        let speed = match wish.speed {
-            None => self.started,
-            Some(times) if times.is_finite() => Speed::Times(times),
-            Some(_) => Speed::Max,
-        };
-        if paused || speed != self.speed {
-            *self = Self {
-                started: self.started,
-                ..Self::new(speed)
-            };
-        }
-    }
-
-    /// Waits for the end of a tick; one at the start takes its time even if the flight takes none.
-    fn wait(&mut self, at_start: bool) {
-        let times = match self.speed {
-            Speed::Max if !at_start => return,
-            Speed::Max => 1.0,
-            Speed::Times(times) => times,
-        };
-        self.ticks += 1;
-        let due = f64::from(self.ticks) / f64::from(TICKS_PER_SECOND) / times;
-        std::thread::sleep(Duration::from_secs_f64(due).saturating_sub(self.begin.elapsed()));
-    }
-}
-
-/// Whoever the command line brings along.
-pub(super) struct Crew {
-    /// Orders for before the first tick.
-    orders: Vec<Order>,
-    /// How many orders of our own are given and not settled.
-    unsettled: usize,
-    /// The values in force.
-    tuning: Option<Tuning>,
-    live: Option<Live>,
-    transport: Option<Transport>,
-    pacer: Pacer,
-    progress: ProgressBar,
-}
-
-impl Crew {
-    /// The flight is over.
-    pub(super) fn end(self, result: &Result<FlightLog, FlyError>) -> Result<(), Failure> {
-        self.progress.finish_and_clear();
-        let how = match result {
-            Ok(log) => log.summary.outcome.to_string(),
-            Err(error) => error.to_string(),
-        };
-        if let (Some(live), Ok(log)) = (self.live, result) {
-            live.end(&log.summary);
-        }
-        let Some(transport) = self.transport else {
-            return Ok(());
-        };
-        let vehicle = transport
-            .end(&how)
-            .map_err(|error| Failure::new(FAILURE, format!("--tlog: {error}")))?;
-        if vehicle.refused_signatures() > 0 {
-            talk(format_args!(
-                "{} commands or writes were refused: no good signature",
-                vehicle.refused_signatures()
-            ));
-        }
-        Ok(())
-    }
-}
-
-impl Ground for Crew {
-    fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
-        self.tuning = Some(*tuning);
-        if let Some(transport) = &mut self.transport {
-            transport.begin(tuning, start);
-        }
-    }
-
-    fn orders(&mut self, tick: u32) -> Vec<Order> {
-        let mut orders = std::mem::take(&mut self.orders);
-        self.unsettled = orders.len();
-        if let Some(transport) = &mut self.transport {
-            orders.extend(transport.orders(tick));
-        }
-        orders
-    }
-
-    fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
-        self.tuning = Some(*tuning);
-        if self.unsettled > 0 {
-            self.unsettled -= 1;
-            if let Err(refused) = result {
-                talk(format_args!("order {order:?}: {refused}"));
-            }
-            if let Some(transport) = &mut self.transport {
-                transport.tuned(tuning);
-            }
-        } else if let Some(transport) = &mut self.transport {
-            transport.settled(order, result, tuning);
-        }
-    }
-
-    fn ready(&mut self) -> bool {
-        let Some(transport) = &mut self.transport else {
-            return true;
-        };
-        if transport.ready() {
-            return true;
-        }
-        transport.hold();
-        self.pacer.wait(true);
-        false
-    }
-
-    fn watch(&mut self, moment: &Moment<'_>) {
-        self.progress.inc(1);
-        if let Some(transport) = &mut self.transport {
-            transport.watch(moment);
-        }
-        if let (Some(live), Some(tuning)) = (&mut self.live, &self.tuning) {
-            live.watch(moment, tuning);
-            self.pacer.obey(live);
-        }
-        self.pacer.wait(false);
-    }
 }

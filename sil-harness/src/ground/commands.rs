@@ -49,44 +49,80 @@ impl Mode {
 }
 
 /// A command, however it came.
-struct Command {
+pub(super) struct Command {
     number: u16,
     first: f32,
     second: f32,
     from: Address,
 }
 
+/// What changes a flight or the link, if it is meant for this vehicle.
+pub(super) enum Demand {
+    Command(Command),
+    Parameter(PARAM_SET_DATA),
+    Mode(SET_MODE_DATA),
+    Streams(REQUEST_DATA_STREAM_DATA),
+}
+
 impl Vehicle {
-    /// Deals with what changes a flight or the link: commands and parameter writes.
-    pub(super) fn handle_command(&mut self, frame: &Frame<'_>, from: Address) {
-        if let Some(long) = frame.decode::<COMMAND_LONG_DATA>() {
-            if self.is_target(long.target_system, long.target_component) {
-                self.command(&Command {
-                    number: long.command,
-                    first: long.param1,
-                    second: long.param2,
-                    from,
-                });
-            }
+    /// What a frame asks this vehicle to change; none if it is something else, or another's.
+    pub(super) fn demand(&self, frame: &Frame<'_>, from: Address) -> Option<Demand> {
+        let (system, component, demand) = if let Some(long) = frame.decode::<COMMAND_LONG_DATA>() {
+            let command = Command {
+                number: long.command,
+                first: long.param1,
+                second: long.param2,
+                from,
+            };
+            let COMMAND_LONG_DATA {
+                target_system,
+                target_component,
+                ..
+            } = long;
+            (target_system, target_component, Demand::Command(command))
         } else if let Some(int) = frame.decode::<COMMAND_INT_DATA>() {
-            if self.is_target(int.target_system, int.target_component) {
-                self.command(&Command {
-                    number: int.command,
-                    first: int.param1,
-                    second: int.param2,
-                    from,
-                });
-            }
+            let command = Command {
+                number: int.command,
+                first: int.param1,
+                second: int.param2,
+                from,
+            };
+            (
+                int.target_system,
+                int.target_component,
+                Demand::Command(command),
+            )
         } else if let Some(write) = frame.decode::<PARAM_SET_DATA>() {
-            if self.is_target(write.target_system, write.target_component) {
-                self.write_parameter(&write);
-            }
-        } else if let Some(set) = frame.decode::<SET_MODE_DATA>()
-            && self.is_target(set.target_system, 0)
-        {
-            match Mode::from_number(set.custom_mode) {
+            (
+                write.target_system,
+                write.target_component,
+                Demand::Parameter(write),
+            )
+        } else if let Some(set) = frame.decode::<SET_MODE_DATA>() {
+            (set.target_system, 0, Demand::Mode(set))
+        } else {
+            let ask = frame.decode::<REQUEST_DATA_STREAM_DATA>()?;
+            (
+                ask.target_system,
+                ask.target_component,
+                Demand::Streams(ask),
+            )
+        };
+        self.is_target(system, component).then_some(demand)
+    }
+
+    pub(super) fn meet(&mut self, demand: Demand) {
+        match demand {
+            Demand::Command(command) => self.command(&command),
+            Demand::Parameter(write) => self.write_parameter(&write),
+            Demand::Mode(set) => match Mode::from_number(set.custom_mode) {
                 Some(mode) => self.order(Order::Mode { mode }, Waiting::Nobody),
                 None => self.say(Severity::Warning, "No such mode: AUTO or CRUISE"),
+            },
+            Demand::Streams(ask) => {
+                let start = ask.start_stop == 1;
+                self.streams
+                    .set_group(ask.req_stream_id, ask.req_message_rate, start);
             }
         }
     }
@@ -96,15 +132,18 @@ impl Vehicle {
             number::ARM => self.arm(command),
             number::SET_MODE => self.set_mode(command),
             number::TERMINATE => self.terminate(command),
-            number::HOME => self.request(HOME_POSITION_DATA::ID),
-            number::GET_INTERVAL => self.tell_interval(command),
-            number::SET_INTERVAL => {
-                let id = id(command.first);
-                accepted_if(self.streams.set(id, command.second))
-            }
-            number::REQUEST_MESSAGE => self.request(id(command.first)),
-            number::REQUEST_PROTOCOL => self.request(PROTOCOL_VERSION_DATA::ID),
-            number::REQUEST_VERSION => self.request(AUTOPILOT_VERSION_DATA::ID),
+            number::SET_INTERVAL => accepted_if(
+                whole(command.first).is_some_and(|id| self.streams.set(id, command.second)),
+            ),
+            number::REQUEST_MESSAGE => match whole(command.first) {
+                Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second),
+                id => self.request(id),
+            },
+            // Older ways to ask for the same.
+            number::GET_INTERVAL => self.tell_interval(command.first),
+            number::HOME => self.request(Some(HOME_POSITION_DATA::ID)),
+            number::REQUEST_PROTOCOL => self.request(Some(PROTOCOL_VERSION_DATA::ID)),
+            number::REQUEST_VERSION => self.request(Some(AUTOPILOT_VERSION_DATA::ID)),
             _ => Some(Outcome::Unsupported),
         };
         if let Some(outcome) = outcome {
@@ -136,8 +175,10 @@ impl Vehicle {
     }
 
     fn set_mode(&mut self, command: &Command) -> Option<Outcome> {
-        let custom = id(command.first) & u32::from(CUSTOM_MODE) != 0;
-        let mode = Mode::from_number(id(command.second)).filter(|_| custom);
+        let custom = |flags: u32| flags & u32::from(CUSTOM_MODE) != 0;
+        let mode = whole(command.first)
+            .filter(|flags| custom(*flags))
+            .and_then(|_| Mode::from_number(whole(command.second)?));
         let Some(mode) = mode else {
             self.say(Severity::Warning, "No such mode: AUTO or CRUISE");
             return Some(Outcome::Denied);
@@ -154,18 +195,20 @@ impl Vehicle {
         None
     }
 
-    fn tell_interval(&mut self, command: &Command) -> Option<Outcome> {
-        let id = id(command.first);
-        let interval_us = self.streams.interval(id);
-        self.send(&MESSAGE_INTERVAL_DATA {
-            message_id: u16::try_from(id).unwrap_or(u16::MAX),
-            interval_us,
-        });
-        Some(Outcome::Accepted)
+    fn tell_interval(&mut self, of: f32) -> Option<Outcome> {
+        let known = whole(of).and_then(|id| Some((id, u16::try_from(id).ok()?)));
+        if let Some((id, message_id)) = known {
+            let interval_us = self.streams.interval(id);
+            self.send(&MESSAGE_INTERVAL_DATA {
+                message_id,
+                interval_us,
+            });
+        }
+        accepted_if(known.is_some())
     }
 
-    fn request(&mut self, id: u32) -> Option<Outcome> {
-        accepted_if(self.send_by_id(id))
+    fn request(&mut self, id: Option<u32>) -> Option<Outcome> {
+        accepted_if(id.is_some_and(|id| self.send_by_id(id)))
     }
 
     /// What became of an order that was a command.
@@ -205,7 +248,10 @@ fn accepted_if(done: bool) -> Option<Outcome> {
     })
 }
 
-/// A whole number that was sent as a float; saturates, and is 0 for what is no number.
-fn id(value: f32) -> u32 {
-    value.round() as u32
+/// A number of something that was sent as a float; none if it is no such number.
+fn whole(value: f32) -> Option<u32> {
+    let number = value as u32;
+    // Not equal either if it is no number, negative, or out of range.
+    #[expect(clippy::float_cmp, reason = "whole numbers are exact")]
+    (number as f32 == value && number < u32::MAX).then_some(number)
 }

@@ -1,5 +1,6 @@
 //! What anybody may ask, and every message that can be sent on request.
 
+use super::Mode;
 use super::commands::CUSTOM_MODE;
 use super::tlog::EPOCH_US;
 use super::vehicle::{Address, Vehicle};
@@ -14,24 +15,30 @@ const FIXED_WING: u8 = 1;
 const GENERIC: u8 = 0;
 /// MAV_STATE_STANDBY and MAV_STATE_ACTIVE.
 const STATES: [u8; 2] = [3, 4];
-/// MAV_MODE_FLAG: stabilised, by its own plan, in the loop.
-const MODE_FLAGS: u8 = CUSTOM_MODE | 4 | 16 | 32;
+/// MAV_MODE_FLAG: stabilised, with a mode of its own kind; by its own plan.
+const MODE_FLAGS: u8 = CUSTOM_MODE | 16;
+const AUTO: u8 = 4;
 /// MAV_MODE_FLAG_SAFETY_ARMED.
 const ARMED: u8 = 128;
 /// MAV_SYS_STATUS_SENSOR: airspeed, laser, attitude reference, motors.
 const SENSORS: u32 = 0x10 | 0x100 | 0x20_0000 | 0x8000;
 /// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as they are.
 const CAPABILITIES: u64 = 8 | 2048 | 8192 | 131_072;
-/// Where the field lies, for maps [1e-7 deg, mm]: nowhere in particular.
-const HOME: (i32, i32, i32) = (473_977_420, 85_455_940, 488_000);
+/// Where the field lies, for maps [deg]: nowhere in particular, and at sea level, so that every
+/// altitude is a height.
+const HOME: (f64, f64) = (47.397_742, 8.545_594);
+/// A degree northwards [m].
+const DEGREE: f64 = 111_319.49;
 /// Largest thrust that the throttle display knows [N]: it only scales a percentage.
 const FULL_THROTTLE: f64 = 15.0;
+/// MAV_MISSION_UNSUPPORTED.
+const NO_MISSIONS: u8 = 3;
 /// Beams of an [`MPP_LIDAR_SCAN_DATA`].
 const BEAMS: usize = MPP_LIDAR_SCAN_DATA::DEFAULT.ranges.len();
 
 impl Vehicle {
-    /// Answers what changes nothing; false if the frame is something else.
-    pub(super) fn handle_inquiry(&mut self, frame: &Frame<'_>, from: Address) -> bool {
+    /// Answers what changes nothing.
+    pub(super) fn handle_inquiry(&mut self, frame: &Frame<'_>, from: Address) {
         if let Some(request) = frame.decode::<PARAM_REQUEST_LIST_DATA>() {
             if self.is_target(request.target_system, request.target_component) {
                 self.list_parameters();
@@ -51,9 +58,10 @@ impl Vehicle {
             }
         } else if let Some(sync) = frame.decode::<TIMESYNC_DATA>() {
             // Else it is an answer.
-            if sync.tc1 == 0 {
+            if sync.tc1 == 0 && self.is_target(sync.target_system, sync.target_component) {
                 self.send(&TIMESYNC_DATA {
-                    tc1: i64::from(self.milliseconds()) * 1_000_000,
+                    // At the start, too, an answer must not look like a question.
+                    tc1: (i64::from(self.milliseconds()) * 1_000_000).max(1),
                     ts1: sync.ts1,
                     target_system: from.system,
                     target_component: from.component,
@@ -69,19 +77,27 @@ impl Vehicle {
                     ..MISSION_COUNT_DATA::DEFAULT
                 });
             }
-        } else if let Some(request) = frame.decode::<REQUEST_DATA_STREAM_DATA>() {
-            if self.is_target(request.target_system, request.target_component) {
-                self.streams.set_group(
-                    request.req_stream_id,
-                    request.req_message_rate,
-                    request.start_stop == 1,
-                );
+        } else if let Some(upload) = frame.decode::<MISSION_COUNT_DATA>() {
+            if self.is_target(upload.target_system, upload.target_component) {
+                // There are no missions but the empty one.
+                let verdict = if upload.count == 0 { 0 } else { NO_MISSIONS };
+                self.acknowledge_mission(verdict, upload.mission_type, from);
             }
-        } else {
-            // Of no consequence, whoever sent it.
-            return frame.id == SYSTEM_TIME_DATA::ID;
+        } else if let Some(clear) = frame.decode::<MISSION_CLEAR_ALL_DATA>()
+            && self.is_target(clear.target_system, clear.target_component)
+        {
+            self.acknowledge_mission(0, clear.mission_type, from);
         }
-        true
+    }
+
+    fn acknowledge_mission(&mut self, verdict: u8, mission_type: u8, to: Address) {
+        self.send(&MISSION_ACK_DATA {
+            target_system: to.system,
+            target_component: to.component,
+            mavtype: verdict,
+            mission_type,
+            ..MISSION_ACK_DATA::DEFAULT
+        });
     }
 
     /// Sends a message as things are now; false if it is none that can be had so.
@@ -93,9 +109,10 @@ impl Vehicle {
                 time_unix_usec: EPOCH_US + self.microseconds(),
                 time_boot_ms: self.milliseconds(),
             }),
-            ATTITUDE_DATA::ID | LOCAL_POSITION_NED_DATA::ID | VFR_HUD_DATA::ID => {
-                self.send_motion(id);
-            }
+            ATTITUDE_DATA::ID
+            | LOCAL_POSITION_NED_DATA::ID
+            | GLOBAL_POSITION_INT_DATA::ID
+            | VFR_HUD_DATA::ID => self.send_motion(id),
             AUTOPILOT_VERSION_DATA::ID => self.send_version(),
             HOME_POSITION_DATA::ID => self.send_home(),
             PROTOCOL_VERSION_DATA::ID => self.send(&PROTOCOL_VERSION_DATA {
@@ -111,11 +128,12 @@ impl Vehicle {
 
     pub(super) fn send_heartbeat(&mut self) {
         let armed = if self.armed { ARMED } else { 0 };
+        let by_plan = if self.mode == Mode::Auto { AUTO } else { 0 };
         self.send(&HEARTBEAT_DATA {
             custom_mode: self.mode.number(),
             mavtype: FIXED_WING,
             autopilot: GENERIC,
-            base_mode: MODE_FLAGS | armed,
+            base_mode: MODE_FLAGS | by_plan | armed,
             system_status: STATES[usize::from(self.armed)],
             mavlink_version: MINOR_MAVLINK_VERSION,
         });
@@ -140,7 +158,8 @@ impl Vehicle {
     }
 
     /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
-    /// height; heading is north, roll and yaw are zero.
+    /// height; heading is north, roll and yaw are zero. It does not know the wind: over ground it
+    /// moves as in the air.
     fn send_motion(&mut self, id: u32) {
         let (air, thrust, _) = self.motion();
         let air = *air;
@@ -162,6 +181,17 @@ impl Vehicle {
                 vx: forward as f32,
                 vy: 0.0,
                 vz: -climb as f32,
+            }),
+            GLOBAL_POSITION_INT_DATA::ID => self.send(&GLOBAL_POSITION_INT_DATA {
+                time_boot_ms,
+                lat: ((HOME.0 + self.state.x / DEGREE) * 1e7).round() as i32,
+                lon: (HOME.1 * 1e7).round() as i32,
+                alt: (self.state.z * 1e3).round() as i32,
+                relative_alt: (self.state.z * 1e3).round() as i32,
+                vx: (forward * 1e2).round() as i16,
+                vy: 0,
+                vz: (-climb * 1e2).round() as i16,
+                hdg: 0,
             }),
             _ => self.send(&VFR_HUD_DATA {
                 airspeed: air.airspeed as f32,
@@ -191,11 +221,9 @@ impl Vehicle {
     }
 
     fn send_home(&mut self) {
-        let (latitude, longitude, altitude) = HOME;
         self.send(&HOME_POSITION_DATA {
-            latitude,
-            longitude,
-            altitude,
+            latitude: (HOME.0 * 1e7).round() as i32,
+            longitude: (HOME.1 * 1e7).round() as i32,
             q: [1.0, 0.0, 0.0, 0.0],
             time_usec: self.microseconds(),
             ..HOME_POSITION_DATA::DEFAULT
@@ -244,7 +272,6 @@ impl Vehicle {
                 current_distance: nearest.unwrap_or(reach.saturating_add(1)),
                 covariance: u8::MAX,
                 vertical_fov: beams * scan.angle_increment,
-                quaternion: [1.0, 0.0, 0.0, 0.0],
                 ..DISTANCE_SENSOR_DATA::DEFAULT
             });
         }

@@ -29,6 +29,14 @@ impl Stations {
         }
     }
 
+    /// Another patience, which begins at this tick.
+    pub(super) fn set_patience(&mut self, patience: Option<u32>, tick: u32) {
+        self.patience = patience;
+        for station in &mut self.heard {
+            station.last = tick;
+        }
+    }
+
     /// A station's heartbeat.
     pub(super) fn hear(&mut self, system: u8, tick: u32) -> Option<Change> {
         let Some(station) = self.heard.iter_mut().find(|s| s.system == system) else {
@@ -74,6 +82,16 @@ mod tests {
         assert_eq!(stations.hear(255, 700), Some(Change::Returned));
         assert!(stations.missing(1200).is_empty());
         assert_eq!(stations.missing(1201), [(255, Change::Lost)]);
+    }
+
+    /// Ticks that flew by while there was none count for nothing.
+    #[test]
+    fn a_new_patience_begins_when_it_is_set() {
+        let mut stations = Stations::new(None);
+        stations.hear(255, 0);
+        stations.set_patience(Some(500), 9000);
+        assert!(stations.missing(9500).is_empty());
+        assert_eq!(stations.missing(9501), [(255, Change::Lost)]);
     }
 
     #[test]

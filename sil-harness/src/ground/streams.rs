@@ -18,13 +18,17 @@ enum Rate {
 }
 
 /// The messages that are sent without being asked for each time: id and usual rate.
-const USUAL: [(u32, Rate); 11] = [
+const USUAL: [(u32, Rate); 12] = [
     (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (
         LOCAL_POSITION_NED_DATA::ID,
         Rate::Every(TICKS_PER_SECOND / 10),
+    ),
+    (
+        GLOBAL_POSITION_INT_DATA::ID,
+        Rate::Every(TICKS_PER_SECOND / 5),
     ),
     (VFR_HUD_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (SYSTEM_TIME_DATA::ID, Rate::Never),
@@ -99,10 +103,11 @@ impl Streams {
                 SYS_STATUS_DATA::ID,
                 ATTITUDE_DATA::ID,
                 LOCAL_POSITION_NED_DATA::ID,
+                GLOBAL_POSITION_INT_DATA::ID,
                 VFR_HUD_DATA::ID,
             ],
             2 => &[SYS_STATUS_DATA::ID],
-            6 => &[LOCAL_POSITION_NED_DATA::ID],
+            6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
             10 => &[ATTITUDE_DATA::ID],
             11 => &[VFR_HUD_DATA::ID],
             _ => &[],

@@ -9,6 +9,7 @@ use mpp_core::vehicle::VehicleState;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs, UdpSocket};
+use std::time::{Duration, SystemTime};
 
 /// Where ground stations listen by custom.
 pub const STATION_PORT: u16 = 14550;
@@ -18,6 +19,10 @@ pub const PROGRAM_PORT: u16 = 14540;
 const GUESTS: usize = 16;
 /// Longest datagram that is read [bytes].
 const DATAGRAM: usize = 2048;
+/// Datagrams that are read in a tick: who sends more does not stop the flight.
+const A_TICK: usize = 1000;
+/// 2015-01-01T00:00:00Z, from which signatures count, since 1970.
+const SIGNING_EPOCH: Duration = Duration::from_secs(1_420_070_400);
 
 /// A vehicle with its sockets.
 pub struct Transport {
@@ -38,6 +43,14 @@ pub fn usual_addresses(instance: u8) -> Vec<SocketAddr> {
     [STATION_PORT, port]
         .map(|port| SocketAddr::from((Ipv4Addr::LOCALHOST, port)))
         .to_vec()
+}
+
+/// The time of signatures by this machine's clock [10 us since 2015-01-01].
+#[must_use]
+pub fn signing_time() -> u64 {
+    let since_1970 = SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default();
+    let time = since_1970.saturating_sub(SIGNING_EPOCH).as_micros() / 10;
+    u64::try_from(time).unwrap_or(u64::MAX)
 }
 
 /// The addresses of `HOST:PORT`.
@@ -72,7 +85,8 @@ impl Transport {
     pub fn connect(&mut self, peers: Vec<SocketAddr>) -> io::Result<()> {
         let local = peers.iter().all(|peer| peer.ip().is_loopback());
         let host = match (peers.first(), local) {
-            (Some(SocketAddr::V6(_)), _) => "[::]:0",
+            (Some(SocketAddr::V6(_)), true) => "[::1]:0",
+            (Some(SocketAddr::V6(_)), false) => "[::]:0",
             (_, true) => "127.0.0.1:0",
             (_, false) => "0.0.0.0:0",
         };
@@ -101,6 +115,11 @@ impl Transport {
         self.vehicle.tuned(tuning);
     }
 
+    /// Another number of ticks of silence after which a station is lost; none: never.
+    pub fn set_patience(&mut self, patience: Option<u32>) {
+        self.vehicle.set_patience(patience);
+    }
+
     /// The flight is over.
     ///
     /// # Errors
@@ -117,11 +136,15 @@ impl Transport {
     /// Takes in everything that has come.
     fn listen(&mut self) {
         let since_start = self.vehicle.microseconds();
+        self.vehicle.set_signing_time(signing_time());
         let mut buffer = [0; DATAGRAM];
         // Whatever else a socket says, for instance that nobody listens yet, may be over at the
         // next tick.
-        while let Some(Ok((length, from))) = self.socket.as_ref().map(|s| s.recv_from(&mut buffer))
-        {
+        for _ in 0..A_TICK {
+            let Some(Ok((length, from))) = self.socket.as_ref().map(|s| s.recv_from(&mut buffer))
+            else {
+                break;
+            };
             let frames = self.vehicle.receive(&buffer[..length]);
             if !frames.is_empty()
                 && !self.peers.contains(&from)

@@ -154,6 +154,16 @@ impl Vehicle {
         self.security.refused
     }
 
+    /// Moves the time of signatures on [10 us since 2015-01-01]; without it they are the start's.
+    pub fn set_signing_time(&mut self, time: u64) {
+        self.security.set_time(time);
+    }
+
+    /// Another number of ticks of silence, from now on, after which a station is lost.
+    pub fn set_patience(&mut self, patience: Option<u32>) {
+        self.stations.set_patience(patience, self.now);
+    }
+
     /// Takes in a datagram from a station; gives the intact frames in it.
     pub fn receive(&mut self, datagram: &[u8]) -> Vec<Vec<u8>> {
         let mut frames = Vec::new();
@@ -260,11 +270,14 @@ impl Vehicle {
                     self.note_station(frame.system, change);
                 }
             }
-        } else if self.handle_inquiry(frame, from) {
-        } else if !trusted {
-            self.security.refused = self.security.refused.saturating_add(1);
+        } else if let Some(demand) = self.demand(frame, from) {
+            if trusted {
+                self.meet(demand);
+            } else {
+                self.security.refused = self.security.refused.saturating_add(1);
+            }
         } else {
-            self.handle_command(frame, from);
+            self.handle_inquiry(frame, from);
         }
     }
 

@@ -36,6 +36,13 @@ fn every_command_is_acknowledged() {
         (command(512, 242.0, 0.0), ACCEPTED),
         (command(512, 300.0, 0.0), ACCEPTED),
         (command(512, 330.0, 0.0), DENIED),
+        // 0 is the heartbeat's number: what is no number must not become it.
+        (command(512, f32::NAN, 0.0), DENIED),
+        (command(512, -1.0, 0.0), DENIED),
+        (command(512, 30.5, 0.0), DENIED),
+        (command(512, f32::INFINITY, 0.0), DENIED),
+        (command(511, f32::NAN, 0.0), DENIED),
+        (command(510, -30.0, 0.0), DENIED),
         (command(410, 0.0, 0.0), ACCEPTED),
         (command(185, 0.0, 0.0), DENIED),
     ];

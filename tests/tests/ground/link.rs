@@ -1,11 +1,11 @@
 //! The link itself: bad, silent, signed, recorded.
 
 use crate::radio::{CONFIG, Channel, Radio, command, heartbeat, scenario, write};
-use hil_protocol::mavlink::Key;
 use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
-use sil_harness::ground::vehicle::VehicleConfig;
+use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
 use sil_harness::link::PipeLink;
 use sil_harness::run::fly;
 
@@ -157,6 +157,22 @@ fn with_a_key_only_its_holder_commands() {
                 ..PARAM_REQUEST_READ_DATA::DEFAULT
             },
         );
+    radio
+        .at(130, &STATUSTEXT_DATA::DEFAULT)
+        .at(
+            131,
+            &COMMAND_LONG_DATA {
+                target_system: 7,
+                ..command(176, 1.0, 7.0)
+            },
+        )
+        .at(
+            132,
+            &REQUEST_DATA_STREAM_DATA {
+                req_stream_id: 0,
+                ..REQUEST_DATA_STREAM_DATA::DEFAULT
+            },
+        );
     radio.signed_at(
         200,
         &command(176, 1.0, 7.0),
@@ -186,12 +202,49 @@ fn with_a_key_only_its_holder_commands() {
     );
     assert_eq!(radio.acks(), [(176, 0)]);
     assert_eq!(log.orders.len(), 1, "{:?}", log.orders);
-    assert_eq!(radio.vehicle.refused_signatures(), 3);
+    assert_eq!(radio.vehicle.refused_signatures(), 4);
+    // Nor is another's order counted, or what is none.
     let errors = radio.all(|message| match message {
         MavMessage::SYS_STATUS(status) => Some(status.errors_count2),
         _ => None,
     });
-    assert_eq!(errors.last().unwrap().1, 3);
+    assert_eq!(errors.last().unwrap().1, 4);
+}
+
+/// A vehicle that has flown for ten minutes is believed by a station that has just started, and what
+/// was recorded at its start is not believed by the vehicle.
+#[test]
+fn signatures_go_with_the_time() {
+    const TEN_MINUTES: u64 = 60_000_000;
+    let signed = |time| {
+        let mut signer = Signer::new(Key::of_passphrase("secret"), 9, time);
+        Sender::new(254, 1)
+            .signed_frame(&command(400, 1.0, 0.0), &mut signer)
+            .as_bytes()
+            .to_vec()
+    };
+    let mut vehicle = Vehicle::new(&keyed());
+    vehicle.set_signing_time(NOW + TEN_MINUTES);
+    vehicle.hold();
+    let mut station = Verifier::new(Key::of_passphrase("secret"), NOW + TEN_MINUTES);
+    for frame in vehicle.take_outgoing() {
+        Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
+            assert_eq!(station.verify(frame), Ok(()));
+        });
+    }
+    vehicle.receive(&signed(NOW));
+    assert_eq!(vehicle.refused_signatures(), 1);
+    // A station whose clock is ahead takes the vehicle along.
+    vehicle.receive(&signed(NOW + 2 * TEN_MINUTES));
+    assert_eq!(vehicle.refused_signatures(), 1);
+    vehicle.take_outgoing();
+    vehicle.end("here");
+    let mut station = Verifier::new(Key::of_passphrase("secret"), NOW + 2 * TEN_MINUTES);
+    for frame in vehicle.take_outgoing() {
+        Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
+            assert_eq!(station.verify(frame), Ok(()));
+        });
+    }
 }
 
 /// A station without the key cannot pass for one that is there.

@@ -4,6 +4,7 @@
 #![expect(clippy::float_cmp, reason = "what is told is what is, to the last bit")]
 
 mod commands;
+mod inquiries;
 mod link;
 mod parameters;
 mod radio;

@@ -1,0 +1,194 @@
+//! What a station asks without changing the flight.
+
+use crate::radio::{CONFIG, Radio, command, scenario};
+use hil_protocol::mavlink::messages::*;
+use sil_harness::scenario::Scenario;
+
+fn short() -> Scenario {
+    Scenario {
+        ticks: 200,
+        ..scenario()
+    }
+}
+
+#[test]
+fn the_heartbeat_is_that_of_a_fixed_wing_in_arduplanes_modes() {
+    let mut radio = Radio::new(&CONFIG);
+    radio.at(50, &command(176, 1.0, 7.0));
+    radio.fly(&short());
+    let beats = radio.all(|message| match message {
+        MavMessage::HEARTBEAT(heartbeat) => Some(heartbeat.clone()),
+        _ => None,
+    });
+    let (custom, auto, stabilised, armed) = (1, 4, 16, 128);
+    let expected = HEARTBEAT_DATA {
+        custom_mode: 10,
+        mavtype: 1,
+        autopilot: 0,
+        base_mode: custom | auto | stabilised | armed,
+        system_status: 4,
+        mavlink_version: 3,
+    };
+    assert_eq!(beats[0], (0, expected.clone()));
+    let cruise = HEARTBEAT_DATA {
+        custom_mode: 7,
+        base_mode: custom | stabilised | armed,
+        ..expected
+    };
+    assert_eq!(beats[1], (100, cruise));
+}
+
+#[test]
+fn an_interval_is_told_in_both_ways() {
+    let mut radio = Radio::new(&CONFIG);
+    radio
+        .at(10, &command(510, 30.0, 0.0))
+        .at(20, &command(512, 244.0, 30.0))
+        .at(30, &command(512, 244.0, 9999.0))
+        .at(40, &command(512, 244.0, f32::NAN))
+        .at(50, &command(511, 30.0, -1.0))
+        .at(60, &command(512, 244.0, 30.0))
+        .at(70, &command(511, 30.0, 0.0))
+        .at(80, &command(512, 244.0, 30.0));
+    radio.fly(&short());
+    let told = radio.all(|message| match message {
+        MavMessage::MESSAGE_INTERVAL(told) => Some((told.message_id, told.interval_us)),
+        _ => None,
+    });
+    let told: Vec<_> = told.into_iter().map(|(_, told)| told).collect();
+    let expected = [
+        (30, 100_000),
+        (30, 100_000),
+        (9999, 0),
+        (30, -1),
+        (30, 100_000),
+    ];
+    assert_eq!(told, expected);
+    assert_eq!(radio.acks()[3], (512, 2));
+}
+
+/// To whom it is meant for, as an answer and never as a question: its time is not 0, at the start
+/// either.
+#[test]
+fn a_question_for_the_time_is_answered_once() {
+    let mut radio = Radio::new(&CONFIG);
+    let question = TIMESYNC_DATA {
+        ts1: 77,
+        ..TIMESYNC_DATA::DEFAULT
+    };
+    radio
+        .at(0, &question)
+        .at(
+            100,
+            &TIMESYNC_DATA {
+                target_system: 1,
+                ..question.clone()
+            },
+        )
+        .at(
+            110,
+            &TIMESYNC_DATA {
+                target_system: 9,
+                ..question.clone()
+            },
+        )
+        .at(120, &TIMESYNC_DATA { tc1: 5, ..question });
+    radio.fly(&short());
+    let told = radio.all(|message| match message {
+        MavMessage::TIMESYNC(sync) => Some((sync.tc1, sync.ts1, sync.target_system)),
+        _ => None,
+    });
+    assert_eq!(told, [(0, (1, 77, 255)), (100, (1_000_000_000, 77, 255))]);
+}
+
+#[test]
+fn a_ping_comes_back_and_an_answer_does_not() {
+    let mut radio = Radio::new(&CONFIG);
+    let ping = PING_DATA {
+        seq: 3,
+        ..PING_DATA::DEFAULT
+    };
+    radio.at(10, &ping).at(
+        20,
+        &PING_DATA {
+            target_system: 1,
+            target_component: 1,
+            ..ping
+        },
+    );
+    radio.fly(&short());
+    let told = radio.all(|message| match message {
+        MavMessage::PING(ping) => Some((ping.seq, ping.target_system, ping.target_component)),
+        _ => None,
+    });
+    assert_eq!(told, [(10, (3, 255, 190))]);
+}
+
+#[test]
+fn there_is_no_mission_and_none_is_taken() {
+    let mut radio = Radio::new(&CONFIG);
+    let upload = MISSION_COUNT_DATA {
+        count: 3,
+        target_system: 1,
+        ..MISSION_COUNT_DATA::DEFAULT
+    };
+    radio
+        .at(10, &MISSION_REQUEST_LIST_DATA::DEFAULT)
+        .at(20, &upload)
+        .at(
+            30,
+            &MISSION_COUNT_DATA {
+                count: 0,
+                mission_type: 1,
+                ..upload.clone()
+            },
+        )
+        .at(
+            40,
+            &MISSION_CLEAR_ALL_DATA {
+                mission_type: 2,
+                ..MISSION_CLEAR_ALL_DATA::DEFAULT
+            },
+        )
+        .at(
+            50,
+            &MISSION_COUNT_DATA {
+                target_system: 2,
+                ..upload
+            },
+        );
+    radio.fly(&short());
+    let told = radio.all(|message| match message {
+        MavMessage::MISSION_COUNT(count) => Some((44, count.count as u8, count.mission_type)),
+        MavMessage::MISSION_ACK(ack) => Some((47, ack.mavtype, ack.mission_type)),
+        _ => None,
+    });
+    let told: Vec<_> = told.into_iter().map(|(_, told)| told).collect();
+    assert_eq!(told, [(44, 0, 0), (47, 3, 0), (47, 0, 1), (47, 0, 2)]);
+}
+
+#[test]
+fn a_map_shows_where_the_log_says() {
+    let mut radio = Radio::new(&CONFIG);
+    radio.at(10, &command(512, 242.0, 0.0));
+    let log = radio.fly(&short());
+    let homes = radio.all(|message| match message {
+        MavMessage::HOME_POSITION(home) => Some(home.clone()),
+        _ => None,
+    });
+    let (_, home) = &homes[0];
+    let places = radio.all(|message| match message {
+        MavMessage::GLOBAL_POSITION_INT(place) => Some(place.clone()),
+        _ => None,
+    });
+    assert_eq!(places.len(), 10);
+    for (tick, place) in places {
+        let row = tick as usize;
+        // On the sphere with the equator's radius.
+        let north = f64::from(place.lat - home.latitude) * 1e-7_f64.to_radians() * 6_378_137.0;
+        assert!((north - log.ticks.x[row]).abs() < 0.02, "{tick}: {north}");
+        let height = f64::from(place.alt - home.altitude) / 1e3;
+        assert!((height - log.ticks.z[row]).abs() < 1e-3);
+        assert_eq!((place.lon, place.relative_alt), (home.longitude, place.alt));
+    }
+}
