@@ -65,6 +65,9 @@ pub struct Header {
     pub replan_hz: f64,
     /// Time from a scan until its plan is flown [s].
     pub latency: f64,
+    /// Slices of planning work done in each tick; not written if that is all there are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slices_per_tick: Option<u32>,
     /// Length that the flight was to have [s].
     pub duration: f64,
     /// The lidar.

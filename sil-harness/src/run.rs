@@ -260,6 +260,7 @@ pub(crate) fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
         airframe: scenario.airframe.name().to_owned(),
         replan_hz: scenario.replan_hz(),
         latency: Scenario::time(scenario.latency_ticks),
+        slices_per_tick: Some(scenario.slices_per_tick).filter(|slices| *slices != u32::MAX),
         duration: Scenario::time(scenario.ticks),
         lidar: scenario.lidar,
         air_data: scenario.air_data,

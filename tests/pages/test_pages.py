@@ -161,17 +161,59 @@ def test_a_phone_shows_it_all_without_scrolling_sideways(flight, open_page, sche
     shot(page, f"phone-{scheme}")
 
 
-def test_what_the_planner_considered_is_what_it_reported(flight):
-    page, log = flight
-    text = page.read_text()
-    (line,) = [line for line in text.splitlines() if line.startswith("const DATA = ")]
-    data = json.loads(line.removeprefix("const DATA = ").removesuffix(";"))
+def test_a_wide_page_is_dark_where_that_is_wanted(flight, open_page):
+    page, _ = flight
+    page = open_page(page.as_uri() + "#t=12.34", color_scheme="dark")
+    page.click("#legend summary")
+    assert "cells of 0.5 m" in page.inner_text("#occupancy")
+    shot(page, "dark")
+
+
+def data_of(page):
+    (line,) = [line for line in page.read_text().splitlines() if line.startswith("const DATA = ")]
+    return json.loads(line.removeprefix("const DATA = ").removesuffix(";"))
+
+
+# One whose planner has too few slices is flown again, too.
+@pytest.mark.parametrize("flags", [
+    ["--seed", "1"],
+    ["--preset", "paper", "--latency-ms", "200", "--slices-per-tick", "12"],
+    ["--latency-ms", "200", "--slices-per-tick", "3"],
+    ["--preset", "reference", "--replan-hz", "2"],
+])
+def test_what_the_planner_considered_is_what_it_reported(flags, open_page, tmp_path):
+    path, log = fly(tmp_path, *flags, "--duration", "10")
+    page = page_of(path)
+    data = data_of(page)
     assert data["log"] == log
     assert [detail["tick"] for detail in data["details"]] == [plan["tick"] for plan in log["plans"]]
     for detail, plan in zip(data["details"], log["plans"]):
         assert len(detail["paths"]) == plan["candidates"]
         assert (detail["chosen"] is not None) == (plan["cost"] is not None)
-        assert len(detail["trajectory"]) == 19
+        assert len(detail["trajectory"]) == (0 if detail["chosen"] is None else 19)
+    assert any(detail["paths"] for detail in data["details"])
+    remembers = log["header"]["preset"] == "flight"
+    for detail in data["details"]:
+        assert bool(detail["map"]["unknown"]) == remembers
+    page = open_page(page.as_uri() + "#t=7.3")
+    assert page.is_enabled("#layer-candidates")
+    assert ("memory" in page.text_content("#occupancy")) == remembers
+
+
+def test_what_counts_as_occupied_is_where_obstacles_are(flight):
+    page, log = flight
+    seen = [o for o in log["header"]["field"] if o["x"] < 200]
+    cells = 0
+    for detail in data_of(page)["details"]:
+        edge = detail["map"]["cell"]
+        for x, z, length in detail["map"]["occupied"]:
+            for number in range(round(length / edge)):
+                u, v = x + edge * (number + 0.5), z + edge / 2
+                near = min(((u - o["x"]) ** 2 + (v - o["z"]) ** 2) ** 0.5 - o["radius"] for o in log["header"]["field"])
+                # Errors of the lidar, and the shadow behind a return.
+                assert near < 2.5, (detail["tick"], u, v)
+                cells += 1
+    assert cells > 10 * len(seen)
 
 
 def test_a_flight_that_cannot_be_flown_again_has_a_page_without_candidates(flight, open_page, tmp_path):

@@ -17,7 +17,7 @@ mod judge;
 
 use crate::config::{KNOTS, MAX_PATHS};
 use crate::corridor::Corridor;
-use crate::map::{GridPoint, OccupancyGrid};
+use crate::map::{ClearanceField, GridPoint, OccupancyGrid};
 use crate::plan::{CollocationPoints, Path, Search};
 use crate::qp::{
     Bounds, CondenseError, Condensed, ModelError, Problem, Solution, Solver, StageModel,
@@ -347,6 +347,16 @@ impl Planner {
     #[must_use]
     pub fn grid(&self) -> &OccupancyGrid {
         &self.grid
+    }
+
+    /// What the cycle knows of obstacles, if the preset has a map with memory; the grid is then only
+    /// what the tree grows in.
+    #[must_use]
+    pub fn clearance(&self) -> Option<&ClearanceField> {
+        self.settings
+            .iteration
+            .is_some()
+            .then_some(&self.iterated.field)
     }
 
     /// The model that plans are made by.

@@ -64,6 +64,7 @@ fn example() -> FlightLog {
             airframe: "reference".into(),
             replan_hz: 1.0,
             latency: 0.0,
+            slices_per_tick: None,
             duration: 20.0,
             lidar: LidarConfig::PAPER,
             air_data: AirDataNoise::PAPER,

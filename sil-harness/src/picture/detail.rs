@@ -18,7 +18,15 @@ use serde::{Deserialize, Serialize};
 pub type Place = (f64, f64);
 
 /// Half of the side of a square that unbounded corridors are cut to [m].
-const SQUARE: f64 = 25.0;
+const SQUARE: f64 = 8.0;
+/// Edge of a cell of the map with memory [m], and its window from the aircraft on [m].
+const CELL: f64 = 0.5;
+const WINDOW: [f64; 2] = [-8.0, 56.0];
+/// Half of the window's height [m].
+const HEIGHT: f64 = 16.0;
+
+/// A row of cells: low corner `(x, z)`, and their length together [m].
+pub type Cells = (f64, f64, f64);
 
 /// One planning cycle.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -29,8 +37,9 @@ pub struct PlanDetail {
     pub from: Place,
     /// Where beams ended.
     pub hits: Vec<Place>,
-    /// Low corners of the occupied cells, 1 m x 1 m.
-    pub cells: Vec<Place>,
+    /// What the planner took for occupied and for unknown: the map with memory, if the preset has
+    /// one, or else the grid of this one scan, in which nothing is unknown.
+    pub map: Map,
     /// Collocation points of every candidate path.
     pub paths: Vec<Vec<Place>>,
     /// The candidate that was chosen.
@@ -39,6 +48,17 @@ pub struct PlanDetail {
     pub corridor: Vec<Vec<Place>>,
     /// The trajectory that was chosen.
     pub trajectory: Vec<Place>,
+}
+
+/// What was known of obstacles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// Edge of a cell [m].
+    pub cell: f64,
+    /// What counts as occupied.
+    pub occupied: Vec<Cells>,
+    /// What no beam has told of.
+    pub unknown: Vec<Cells>,
 }
 
 /// A planner to look into.
@@ -99,7 +119,9 @@ impl Inspector {
                 break;
             }
         }
-        detail.cells = cells(planner, &state);
+        // One that was begun at the deadline came to nothing.
+        detail.paths.truncate(planner.summary().candidates);
+        detail.map = map(planner, &state, tuning.settings.planner.altitude);
         detail.hits = hits(scan, &state);
         if best.is_finite() {
             let knots = planner.best().knots.iter();
@@ -138,17 +160,58 @@ fn world(state: &VehicleState, point: GridPoint) -> Place {
     )
 }
 
-fn cells(planner: &Planner, state: &VehicleState) -> Vec<Place> {
-    let mut cells = Vec::new();
-    for row in 0..GRID_ROWS {
-        for col in 0..GRID_COLS {
-            if planner.grid().occupied(row as i32, col as i32) {
-                let (row, col) = (row as f64, col as f64);
-                cells.push(world(state, GridPoint { row, col }));
+fn map(planner: &Planner, state: &VehicleState, altitude: f64) -> Map {
+    let Some(known) = planner.clearance() else {
+        let low = world(state, GridPoint { row: 0.0, col: 0.0 });
+        let grid = planner.grid();
+        let occupied = |row: usize, col: usize| grid.occupied(row as i32, col as i32);
+        return Map {
+            cell: 1.0,
+            occupied: rows(low, 1.0, [GRID_ROWS, GRID_COLS], occupied),
+            unknown: Vec::new(),
+        };
+    };
+    let low = (
+        ((state.x + WINDOW[0]) / CELL).floor() * CELL,
+        altitude - HEIGHT,
+    );
+    let middle = |at: f64, cells: usize| at + CELL * (cells as f64 + 0.5);
+    let extent = [
+        (2.0 * HEIGHT / CELL) as usize,
+        ((WINDOW[1] - WINDOW[0]) / CELL) as usize,
+    ];
+    let cells = |is: &dyn Fn(f64, f64) -> bool| {
+        rows(low, CELL, extent, |row, col| {
+            is(middle(low.0, col), middle(low.1, row))
+        })
+    };
+    Map {
+        cell: CELL,
+        occupied: cells(&|x, z| known.is_occupied(x, z)),
+        unknown: cells(&|x, z| known.is_unknown(x, z)),
+    }
+}
+
+/// The cells of a raster that are something, neighbours in a row as one.
+fn rows(
+    low: Place,
+    cell: f64,
+    [rows, cols]: [usize; 2],
+    is: impl Fn(usize, usize) -> bool,
+) -> Vec<Cells> {
+    let mut found = Vec::new();
+    for row in 0..rows {
+        let mut col = 0;
+        while col < cols {
+            let length = (col..cols).take_while(|col| is(row, *col)).count();
+            if length > 0 {
+                let (x, z) = place(low.0 + cell * col as f64, low.1 + cell * row as f64);
+                found.push((x, z, cell * length as f64));
             }
+            col += length.max(1);
         }
     }
-    cells
+    found
 }
 
 fn hits(scan: &WireScan, state: &VehicleState) -> Vec<Place> {
@@ -207,6 +270,14 @@ fn cut(polygon: &[Place], inside: impl Fn(Place) -> f64) -> Vec<Place> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn neighbours_in_a_row_are_one() {
+        let occupied = ["##.#", "....", ".###"];
+        let is = |row: usize, col: usize| occupied[row].as_bytes()[col] == b'#';
+        let expected = [(1.0, 5.0, 1.0), (2.5, 5.0, 0.5), (1.5, 6.0, 1.5)];
+        assert_eq!(rows((1.0, 5.0), 0.5, [3, 4], is), expected);
+    }
 
     #[test]
     fn a_square_is_cut_by_a_half_plane() {

@@ -61,6 +61,7 @@ fn scenario(log: &FlightLog) -> Option<Scenario> {
         paths: u16::try_from(header.paths).ok()?,
         replan_ticks: ticks(1.0 / header.replan_hz),
         latency_ticks: ticks(header.latency),
+        slices_per_tick: header.slices_per_tick.unwrap_or(u32::MAX),
         ticks: ticks(header.duration),
         lidar: header.lidar,
         air_data: header.air_data,
