@@ -1,11 +1,15 @@
 """The package against a flight in real time."""
 
 import json
+import os
 import statistics
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
-from conftest import LASTING, LIMIT, parameters
+from conftest import BINARY, LASTING, LIMIT, parameters
 
 from mpp_ground import paramfile, plot
 from mpp_ground.cli import main
@@ -159,6 +163,26 @@ def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
     picture = tmp_path / "a.png"
     assert run("plot", str(tlog), "--out", str(picture))[0] == 0
     assert picture.stat().st_size > 20_000
+
+
+def test_a_recording_has_the_same_bytes_and_others_read_it(tmp_path):
+    def fly(name):
+        tlog = tmp_path / name
+        command = [BINARY, "fly", "--duration", "5", "--tlog", tlog, "--out", tmp_path / "out"]
+        subprocess.run(command, check=True, capture_output=True)
+        return tlog
+
+    tlog = fly("a.tlog")
+    assert tlog.read_bytes() == fly("b.tlog").read_bytes()
+    dump = subprocess.run(
+        [sys.executable, Path(sys.executable).with_name("mavlogdump.py"), "--show-source", tlog],
+        capture_output=True, check=True, text=True, env={**os.environ, "TZ": "UTC"},
+    ).stdout.splitlines()
+    # 5 s, and a word at the end.
+    count = {kind: sum(f" {kind} " in line for line in dump) for kind in ("ATTITUDE", "HEARTBEAT", "STATUSTEXT")}
+    assert count == {"ATTITUDE": 50, "HEARTBEAT": 6, "STATUSTEXT": 1}
+    assert not any("BAD_DATA" in line for line in dump)
+    assert dump[0].startswith("2026-01-01 00:00:00.00") and dump[-1].startswith("2026-01-01 00:00:05.00")
 
 
 def test_a_silent_vehicle_is_an_error():

@@ -50,6 +50,9 @@
 //!
 //! The [`ActuatorCommand`] ends the tick: a harness in lockstep sends nothing more until it came.
 //!
+//! A core that starts says [`Hello`] unasked. Whatever the harness waits for at that moment, it configures
+//! that core, tells it every value that the one before had taken, and asks again.
+//!
 //! # Versions
 //!
 //! Postcard has no evolution: a peer that knows one field more reads nonsense. Therefore

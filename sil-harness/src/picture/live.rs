@@ -19,6 +19,8 @@ use std::time::Duration;
 const BATCH: usize = 5;
 /// Longest head of a request that is read [bytes].
 const HEAD: u64 = 8192;
+/// How long a request may take to come.
+const QUESTION: Duration = Duration::from_secs(30);
 /// How long the end of a flight waits for those who look; one that takes nothing any more is left.
 const FAREWELL: Duration = Duration::from_secs(10);
 
@@ -159,6 +161,8 @@ impl Live {
 
 /// Answers one request.
 fn serve(stream: &TcpStream, shared: &Shared) -> io::Result<()> {
+    // Whoever asks for nothing shall not keep a thread.
+    stream.set_read_timeout(Some(QUESTION))?;
     let mut reader = BufReader::new(stream.try_clone()?.take(HEAD));
     let mut request = String::new();
     reader.read_line(&mut request)?;
