@@ -1,6 +1,7 @@
 //! Faults that tests of the emulated image switch on, by changing these words in the image file.
 //! As built they do nothing.
 
+use crate::uart;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// No tick.
@@ -13,6 +14,11 @@ static FAULT_PLANNER_HANGS_AFTER: u32 = NEVER;
 /// The step hangs after this tick, before it answers, until the watchdog resets the core; once.
 #[unsafe(no_mangle)]
 static FAULT_STEP_HANGS_AFTER: u32 = NEVER;
+
+/// If set, planners wait with their set-up, and so the step with the bytes of the link, until some of
+/// those are lost.
+#[unsafe(no_mangle)]
+static FAULT_SET_UP_AWAITS_LOSS: u32 = NEVER;
 
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
@@ -31,6 +37,13 @@ pub fn planner(clock: u32) {
     let after = read(&FAULT_PLANNER_HANGS_AFTER);
     if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
         hang();
+    }
+}
+
+/// Waits for lost bytes if it is to; `alive` is called meanwhile.
+pub fn set_up(alive: impl Fn()) {
+    while read(&FAULT_SET_UP_AWAITS_LOSS) != NEVER && uart::lost() == 0 {
+        alive();
     }
 }
 

@@ -37,6 +37,14 @@ impl Ring {
         true
     }
 
+    /// Whether exactly half of the places are taken: a ring that fills comes by here.
+    pub fn is_half_full(&self) -> bool {
+        let (head, tail) = (&self.head, &self.tail);
+        head.load(Ordering::Relaxed)
+            .wrapping_sub(tail.load(Ordering::Relaxed))
+            == PLACES / 2
+    }
+
     /// Takes the oldest byte out. Only for the consumer.
     pub fn pop(&self) -> Option<u8> {
         let tail = self.tail.load(Ordering::Relaxed);

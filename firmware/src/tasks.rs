@@ -1,7 +1,7 @@
 //! The two tasks, their mail, and what each does when it gets the processor.
 
 use crate::mailbox::Mailbox;
-use crate::owned::Owned;
+use crate::owned::{self, Owned};
 use crate::{faults, mark, restart};
 use core::sync::atomic::{AtomicU32, Ordering};
 use flight_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
@@ -19,6 +19,8 @@ static PULSE: AtomicU32 = AtomicU32::new(0);
 static STEP: Owned<StepSide> = Owned::uninit();
 #[unsafe(link_section = ".axisram")]
 static PLAN: Owned<PlanTask> = Owned::uninit();
+// SAFETY: in a constant, which the compiler checks.
+const _: PlanTask = unsafe { owned::zeros() };
 
 /// All that the step's interrupt owns.
 pub struct StepSide {
@@ -151,32 +153,42 @@ pub fn has_order() -> bool {
     ORDERS.is_full()
 }
 
+fn pulse() {
+    PULSE.fetch_add(1, Ordering::Relaxed);
+}
+
 /// The planner's thread. `idle` is called when there is nothing to do.
 ///
 /// # Safety
 /// Only as the thread, which never runs twice at a time: from `main`, or anew after
 /// [`restart::planner`] has dropped it.
 pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
-    // SAFETY: the thread is the only user, and this the only thread. Zeros are a valid task: it is
-    // made of numbers, truth values, vectors that may be empty, options and enums of them, and no
-    // references. `PlanTask::new()` would pass over the stack, which is smaller. The first order,
-    // `SetUp`, leaves nothing as it was.
+    // SAFETY: the thread is the only user, and this the only thread. Zeros are a valid task, as the
+    // constant beside `PLAN` proves; `PlanTask::new()` would pass over the stack, which is smaller.
     let task = unsafe {
         PLAN.write_zeros();
         PLAN.get()
     };
-    // What a planner before this one left is not for this one.
+    // Valid is not idle: until its first order, `SetUp`, which leaves nothing as it was, the task
+    // does nothing. What was ordered of a planner before this one is not for this one.
     let mut set_up = false;
     loop {
-        PULSE.fetch_add(1, Ordering::Relaxed);
+        pulse();
         // SAFETY: the thread is the consumer.
         if let Some(order) = unsafe { ORDERS.take() } {
-            set_up |= matches!(order, Order::SetUp(_));
+            set_up |= matches!(order, Order::SetUp { .. });
             if set_up {
+                if matches!(order, Order::SetUp { .. }) {
+                    faults::set_up(pulse);
+                }
                 mark::begin();
                 task.take(&order);
                 mark::end(Region::Order);
             }
+        }
+        if !set_up {
+            idle();
+            continue;
         }
         let clock = CLOCK.load(Ordering::Acquire);
         let phase = task.planner().phase();

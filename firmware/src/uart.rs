@@ -102,7 +102,8 @@ pub fn interrupt(number: i16) {
         if !RECEIVED.push(byte) {
             count_lost();
         }
-        if byte == DELIMITER {
+        // What has no end must be looked at in time, too.
+        if byte == DELIMITER || RECEIVED.is_half_full() {
             SCB::set_pendst();
         }
     }

@@ -14,7 +14,12 @@ use mpp_core::vehicle::VehicleState;
 #[derive(Clone, Debug)]
 pub enum Order {
     /// Sets the planner up, whatever it was doing; answered by [`Answer::SetUp`].
-    SetUp(Tuning),
+    SetUp {
+        /// Comes back with the answer: an answer to an earlier set-up is nobody's.
+        number: u32,
+        /// The values in force.
+        tuning: Tuning,
+    },
     /// Starts a cycle; answered by [`Answer::Plan`].
     Begin {
         /// The tick of the scan.
@@ -36,7 +41,12 @@ pub enum Order {
 #[derive(Clone, Debug)]
 pub enum Answer {
     /// Whether the planner can fly with the configuration.
-    SetUp(Result<(), SetupError>),
+    SetUp {
+        /// That of the order.
+        number: u32,
+        /// Why not.
+        result: Result<(), SetupError>,
+    },
     /// What a cycle came to.
     Plan(Plan),
 }

@@ -39,7 +39,7 @@ pub struct PlanTask {
 /// An answer to be collected.
 #[derive(Clone, Copy, Debug)]
 enum Due {
-    SetUp(Result<(), mpp_core::planner::SetupError>),
+    SetUp(u32, Result<(), mpp_core::planner::SetupError>),
     Plan(u32),
 }
 
@@ -69,8 +69,9 @@ impl PlanTask {
         self.cycle = None;
         self.answer = None;
         match order {
-            Order::SetUp(tuning) => {
-                self.answer = Some(Due::SetUp(self.planner.set_up(&tuning.settings)));
+            Order::SetUp { number, tuning } => {
+                let result = self.planner.set_up(&tuning.settings);
+                self.answer = Some(Due::SetUp(*number, result));
             }
             Order::Begin {
                 tick,
@@ -118,7 +119,7 @@ impl PlanTask {
     /// The answer that is there, once.
     pub fn answer(&mut self) -> Option<Answer> {
         Some(match self.answer.take()? {
-            Due::SetUp(result) => Answer::SetUp(result),
+            Due::SetUp(number, result) => Answer::SetUp { number, result },
             Due::Plan(scan_tick) => Answer::Plan(Plan {
                 scan_tick,
                 verdict: self.planner.finish(),

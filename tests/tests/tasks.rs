@@ -243,6 +243,37 @@ fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
     assert_eq!(outcomes.len(), 3);
 }
 
+#[test]
+fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
+    let input = flight(1);
+    let mut tasks = Tasks::new(Pace::RealTime);
+    let mut bytes = &input[..];
+    while tasks.step.last_tick() != Some(10) {
+        tasks.step(&mut bytes, 1);
+        tasks.plan(200);
+    }
+    // The planner is lost and set up again; meanwhile a new session begins.
+    *tasks.plan = PlanTask::new();
+    tasks.answers = None;
+    tasks.step.planner_lost(|_| {});
+    tasks.post();
+    tasks.plan(1);
+    tasks.plan(1);
+    let stale = tasks.answers.take();
+    assert!(matches!(stale, Some(Answer::SetUp { .. })));
+    let mut again = &input[..];
+    tasks.step(&mut again, usize::MAX);
+    assert!(tasks.step.waits());
+    tasks.answers = stale;
+    tasks.step(&mut again, usize::MAX);
+    assert!(tasks.step.waits(), "accepted by an answer to another order");
+    while !again.is_empty() {
+        tasks.plan(200);
+        tasks.step(&mut again, usize::MAX);
+    }
+    assert_eq!(commands(&tasks.messages()), 11 + 100);
+}
+
 /// The same with a message after the sensor frame of a tick.
 fn with_message_after(input: &[u8], tick: u32, message: &Message) -> Vec<u8> {
     let mut decoder = Decoder::new();

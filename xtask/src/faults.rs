@@ -1,7 +1,7 @@
 //! `faults`: what the firmware does when something hangs, and whether its clock holds.
 
 use crate::firmware::{self, Image};
-use crate::flight::{Harness, Outcome};
+use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::qemu::{Emulator, Report, Run};
 use crate::work;
 use anyhow::{Context, Result, bail, ensure};
@@ -11,7 +11,6 @@ use hil_protocol::{
 use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FaultsArgs {
@@ -168,12 +167,13 @@ impl Bench {
     /// More bytes than fit come while the core cannot take any: it counts and reports those that
     /// are lost, and is ready for the next session.
     fn flood_is_counted(&self) -> Result<()> {
-        let image = Image::Uart.path()?;
+        let image = self.folder.join("set-up-awaits-loss");
+        firmware::patched(Image::Uart, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
         let emulator = Emulator::uart(&self.run(&image))?;
         let address = emulator.link().trim_start_matches("tcp:").to_owned();
         let mut stream = TcpStream::connect(address)?;
-        stream.set_read_timeout(Some(Duration::from_secs(10)))?;
-        // The configuration occupies the planner, and the step waits for it.
+        stream.set_read_timeout(Some(PATIENCE))?;
+        // The configuration occupies the planner, and the step waits for it: until bytes are lost.
         send(&mut stream, &Message::Configure(CONFIGURE))?;
         stream.write_all(&[0x55; 20_000])?;
         stream.write_all(&[0])?;
@@ -186,6 +186,8 @@ impl Bench {
         })?;
         println!("flood of 20001 bytes: the core reports {lost} lost, and says hello again");
         ensure!((1..=20_001).contains(&lost), "a count that cannot be");
+        // Ends what is left of the flood: its own end may be among the lost bytes.
+        stream.write_all(&[0])?;
         send(&mut stream, &Message::Hello(HELLO))?;
         await_message(&mut stream, |message| {
             matches!(message, Message::Hello(hello) if hello.role == Role::Core).then_some(())

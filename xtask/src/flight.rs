@@ -9,6 +9,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+/// How long emulator and harness wait for each other: far more than they need.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
+
 /// What a flight came to.
 pub(crate) struct Outcome {
     /// The result line.
@@ -116,14 +119,17 @@ impl Harness {
         emulator: &mut Emulator,
     ) -> Result<Outcome> {
         let mut command = self.command(arguments, &self.out.join("target"));
-        let mut harness = command.arg("--link").arg(emulator.link()).spawn()?;
+        // An emulator on a busy machine takes its time.
+        let patience = PATIENCE.as_secs().to_string();
+        command.args(["--link", emulator.link(), "--patience", &patience]);
+        let mut harness = command.spawn()?;
         let mut died = None;
         // The harness notices a core that died, unless it died before the link was up.
         while harness.try_wait()?.is_none() {
             if died.is_none() && emulator.has_ended()? {
                 died = Some(Instant::now());
             }
-            if died.is_some_and(|when| when.elapsed() > Duration::from_secs(5)) {
+            if died.is_some_and(|when| when.elapsed() > PATIENCE) {
                 harness.kill()?;
                 harness.wait()?;
                 bail!("the emulator ended before the flight did");

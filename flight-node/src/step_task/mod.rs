@@ -64,6 +64,8 @@ pub struct StepTask {
     scan: LidarScan,
     flight: Option<Flight>,
     order: Option<Order>,
+    /// Number of the last set-up that was ordered.
+    set_ups: u32,
     /// A plan that is not due yet.
     plan: Option<Plan>,
     /// The sensor frame that waits for a plan.
@@ -82,6 +84,7 @@ impl StepTask {
             scan: LidarScan::new(),
             flight: None,
             order: None,
+            set_ups: 0,
             plan: None,
             held: None,
             clock: 0,
@@ -125,7 +128,11 @@ impl StepTask {
                     self.plan = Some(plan);
                 }
             }
-            Answer::SetUp(result) => self.set_up_done(result.map_err(convert::setup_verdict), send),
+            Answer::SetUp { number, result } if number == self.set_ups => {
+                self.set_up_done(result.map_err(convert::setup_verdict), send);
+            }
+            // To an order that another one has replaced.
+            Answer::SetUp { .. } => {}
         }
         if let Some(frame) = self.held.take() {
             self.tick(&frame, send);
@@ -135,14 +142,14 @@ impl StepTask {
     /// The planner was lost and starts anew: its cycle came to nothing.
     pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
         let send = &mut send;
-        let Some(flight) = &mut self.flight else {
+        let Some(flight) = &self.flight else {
             return;
         };
-        self.order = Some(Order::SetUp(flight.tuning));
-        if !flight.ready {
+        let (tuning, ready, cycle) = (flight.tuning, flight.ready, flight.cycle);
+        self.order_set_up(tuning);
+        if !ready {
             return;
         }
-        let cycle = flight.cycle;
         self.reject(RejectionCause::PlannerRestarted, send);
         if let Some(Cycle {
             scan: scan_tick, ..
@@ -228,11 +235,20 @@ impl StepTask {
     fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
         match self.prepare(configure) {
             Ok(flight) => {
-                self.order = Some(Order::SetUp(flight.tuning));
+                self.order_set_up(flight.tuning);
                 self.flight = Some(flight);
             }
             Err(verdict) => self.reply(verdict, send),
         }
+    }
+
+    /// Has the planner set up, whatever else was ordered.
+    fn order_set_up(&mut self, tuning: Tuning) {
+        self.set_ups = self.set_ups.wrapping_add(1);
+        self.order = Some(Order::SetUp {
+            number: self.set_ups,
+            tuning,
+        });
     }
 
     /// A flight that waits for the planner to be set up.

@@ -2,7 +2,6 @@
 
 use super::StepTask;
 use crate::convert;
-use crate::mail::Order;
 use crate::parameters::Tuning;
 use hil_protocol::{ConfigureVerdict, Message, ParameterReply, ParameterVerdict, SetParameter};
 use mpp_core::flight::FlightLoop;
@@ -44,9 +43,11 @@ impl StepTask {
             flight.control = FlightLoop::new(&tuning.settings).map_err(failed)?;
             flight.ready = false;
             flight.asker = Asker::Parameter(set.parameter, before);
-            self.order = Some(Order::SetUp(tuning));
         }
         flight.tuning = tuning;
+        if !in_flight {
+            self.order_set_up(tuning);
+        }
         Ok(())
     }
 
@@ -75,7 +76,7 @@ impl StepTask {
                     flight.control = control;
                 }
                 flight.asker = Asker::Nobody;
-                self.order = Some(Order::SetUp(before));
+                self.order_set_up(before);
                 ParameterVerdict::SetUp(verdict)
             }
         };

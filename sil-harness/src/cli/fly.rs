@@ -4,7 +4,7 @@ use super::ground::GroundArgs;
 use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, LINK, USAGE, data, talk};
 use crate::figure::flight_svg;
-use crate::link::{FifoLink, Link, LinkError, PipeLink, TcpLink};
+use crate::link::{FifoLink, Link, LinkError, PATIENCE, PipeLink, TcpLink};
 use crate::log::FlightLog;
 use crate::outcome::{Class, Outcome};
 use crate::run::{FlyError, fly_with};
@@ -12,6 +12,7 @@ use crate::scenario::{Preset, Scenario};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct FlyArgs {
@@ -37,6 +38,9 @@ pub(super) struct FlyArgs {
     /// [default: in this process]
     #[arg(long)]
     link: Option<String>,
+    /// Seconds that a silent core is waited for over TCP
+    #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
+    patience: u64,
     #[command(flatten)]
     ground: GroundArgs,
     /// Print the result as one JSON object
@@ -61,16 +65,18 @@ impl FlyArgs {
     fn connect(&self) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
             None => Ok(Box::new(PipeLink::new())),
-            Some(text) => connect(text),
+            Some(text) => connect(text, Duration::from_secs(self.patience)),
         }
     }
 }
 
 /// A core that runs elsewhere.
-fn connect(text: &str) -> Result<Box<dyn Link>, Failure> {
+fn connect(text: &str, patience: Duration) -> Result<Box<dyn Link>, Failure> {
     let failed = |error| Failure::new(LINK, error);
     match text.split_once(':') {
-        Some(("tcp", address)) => Ok(Box::new(TcpLink::connect(address).map_err(failed)?)),
+        Some(("tcp", address)) => Ok(Box::new(
+            TcpLink::connect(address, patience).map_err(failed)?,
+        )),
         Some(("fifo", directory)) => Ok(Box::new(
             FifoLink::open(Path::new(directory)).map_err(failed)?,
         )),

@@ -1,6 +1,6 @@
 //! The core as another process, over TCP.
 
-use super::{Link, LinkError, PATIENCE};
+use super::{Link, LinkError};
 use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
@@ -17,14 +17,14 @@ pub struct TcpLink {
 }
 
 impl TcpLink {
-    /// Connects to a core at `HOST:PORT`.
+    /// Connects to a core at `HOST:PORT`, which may be silent for as long as `patience`.
     ///
     /// # Errors
     /// [`LinkError::Io`] when nobody listens there.
-    pub fn connect(address: &str) -> Result<Self, LinkError> {
+    pub fn connect(address: &str, patience: Duration) -> Result<Self, LinkError> {
         let io = |error| LinkError::Io(format!("connecting to the core at {address}"), error);
         let stream = TcpStream::connect(address).map_err(io)?;
-        Self::over(stream, address.to_owned(), PATIENCE).map_err(io)
+        Self::over(stream, address.to_owned(), patience).map_err(io)
     }
 
     /// A link over a connection, with its own patience.

@@ -4,7 +4,7 @@ use crate::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use sil_harness::ground::vehicle::VehicleConfig;
 use sil_harness::ground::{Again, Mode, Order, OrderEntry};
-use sil_harness::link::{PipeLink, TcpLink, serve};
+use sil_harness::link::{PATIENCE, PipeLink, TcpLink, serve};
 use sil_harness::log::FlightLog;
 use sil_harness::outcome::Outcome;
 use sil_harness::run::{fly, fly_with};
@@ -130,7 +130,7 @@ fn orders_reach_a_core_over_tcp() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
     let core = std::thread::spawn(move || serve(&listener, true, Duration::from_secs(20), |_| {}));
-    let mut link = TcpLink::connect(&address).unwrap();
+    let mut link = TcpLink::connect(&address, PATIENCE).unwrap();
     let over_tcp = fly_with(&scenario(), &mut link, &mut eventful()).unwrap();
     drop(link);
     core.join().unwrap().unwrap();

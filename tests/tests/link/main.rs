@@ -56,11 +56,15 @@ fn local_listener() -> (TcpListener, String) {
     (listener, address)
 }
 
+fn connect(address: &str) -> Result<TcpLink, LinkError> {
+    TcpLink::connect(address, sil_harness::link::PATIENCE)
+}
+
 #[test]
 fn a_core_behind_tcp_flies_the_same_bytes() {
     let (listener, address) = local_listener();
     let core = thread::spawn(move || serve(&listener, true, Duration::from_secs(20), |_| {}));
-    let over_tcp = fly(&short(5), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap();
+    let over_tcp = fly(&short(5), &mut connect(&address).unwrap(), |_| {}).unwrap();
     core.join().unwrap().unwrap();
     let over_pipe = fly(&short(5), &mut PipeLink::new(), |_| {}).unwrap();
     assert_eq!(over_tcp.to_json().unwrap(), over_pipe.to_json().unwrap());
@@ -101,7 +105,7 @@ fn a_core_that_dies_in_flight_is_named() {
             });
         }
     });
-    let error = fly(&short(1), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap_err();
+    let error = fly(&short(1), &mut connect(&address).unwrap(), |_| {}).unwrap_err();
     core.join().unwrap();
     let text = error.to_string();
     assert!(
@@ -141,7 +145,7 @@ fn a_core_of_another_version_is_refused_by_name() {
         stream.write_all(&frame).unwrap();
         let _ = stream.read(&mut [0; 64]);
     });
-    let error = fly(&short(1), &mut TcpLink::connect(&address).unwrap(), |_| {}).unwrap_err();
+    let error = fly(&short(1), &mut connect(&address).unwrap(), |_| {}).unwrap_err();
     core.join().unwrap();
     let FlyError::Link(LinkError::Frame(DecodeError::Version { peer: 9 })) = error else {
         panic!("{error}");
