@@ -13,7 +13,6 @@ const PARTS: f64 = 64.0;
 #[derive(Clone, Debug)]
 pub struct ClearanceField {
     distance: [[u8; COLS]; ROWS],
-    along_row: [[u8; COLS]; ROWS],
     occupied: [u128; ROWS],
     unknown: [u128; ROWS],
     first_x: f64,
@@ -26,7 +25,6 @@ impl ClearanceField {
     pub const fn new() -> Self {
         Self {
             distance: [[u8::MAX; COLS]; ROWS],
-            along_row: [[u8::MAX; COLS]; ROWS],
             occupied: [0; ROWS],
             unknown: [0; ROWS],
             first_x: 0.0,
@@ -34,30 +32,51 @@ impl ClearanceField {
         }
     }
 
-    /// Computes the field of a map: exact distances between cell centres up to [`FAR`] (Meijster,
-    /// Roerdink, Hesselink: "A general algorithm for computing distance transforms in linear time",
-    /// 2000; the scan of rows by brute force, which is as fast at so short a reach).
+    /// Computes the field of a map: exact distances between cell centres up to [`FAR`].
     pub fn build(&mut self, map: &MemoryMap) {
         (self.first_x, self.floor) = (map.first_x(), map.floor());
         for row in 0..ROWS {
             (self.occupied[row], self.unknown[row]) = map.row(row);
-            self.along_row[row] = along_row(self.occupied[row]);
         }
         for row in 0..ROWS {
-            let mut least = [u16::MAX; COLS];
-            let (low, high) = (row.saturating_sub(REACH), (row + REACH + 1).min(ROWS));
-            for (other, distances) in (low..high).zip(self.along_row.get(low..high).unwrap_or(&[]))
-            {
-                let rise = row.abs_diff(other) as u16;
-                for (least, along) in least.iter_mut().zip(distances) {
-                    let along = u16::from(*along);
-                    *least = (*least).min(along * along + rise * rise);
+            let near = self.near(row);
+            let distances = &mut self.distance[row];
+            distances.fill(PART_OF_SQUARE[REACH * REACH]);
+            let mut known = 0;
+            for (cells, distance) in near.iter().zip(PART_OF_SQUARE) {
+                let mut bits = cells & !known;
+                known |= bits;
+                while bits != 0 {
+                    distances[bits.trailing_zeros() as usize % COLS] = distance;
+                    bits &= bits - 1;
                 }
             }
-            for (distance, squared) in self.distance[row].iter_mut().zip(least) {
-                *distance = PART_OF_SQUARE[usize::from(squared).min(REACH * REACH)];
+        }
+    }
+
+    /// The cells of a row with an occupied cell at each squared distance [cells]: whole rows are moved
+    /// at a time.
+    fn near(&self, row: usize) -> [u128; REACH * REACH + 1] {
+        let mut near = [0; REACH * REACH + 1];
+        for rise in 0..REACH + 1 {
+            let above = self.occupied_row(Some(row + rise));
+            let both = above | self.occupied_row(row.checked_sub(rise));
+            let (mut left, mut right) = (both, both);
+            for along in 0..REACH + 1 {
+                let Some(cells) = near.get_mut(rise * rise + along * along) else {
+                    break;
+                };
+                *cells |= left | right;
+                left <<= 1;
+                right >>= 1;
             }
         }
+        near
+    }
+
+    fn occupied_row(&self, row: Option<usize>) -> u128 {
+        row.and_then(|row| self.occupied.get(row).copied())
+            .unwrap_or(0)
     }
 
     /// Distance from a point `(x, z)` [m] to the nearest centre of an occupied cell [m], bilinear
@@ -118,10 +137,9 @@ impl ClearanceField {
     }
 
     fn surface_row(&self, row: usize) -> u128 {
-        let at = |row: usize| self.occupied.get(row).copied().unwrap_or(0);
-        let own = at(row);
-        let above = at(row + 1);
-        let below = row.checked_sub(1).map_or(0, at);
+        let own = self.occupied_row(Some(row));
+        let above = self.occupied_row(Some(row + 1));
+        let below = self.occupied_row(row.checked_sub(1));
         own & !(own << 1 & own >> 1 & above & below)
     }
 }
@@ -130,28 +148,6 @@ impl Default for ClearanceField {
     fn default() -> Self {
         Self::new()
     }
-}
-
-/// Distances [cells] to the nearest occupied cell of a row, capped.
-fn along_row(occupied: u128) -> [u8; COLS] {
-    const CAP: u8 = REACH as u8 + 1;
-    let mut distances = [CAP; COLS];
-    let mut since = CAP;
-    for (col, distance) in distances.iter_mut().enumerate() {
-        let here = occupied >> (col as u32 % u128::BITS) & 1 == 1;
-        since = if here { 0 } else { (since + 1).min(CAP) };
-        *distance = since;
-    }
-    let mut since = CAP;
-    for distance in distances.iter_mut().rev() {
-        since = if *distance == 0 {
-            0
-        } else {
-            (since + 1).min(CAP)
-        };
-        *distance = since.min(*distance);
-    }
-    distances
 }
 
 /// First and last cell of a range [m], as far as it is in the window.

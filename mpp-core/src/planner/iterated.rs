@@ -15,7 +15,7 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::corridor::Keep;
 use crate::map::{ClearanceField, GridPoint, MemoryMap};
 use crate::plan::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, resample};
-use crate::qp::{Dynamics, Status};
+use crate::qp::Status;
 use crate::settings::{AttitudeLimits, Iteration};
 use crate::vehicle::{PathControl, PathState};
 
@@ -33,7 +33,6 @@ pub(super) struct Workspace {
     pub(super) field: ClearanceField,
     lattice: Lattice,
     candidates: heapless::Vec<Candidate, CANDIDATES>,
-    dynamics: [Dynamics; STAGES],
     /// Improvements so far.
     improvements: usize,
     /// The candidates by price after the first improvement of each.
@@ -47,7 +46,6 @@ impl Workspace {
             field: ClearanceField::new(),
             lattice: Lattice::new(),
             candidates: heapless::Vec::new(),
-            dynamics: [Dynamics::at_rest(); STAGES],
             improvements: 0,
             order: [0; CANDIDATES],
         }
@@ -294,12 +292,12 @@ impl Planner {
         let cruise = self.trim.state.airspeed;
         self.corridor
             .separate(&work.field, &candidate.knots, cruise, &keep);
-        frame.linearise(candidate, &mut work.dynamics);
-        if self
+        let condensed = self
             .shared
-            .condense_varying(&work.dynamics, &self.settings.weights)
-            .is_err()
-        {
+            .condense_varying(&self.settings.weights, |dynamics| {
+                frame.linearise(candidate, dynamics);
+            });
+        if condensed.is_err() {
             // A candidate without a model is passed over.
             work.improvements += 1;
             return;

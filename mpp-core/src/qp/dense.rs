@@ -1,6 +1,7 @@
 //! Small dense algebra on the controls of the horizon.
 
 use super::Weights;
+use super::triangle::{Triangle, entries};
 use crate::config::STAGES;
 
 /// Controls of the whole horizon, stage by stage.
@@ -8,83 +9,81 @@ pub(super) const CONTROLS: usize = 2 * STAGES;
 
 pub(super) type ControlVector = [f64; CONTROLS];
 
-/// Upper factor `U` of `R + w G'G = U U'`, `G` being given by rows; none if it is not positive
-/// definite. A vector that is zero from some control on keeps its zeros through `U^-1`.
-pub(super) fn factor(
-    upper: &mut [ControlVector; CONTROLS],
-    terminal: &[ControlVector; 6],
-    weights: &Weights,
-) -> Option<()> {
-    for col in (0..CONTROLS).rev() {
-        for row in (0..col + 1).rev() {
-            let coupling: f64 = terminal.iter().map(|state| state[row] * state[col]).sum();
-            let own = if row == col {
-                weights.control[row % 2]
-            } else {
-                0.0
-            };
-            let mut value = own + weights.terminal * coupling;
-            if let (Some(one), Some(other)) = (upper[row].get(col + 1..), upper[col].get(col + 1..))
+/// Upper factor `U` of a positive definite matrix, `U U'`. A vector that is zero from some control on
+/// keeps its zeros through `U^-1`.
+#[derive(Clone, Debug)]
+pub(super) struct Upper {
+    /// From the last row to the first, each from its diagonal on.
+    rows: Triangle<{ entries(CONTROLS) }>,
+}
+
+impl Upper {
+    pub(super) const fn new() -> Self {
+        Self {
+            rows: Triangle::new(),
+        }
+    }
+
+    /// A row from its diagonal on.
+    fn row(&self, index: usize) -> &[f64] {
+        self.rows.row(CONTROLS - 1 - index)
+    }
+
+    /// Factors `R + w G'G`, `G` being given by rows; none if it is not positive definite.
+    pub(super) fn factor(
+        &mut self,
+        terminal: &[ControlVector; 6],
+        weights: &Weights,
+    ) -> Option<()> {
+        for col in (0..CONTROLS).rev() {
+            for row in (0..col + 1).rev() {
+                let coupling: f64 = terminal.iter().map(|state| state[row] * state[col]).sum();
+                let own = if row == col {
+                    weights.control[row % 2]
+                } else {
+                    0.0
+                };
+                let mut value = own + weights.terminal * coupling;
+                let ([diagonal, later @ ..], Some(others)) =
+                    (self.row(col), self.row(row).get(col + 1 - row..))
+                else {
+                    return None;
+                };
+                value -= dot(others, later);
+                let entry = if row < col {
+                    value / diagonal
+                } else if value > 0.0 && value.is_finite() {
+                    libm::sqrt(value)
+                } else {
+                    return None;
+                };
+                *self.rows.row_mut(CONTROLS - 1 - row).get_mut(col - row)? = entry;
+            }
+        }
+        Some(())
+    }
+
+    /// `U^-1 b`, in place, of a `b` that is zero but for its first `len` entries.
+    pub(super) fn solve(&self, len: usize, b: &mut [f64]) {
+        let len = len.min(CONTROLS);
+        for (index, row) in (0..len).rev().zip(self.rows.rows_from(CONTROLS - len)) {
+            if let (Some([value, known @ ..]), [diagonal, factors @ ..]) =
+                (b.get_mut(index..len), row)
             {
-                value -= dot(one, other);
-            }
-            upper[row][col] = if row < col {
-                value / upper[col][col]
-            } else if value > 0.0 && value.is_finite() {
-                libm::sqrt(value)
-            } else {
-                return None;
-            };
-        }
-    }
-    Some(())
-}
-
-/// `U^-1 b`, in place, of a `b` that is zero but for its first `len` entries.
-pub(super) fn solve_upper(upper: &[ControlVector; CONTROLS], len: usize, b: &mut ControlVector) {
-    for (index, row) in upper.iter().enumerate().take(len).rev() {
-        if let (Some([value, known @ ..]), Some([diagonal, factors @ ..])) =
-            (b.get_mut(index..len), row.get(index..))
-        {
-            *value = (*value - dot(factors, known)) / diagonal;
-        }
-    }
-}
-
-/// `U^-T b`, in place.
-pub(super) fn solve_transposed(upper: &[ControlVector; CONTROLS], b: &mut ControlVector) {
-    for (index, row) in upper.iter().enumerate() {
-        if let (Some([value, later @ ..]), Some([diagonal, factors @ ..])) =
-            (b.get_mut(index..), row.get(index..))
-        {
-            *value /= diagonal;
-            for (later, factor) in later.iter_mut().zip(factors) {
-                *later -= factor * *value;
+                *value = (*value - dot(factors, known)) / diagonal;
             }
         }
     }
-}
 
-/// `L^-1 b`, in place on the first `len` entries of `b`.
-pub(super) fn forward<const N: usize>(lower: &[[f64; N]; N], len: usize, b: &mut [f64; N]) {
-    for (index, row) in lower.iter().enumerate().take(len) {
-        if let Some((known, [value, ..])) = b.split_at_mut_checked(index)
-            && let Some(diagonal) = row.get(index)
-        {
-            *value = (*value - dot(row, known)) / diagonal;
-        }
-    }
-}
-
-/// `L^-T b`, in place on the first `len` entries of `b`.
-pub(super) fn backward<const N: usize>(lower: &[[f64; N]; N], len: usize, b: &mut [f64; N]) {
-    for (index, row) in lower.iter().enumerate().take(len).rev() {
-        if let Some((earlier, [value, ..])) = b.split_at_mut_checked(index)
-            && let Some(diagonal) = row.get(index)
-        {
-            *value /= diagonal;
-            for (earlier, factor) in earlier.iter_mut().zip(row) {
-                *earlier -= factor * *value;
+    /// `U^-T b`, in place.
+    pub(super) fn solve_transposed(&self, b: &mut ControlVector) {
+        for (index, row) in self.rows.rows_before(CONTROLS).enumerate() {
+            if let (Some([value, later @ ..]), [diagonal, factors @ ..]) = (b.get_mut(index..), row)
+            {
+                *value /= diagonal;
+                for (later, factor) in later.iter_mut().zip(factors) {
+                    *later -= factor * *value;
+                }
             }
         }
     }

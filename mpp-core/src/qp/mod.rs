@@ -21,8 +21,10 @@ mod condense;
 mod dense;
 mod factor;
 mod model;
+mod response;
 mod rows;
 mod solve;
+mod triangle;
 
 use crate::config::{KNOTS, STAGES};
 pub use condense::{CondenseError, Condensed};

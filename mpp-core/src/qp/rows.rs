@@ -13,7 +13,7 @@ pub(super) const THRUST_OUTPUT: usize = 2 * STAGES;
 pub(super) const ATTITUDE_OUTPUT: usize = THRUST_OUTPUT + STAGES;
 
 /// How many controls, from the first on, can change an output: those of the stages before it.
-pub(super) fn reach(output: usize) -> usize {
+pub(super) const fn reach(output: usize) -> usize {
     let stage = if output < THRUST_OUTPUT {
         output / 2
     } else if output < ATTITUDE_OUTPUT {

@@ -39,9 +39,13 @@ fn bent(setup: &Setup, draw: &mut Draw) -> Stages {
     })
 }
 
+fn condense(shared: &mut Condensed, stages: &Stages, setup: &Setup) -> Result<(), CondenseError> {
+    shared.condense_varying(&setup.weights, |dynamics| *dynamics = *stages)
+}
+
 fn condensed(setup: &Setup, stages: &Stages) -> Box<Condensed> {
     let mut shared = Box::new(Condensed::new());
-    shared.condense_varying(stages, &setup.weights).unwrap();
+    condense(&mut shared, stages, setup).unwrap();
     shared
 }
 
@@ -67,9 +71,9 @@ fn a_workspace_forgets_what_it_condensed_before() {
         let stages = bent(setup, &mut draw);
         let mut broken = stages;
         broken[draw.below(STAGES)].a[(2, 2)] = f64::NAN;
-        let failed = used.condense_varying(&broken, &setup.weights);
+        let failed = condense(&mut used, &broken, setup);
         assert_eq!(failed, Err(CondenseError));
-        used.condense_varying(&stages, &setup.weights).unwrap();
+        condense(&mut used, &stages, setup).unwrap();
         let fresh = condensed(setup, &stages);
         assert_eq!(trace(&used, &problem), trace(&fresh, &problem));
         used.condense(&setup.model, &setup.weights).unwrap();
