@@ -19,6 +19,7 @@
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
 //! * [`picture`]: one flight as a page for a browser, recorded or live.
 //! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
+//! * [`cycles`]: the planning cycles of a flight, to plan them again.
 //! * [`campaign`]: many flights over a grid, with intervals.
 //! * [`ground`]: what people see of a flight and tell it; MAVLink 2.
 //! * [`check_reference`]: core and plant against data recorded from the authors' code.
@@ -36,6 +37,7 @@ pub mod bench;
 pub mod campaign;
 pub mod check_reference;
 pub mod cli;
+pub mod cycles;
 pub mod faults;
 pub mod figure;
 pub mod ground;

@@ -15,6 +15,7 @@ use crate::scenario::{ALTITUDE, Scenario};
 use crate::sensors::AirDataSensors;
 use crate::world::ObstacleField;
 use hil_protocol::{ControlMode, LidarScan, PlanReport, PlanTrajectory, SensorFrame};
+use mpp_core::planner::SetupError;
 use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
 use nalgebra::Vector4;
 use session::{Answer, Session};
@@ -30,6 +31,8 @@ pub enum FlyError {
     Plant(PlantError),
     /// The airframe has no level flight to start from.
     Trim(TrimError),
+    /// The planner cannot be set up.
+    SetUp(SetupError),
 }
 
 impl fmt::Display for FlyError {
@@ -38,6 +41,7 @@ impl fmt::Display for FlyError {
             Self::Link(error) => write!(f, "{error}"),
             Self::Plant(error) => write!(f, "{error}"),
             Self::Trim(error) => write!(f, "the airframe has no level flight: {error:?}"),
+            Self::SetUp(error) => write!(f, "the planner cannot be set up: {error:?}"),
         }
     }
 }

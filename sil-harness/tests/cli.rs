@@ -226,6 +226,30 @@ fn a_campaigns_row_is_flown_again_in_full() {
 }
 
 #[test]
+fn a_cycle_is_benched_by_stage_in_both_presets() {
+    let arguments = "bench cycle --flights 1 --runs 1 --duration 3 --json";
+    let output = harness().args(arguments.split(' ')).output().unwrap();
+    assert!(output.status.success());
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (&report["obstacles"], &report["cycles"]),
+        (&40.into(), &3.into())
+    );
+    for (preset, name) in report["presets"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(["reference", "flight"])
+    {
+        assert_eq!(preset["preset"], name);
+        for stage in ["map", "candidates", "corridor", "QP", "rest", "cycle"] {
+            assert!(preset[stage]["p99_us"].as_f64().unwrap() > 0.0, "{stage}");
+        }
+    }
+    assert!(report["ratio"]["median"].as_f64().unwrap() > 0.0);
+}
+
+#[test]
 fn figures_are_drawn_into_a_directory() {
     let (output, out) = run("figures", &["figures"]);
     assert!(output.status.success(), "{output:?}");

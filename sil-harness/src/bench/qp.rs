@@ -6,6 +6,7 @@
 
 use super::full_form::{Form, FullForm};
 use super::instance::Instance;
+use super::percentile;
 use clarabel::solver::{IPSolver, SolverStatus};
 use mpp_core::qp::{CondenseError, Condensed, Problem, Solution, Solver, Status};
 use serde::Serialize;
@@ -341,10 +342,4 @@ impl Tally {
         self.report.iterations_max = self.iterations.last().copied().unwrap_or(0);
         self.report
     }
-}
-
-/// Nearest-rank percentile of sorted values.
-fn percentile<T: Copy>(sorted: &[T], percent: usize) -> Option<T> {
-    let rank = (sorted.len() * percent).div_ceil(100).max(1);
-    sorted.get(rank - 1).copied()
 }

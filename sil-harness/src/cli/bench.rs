@@ -1,9 +1,14 @@
 //! `bench`: our parts beside others, in one run.
 
+use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, USAGE, data, talk};
-use crate::bench::{Instance, generate, read_instances, run_qp, write_instances};
+use crate::bench::{
+    CycleBench, Instance, generate, read_instances, run_cycle, run_qp, write_instances,
+};
 use crate::scenario::Preset;
 use indicatif::ProgressBar;
+use serde::Serialize;
+use std::fmt::Display;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -16,6 +21,36 @@ pub(super) struct BenchArgs {
 enum What {
     /// The QP solver beside Clarabel, on the same programs, one thread, best of several runs
     Qp(QpArgs),
+    /// A planning cycle of preset flight beside one of reference, by stage, on the same recorded
+    /// cycles, one thread, best of several runs
+    Cycle(CycleArgs),
+}
+
+#[derive(Clone, Debug, clap::Args)]
+struct CycleArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Obstacles of the recorded flights
+    #[arg(long, default_value_t = 40)]
+    obstacles: usize,
+    /// Candidate paths of a cycle [default: 25]
+    #[arg(long)]
+    paths: Option<u16>,
+    /// Replanning rate [Hz] [default: 1]
+    #[arg(long)]
+    replan_hz: Option<f64>,
+    /// Flights to record
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    flights: u32,
+    /// Seed of the first; the others follow [default: 1]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// How often each cycle is planned; the fastest counts
+    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    runs: u32,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Debug, clap::Args)]
@@ -43,7 +78,37 @@ struct QpArgs {
 pub(super) fn run(args: &BenchArgs) -> Result<u8, Failure> {
     match &args.what {
         What::Qp(args) => run_qp_bench(args),
+        What::Cycle(args) => run_cycle_bench(args),
     }
+}
+
+fn run_cycle_bench(args: &CycleArgs) -> Result<u8, Failure> {
+    let mut file = args.scenario.file()?;
+    file.obstacles = Some(args.obstacles);
+    replace(&mut file.paths, args.paths);
+    replace(&mut file.replan_hz, args.replan_hz);
+    replace(&mut file.seed, args.seed);
+    let bench = CycleBench {
+        scenario: file.build().map_err(|error| Failure::new(USAGE, error))?,
+        flights: args.flights,
+        runs: args.runs,
+    };
+    let progress = ProgressBar::new(u64::from(args.flights));
+    let report = run_cycle(&bench, || progress.inc(1));
+    progress.finish_and_clear();
+    print(
+        &report.map_err(|error| Failure::new(FAILURE, error))?,
+        args.json,
+    )
+}
+
+fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure> {
+    if json {
+        data(serde_json::to_string(report).map_err(|error| Failure::new(FAILURE, error))?);
+    } else {
+        data(report.to_string().trim_end());
+    }
+    Ok(0)
 }
 
 fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
@@ -60,13 +125,10 @@ fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
     let progress = ProgressBar::new(instances.len() as u64);
     let report = run_qp(&instances, || progress.inc(1));
     progress.finish_and_clear();
-    let report = report.map_err(|error| Failure::new(FAILURE, error))?;
-    if args.json {
-        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?);
-    } else {
-        data(report.to_string().trim_end());
-    }
-    Ok(0)
+    print(
+        &report.map_err(|error| Failure::new(FAILURE, error))?,
+        args.json,
+    )
 }
 
 fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {

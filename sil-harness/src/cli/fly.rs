@@ -144,7 +144,7 @@ fn exit_code(error: &FlyError) -> u8 {
     match error {
         FlyError::Link(LinkError::Refused(_)) => USAGE,
         FlyError::Link(_) => LINK,
-        FlyError::Plant(_) | FlyError::Trim(_) => FAILURE,
+        FlyError::Plant(_) | FlyError::Trim(_) | FlyError::SetUp(_) => FAILURE,
     }
 }
 

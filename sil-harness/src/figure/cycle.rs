@@ -1,18 +1,13 @@
 //! One planning cycle of a flight, looked at from outside.
 
 use super::FigureError;
-use crate::lidar::Lidar;
-use crate::link::PipeLink;
-use crate::run::{fly, wire_scan};
-use crate::scenario::{Preset, Scenario};
+use crate::cycles::{Inputs, planner, record, settings};
+use crate::scenario::Scenario;
 use crate::world::{ObstacleField, Point};
 use mpp_core::config::{ORIGIN_COL, ORIGIN_ROW, STAGE_PERIOD};
 use mpp_core::map::{GridPoint, OccupancyGrid};
 use mpp_core::plan::CollocationPoints;
-use mpp_core::planner::Planner;
 use mpp_core::qp::{Condensed, Problem, Solution, Solver, Status};
-use mpp_core::sense::LidarScan;
-use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::VehicleState;
 
@@ -53,26 +48,20 @@ impl Cycle {
     /// # Errors
     /// [`FigureError::Cycle`] when the flight does not get there, or nothing can be planned.
     pub fn of_flight(scenario: &Scenario, tick: u32) -> Result<Self, FigureError> {
-        let failed = |why: String| FigureError::Cycle(why);
-        let mut at_tick = None;
         let until = Scenario {
             ticks: tick + 1,
             ..scenario.clone()
         };
-        fly(&until, &mut PipeLink::new(), |moment| {
-            at_tick = Some((moment.tick.t, moment.tick.state, moment.tick.estimate));
-        })
-        .map_err(|error| failed(error.to_string()))?;
-        let (time, truth, estimate) = at_tick
-            .filter(|(time, ..)| *time > Scenario::time(tick) - 1e-9)
-            .ok_or_else(|| failed("the flight ends before the tick".to_owned()))?;
-        let state = VehicleState {
-            air: estimate,
-            ..truth
+        let mut earlier = record(&until).map_err(failed)?;
+        let last = earlier.pop();
+        let Some(inputs) = last.filter(|last| last.time > Scenario::time(tick) - 1e-9) else {
+            let why = "no cycle of the flight begins at the tick";
+            return Err(FigureError::Cycle(why.to_owned()));
         };
-        let field = scenario.field();
-        let scan = scan(scenario, &truth, &field);
-        let (grid, candidates, chosen) = plan(scenario, time, &state, &scan)?;
+        let (grid, candidates, chosen) = plan(scenario, &earlier, &inputs)?;
+        let Inputs {
+            truth, state, scan, ..
+        } = inputs;
         let ends =
             |beam: usize| truth.air.pitch + scan.angle_min + scan.angle_increment * beam as f64;
         let hit = |(beam, range): (usize, &f32)| {
@@ -85,7 +74,7 @@ impl Cycle {
             fan: (ends(0), ends(scan.ranges.len().saturating_sub(1))),
             range_max: scenario.lidar.range_max,
             state,
-            field,
+            field: scenario.field(),
             grid,
             candidates,
             chosen,
@@ -107,44 +96,32 @@ fn world(state: &VehicleState, point: &GridPoint) -> Point {
     )
 }
 
-fn scan(scenario: &Scenario, truth: &VehicleState, field: &ObstacleField) -> LidarScan {
-    let mut lidar = Lidar::new(scenario.seed, scenario.lidar);
-    let wire = wire_scan(scenario, 0, &lidar.scan(truth, field));
-    LidarScan {
-        angle_min: f64::from(wire.angle_min),
-        angle_increment: f64::from(wire.angle_increment),
-        ranges: wire.ranges,
-    }
+fn failed(error: impl std::fmt::Display) -> FigureError {
+    FigureError::Cycle(error.to_string())
 }
 
-/// Plans once, and refines every candidate to its end, however dear: the planner itself stops at
+/// Plans as in flight, and refines every candidate to its end, however dear: the planner itself stops at
 /// the cost of the best one.
 fn plan(
     scenario: &Scenario,
-    time: f64,
-    state: &VehicleState,
-    scan: &LidarScan,
+    earlier: &[Inputs],
+    inputs: &Inputs,
 ) -> Result<(OccupancyGrid, Vec<Candidate>, Trajectory), FigureError> {
-    let mut settings = match scenario.preset {
-        Preset::Reference => Settings::reference(),
-        Preset::Paper => Settings::paper(),
-        Preset::Flight => Settings::flight(),
-    };
-    settings.airframe = scenario.airframe.airframe();
-    settings.planner.paths = usize::from(scenario.paths);
-    settings.planner.seed = scenario.seed;
-    let mut planner = Box::new(Planner::new());
-    let failed = |why: String| FigureError::Cycle(why);
-    planner
-        .set_up(&settings)
-        .map_err(|error| failed(format!("{error:?}")))?;
+    let settings = settings(scenario).map_err(failed)?;
+    let mut planner = planner(&settings).map_err(failed)?;
     let mut shared = Box::new(Condensed::new());
     shared
         .condense(planner.model(), &settings.planner.weights)
-        .map_err(|error| failed(format!("{error:?}")))?;
+        .map_err(|error| FigureError::Cycle(format!("{error:?}")))?;
+    // The planner's random numbers go on from cycle to cycle.
+    for inputs in earlier {
+        planner.begin(inputs.time, &inputs.state, &inputs.scan);
+        while planner.advance() {}
+        planner.finish();
+    }
     let mut candidates = Vec::new();
     let mut solver = Box::new(Solver::new());
-    planner.begin(time, state, scan);
+    planner.begin(inputs.time, &inputs.state, &inputs.scan);
     while planner.advance() {
         let Some(problem) = planner.program() else {
             continue;
@@ -153,7 +130,7 @@ fn plan(
             let cruise = planner.trim().state.airspeed;
             candidates.push(Candidate {
                 points: *planner.points(),
-                refined: refined(&mut solver, &shared, problem, state, cruise),
+                refined: refined(&mut solver, &shared, problem, &inputs.state, cruise),
             });
         }
     }

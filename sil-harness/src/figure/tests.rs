@@ -156,7 +156,7 @@ fn a_planning_cycle_is_drawn_step_by_step() {
         obstacles: 30,
         ..Scenario::new(Preset::Paper, 1)
     };
-    let cycle = Cycle::of_flight(&scenario, 300).unwrap();
+    let cycle = Cycle::of_flight(&scenario, 400).unwrap();
     assert_eq!(cycle.candidates.len(), 25);
     let feasible = |cycle: &Cycle| {
         let refined = cycle
