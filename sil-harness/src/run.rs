@@ -8,7 +8,7 @@ use crate::faults::LidarFaults;
 use crate::ground::Ground;
 use crate::lidar::Lidar;
 use crate::link::{Link, LinkError};
-use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, Tick, finite};
+use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, Summary, Tick, finite};
 use crate::outcome::{Outcome, Score};
 use crate::plant::PlantError;
 use crate::scenario::{ALTITUDE, Scenario};
@@ -159,9 +159,11 @@ pub fn fly_with(
     log.rejections = session.rejections;
     log.orders = std::mem::take(&mut steering.orders);
     let outcome = end.unwrap_or(Outcome::Survived);
-    log.conclude(outcome, &score, holds_trim);
-    log.summary.t_end = Scenario::time(flown);
-    log.summary.x_end = aircraft.state().x;
+    log.summary = Summary {
+        t_end: Scenario::time(flown),
+        x_end: aircraft.state().x,
+        ..Summary::new(&log.plans, outcome, &score, holds_trim)
+    };
     Ok(log)
 }
 

@@ -105,15 +105,16 @@ impl CellReport {
         let rows: Vec<&Row> = all.iter().filter(|row| row.cell == cell).collect();
         let trials = rows.len() as u32;
         let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count() as u32;
-        let (successes, strict_successes) = (count(|row| row.success), count(|row| row.strict));
+        let (successes, strict_successes) =
+            (count(|row| row.success), count(|row| row.summary.strict));
         let share = |part: u32| (trials > 0).then(|| f64::from(part) / f64::from(trials));
         let ((wilson_low, wilson_high), (strict_wilson_low, strict_wilson_high)) =
             (wilson(successes, trials), wilson(strict_successes, trials));
         let mut outcomes = Outcomes::default();
         for row in &rows {
-            outcomes.0[row.class as usize] += 1;
+            outcomes.0[row.summary.class as usize] += 1;
         }
-        let replans = rows.iter().map(|row| u64::from(row.replans)).sum();
+        let replans = rows.iter().map(|row| u64::from(row.summary.replans)).sum();
         let times: Option<f64> = rows.iter().map(|row| row.core_ms).sum();
         Self {
             cell,
@@ -127,11 +128,14 @@ impl CellReport {
             strict_wilson_low,
             strict_wilson_high,
             outcomes,
-            min_clearance_median: median(rows.iter().filter_map(|row| row.min_clearance)),
+            min_clearance_median: median(rows.iter().filter_map(|row| row.summary.min_clearance)),
             replans,
-            candidates: rows.iter().map(|row| u64::from(row.candidates)).sum(),
-            feasible: rows.iter().map(|row| u64::from(row.feasible)).sum(),
-            slices: rows.iter().map(|row| row.slices).sum(),
+            candidates: rows
+                .iter()
+                .map(|row| u64::from(row.summary.candidates))
+                .sum(),
+            feasible: rows.iter().map(|row| u64::from(row.summary.feasible)).sum(),
+            slices: rows.iter().map(|row| row.summary.slices).sum(),
             core_ms_per_replan: times
                 .filter(|_| replans > 0)
                 .map(|time| time / replans as f64),

@@ -1,8 +1,8 @@
 //! One flight of a campaign.
 
 use super::Cell;
-use crate::log::FlightLog;
-use crate::outcome::{Class, Outcome};
+use crate::log::{FlightLog, Summary};
+use crate::outcome::Outcome;
 use serde::{Deserialize, Serialize};
 
 /// One flight: what was flown and what came of it.
@@ -13,30 +13,11 @@ pub struct Row {
     pub cell: Cell,
     /// Its seed.
     pub seed: u64,
-    /// What it is counted as.
-    pub class: Class,
-    /// What ended it, by the paper's rule.
-    pub outcome: Outcome,
     /// Success by the paper's rule.
     pub success: bool,
-    /// Success by the strict rule.
-    pub strict: bool,
-    /// Time at the end [s].
-    pub t_end: f64,
-    /// Downrange distance at the end [m].
-    pub x_end: f64,
-    /// Least distance to an obstacle's edge [m]; null without obstacles.
-    pub min_clearance: Option<f64>,
-    /// Greatest distance from the initial altitude [m].
-    pub max_altitude_deviation: f64,
-    /// Plans delivered.
-    pub replans: u32,
-    /// Candidates over all plans.
-    pub candidates: u32,
-    /// Feasible candidates over all plans.
-    pub feasible: u32,
-    /// Slices of planning work over all plans.
-    pub slices: u64,
+    /// What came of it, as in the flight's log.
+    #[serde(flatten)]
+    pub summary: Summary,
     /// The flight log's hash.
     pub log_hash: String,
     /// Wall time that the core worked [ms], if asked for: no part of what a seed determines.
@@ -48,22 +29,11 @@ impl Row {
     /// The row of a flight.
     #[must_use]
     pub fn new(cell: Cell, log: &FlightLog, log_hash: String, core_ms: Option<f64>) -> Self {
-        let summary = &log.summary;
         Self {
             cell,
             seed: log.header.seed,
-            class: summary.class,
-            outcome: summary.outcome,
-            success: summary.outcome == Outcome::Survived,
-            strict: summary.strict,
-            t_end: summary.t_end,
-            x_end: summary.x_end,
-            min_clearance: summary.min_clearance,
-            max_altitude_deviation: summary.max_altitude_deviation,
-            replans: summary.replans,
-            candidates: summary.candidates,
-            feasible: summary.feasible,
-            slices: summary.slices,
+            success: log.summary.outcome == Outcome::Survived,
+            summary: log.summary,
             log_hash,
             core_ms,
         }

@@ -12,7 +12,7 @@ use std::io::{Read, Write};
 use std::path::Path;
 
 /// Version of the rows' layout.
-const ROWS: u32 = 1;
+const ROWS: u32 = 2;
 
 /// A row file's first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

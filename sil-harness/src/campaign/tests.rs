@@ -196,10 +196,8 @@ fn files_that_disagree_about_a_flight_are_refused() {
         ..row.clone()
     };
     assert_eq!(merge(&campaign, [row.clone(), timed]).unwrap().len(), 1);
-    let other = Row {
-        replans: row.replans + 1,
-        ..row.clone()
-    };
+    let mut other = row.clone();
+    other.summary.replans += 1;
     assert!(matches!(
         merge(&campaign, [row, other]),
         Err(CampaignError::Disagree(..))
@@ -210,10 +208,10 @@ fn files_that_disagree_about_a_flight_are_refused() {
 fn a_report_counts_what_its_rows_say() {
     let campaign = short();
     let mut rows = merge(&campaign, fly_jobs(&campaign, Shard::WHOLE, 1)).unwrap();
-    rows[0].class = crate::outcome::Class::LeftBand;
-    rows[0].strict = false;
-    rows[1].class = crate::outcome::Class::NoPlan;
-    (rows[1].strict, rows[1].success) = (false, false);
+    rows[0].summary.class = crate::outcome::Class::LeftBand;
+    rows[0].summary.strict = false;
+    rows[1].summary.class = crate::outcome::Class::NoPlan;
+    (rows[1].summary.strict, rows[1].success) = (false, false);
     let report = serde_json::to_value(Report::new(&campaign, &rows)).unwrap();
     assert_eq!(
         (&report["flights"], &report["flown"]),

@@ -5,8 +5,8 @@ use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, LINK, USAGE, data, talk};
 use crate::figure::flight_svg;
 use crate::link::{FifoLink, Link, LinkError, PATIENCE, PipeLink, TcpLink};
-use crate::log::FlightLog;
-use crate::outcome::{Class, Outcome};
+use crate::log::{FlightLog, Summary};
+use crate::outcome::Outcome;
 use crate::run::{FlyError, fly_with};
 use crate::scenario::{Preset, Scenario};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -95,16 +95,8 @@ struct ResultLine<'a> {
     airframe: &'a str,
     obstacles: usize,
     paths: usize,
-    outcome: String,
-    strict: bool,
-    class: Class,
-    t_end: f64,
-    x_end: f64,
-    min_clearance: Option<f64>,
-    max_altitude_deviation: f64,
-    replans: u32,
-    candidates: u32,
-    feasible: u32,
+    #[serde(flatten)]
+    summary: Summary,
     rejections: usize,
     log_hash: &'a str,
     log: String,
@@ -165,23 +157,13 @@ fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
         .hash()
         .map_err(|error| failed(&log_path, error.to_string()))?;
 
-    let summary = &log.summary;
     let line = ResultLine {
         seed: log.header.seed,
         preset: &log.header.preset,
         airframe: &log.header.airframe,
         obstacles: log.header.obstacles,
         paths: log.header.paths,
-        outcome: summary.outcome.to_string(),
-        strict: summary.strict,
-        class: summary.class,
-        t_end: summary.t_end,
-        x_end: summary.x_end,
-        min_clearance: summary.min_clearance,
-        max_altitude_deviation: summary.max_altitude_deviation,
-        replans: summary.replans,
-        candidates: summary.candidates,
-        feasible: summary.feasible,
+        summary: log.summary,
         rejections: log.rejections.len(),
         log_hash: &hash,
         log: log_path.display().to_string(),
@@ -192,31 +174,34 @@ fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
         data(text);
     } else {
         talk(format_args!("log {}, picture {}", line.log, line.figure));
-        data(text_line(&line, summary.outcome));
+        data(text_line(&line));
     }
-    Ok(summary.outcome.exit_code())
+    Ok(log.summary.outcome.exit_code())
 }
 
-fn text_line(line: &ResultLine<'_>, outcome: Outcome) -> String {
-    let strict = match (outcome, line.strict) {
+fn text_line(line: &ResultLine<'_>) -> String {
+    let Summary {
+        outcome,
+        strict,
+        t_end,
+        min_clearance,
+        replans,
+        candidates,
+        feasible,
+        ..
+    } = line.summary;
+    let strict = match (outcome, strict) {
         (Outcome::Survived, true) => " (strict)",
         (Outcome::Survived, false) => " (left the altitude band)",
         _ => "",
     };
-    let clearance = match line.min_clearance {
+    let clearance = match min_clearance {
         Some(clearance) => format!("{clearance:.2} m"),
         None => "none".to_owned(),
     };
     format!(
-        "result: seed {}, {}{strict} after {:.2} s, clearance {clearance}, {} replans, {} candidates, {} \
-         feasible, {} rejections, log {}",
-        line.seed,
-        line.outcome,
-        line.t_end,
-        line.replans,
-        line.candidates,
-        line.feasible,
-        line.rejections,
-        line.log_hash
+        "result: seed {}, {outcome}{strict} after {t_end:.2} s, clearance {clearance}, {replans} \
+         replans, {candidates} candidates, {feasible} feasible, {} rejections, log {}",
+        line.seed, line.rejections, line.log_hash
     )
 }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::faults::Faults;
 use crate::lidar::LidarConfig;
+use crate::outcome::{Class, Outcome};
 use crate::sensors::AirDataNoise;
 
 fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
