@@ -1,5 +1,6 @@
 //! Both tasks in one thread.
 
+use crate::mail::Order;
 use crate::plan_task::{PlanTask, Progress};
 use crate::step_task::{Pace, StepTask};
 use mpp_core::health::Health;
@@ -23,10 +24,21 @@ impl FlightNode {
 
     /// Takes bytes from the link; `send` gets every frame of the answer, whole. The planner has
     /// used all slices granted so far when it returns.
-    pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
+    pub fn receive(&mut self, bytes: &[u8], send: impl FnMut(&[u8])) {
+        self.receive_advised(bytes, send, |_, _| {});
+    }
+
+    /// As [`FlightNode::receive`], with somebody who knows more than the link tells: `advise` may
+    /// change each order, and the planner's map, before the planner sees them.
+    pub fn receive_advised(
+        &mut self,
+        bytes: &[u8],
+        mut send: impl FnMut(&[u8]),
+        mut advise: impl FnMut(&mut Order, &mut Planner),
+    ) {
         for byte in bytes {
             self.step.receive(*byte, &mut send);
-            self.run_planner(&mut send);
+            self.run_planner(&mut send, &mut advise);
         }
     }
 
@@ -43,9 +55,14 @@ impl FlightNode {
     }
 
     /// Ends: a cycle is a bounded number of slices, and an answer starts the next tick at most.
-    fn run_planner(&mut self, send: &mut impl FnMut(&[u8])) {
+    fn run_planner(
+        &mut self,
+        send: &mut impl FnMut(&[u8]),
+        advise: &mut impl FnMut(&mut Order, &mut Planner),
+    ) {
         loop {
-            if let Some(order) = self.step.order() {
+            if let Some(mut order) = self.step.order() {
+                advise(&mut order, self.plan.planner_mut());
                 self.plan.take(&order);
             }
             match self.plan.advance(self.step.clock()) {

@@ -62,6 +62,10 @@ impl PlanTask {
         &self.planner
     }
 
+    pub(crate) fn planner_mut(&mut self) -> &mut Planner {
+        &mut self.planner
+    }
+
     /// Takes an order; drops what was under way.
     // Setting up needs a deep stack, which must not lie beneath that of the slices.
     #[inline(never)]

@@ -205,3 +205,20 @@ fn no_number_is_too_wild() {
         }
     }
 }
+
+/// What is known takes the place of what was seen, in the whole window and wherever it has rolled.
+#[test]
+fn what_is_known_leaves_nothing_unknown() {
+    for x in [0.0, 37.3, 1000.1] {
+        let mut map = MemoryMap::new();
+        map.roll(x, 50.0);
+        map.insert(&beam(5.0), x, 50.0, 0.0);
+        let wall = |at: f64, z: f64| at > x + 20.0 && z < 45.0;
+        map.know(wall);
+        assert!(rows(&map).iter().all(|(_, unknown)| *unknown == 0));
+        let known = field(&map);
+        for (at, z) in centres(&map) {
+            assert_eq!(known.is_occupied(at, z), wall(at, z), "{at}, {z}");
+        }
+    }
+}

@@ -28,7 +28,7 @@ pub struct Inputs {
 /// [`FlyError`].
 pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
     let mut inputs = Vec::new();
-    fly(scenario, &mut PipeLink::new(), |moment| {
+    fly(scenario, &mut PipeLink::of(scenario), |moment| {
         let Some(wire) = moment.scan else {
             return;
         };

@@ -15,10 +15,12 @@
 //! * [`aircraft`]: the plant behind its actuators, in moving air; [`faults`]: what may go wrong.
 //! * [`sensors`], [`lidar`]: what the aircraft measures, with noise from seeded streams.
 //! * [`outcome`]: the success rule of the paper, and a strict one.
+//! * [`inquest`]: why a flight failed.
 //! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
 //! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
 //! * [`picture`]: one flight as a page for a browser, recorded or live.
 //! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
+//! * [`oracle`]: the core as it would fly if it knew everything.
 //! * [`cycles`]: the planning cycles of a flight, to plan them again.
 //! * [`campaign`]: many flights over a grid, with intervals.
 //! * [`ground`]: what people see of a flight and tell it; MAVLink 2.
@@ -41,9 +43,11 @@ pub mod cycles;
 pub mod faults;
 pub mod figure;
 pub mod ground;
+pub mod inquest;
 pub mod lidar;
 pub mod link;
 pub mod log;
+pub mod oracle;
 pub mod outcome;
 pub mod picture;
 pub mod plant;

@@ -102,7 +102,7 @@ fn nearest_range(from: Point, direction: Point, range_max: f64, obstacles: &[Obs
 
 /// Distance along a beam at which it enters an obstacle [m]; [`RANGE_MIN`] from inside, where the
 /// exit point is not visible. `direction` is a unit vector.
-fn entry_range(from: Point, direction: Point, obstacle: &Obstacle) -> Option<f64> {
+pub(crate) fn entry_range(from: Point, direction: Point, obstacle: &Obstacle) -> Option<f64> {
     let (dx, dz) = (obstacle.x - from.0, obstacle.z - from.1);
     if dx * dx + dz * dz < obstacle.radius * obstacle.radius {
         return Some(RANGE_MIN);

@@ -79,6 +79,9 @@ pub struct Header {
     pub faults: Faults,
     /// The challenge scene, if any.
     pub scene: Option<Scene>,
+    /// Whether an oracle flew; not written if not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub oracle: bool,
     /// The obstacles.
     pub field: Vec<ObstacleEntry>,
 }

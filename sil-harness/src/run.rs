@@ -6,6 +6,7 @@ mod steering;
 use crate::aircraft::Aircraft;
 use crate::faults::LidarFaults;
 use crate::ground::Ground;
+use crate::inquest::Inquest;
 use crate::lidar::Lidar;
 use crate::link::{Link, LinkError};
 use crate::log::{FlightLog, Header, ObstacleEntry, PlanEntry, Summary, Tick, finite};
@@ -110,6 +111,8 @@ pub fn fly_with(
     let mut end = None;
     let mut holds_trim = true;
     let mut flown = 0;
+    let mut inquest = Inquest::default();
+    let mut last = ((0.0, 0.0), (0.0, 0.0));
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, aircraft.state());
     steering.wait(&mut session, ground)?;
@@ -121,6 +124,9 @@ pub fn fly_with(
             break;
         }
         let before = *aircraft.state();
+        if scenario.oracle {
+            session.reveal(&before)?;
+        }
         let measured = sensors.measure(&before);
         let scan = steering
             .scans(flown)
@@ -142,27 +148,34 @@ pub fn fly_with(
             ..logged(flown, &before, measured, &answer)
         };
         let plan = answer.plan.as_ref().map(plan_entry);
-        ground.watch(&Moment {
+        let moment = Moment {
             tick: &tick,
             scan: scan.as_ref(),
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
             rejections: session.rejections.len(),
-        });
+        };
+        inquest.watch(&moment);
+        ground.watch(&moment);
         log.ticks.push(&tick);
         log.plans.extend(plan);
         holds_trim = answer.command.mode == ControlMode::TrimHold;
-        end = score.update(&field, &before, aircraft.state());
+        let after = aircraft.state();
+        end = score.update(&field, &before, after);
+        last = ((before.x, before.z), (after.x, after.z));
         flown += 1;
     }
     log.rejections = session.rejections;
     log.orders = std::mem::take(&mut steering.orders);
     let outcome = end.unwrap_or(Outcome::Survived);
+    let (t_end, x_end) = (Scenario::time(flown), aircraft.state().x);
+    let summary = Summary::new(&log.plans, outcome, &score, holds_trim);
     log.summary = Summary {
-        t_end: Scenario::time(flown),
-        x_end: aircraft.state().x,
-        ..Summary::new(&log.plans, outcome, &score, holds_trim)
+        failure: inquest.conclude(summary.class, &field, last, t_end),
+        t_end,
+        x_end,
+        ..summary
     };
     Ok(log)
 }
@@ -272,6 +285,7 @@ pub(crate) fn header(scenario: &Scenario, field: &ObstacleField) -> Header {
         air_data: scenario.air_data,
         faults: scenario.faults,
         scene: scenario.scene,
+        oracle: scenario.oracle,
         field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
     }
 }

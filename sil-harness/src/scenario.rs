@@ -4,6 +4,7 @@ mod file;
 
 use crate::faults::Faults;
 use crate::lidar::{LidarConfig, LidarRule};
+use crate::oracle;
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
 use crate::world::{Obstacle, ObstacleField};
@@ -118,6 +119,8 @@ pub struct Scenario {
     pub air_data: AirDataNoise,
     /// Faults and disturbances.
     pub faults: Faults,
+    /// Whether the core knows the field and the true state, as [`crate::oracle`] says.
+    pub oracle: bool,
 }
 
 impl Scenario {
@@ -143,6 +146,21 @@ impl Scenario {
             lidar,
             air_data: AirDataNoise::PAPER,
             faults: Faults::default(),
+            oracle: false,
+        }
+    }
+
+    /// The same flight by an oracle.
+    #[must_use]
+    pub fn informed(self) -> Self {
+        Self {
+            preset: Preset::Flight,
+            replan_ticks: (f64::from(TICKS_PER_SECOND) / oracle::REPLAN_HZ) as u32,
+            latency_ticks: 1,
+            slices_per_tick: u32::MAX,
+            air_data: AirDataNoise::NONE,
+            oracle: true,
+            ..self
         }
     }
 

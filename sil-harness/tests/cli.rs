@@ -174,6 +174,7 @@ fn a_campaigns_row_is_flown_again_in_full() {
             "70",
             "--threads",
             "2",
+            "--oracle",
             "--json",
         ])
         .arg("--out")
@@ -182,9 +183,9 @@ fn a_campaigns_row_is_flown_again_in_full() {
         .unwrap();
     assert!(output.status.success(), "{output:?}");
     let report: Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert_eq!(report["cells"].as_array().unwrap().len(), 4);
+    assert_eq!(report["cells"].as_array().unwrap().len(), 4 + 2);
     let text = std::fs::read_to_string(&rows).unwrap();
-    assert_eq!(text.lines().count(), 1 + 8);
+    assert_eq!(text.lines().count(), 1 + 8 + 4);
     for line in text.lines().skip(1) {
         let row: Value = serde_json::from_str(line).unwrap();
         let number = |key: &str| row[key].to_string();
@@ -197,9 +198,13 @@ fn a_campaigns_row_is_flown_again_in_full() {
             ["--replan-hz", &replan_hz],
             ["--preset", row["preset"].as_str().unwrap()],
         ];
+        let oracle: &[&str] = match row["oracle"].as_bool() {
+            Some(true) => &["--oracle"],
+            _ => &[],
+        };
         let (again, out) = run(
             "again",
-            &[&["fly", "--json"], &flags[..], &own.concat()].concat(),
+            &[&["fly", "--json"], &flags[..], &own.concat(), oracle].concat(),
         );
         let again: Value = serde_json::from_slice(&again.stdout).unwrap();
         for key in [

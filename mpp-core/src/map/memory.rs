@@ -87,6 +87,20 @@ impl MemoryMap {
         self.first_col = first.max(self.first_col);
     }
 
+    /// Takes what is known for what is remembered: whether the cell of each centre `(x, z)` [m] of the
+    /// window is occupied.
+    pub fn know(&mut self, occupied: impl Fn(f64, f64) -> bool) {
+        let (first, floor) = (self.first_col, self.floor);
+        for (row, evidence) in self.evidence.iter_mut().enumerate() {
+            let z = floor + CELL * (row as f64 + 0.5);
+            for col in 0..COLS as i32 {
+                let col = first.saturating_add(col);
+                let x = CELL * (f64::from(col) + 0.5);
+                evidence[slot(col)] = if occupied(x, z) { LIMIT } else { -LIMIT };
+            }
+        }
+    }
+
     /// Takes in a scan made at `(x, z)` [m] and a pitch [rad].
     pub fn insert(&mut self, scan: &LidarScan, x: f64, z: f64, pitch: f64) {
         for (beam, range) in scan.ranges.iter().enumerate() {

@@ -69,6 +69,10 @@ impl Workspace {
         Some(candidate.knots.each_ref().map(|knot| (knot.x, knot.z)))
     }
 
+    pub(super) fn map_mut(&mut self) -> &mut MemoryMap {
+        &mut self.map
+    }
+
     /// Forgets the map of an earlier flight.
     pub(super) fn forget(&mut self) {
         self.map.clear();

@@ -17,7 +17,7 @@ mod judge;
 
 use crate::config::{KNOTS, MAX_PATHS};
 use crate::corridor::Corridor;
-use crate::map::{ClearanceField, GridPoint, OccupancyGrid};
+use crate::map::{ClearanceField, GridPoint, MemoryMap, OccupancyGrid};
 use crate::plan::{CollocationPoints, Path, Search};
 use crate::qp::{
     Bounds, CondenseError, Condensed, ModelError, Problem, Solution, Solver, StageModel,
@@ -357,6 +357,11 @@ impl Planner {
             .iteration
             .is_some()
             .then_some(&self.iterated.field)
+    }
+
+    /// The map with memory, for whoever knows better than the lidar; used by iterated cycles only.
+    pub fn map_mut(&mut self) -> &mut MemoryMap {
+        self.iterated.map_mut()
     }
 
     /// The model that plans are made by.

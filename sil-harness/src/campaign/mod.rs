@@ -4,20 +4,27 @@
 //! row depends on its cell and seed alone: neither the number of threads nor the split into shards
 //! changes it, and `fly` with the same flags and seed flies it again, to the same log hash.
 
+mod pairs;
 mod report;
 mod row;
 mod stats;
 mod store;
+mod table;
+mod taxonomy;
 
+pub use pairs::AgainstOracle;
 pub use report::{CellReport, Outcomes, Report};
 pub use row::Row;
 pub use stats::wilson;
 pub use store::{Header, RowFile, merge, read};
+pub use taxonomy::{CauseReport, Taxonomy};
 
 use crate::link::{Link, LinkError, PipeLink};
+use crate::oracle::REPLAN_HZ;
 use crate::run::{FlyError, fly};
 use crate::scenario::{Preset, Scenario, ScenarioError, ScenarioFile};
 use hil_protocol::Message;
+use mpp_core::vehicle::VehicleState;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -38,6 +45,22 @@ pub struct Cell {
     pub paths: u16,
     /// Replanning rate [Hz].
     pub replan_hz: f64,
+    /// Whether an oracle flies.
+    pub oracle: bool,
+}
+
+impl Cell {
+    /// The oracle's flights past so many random obstacles.
+    fn oracle(obstacles: usize) -> Self {
+        Self {
+            preset: Preset::Flight,
+            obstacles,
+            // More than its candidates.
+            paths: 25,
+            replan_hz: REPLAN_HZ,
+            oracle: true,
+        }
+    }
 }
 
 impl fmt::Display for Cell {
@@ -49,7 +72,8 @@ impl fmt::Display for Cell {
             self.obstacles,
             self.paths,
             self.replan_hz
-        )
+        )?;
+        f.write_str(if self.oracle { " --oracle" } else { "" })
     }
 }
 
@@ -71,6 +95,8 @@ pub struct Campaign {
     pub trials: u32,
     /// Seed of the first flight; the others follow.
     pub seed: u64,
+    /// Whether an oracle flies the same fields too.
+    pub oracle: bool,
 }
 
 /// The lists of a command line; an empty one takes the scenario's value.
@@ -92,11 +118,12 @@ impl Campaign {
     /// # Errors
     /// [`CampaignError::Scenario`] when the scenario or a cell of it makes no sense.
     pub fn new(
-        scenario: ScenarioFile,
+        mut scenario: ScenarioFile,
         lists: Lists,
         trials: u32,
         seed: Option<u64>,
     ) -> Result<Self, CampaignError> {
+        let oracle = std::mem::take(&mut scenario.oracle);
         let base = scenario.build().map_err(CampaignError::Scenario)?;
         let campaign = Self {
             preset: listed(lists.preset, base.preset),
@@ -105,6 +132,7 @@ impl Campaign {
             replan_hz: listed(lists.replan_hz, base.replan_hz()),
             trials,
             seed: seed.unwrap_or(base.seed),
+            oracle,
             scenario,
         };
         for cell in campaign.cells() {
@@ -113,7 +141,7 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Every cell, in the order of the table.
+    /// Every cell, in the order of the table, the oracle's last.
     #[must_use]
     pub fn cells(&self) -> Vec<Cell> {
         let mut cells = Vec::new();
@@ -126,12 +154,22 @@ impl Campaign {
                             obstacles,
                             paths,
                             replan_hz,
+                            oracle: false,
                         });
                     }
                 }
             }
         }
+        if self.oracle {
+            cells.extend(self.obstacles.iter().copied().map(Cell::oracle));
+        }
         cells
+    }
+
+    /// The oracle's cell with the fields of this one; none if it is itself the oracle's, or there is
+    /// none.
+    fn oracle_beside(&self, cell: &Cell) -> Option<Cell> {
+        (self.oracle && !cell.oracle).then(|| Cell::oracle(cell.obstacles))
     }
 
     /// One flight of a cell.
@@ -145,6 +183,7 @@ impl Campaign {
             paths: Some(cell.paths),
             replan_hz: Some(cell.replan_hz),
             seed: Some(seed),
+            oracle: cell.oracle,
             ..self.scenario.clone()
         };
         file.build().map_err(CampaignError::Scenario)
@@ -161,7 +200,7 @@ impl Campaign {
         all.skip(shard.index - 1).step_by(shard.of).collect()
     }
 
-    /// What this program makes of the campaign's first seconds, for each preset: another program's
+    /// What this program makes of the campaign's first seconds, for each planner: another program's
     /// rows are not to be mixed with its own.
     ///
     /// # Errors
@@ -170,13 +209,14 @@ impl Campaign {
         const SECONDS: u32 = 2;
         let mut start = self.clone();
         start.scenario.duration = Some(SECONDS);
-        let mut hashes = Vec::new();
-        for preset in &self.preset {
-            if let Some(cell) = self.cells().iter().find(|cell| cell.preset == *preset) {
-                hashes.push(flown(&start, *cell, self.seed, false)?.log_hash);
-            }
-        }
-        Ok(hashes.join("-"))
+        let mut cells = self.cells();
+        cells.dedup_by_key(|cell| (cell.preset, cell.oracle));
+        let hashes = cells
+            .iter()
+            .map(|cell| Ok(flown(&start, *cell, self.seed, false)?.log_hash));
+        Ok(hashes
+            .collect::<Result<Vec<String>, CampaignError>>()?
+            .join("-"))
     }
 
     /// The place of a flight in the campaign, by cell and trial; none if it is not one of its
@@ -260,7 +300,7 @@ fn flown(campaign: &Campaign, cell: Cell, seed: u64, timed: bool) -> Result<Row,
     let failed = |error: FlyError| CampaignError::Flight(cell, seed, error.to_string());
     let scenario = campaign.scenario(&cell, seed)?;
     let mut link = Stopwatch {
-        link: PipeLink::new(),
+        link: PipeLink::of(&scenario),
         elapsed: Duration::ZERO,
     };
     let log = fly(&scenario, &mut link, |_| {}).map_err(failed)?;
@@ -283,6 +323,10 @@ impl Link for Stopwatch {
         let sent = self.link.send(message);
         self.elapsed += begin.elapsed();
         sent
+    }
+
+    fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
+        self.link.reveal(truth)
     }
 
     fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {

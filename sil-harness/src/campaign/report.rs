@@ -1,10 +1,10 @@
 //! What a campaign's rows come to: one object, one table.
 
-use super::{Campaign, Cell, Row, wilson};
+use super::taxonomy::{CauseReport, causes};
+use super::{AgainstOracle, Campaign, Cell, Row, wilson};
 use crate::outcome::Class;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
-use std::fmt;
 
 /// The result of a campaign, the same for every order, number of threads and shards.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -45,6 +45,11 @@ pub struct CellReport {
     pub strict_wilson_high: f64,
     /// Flights of each class.
     pub outcomes: Outcomes,
+    /// Failures by cause, the most frequent first.
+    pub causes: Vec<CauseReport>,
+    /// Beside the oracle on the same fields; only of campaigns that have one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against_oracle: Option<AgainstOracle>,
     /// Median over flights of the least distance to an obstacle's edge [m]; null without obstacles.
     pub min_clearance_median: Option<f64>,
     /// Plans over all flights.
@@ -93,7 +98,7 @@ impl Report {
             flown: rows.len(),
             cells: cells
                 .iter()
-                .map(|cell| CellReport::new(*cell, rows))
+                .map(|cell| CellReport::new(campaign, *cell, rows))
                 .collect(),
             campaign: campaign.clone(),
         }
@@ -101,8 +106,10 @@ impl Report {
 }
 
 impl CellReport {
-    fn new(cell: Cell, all: &[Row]) -> Self {
-        let rows: Vec<&Row> = all.iter().filter(|row| row.cell == cell).collect();
+    fn new(campaign: &Campaign, cell: Cell, all: &[Row]) -> Self {
+        let of = |cell: Cell| -> Vec<&Row> { all.iter().filter(|row| row.cell == cell).collect() };
+        let rows = of(cell);
+        let oracle = campaign.oracle_beside(&cell).map(of);
         let trials = rows.len() as u32;
         let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count() as u32;
         let (successes, strict_successes) =
@@ -128,6 +135,10 @@ impl CellReport {
             strict_wilson_low,
             strict_wilson_high,
             outcomes,
+            causes: causes(&rows, oracle.as_deref()),
+            against_oracle: oracle
+                .as_deref()
+                .map(|oracle| AgainstOracle::new(&rows, oracle)),
             min_clearance_median: median(rows.iter().filter_map(|row| row.summary.min_clearance)),
             replans,
             candidates: rows
@@ -151,70 +162,4 @@ fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
         values.get(values.len() / 2)?,
     );
     Some(0.5 * (low + high))
-}
-
-impl fmt::Display for Report {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(
-            f,
-            "{:<9} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
-            "preset",
-            "Hz",
-            "paths",
-            "obstacles",
-            "flights",
-            "success [95 %]",
-            "strict [95 %]",
-            "left-band",
-            "collision",
-            "pitch",
-            "flight-path",
-            "no-plan",
-            "clearance",
-        )?;
-        for cell in &self.cells {
-            let Cell {
-                preset,
-                obstacles,
-                paths,
-                replan_hz,
-            } = cell.cell;
-            let outcomes = |class| cell.outcomes.of(class);
-            writeln!(
-                f,
-                "{:<9} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
-                preset.name(),
-                cell.trials,
-                percent(cell.success_rate, cell.wilson_low, cell.wilson_high),
-                percent(
-                    cell.strict_success_rate,
-                    cell.strict_wilson_low,
-                    cell.strict_wilson_high
-                ),
-                outcomes(Class::LeftBand),
-                outcomes(Class::Collision),
-                outcomes(Class::Pitch),
-                outcomes(Class::FlightPath),
-                outcomes(Class::NoPlan),
-                cell.min_clearance_median
-                    .map_or("-".to_owned(), |median| format!("{median:.2} m")),
-            )?;
-        }
-        if self.flown < self.flights {
-            writeln!(f, "{} of {} flights are here", self.flown, self.flights)?;
-        }
-        Ok(())
-    }
-}
-
-fn percent(share: Option<f64>, low: f64, high: f64) -> String {
-    match share {
-        Some(share) => format!(
-            "{:.1} % [{:.1}, {:.1}]",
-            100.0 * share,
-            100.0 * low,
-            100.0 * high
-        ),
-        None => "-".to_owned(),
-    }
 }

@@ -256,3 +256,94 @@ fn a_report_counts_what_its_rows_say() {
     assert_eq!(early.cells[3].success_rate, None);
     assert!(early.to_string().contains("2 of 8 flights are here"));
 }
+
+#[test]
+fn an_oracle_is_paired_field_by_field() {
+    let mut campaign = short();
+    (campaign.oracle, campaign.obstacles, campaign.paths) = (true, vec![20], vec![5]);
+    campaign.trials = 5;
+    let cells = campaign.cells();
+    assert_eq!(cells.len(), 2);
+    assert!(!cells[0].oracle && cells[1].oracle && cells[1].preset == Preset::Flight);
+    let flown = fly_jobs(&campaign, "1/10".parse().unwrap(), 1).remove(0);
+    let row = |cell: usize, trial: u64, strict: bool| {
+        let mut row = flown.clone();
+        (row.cell, row.seed, row.summary.strict) = (cells[cell], 11 + trial, strict);
+        row
+    };
+    // The last field of ours has no counterpart yet.
+    let ours = [true, false, true, false, true];
+    let theirs = [true, true, false, false];
+    let ours = (0..).zip(ours).map(|(trial, strict)| row(0, trial, strict));
+    let theirs = (0..)
+        .zip(theirs)
+        .map(|(trial, strict)| row(1, trial, strict));
+    let rows = merge(&campaign, theirs.chain(ours)).unwrap();
+    let report = Report::new(&campaign, &rows);
+    let pairs = report.cells[0].against_oracle.unwrap();
+    assert_eq!((pairs.both, pairs.only_ours), (1, 1));
+    assert_eq!((pairs.only_oracle, pairs.neither), (1, 1));
+    assert_eq!(pairs.share, Some(0.5));
+    assert_eq!((pairs.wilson_low, pairs.wilson_high), wilson(1, 2));
+    assert_eq!(report.cells[1].against_oracle, None);
+    let text = report.to_string();
+    assert!(
+        text.contains(": 1 of the 2 fields that the oracle flies"),
+        "{text}"
+    );
+}
+
+#[test]
+fn failures_are_sorted_by_cause() {
+    use crate::inquest::{Cause, Failure};
+    let mut campaign = short();
+    (campaign.oracle, campaign.obstacles, campaign.paths) = (true, vec![20], vec![5]);
+    campaign.trials = 4;
+    let cells = campaign.cells();
+    let flown = fly_jobs(&campaign, "1/8".parse().unwrap(), 1).remove(0);
+    let row = |cell: usize, trial: u64, cause: Option<Cause>| {
+        let mut row = flown.clone();
+        (row.cell, row.seed, row.summary.strict) = (cells[cell], 11 + trial, cause.is_none());
+        row.summary.failure = cause.map(|cause| Failure {
+            cause,
+            seen_before: Some(1.5),
+            plan_clearance: None,
+            off_plan: None,
+        });
+        row
+    };
+    let ours = [
+        Some(Cause::Tracking),
+        Some(Cause::Hidden),
+        None,
+        Some(Cause::Hidden),
+    ];
+    let theirs = [None, None, None, Some(Cause::Tracking)];
+    let ours = (0..).zip(ours).map(|(trial, cause)| row(0, trial, cause));
+    let theirs = (0..).zip(theirs).map(|(trial, cause)| row(1, trial, cause));
+    let report = Report::new(&campaign, &merge(&campaign, ours.chain(theirs)).unwrap());
+    let found: Vec<_> = report.cells[0]
+        .causes
+        .iter()
+        .map(|report| {
+            (
+                report.cause,
+                report.flights,
+                report.oracle_flies,
+                report.seed,
+            )
+        })
+        .collect();
+    let expected = [
+        (Cause::Hidden, 2, Some(1), 12),
+        (Cause::Tracking, 1, Some(1), 11),
+    ];
+    assert_eq!(found, expected);
+    let text = Taxonomy(&report).to_string();
+    assert!(text.contains(": 3 of 4 flights failed\n  hidden           2, the oracle flies     1"));
+    // A row says it as the report does.
+    let json = serde_json::to_value(row(0, 0, Some(Cause::Hidden))).unwrap();
+    assert_eq!(json["failure"]["cause"], "hidden");
+    let back: Row = serde_json::from_value(json).unwrap();
+    assert_eq!(back, row(0, 0, Some(Cause::Hidden)));
+}

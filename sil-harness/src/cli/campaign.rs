@@ -3,8 +3,8 @@
 use super::scenario::ScenarioArgs;
 use super::{FAILURE, Failure, USAGE, data, talk};
 use crate::campaign::{
-    Campaign, CampaignError, Cell, Header, Lists, Report, Row, RowFile, Shard, merge, read,
-    run as fly_all,
+    Campaign, CampaignError, Cell, Header, Lists, Report, Row, RowFile, Shard, Taxonomy, merge,
+    read, run as fly_all,
 };
 use crate::scenario::Preset;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -28,6 +28,9 @@ pub(super) struct CampaignArgs {
     /// Replanning rates [Hz], a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     replan_hz: Vec<f64>,
+    /// Let an oracle fly the same fields too, and give success as a share of what it flies
+    #[arg(long)]
+    oracle: bool,
     /// Flights of each cell
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     trials: u32,
@@ -49,6 +52,10 @@ pub(super) struct CampaignArgs {
     /// Fly nothing: report the rows of these files, shards of one campaign
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
     report: Vec<PathBuf>,
+    /// Also say why flights failed, cell by cell, the most frequent cause first; in JSON it is always
+    /// there
+    #[arg(long)]
+    taxonomy: bool,
     /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
@@ -64,6 +71,9 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?);
     } else {
         data(report.to_string().trim_end());
+        if args.taxonomy {
+            data(Taxonomy(&report).to_string().trim_end());
+        }
     }
     Ok(0)
 }
@@ -101,7 +111,9 @@ fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
         paths: args.paths.clone(),
         replan_hz: args.replan_hz.clone(),
     };
-    let campaign = Campaign::new(args.scenario.file()?, lists, args.trials, args.seed);
+    let mut scenario = args.scenario.file()?;
+    scenario.oracle |= args.oracle;
+    let campaign = Campaign::new(scenario, lists, args.trials, args.seed);
     let campaign = campaign.map_err(|error| failure(&error))?;
     let rows = fly_rows(args, &campaign).map_err(|error| failure(&error))?;
     let rows = merge(&campaign, rows).map_err(|error| failure(&error))?;

@@ -34,6 +34,9 @@ pub(super) struct FlyArgs {
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
     #[arg(long)]
     replan_hz: Option<f64>,
+    /// Let an oracle fly: the true field and state, at 10 Hz
+    #[arg(long, conflicts_with = "link")]
+    oracle: bool,
     /// Where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and to-harness
     /// [default: in this process]
     #[arg(long)]
@@ -59,12 +62,13 @@ impl FlyArgs {
         replace(&mut file.paths, self.paths);
         replace(&mut file.preset, self.preset);
         replace(&mut file.replan_hz, self.replan_hz);
+        file.oracle |= self.oracle;
         file.build().map_err(|error| Failure::new(USAGE, error))
     }
 
-    fn connect(&self) -> Result<Box<dyn Link>, Failure> {
+    fn connect(&self, scenario: &Scenario) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
-            None => Ok(Box::new(PipeLink::new())),
+            None => Ok(Box::new(PipeLink::of(scenario))),
             Some(text) => connect(text, Duration::from_secs(self.patience)),
         }
     }
@@ -105,14 +109,17 @@ struct ResultLine<'a> {
 
 pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     let scenario = args.scenario()?;
-    let mut link = args.connect()?;
+    let mut link = args.connect(&scenario)?;
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
         scenario.seed,
         scenario.field().obstacles.len(),
         scenario.preset.name(),
         scenario.paths,
-        args.link.as_deref().unwrap_or("in this process"),
+        match args.link.as_deref() {
+            None if scenario.oracle => "an oracle in this process",
+            place => place.unwrap_or("in this process"),
+        },
     ));
     let progress = progress_bar(u64::from(scenario.ticks));
     let mut crew = args.ground.open(&scenario, progress)?;

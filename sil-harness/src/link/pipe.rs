@@ -1,13 +1,17 @@
 //! The core in the harness's own process, behind a pipe of bytes.
 
 use super::{Link, LinkError};
+use crate::oracle::Oracle;
+use crate::scenario::Scenario;
 use flight_node::FlightNode;
 use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
+use mpp_core::vehicle::VehicleState;
 use std::collections::VecDeque;
 
 /// A core of our own; bytes go in and come out as they would over a wire.
 pub struct PipeLink {
     node: Box<FlightNode>,
+    oracle: Option<Oracle>,
     to_harness: VecDeque<u8>,
     decoder: Decoder,
 }
@@ -18,15 +22,30 @@ impl PipeLink {
     pub fn new() -> Self {
         Self {
             node: Box::new(FlightNode::new()),
+            oracle: None,
             to_harness: VecDeque::new(),
             decoder: Decoder::new(),
         }
     }
 
+    /// A fresh core for a scenario, with its oracle if it has one.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            oracle: scenario.oracle.then(|| Oracle::new(scenario)),
+            ..Self::new()
+        }
+    }
+
     /// Sends bytes as they are, whatever they mean.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
-        self.node
-            .receive(bytes, |frame| self.to_harness.extend(frame));
+        let send = |frame: &[u8]| self.to_harness.extend(frame);
+        match &self.oracle {
+            None => self.node.receive(bytes, send),
+            Some(oracle) => self.node.receive_advised(bytes, send, |order, planner| {
+                oracle.advise(order, planner);
+            }),
+        }
     }
 
     /// The core, to look at.
@@ -63,5 +82,15 @@ impl Link for PipeLink {
             awaited: format!("{awaited} from the core"),
             patience: None,
         })
+    }
+
+    fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
+        match &mut self.oracle {
+            Some(oracle) => {
+                oracle.see(truth);
+                Ok(())
+            }
+            None => Err(LinkError::no_oracle()),
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What a flight came to.
 
 use super::{PlanEntry, finite};
+use crate::inquest::Failure;
 use crate::outcome::{Class, Outcome, Score};
 use serde::{Deserialize, Serialize};
 
@@ -13,6 +14,9 @@ pub struct Summary {
     pub strict: bool,
     /// What a campaign counts the flight as.
     pub class: Class,
+    /// Why it failed; not written if it did not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<Failure>,
     /// Time at the end [s].
     pub t_end: f64,
     /// Downrange distance at the end [m].
@@ -38,6 +42,7 @@ impl Default for Summary {
             outcome: Outcome::Survived,
             strict: true,
             class: Class::Success,
+            failure: None,
             t_end: 0.0,
             x_end: 0.0,
             min_clearance: None,

@@ -13,6 +13,7 @@ use hil_protocol::{
     StepReport,
 };
 use mpp_core::config::{STAGES, TICK_PERIOD};
+use mpp_core::vehicle::VehicleState;
 
 /// How often a core may restart before one answer.
 const RESTARTS: usize = 3;
@@ -60,6 +61,11 @@ pub(super) struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
+    /// Shows the truth to a core that is an oracle.
+    pub(super) fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
+        self.link.reveal(truth)
+    }
+
     /// Hello both ways, and the configuration.
     pub(super) fn open(scenario: &'a Scenario, link: &'a mut dyn Link) -> Result<Self, LinkError> {
         let mut session = Self {

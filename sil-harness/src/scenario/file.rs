@@ -52,6 +52,10 @@ pub struct ScenarioFile {
     /// Length of the flight [s] [20].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duration: Option<u32>,
+    /// Whether an oracle flies, as [`crate::oracle`] says: preset `flight`, 10 Hz, exact sensors,
+    /// whatever else is asked for [no].
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub oracle: bool,
     /// The lidar.
     pub lidar: LidarTable,
     /// Errors of the airspeed and pitch sensors.
@@ -189,7 +193,13 @@ impl ScenarioFile {
             ..base
         };
         check(&scenario)?;
-        Ok(scenario)
+        let advice = "only preset flight has an oracle";
+        ensure(!self.oracle || preset == Preset::Flight, "oracle", advice)?;
+        Ok(if self.oracle {
+            scenario.informed()
+        } else {
+            scenario
+        })
     }
 }
 
