@@ -1,6 +1,5 @@
 //! Registers of the board, an MPS2 with the image AN500.
 
-use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::Peripherals;
 use cortex_m::peripheral::scb::SystemHandler;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -17,9 +16,6 @@ const WATCHDOG: *mut u32 = 0x4000_8000 as *mut u32;
 /// Counts that the watchdog waits: 50 ms, then an interrupt, and after 50 ms more the reset.
 const PATIENCE: u32 = 5 * TICK;
 const UNLOCK: u32 = 0x1ACC_E551;
-
-/// Times that the watchdog was fed; part of the report.
-pub static FED: AtomicU32 = AtomicU32::new(0);
 
 /// Priorities: UART (the reset value, 0) above the step above the restart.
 pub fn set_priorities(peripherals: &mut Peripherals) {
@@ -77,7 +73,6 @@ pub fn start_watchdog() {
 
 /// Feeds the watchdog.
 pub fn feed_watchdog() {
-    FED.fetch_add(1, Ordering::Relaxed);
     // SAFETY: clears the interrupt and reloads.
     unsafe { WATCHDOG.add(3).write_volatile(1) };
 }

@@ -20,6 +20,10 @@ static FAULT_STEP_HANGS_AFTER: u32 = NEVER;
 #[unsafe(no_mangle)]
 static FAULT_SET_UP_AWAITS_LOSS: u32 = NEVER;
 
+/// Instructions by which the first slice of each cycle is longer.
+#[unsafe(no_mangle)]
+static FAULT_SLICE_LONGER_BY: u32 = 0;
+
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
 /// Whether the step has hung: this memory survives the reset.
@@ -38,6 +42,12 @@ pub fn planner(clock: u32) {
     if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
         hang();
     }
+}
+
+/// Goes on with a slice if it is to be longer.
+pub fn slice() {
+    // One instruction a cycle, as it is emulated.
+    cortex_m::asm::delay(read(&FAULT_SLICE_LONGER_BY));
 }
 
 /// Waits for lost bytes if it is to; `alive` is called meanwhile.

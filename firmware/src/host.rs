@@ -107,12 +107,14 @@ pub fn write_file(name: &core::ffi::CStr, words: &[u32]) {
     }
 }
 
+/// Writes until all is written, or no more is taken: the reader is gone, and reading says so.
 fn write(file: usize, bytes: Option<&[u8]>) {
-    if let Some(bytes) = bytes
-        && file != FAILED
-    {
-        // SAFETY: the buffer is as long as said.
-        unsafe { syscall!(WRITE, file, bytes.as_ptr(), bytes.len()) };
+    let mut rest = bytes.filter(|_| file != FAILED).unwrap_or(&[]);
+    while !rest.is_empty() {
+        // SAFETY: the buffer is as long as said. The answer is how much of it was not taken.
+        let left = unsafe { syscall!(WRITE, file, rest.as_ptr(), rest.len()) };
+        let taken = rest.len().checked_sub(left).filter(|taken| *taken > 0);
+        rest = taken.and_then(|taken| rest.get(taken..)).unwrap_or(&[]);
     }
 }
 

@@ -172,14 +172,16 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
     // Valid is not idle: until its first order, `SetUp`, which leaves nothing as it was, the task
     // does nothing. What was ordered of a planner before this one is not for this one.
     let mut set_up = false;
+    let mut first_slice = false;
     loop {
         pulse();
         // SAFETY: the thread is the consumer.
         if let Some(order) = unsafe { ORDERS.take() } {
             set_up |= matches!(order, Order::SetUp { .. });
             if set_up {
-                if matches!(order, Order::SetUp { .. }) {
-                    faults::set_up(pulse);
+                match order {
+                    Order::SetUp { .. } => faults::set_up(pulse),
+                    Order::Begin { .. } => first_slice = true,
                 }
                 mark::begin();
                 task.take(&order);
@@ -198,6 +200,9 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
             Progress::Working => {
                 mark::end(Region::of(phase));
                 faults::planner(clock);
+                if core::mem::take(&mut first_slice) {
+                    faults::slice();
+                }
             }
             Progress::Waiting => {
                 mark::end(Region::Idle);

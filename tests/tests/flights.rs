@@ -128,11 +128,11 @@ fn interleaving_does_not_change_the_flight() {
 fn a_starved_planner_gives_its_best_so_far() {
     let starved = flown(&Scenario {
         slices_per_tick: 2,
-        latency_ticks: 20,
+        latency_ticks: 25,
         ..Scenario::new(Preset::Flight, 3)
     });
     let whole = flown(&Scenario {
-        latency_ticks: 20,
+        latency_ticks: 25,
         ..Scenario::new(Preset::Flight, 3)
     });
     assert!(starved.summary.candidates < whole.summary.candidates);

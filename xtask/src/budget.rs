@@ -65,10 +65,21 @@ pub(crate) fn budget(document: &DocumentMut, table: &str, name: &str) -> Result<
         .with_context(|| format!("docs/budgets.toml has no firmware.{table}.{name}"))
 }
 
-/// A budget for a figure: at least 2 % more, for another compiler, and rounded up to two digits.
+/// The greatest budget of a slice [instructions].
+pub(crate) fn longest_slice(document: &DocumentMut) -> Result<u64> {
+    ["slice_worst_flight", "slice_worst_reference"]
+        .iter()
+        .filter_map(|table| document.get("firmware")?.get(table)?.as_table())
+        .flat_map(|table| table.iter())
+        .filter_map(|(_, budget)| u64::try_from(budget.as_integer()?).ok())
+        .max()
+        .context("docs/budgets.toml has no budgets of slices")
+}
+
+/// A budget for a figure: at least 2 % more, for another compiler, and rounded up to three digits.
 fn with_air(value: u64) -> u64 {
     let value = value + value / 50;
-    let unit = 10_u64.pow(value.max(10).ilog10() - 1);
+    let unit = 10_u64.pow(value.max(100).ilog10() - 2);
     value.div_ceil(unit) * unit
 }
 

@@ -3,7 +3,7 @@
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::qemu::{Emulator, Report, Run};
-use crate::work;
+use crate::{budget, root, work};
 use anyhow::{Context, Result, bail, ensure};
 use hil_protocol::{
     AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Preset, RejectionCause, Role, encode,
@@ -32,6 +32,7 @@ pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
         folder,
     };
     bench.timer_holds(args.duration)?;
+    bench.longest_slice_holds_no_step(args.duration)?;
     bench.stuck_planner_is_restarted()?;
     bench.stuck_step_is_reset()?;
     bench.flood_is_counted()
@@ -69,12 +70,25 @@ impl Bench {
 
     /// The step comes every 10 ms wherever the planner is, and flies as on the host.
     fn timer_holds(&self, duration: u32) -> Result<()> {
+        self.fly_without_jitter("by the timer", &Image::Fifo.path()?, duration)
+    }
+
+    /// The same where one slice of each cycle is longer by the budget of the longest.
+    fn longest_slice_holds_no_step(&self, duration: u32) -> Result<()> {
+        let text = std::fs::read_to_string(root().join("docs/budgets.toml"))?;
+        let longest = u32::try_from(budget::longest_slice(&text.parse()?)?)?;
+        let image = self.folder.join("long-slices");
+        firmware::patched(Image::Fifo, "FAULT_SLICE_LONGER_BY", longest, &image)?;
+        let name = format!("a slice of each cycle longer by {longest} instructions");
+        self.fly_without_jitter(&name, &image, duration)
+    }
+
+    fn fly_without_jitter(&self, name: &str, image: &Path, duration: u32) -> Result<()> {
         let arguments = spread(duration);
         let host = self.harness.fly(&arguments)?;
-        let (target, report) = self.fly_by_timer(&Image::Fifo.path()?, &arguments)?;
+        let (target, report) = self.fly_by_timer(image, &arguments)?;
         println!(
-            "by the timer, {duration} s: {} ticks, {} missed, {} to {} counts apart; {}; hash {} \
-             (host {})",
+            "{name}, {duration} s: {} ticks, {} missed, {} to {} counts apart; {}; hash {} (host {})",
             report.ticks,
             report.missed,
             report.shortest,

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The thread, and the handlers that interrupt it and each other.
-const ROOTS: [&str; 3] = ["Reset", "SysTick", "DefaultHandler"];
+const ROOTS: [&str; 4] = ["Reset", "PendSV", "SysTick", "DefaultHandler"];
 /// What the processor stacks for a handler: 26 words with the FPU's, and 4 bytes to align.
 const EXCEPTION_FRAME: u64 = 26 * 4 + 4;
 
@@ -123,11 +123,16 @@ impl Program {
             || operation.starts_with("cb");
         match target {
             Some(target)
-                if (is_call || is_branch)
-                    && target != function
+                if (is_call || is_branch && target != function)
                     && self.names.contains_key(&target) =>
             {
                 self.calls.entry(function).or_default().insert(target);
+            }
+            Some(target) if is_call => {
+                bail!(
+                    "{} calls {target:x}, which is no function",
+                    self.name(function)
+                );
             }
             None if operation == "blx" || operation == "bx" && operands.trim() != "lr" => {
                 bail!(
@@ -224,9 +229,11 @@ mod tests {
     }
 
     #[test]
-    fn recursion_and_indirect_calls_have_no_bound() {
-        let recursive = LISTING.replace("bx\tlr", "bl\t100 <top>");
-        assert!(depth(&recursive).is_err());
+    fn recursion_and_calls_of_what_is_not_known_have_no_bound() {
+        for callee in ["100 <top>", "300 <leaf>", "400 <nothing>"] {
+            let recursive = LISTING.replace("bx\tlr", &format!("bl\t{callee}"));
+            assert!(depth(&recursive).is_err(), "{callee}");
+        }
         let indirect = LISTING.replace("bx\tlr", "blx\tr3");
         assert!(depth(&indirect).is_err());
     }

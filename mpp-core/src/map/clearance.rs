@@ -44,11 +44,15 @@ impl ClearanceField {
             distances.fill(PART_OF_SQUARE[REACH * REACH]);
             let mut known = 0;
             for (cells, distance) in near.iter().zip(PART_OF_SQUARE) {
-                let mut bits = cells & !known;
-                known |= bits;
-                while bits != 0 {
-                    distances[bits.trailing_zeros() as usize % COLS] = distance;
-                    bits &= bits - 1;
+                let new = cells & !known;
+                known |= new;
+                let words = [0, 32, 64, 96].map(|first| (new >> first) as u32);
+                let blocks = distances.as_chunks_mut::<32>().0;
+                for (mut bits, distances) in words.into_iter().zip(blocks) {
+                    while bits != 0 {
+                        distances[bits.trailing_zeros() as usize % 32] = distance;
+                        bits &= bits - 1;
+                    }
                 }
             }
         }

@@ -5,6 +5,7 @@
 //! no beam sees: a *shadow* behind each hit counts as occupied until a beam passes there.
 
 use crate::sense::LidarScan;
+use core::ops::Range;
 
 /// Edge of a cell [m].
 pub(super) const CELL: f64 = 0.5;
@@ -103,7 +104,20 @@ impl MemoryMap {
 
     /// Takes in a scan made at `(x, z)` [m] and a pitch [rad].
     pub fn insert(&mut self, scan: &LidarScan, x: f64, z: f64, pitch: f64) {
-        for (beam, range) in scan.ranges.iter().enumerate() {
+        self.insert_beams(scan, 0..scan.ranges.len(), x, z, pitch);
+    }
+
+    /// Takes in some beams of a scan, as far as it has them.
+    pub fn insert_beams(
+        &mut self,
+        scan: &LidarScan,
+        beams: Range<usize>,
+        x: f64,
+        z: f64,
+        pitch: f64,
+    ) {
+        let ranges = scan.ranges.iter().enumerate().take(beams.end);
+        for (beam, range) in ranges.skip(beams.start) {
             let angle = pitch + (scan.angle_min + scan.angle_increment * beam as f64);
             let (up, ahead) = libm::sincos(angle);
             let at = |range: f64| (x + range * ahead, z + range * up);
@@ -177,13 +191,19 @@ impl MemoryMap {
     pub fn row(&self, row: usize) -> (u128, u128) {
         let (mut occupied, mut unknown) = (0, 0);
         if let Some(evidence) = self.evidence.get(row) {
-            for col in 0..COLS as i32 {
-                let evidence = evidence[slot(self.first_col.saturating_add(col))];
-                occupied |= u128::from(evidence >= OCCUPIED) << col;
-                unknown |= u128::from(evidence == 0) << col;
+            // Flight computers shift words of 32 bits.
+            for cells in evidence.as_chunks::<32>().0.iter().rev() {
+                let (mut block, mut unknown_block) = (0_u32, 0_u32);
+                for (bit, evidence) in (0..).zip(cells) {
+                    block |= u32::from(*evidence >= OCCUPIED) << bit;
+                    unknown_block |= u32::from(*evidence == 0) << bit;
+                }
+                occupied = occupied << 32 | u128::from(block);
+                unknown = unknown << 32 | u128::from(unknown_block);
             }
         }
-        (occupied, unknown)
+        let first = slot(self.first_col) as u32;
+        (occupied.rotate_right(first), unknown.rotate_right(first))
     }
 }
 

@@ -154,8 +154,11 @@ impl Lattice {
         self.station < LAST
     }
 
+    // Holds a layer on the stack.
+    #[inline(never)]
     fn forward(&mut self, field: &ClearanceField, station: usize) {
-        let points = self.prices(field, station);
+        let mut points = [[0; POINTS]; QUARTERS];
+        self.write_prices(field, station, &mut points);
         let mut next: Layer = [[NEVER; SLOPES]; HEIGHTS];
         for (height, costs) in (0..).zip(&self.layer) {
             for (slope, cost) in (0..).zip(costs).filter(|(_, cost)| **cost < NEVER) {
@@ -176,8 +179,11 @@ impl Lattice {
         self.layer = next;
     }
 
+    // Holds a layer on the stack.
+    #[inline(never)]
     fn backward(&mut self, field: &ClearanceField, station: usize) {
-        let points = self.prices(field, station);
+        let mut points = [[0; POINTS]; QUARTERS];
+        self.write_prices(field, station, &mut points);
         let mut previous: Layer = [[NEVER; SLOPES]; HEIGHTS];
         for (height, costs) in (0..).zip(&mut previous) {
             for (slope, cost) in (0..).zip(costs.iter_mut()) {
@@ -199,10 +205,14 @@ impl Lattice {
         self.layer = previous;
     }
 
-    /// Prices of the points of a station's edges, by quarter and by height in halves of [`RISE`]; the
-    /// last quarter has the price of the height itself added.
-    fn prices(&self, field: &ClearanceField, station: usize) -> [[u32; POINTS]; QUARTERS] {
-        let mut prices = [[0; POINTS]; QUARTERS];
+    /// Writes the prices of the points of a station's edges, by quarter and by height in halves of
+    /// [`RISE`]; the last quarter has the price of the height itself added.
+    fn write_prices(
+        &self,
+        field: &ClearanceField,
+        station: usize,
+        prices: &mut [[u32; POINTS]; QUARTERS],
+    ) {
         let task = &self.task;
         for (quarter, prices) in prices.iter_mut().enumerate() {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
@@ -222,7 +232,6 @@ impl Lattice {
                 *price = (COST_UNIT * cost).min(DEAREST) as u32;
             }
         }
-        prices
     }
 
     /// Writes the paths through the via station's best heights, best first, once the search is over.

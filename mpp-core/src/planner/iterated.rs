@@ -26,11 +26,16 @@ const TREE_PATHS: usize = 2;
 /// What programs keep beyond the margin [m], so that their roll-outs still keep it.
 const ROUNDING: f64 = 0.05;
 
+/// Beams of a scan that one slice takes in.
+const BEAMS_PER_SLICE: usize = 16;
+
 /// Workspace of the cycle.
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     map: MemoryMap,
     pub(super) field: ClearanceField,
+    /// Beams of the scan that the map has taken in.
+    pub(super) beams: usize,
     lattice: Lattice,
     candidates: heapless::Vec<Candidate, CANDIDATES>,
     /// Improvements so far.
@@ -44,6 +49,7 @@ impl Workspace {
         Self {
             map: MemoryMap::new(),
             field: ClearanceField::new(),
+            beams: 0,
             lattice: Lattice::new(),
             candidates: heapless::Vec::new(),
             improvements: 0,
@@ -80,7 +86,8 @@ impl Workspace {
 }
 
 impl Planner {
-    /// Takes in the scan, and sets out on the previous plan and on the lattice.
+    /// Takes in some beams of the scan; after the last, sets out on the previous plan and on the lattice.
+    #[inline(never)]
     pub(super) fn remember(&mut self) {
         let state = &self.state;
         let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
@@ -95,9 +102,16 @@ impl Planner {
         }
         let altitude = self.settings.altitude;
         let work = &mut self.iterated;
-        work.map.roll(state.x, altitude);
-        work.map
-            .insert(&self.scan, state.x, state.z, state.air.pitch);
+        let beams = work.beams..work.beams + BEAMS_PER_SLICE;
+        if beams.start == 0 {
+            work.map.roll(state.x, altitude);
+        }
+        if beams.start < self.scan.ranges.len() {
+            work.beams = beams.end;
+            let (x, z, pitch) = (state.x, state.z, state.air.pitch);
+            work.map.insert_beams(&self.scan, beams, x, z, pitch);
+            return;
+        }
         work.field.build(&work.map);
         work.candidates.clear();
         work.improvements = 0;
@@ -166,6 +180,7 @@ impl Planner {
     }
 
     /// One station of the lattice; after the last, its paths, and a tree in the same map.
+    #[inline(never)]
     pub(super) fn search_lattice(&mut self) {
         let work = &mut self.iterated;
         if work.lattice.advance(&work.field) {
@@ -233,6 +248,7 @@ impl Planner {
     }
 
     /// The tree's paths that pass some obstacle on another side than every candidate so far.
+    #[inline(never)]
     pub(super) fn take_tree_paths(&mut self) {
         let mut from = 0;
         let mut taken = 0;
@@ -265,6 +281,7 @@ impl Planner {
     }
 
     /// Sets up the program of the next candidate to improve, about the candidate itself.
+    #[inline(never)]
     pub(super) fn linearise(&mut self) {
         let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
         else {
@@ -275,11 +292,8 @@ impl Planner {
         if work.improvements == work.candidates.len() {
             work.order = order(&work.candidates);
         }
-        let Some(index) = work.turn(&iteration) else {
-            self.phase = Phase::Done;
-            return;
-        };
-        let Some(candidate) = work.candidates.get(index) else {
+        let turn = work.turn(&iteration);
+        let Some(candidate) = turn.and_then(|index| work.candidates.get(index)) else {
             self.phase = Phase::Done;
             return;
         };
@@ -322,6 +336,7 @@ impl Planner {
     }
 
     /// Some steps of the program; at its end, the roll-out replaces the candidate.
+    #[inline(never)]
     pub(super) fn improve(&mut self) {
         let Some(status) = self.solve_some() else {
             return;

@@ -277,6 +277,7 @@ impl Planner {
         self.summary = NO_SUMMARY;
         self.best_length = f64::INFINITY;
         self.best_price = f64::INFINITY;
+        self.iterated.beams = 0;
         self.phase = match self.settings.iteration {
             Some(_) => Phase::Remember,
             None => Phase::Map,
@@ -296,6 +297,7 @@ impl Planner {
     }
 
     /// Does one bounded slice of work; true while there is more.
+    // The phases that need much stack are never inlined: it would be the sum of theirs.
     pub fn advance(&mut self) -> bool {
         if self.is_working() {
             self.summary.slices += 1;
