@@ -9,8 +9,8 @@
 //! ```
 //!
 //! The tasks share nothing but mailboxes of one producer and one consumer and atomic counters, so
-//! nothing ever masks the step out. A plan goes to the step as a value; the step takes it over at a
-//! tick boundary.
+//! nothing masks the step out, but for the look round of a thread that is about to sleep. A plan goes
+//! to the step as a value; the step takes it over at a tick boundary.
 //!
 //! Two images: `uart`, which flies over a serial line with timer, watchdog and restart of a stuck
 //! planner; `fifo`, which flies over semihosting, for campaigns and for measuring.

@@ -5,6 +5,8 @@ use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 /// Places in the ring; a power of two. A harness in lockstep has a scan and a sensor frame under
 /// way, 600 bytes; an answer is shorter.
 const PLACES: usize = 1024;
+/// Half of them: a ring that fills comes by here.
+pub const HALF: usize = PLACES / 2;
 
 /// Single producer, single consumer; no one ever waits.
 pub struct Ring {
@@ -37,12 +39,11 @@ impl Ring {
         true
     }
 
-    /// Whether exactly half of the places are taken: a ring that fills comes by here.
-    pub fn is_half_full(&self) -> bool {
+    /// Places taken, as far as the caller's priority sees.
+    pub fn len(&self) -> usize {
         let (head, tail) = (&self.head, &self.tail);
         head.load(Ordering::Relaxed)
             .wrapping_sub(tail.load(Ordering::Relaxed))
-            == PLACES / 2
     }
 
     /// Takes the oldest byte out. Only for the consumer.

@@ -1,7 +1,7 @@
 //! CMSDK UART 0 by interrupts, with a fixed ring each way.
 
 use crate::mark::{self, Region};
-use crate::ring::Ring;
+use crate::ring::{HALF, Ring};
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::{NVIC, SCB};
 
@@ -74,6 +74,12 @@ pub fn send(bytes: &[u8]) {
     }
 }
 
+/// Whether a short report can be sent. Only for the step.
+#[must_use]
+pub fn has_room() -> bool {
+    TO_SEND.len() <= HALF
+}
+
 /// Starts sending.
 pub fn kick() {
     NVIC::pend(TX);
@@ -103,7 +109,7 @@ pub fn interrupt(number: i16) {
             count_lost();
         }
         // What has no end must be looked at in time, too.
-        if byte == DELIMITER || RECEIVED.is_half_full() {
+        if byte == DELIMITER || RECEIVED.len() == HALF {
             SCB::set_pendst();
         }
     }

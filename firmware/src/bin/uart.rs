@@ -53,8 +53,10 @@ fn SysTick() {
 
 fn run_link(side: &mut StepSide) {
     let lost = uart::lost();
-    let unreported = lost.wrapping_sub(REPORTED.swap(lost, Ordering::Relaxed));
-    if unreported > 0 {
+    let unreported = lost.wrapping_sub(REPORTED.load(Ordering::Relaxed));
+    // A report that is lost itself would take its count with it.
+    if unreported > 0 && uart::has_room() {
+        REPORTED.store(lost, Ordering::Relaxed);
         side.bytes_lost(unreported, uart::send);
     }
     for _ in 0..BYTES_PER_RUN {
