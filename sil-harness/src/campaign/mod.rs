@@ -123,7 +123,7 @@ impl Campaign {
         trials: u32,
         seed: Option<u64>,
     ) -> Result<Self, CampaignError> {
-        let oracle = std::mem::take(&mut scenario.oracle);
+        let oracle = scenario.oracle.take().unwrap_or(false);
         let base = scenario.build().map_err(CampaignError::Scenario)?;
         let campaign = Self {
             preset: listed(lists.preset, base.preset),
@@ -183,7 +183,7 @@ impl Campaign {
             paths: Some(cell.paths),
             replan_hz: Some(cell.replan_hz),
             seed: Some(seed),
-            oracle: cell.oracle,
+            oracle: Some(cell.oracle),
             ..self.scenario.clone()
         };
         file.build().map_err(CampaignError::Scenario)

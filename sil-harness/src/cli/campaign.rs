@@ -1,6 +1,6 @@
 //! `campaign`: many flights over a grid, in parallel, resumable.
 
-use super::scenario::ScenarioArgs;
+use super::scenario::{ScenarioArgs, replace};
 use super::{FAILURE, Failure, USAGE, data, talk};
 use crate::campaign::{
     Campaign, CampaignError, Cell, Header, Lists, Report, Row, RowFile, Shard, Taxonomy, merge,
@@ -112,7 +112,7 @@ fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
         replan_hz: args.replan_hz.clone(),
     };
     let mut scenario = args.scenario.file()?;
-    scenario.oracle |= args.oracle;
+    replace(&mut scenario.oracle, args.oracle.then_some(true));
     let campaign = Campaign::new(scenario, lists, args.trials, args.seed);
     let campaign = campaign.map_err(|error| failure(&error))?;
     let rows = fly_rows(args, &campaign).map_err(|error| failure(&error))?;

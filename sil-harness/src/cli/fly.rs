@@ -62,7 +62,7 @@ impl FlyArgs {
         replace(&mut file.paths, self.paths);
         replace(&mut file.preset, self.preset);
         replace(&mut file.replan_hz, self.replan_hz);
-        file.oracle |= self.oracle;
+        replace(&mut file.oracle, self.oracle.then_some(true));
         file.build().map_err(|error| Failure::new(USAGE, error))
     }
 

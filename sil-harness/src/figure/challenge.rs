@@ -71,11 +71,15 @@ fn panel(scene: Scene, logs: &[FlightLog], labelled: bool) -> Panel {
     );
     panel.labels.push((place, title.to_owned(), BLACK));
     for edge in [ALTITUDE - ALTITUDE_BAND, ALTITUDE + ALTITUDE_BAND] {
-        panel.line(
-            BAND,
-            Curve::PLANNED_WIDTH,
-            &[(x.start, edge), (x.end, edge)],
-        );
+        // An area, so that obstacles lie upon it.
+        let half = 0.5 * f64::from(Curve::PLANNED_WIDTH) * scale;
+        let corners = [
+            (x.start, -half),
+            (x.end, -half),
+            (x.end, half),
+            (x.start, half),
+        ];
+        panel.area(BAND.to_rgba(), &corners.map(|(x, off)| (x, edge + off)));
     }
     for log in logs {
         let circles = log.header.field.iter();

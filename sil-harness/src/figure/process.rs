@@ -4,7 +4,7 @@
 use super::cycle::Cycle;
 use super::page::{COLUMN, RING, Sample, document, legend, legend_height, to_scale};
 use super::panel::{Axis, BELOW_SAVED, Panel, clipped};
-use super::{FigureError, OBSTACLE, REFERENCE};
+use super::{FLOWN, FigureError, OBSTACLE, REFERENCE};
 use crate::world::Point;
 use mpp_core::config::RAY_LIMIT;
 use mpp_core::config::{GRID_COLS, GRID_ROWS, STAGES};
@@ -13,7 +13,7 @@ use mpp_core::map::GridPoint;
 use plotters::prelude::*;
 use std::ops::Range;
 
-/// The aircraft, and the points of a path.
+/// The points of a path.
 const POINT: RGBColor = RGBColor(30, 30, 30);
 /// What the lidar returned.
 const HIT: RGBColor = RGBColor(200, 30, 70);
@@ -45,6 +45,9 @@ const HEIGHT: u32 = 1080;
 /// Room about the point whose half-planes are shown, in every direction [m].
 const ROOM: f64 = 1.0;
 
+/// By so much cells overlap [m].
+const SEAM: f64 = 0.02;
+
 /// Of so many collocation points one shows its rays.
 const RAYS_EVERY: usize = 6;
 
@@ -54,7 +57,7 @@ const RAYS_EVERY: usize = 6;
 /// [`FigureError`].
 pub fn scan_svg(cycle: &Cycle) -> Result<String, FigureError> {
     let entries = [
-        (Sample::Dot(POINT), "aircraft"),
+        (Sample::Dot(FLOWN), "aircraft"),
         (Sample::Dot(OBSTACLE), "obstacle"),
         (Sample::Line(BEAM, MEDIUM), "beam"),
         (Sample::Ring(OBSTACLE), "obstacle out of sight"),
@@ -148,7 +151,7 @@ pub fn candidates_svg(cycle: &Cycle) -> Result<String, FigureError> {
         (Sample::Dot(OBSTACLE), "obstacle"),
         (Sample::Line(REFERENCE, THICK), "chosen trajectory"),
         (Sample::Ring(OBSTACLE), "obstacle out of sight"),
-        (Sample::Dot(POINT), "aircraft"),
+        (Sample::Dot(FLOWN), "aircraft"),
     ];
     let top = legend_height(entries.len());
     document((COLUMN, top + HEIGHT), |canvas| {
@@ -179,7 +182,7 @@ fn about_the_aircraft(cycle: &Cycle, labelled: bool) -> (Panel, f64) {
     let (x, z) = (cycle.state.x, cycle.state.z);
     let (x_range, z_range) = (x - BEHIND..x + AHEAD, z - HALF_HEIGHT..z + HALF_HEIGHT);
     let (mut panel, scale) = axes(labelled, x_range, z_range);
-    panel.dot((x, z), 34, POINT);
+    panel.dot((x, z), 26, FLOWN);
     (panel, scale)
 }
 
@@ -226,14 +229,14 @@ fn add_obstacles(panel: &mut Panel, cycle: &Cycle, scale: f64) {
     }
 }
 
-/// The occupied cells within the panel.
+/// The occupied cells within the panel, each a little larger than it is: no seams show.
 fn add_cells(panel: &mut Panel, cycle: &Cycle) {
     for row in 0..GRID_ROWS {
         for col in 0..GRID_COLS {
             let corner = |up: f64, ahead: f64| {
                 cycle.world(&GridPoint {
-                    row: row as f64 + up,
-                    col: col as f64 + ahead,
+                    row: row as f64 + up + SEAM * (2.0 * up - 1.0),
+                    col: col as f64 + ahead + SEAM * (2.0 * ahead - 1.0),
                 })
             };
             if cycle.grid.occupied(row as i32, col as i32) {

@@ -3,7 +3,7 @@
 use super::FigureError;
 use super::page::{COLUMN, Sample, document, legend, legend_height};
 use super::panel::{Axis, Panel};
-use crate::campaign::{CellReport, Report};
+use crate::campaign::{Cell, CellReport, Report};
 use crate::scenario::Preset;
 use plotters::prelude::*;
 
@@ -14,6 +14,8 @@ const SHADES: [RGBColor; 4] = [
     RGBColor(134, 85, 190),
     RGBColor(74, 20, 134),
 ];
+/// The oracle's curve.
+const ORACLE: RGBColor = RGBColor(0, 150, 150);
 /// The paper's results.
 const PUBLISHED: RGBColor = RGBColor(30, 30, 30);
 /// Height of a panel [px].
@@ -37,7 +39,7 @@ pub enum Rule {
 }
 
 /// A panel for each preset and replanning rate of a campaign, a curve for each number of paths; dots
-/// in the curves' colours are the paper's results.
+/// in the curves' colours are the paper's results. The oracle's curve is in each panel.
 ///
 /// # Errors
 /// [`FigureError`].
@@ -49,6 +51,9 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
         .enumerate()
         .map(|(index, name)| (Sample::Line(shade(index, paths.len()), 16), name.as_str()))
         .collect();
+    if report.campaign.oracle {
+        entries.push((Sample::Line(ORACLE, 16), "oracle"));
+    }
     let compared = rule == Rule::Paper && report.campaign.preset.contains(&Preset::Reference);
     if compared {
         entries.push((Sample::Dot(PUBLISHED), "published"));
@@ -99,14 +104,10 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
             };
             let mut panel = Panel::new(x, Axis::tight(y_label, -3.0..108.0, 6));
             for (index, &paths) in campaign.paths.iter().enumerate() {
-                let mut cells: Vec<&CellReport> = report.cells.iter().collect();
-                cells.retain(|cell| {
-                    let key = (cell.cell.preset, cell.cell.paths);
-                    key == (preset, paths)
-                        && cell.cell.replan_hz.to_bits() == replan_hz.to_bits()
-                        && cell.trials > 0
+                let cells = cells(report, |cell| {
+                    let key = (cell.preset, cell.paths, cell.oracle);
+                    key == (preset, paths, false) && cell.replan_hz.to_bits() == replan_hz.to_bits()
                 });
-                cells.sort_by_key(|cell| cell.cell.obstacles);
                 curve(&mut panel, &cells, rule, shade(index, campaign.paths.len()));
                 if rule == Rule::Paper && preset == Preset::Reference {
                     let colour = shade(index, campaign.paths.len());
@@ -116,6 +117,8 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
                     }
                 }
             }
+            let oracle = cells(report, |cell| cell.oracle);
+            curve(&mut panel, &oracle, rule, ORACLE);
             let words = format!("{}, {replan_hz} Hz", preset.name());
             panel.labels.push(((0.02 * most, 8.0), words, BLACK));
             panels.push(panel);
@@ -124,8 +127,19 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
     panels
 }
 
+/// The flown cells of a curve, by obstacles.
+fn cells(report: &Report, of: impl Fn(&Cell) -> bool) -> Vec<&CellReport> {
+    let mut cells: Vec<&CellReport> = report.cells.iter().collect();
+    cells.retain(|cell| of(&cell.cell) && cell.trials > 0);
+    cells.sort_by_key(|cell| cell.cell.obstacles);
+    cells
+}
+
 /// A curve upon its band.
 fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, colour: RGBColor) {
+    if cells.is_empty() {
+        return;
+    }
     let value = |cell: &CellReport| match rule {
         Rule::Paper => (cell.wilson_low, cell.success_rate, cell.wilson_high),
         Rule::Strict => (

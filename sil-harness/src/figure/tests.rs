@@ -208,16 +208,19 @@ fn success_curves_show_every_cell_and_the_papers_results() {
         paths: vec![1, 25],
         replan_hz: Vec::new(),
     };
-    let campaign = Campaign::new(ScenarioFile::default(), lists, 4, None).unwrap();
+    let mut campaign = Campaign::new(ScenarioFile::default(), lists, 4, None).unwrap();
     let report = Report::new(&campaign, &[]);
     // Nothing flown: axes, and the paper's dots.
     assert!(success_svg(&report, Rule::Paper).is_ok());
-    let mut report = report;
-    for cell in &mut report.cells {
-        cell.trials = 4;
-        cell.success_rate = Some(0.5);
-        cell.strict_success_rate = Some(0.25);
-    }
+    let flown = |mut report: Report| {
+        for cell in &mut report.cells {
+            cell.trials = 4;
+            cell.success_rate = Some(0.5);
+            cell.strict_success_rate = Some(0.25);
+        }
+        report
+    };
+    let report = flown(report);
     let svg = success_svg(&report, Rule::Paper).unwrap();
     // A band for each of four curves; a ring and a dot for five published results of two curves, and
     // the legend's.
@@ -226,4 +229,10 @@ fn success_curves_show_every_cell_and_the_papers_results() {
     assert!(svg.contains("reference, 1 Hz") && svg.contains("flight, 1 Hz"));
     let strict = success_svg(&report, Rule::Strict).unwrap();
     assert!(strict.contains("Strict success (%)") && !strict.contains("published"));
+    // The oracle's curve is in both panels, and in the legend.
+    campaign.oracle = true;
+    let beside = flown(Report::new(&campaign, &[]));
+    let svg = success_svg(&beside, Rule::Strict).unwrap();
+    assert_eq!(svg.matches("<polygon").count(), 4 + 2);
+    assert!(svg.contains(">\noracle\n<"));
 }

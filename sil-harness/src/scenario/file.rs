@@ -54,8 +54,8 @@ pub struct ScenarioFile {
     pub duration: Option<u32>,
     /// Whether an oracle flies, as [`crate::oracle`] says: preset `flight`, 10 Hz, exact sensors,
     /// whatever else is asked for [no].
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub oracle: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oracle: Option<bool>,
     /// The lidar.
     pub lidar: LidarTable,
     /// Errors of the airspeed and pitch sensors.
@@ -193,9 +193,10 @@ impl ScenarioFile {
             ..base
         };
         check(&scenario)?;
+        let oracle = self.oracle.unwrap_or(false);
         let advice = "only preset flight has an oracle";
-        ensure(!self.oracle || preset == Preset::Flight, "oracle", advice)?;
-        Ok(if self.oracle {
+        ensure(!oracle || preset == Preset::Flight, "oracle", advice)?;
+        Ok(if oracle {
             scenario.informed()
         } else {
             scenario
