@@ -1,5 +1,10 @@
 //! The point mass against the equations of motion, differences, and its own limit of small steps.
 
+mod common {
+    pub(crate) mod airframes;
+}
+
+use common::airframes::named;
 use mpp_core::vehicle::{
     Airframe, PathControl, PathState, Trim, VehicleState, air_rate, vehicle_rate,
 };
@@ -29,10 +34,6 @@ fn controls() -> impl Strategy<Value = PathControl> {
         angle_of_attack_rate,
         thrust,
     })
-}
-
-fn airframes() -> impl Strategy<Value = Airframe> {
-    prop_oneof![Just(Airframe::PAPER), Just(Airframe::REFERENCE)]
 }
 
 fn vector(state: &PathState) -> Vector {
@@ -103,7 +104,7 @@ proptest! {
     /// The balanced reference moves as the whole vehicle does, and its rotation is in balance.
     #[test]
     fn the_reference_is_a_motion_of_the_vehicle_with_moments_in_balance(
-        airframe in airframes(), at in states(), control in controls(),
+        airframe in named(), at in states(), control in controls(),
     ) {
         let rate = at.rate(&airframe, &control);
         let (whole, feedforward) = at.reference(&airframe, &control);
@@ -129,7 +130,7 @@ proptest! {
 
     #[test]
     fn the_jacobian_equals_central_differences(
-        airframe in airframes(), at in states(), control in controls(),
+        airframe in named(), at in states(), control in controls(),
     ) {
         let rate = |x: &PathState, u: &PathControl| x.rate(&airframe, u);
         let (a, b) = at.jacobian(&airframe, &control);
@@ -142,7 +143,7 @@ proptest! {
     /// A second-order method: its error over one stage is of the third order in the length.
     #[test]
     fn the_sensitivity_is_of_second_order(
-        airframe in airframes(), at in states(), control in controls(),
+        airframe in named(), at in states(), control in controls(),
     ) {
         let error = |dt: f64| {
             let end = |x: &PathState, u: &PathControl| x.after(&airframe, u, dt, 40);
@@ -158,7 +159,7 @@ proptest! {
 
     #[test]
     fn the_roll_out_is_of_fourth_order(
-        airframe in airframes(), at in states(), control in controls(),
+        airframe in named(), at in states(), control in controls(),
     ) {
         let after = |steps: u8| vector(&at.after(&airframe, &control, 0.25, steps));
         let exact = after(200);
@@ -170,7 +171,7 @@ proptest! {
 
     #[test]
     fn roll_outs_in_a_row_are_one_roll_out(
-        airframe in airframes(), at in states(), control in controls(),
+        airframe in named(), at in states(), control in controls(),
     ) {
         let half = at.after(&airframe, &control, 0.1, 3);
         let whole = at.after(&airframe, &control, 0.2, 6);
