@@ -1,8 +1,9 @@
 //! Between wire messages and the core's types.
 
 use hil_protocol::{
-    AirframeId, Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanOutcome,
-    PlanTrajectory, Preset, RejectionCause, SensorFrame as WireFrame, StepReport,
+    ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
+    LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
+    SensorFrame as WireFrame, StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
 use mpp_core::estimate::Measurement;
@@ -11,7 +12,7 @@ use mpp_core::planner::SetupError;
 use mpp_core::sense::{LidarScan, ScanError, SensorFrame};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::{Reference, Trajectory};
-use mpp_core::vehicle::{AirState, Airframe};
+use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe};
 
 /// The settings that a configuration asks for, or what is wrong with it.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
@@ -26,7 +27,12 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
     };
     settings.planner.paths = usize::from(configure.paths);
     settings.planner.altitude = configure.altitude;
+    settings.planner.sight = f64::from(configure.range_max);
     settings.planner.seed = configure.seed;
+    // The others are kept as published: they know of no limits.
+    if configure.preset == Preset::Flight {
+        settings.actuators = actuators(&configure.actuators);
+    }
 
     if settings.planner.paths > MAX_PATHS {
         return Err(ConfigureVerdict::TooManyPaths {
@@ -59,7 +65,19 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
     if !configure.altitude.is_finite() {
         return Err(ConfigureVerdict::NonFinite);
     }
+    if !actuators(&configure.actuators).is_valid() {
+        return Err(ConfigureVerdict::Actuators);
+    }
     Ok(())
+}
+
+fn actuators(wire: &WireLimits) -> ActuatorLimits {
+    ActuatorLimits {
+        thrust_max: wire.thrust_max.map(f64::from),
+        thrust_lag: wire.thrust_lag.map(f64::from),
+        elevator_range: wire.elevator_range.map(f64::from),
+        elevator_rate: wire.elevator_rate.map(f64::from),
+    }
 }
 
 /// How a failed set-up is told.

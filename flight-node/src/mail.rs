@@ -4,7 +4,7 @@ use crate::parameters::Tuning;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 
 /// From the step to the planner.
 #[expect(
@@ -26,6 +26,8 @@ pub enum Order {
         tick: u32,
         /// Where the aircraft was then.
         state: VehicleState,
+        /// The motion of the air then.
+        wind: Wind,
         /// What it saw.
         scan: LidarScan,
         /// The values in force.

@@ -3,7 +3,7 @@
 //! A parameter's number on the link is its place in [`PARAMETERS`]: append only.
 
 use crate::convert;
-use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict};
+use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict, Preset};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::settings::{Cruise, Iteration, Settings};
 
@@ -152,7 +152,16 @@ fn change(tuning: &mut Tuning, set: impl FnOnce(&mut Iteration)) {
     }
 }
 
-parameters! { 35:
+/// An actuator's limit, if the preset knows of limits; 0 is none.
+fn limit(tuning: &Tuning, limit: Option<f64>) -> Option<f64> {
+    (tuning.configure.preset == Preset::Flight).then_some(limit.unwrap_or(0.0))
+}
+
+fn positive(value: f64) -> Option<f64> {
+    (value > 0.0).then_some(value)
+}
+
+parameters! { 40:
     "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
         |tuning| Some(tuning.settings.planner.paths as f64),
         |tuning, value| tuning.settings.planner.paths = value as usize;
@@ -269,4 +278,19 @@ parameters! { 35:
     "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
         |tuning| iteration(tuning, |iteration| iteration.thrust_max),
         |tuning, value| change(tuning, |iteration| iteration.thrust_max = value);
+    "EKF_WIND_S", "s", [0.05, 60.0], None, BEFORE,
+        |tuning| tuning.settings.wind,
+        |tuning, value| tuning.settings.wind = Some(value);
+    "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.thrust_max),
+        |tuning, value| tuning.settings.actuators.thrust_max = positive(value);
+    "ACT_THRUST_LAG_S", "s; 0: none", [0.0, 10.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.thrust_lag),
+        |tuning, value| tuning.settings.actuators.thrust_lag = positive(value);
+    "ACT_ELEV_RANGE", "either side of trim; 0: no limit", [0.0, 100.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.elevator_range),
+        |tuning, value| tuning.settings.actuators.elevator_range = positive(value);
+    "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.elevator_rate),
+        |tuning, value| tuning.settings.actuators.elevator_rate = positive(value);
 }

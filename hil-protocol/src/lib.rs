@@ -68,7 +68,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`] |
+//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`Configure::actuators`], [`ConfigureVerdict::Actuators`] |
 //!
 //! # Use
 //!
@@ -104,7 +104,7 @@ pub use message::report::{
     MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
 };
 pub use message::session::{
-    AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, ParameterReply,
+    ActuatorLimits, AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, ParameterReply,
     ParameterVerdict, Preset, Role, SetParameter,
 };
 pub use message::{MAX_PAYLOAD, Message, id};

@@ -68,6 +68,12 @@ fn configure(preset: Preset, airframe: AirframeId) -> Message {
         beams: 100,
         range_max: 50.0,
         altitude: -0.1,
+        actuators: ActuatorLimits {
+            thrust_max: Some(15.0),
+            thrust_lag: None,
+            elevator_range: Some(2.0),
+            elevator_rate: None,
+        },
     })
 }
 
@@ -76,15 +82,15 @@ fn configure_and_every_preset_and_airframe() {
     check(&[
         (
             configure(Preset::Reference, AirframeId::Paper),
-            "054d50020201121932ac02f0a204ef9bafcdf8acd1910164010f48429a9999999999b9bf54eded5000",
+            "054d50020201121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010103704102010101024005625f53ad00",
         ),
         (
             configure(Preset::Paper, AirframeId::Reference),
-            "184d50020201011932ac02f0a204ef9bafcdf8acd1910164010f48429a9999999999b9bf8de66a6200",
+            "184d50020201011932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010103704102010101024005772d794b00",
         ),
         (
             configure(Preset::Flight, AirframeId::Paper),
-            "064d50020202121932ac02f0a204ef9bafcdf8acd1910164010f48429a9999999999b9bff63c224d00",
+            "064d50020202121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf01010370410201010102400594b2742300",
         ),
     ]);
 }
@@ -107,6 +113,7 @@ fn configure_reply_and_every_verdict() {
         (reply(SlicesPerTick), "0a4d500203074976811b00"),
         (reply(RangeMax), "0a4d50020308d86b3e8b00"),
         (reply(AlreadyConfigured), "0a4d500203094e5b39fc00"),
+        (reply(Actuators), "0a4d5002030af40a306500"),
     ]);
 }
 

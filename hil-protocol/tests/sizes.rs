@@ -43,6 +43,12 @@ fn of_the_session() {
         beams: u16::MAX,
         range_max: 1.0,
         altitude: FLOAT,
+        actuators: ActuatorLimits {
+            thrust_max: Some(1.0),
+            thrust_lag: Some(1.0),
+            elevator_range: Some(1.0),
+            elevator_rate: Some(1.0),
+        },
     };
     assert_eq!(payload(&configure), Configure::MAX_SIZE);
     let reply = ConfigureReply {

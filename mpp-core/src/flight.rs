@@ -1,13 +1,14 @@
 //! The 100 Hz step: estimate, reference, control; and the hand-over of trajectories.
 
+use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
-use crate::estimate::{Ekf, Innovation, Verdict as MeasurementVerdict};
+use crate::estimate::{Ekf, Innovation, Verdict as MeasurementVerdict, WindEstimator};
 use crate::health::Health;
 use crate::planner::{SetupError, Verdict};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
-use crate::vehicle::{AirState, Control, Trim, VehicleState, linearize};
+use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, Wind, linearize};
 
 /// Most by which a reference is turned back to its path [rad].
 const MOST_TURN: f64 = 0.15;
@@ -53,11 +54,14 @@ pub struct StepOutput {
 #[derive(Clone, Debug)]
 pub struct FlightLoop {
     ekf: Ekf,
+    wind: WindEstimator,
     lqr: Lqr,
     trim: Trim,
+    limits: ActuatorLimits,
     cross_track: f64,
     trajectory: Option<Trajectory>,
     position: (f64, f64),
+    /// When the last step was, and what the actuators have given since.
     last: Option<(f64, Control)>,
     health: Health,
 }
@@ -78,8 +82,10 @@ impl FlightLoop {
         let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
         Ok(Self {
             ekf: Ekf::new(*airframe, settings.estimator, trim.state),
+            wind: WindEstimator::new(settings.wind),
             lqr,
             trim,
+            limits: settings.actuators,
             cross_track: settings.cross_track,
             trajectory: None,
             position: (0.0, settings.planner.altitude),
@@ -102,6 +108,7 @@ impl FlightLoop {
         let position_used = frame.x.is_finite() && frame.z.is_finite();
         if position_used {
             self.position = (frame.x, frame.z);
+            self.wind.update(time, self.position, self.ekf.estimate());
         } else {
             Health::count(&mut self.health.positions_not_finite);
         }
@@ -114,16 +121,12 @@ impl FlightLoop {
             Some(reference) => (Mode::Tracking, reference),
             None => (Mode::TrimHold, self.level_reference()),
         };
-        let mut control = self.lqr.track(
+        let wanted = self.lqr.track(
             self.ekf.estimate(),
             &self.turned_back(&reference.state),
             reference.feedforward,
         );
-        if control.thrust < 0.0 {
-            control.thrust = 0.0;
-            Health::count(&mut self.health.thrust_raised);
-        }
-        self.last = Some((time, control));
+        let control = self.limit(time, wanted);
         StepOutput {
             control,
             reference,
@@ -181,6 +184,12 @@ impl FlightLoop {
         }
     }
 
+    /// The motion of the air that a plan reckons with.
+    #[must_use]
+    pub fn wind(&self) -> Wind {
+        self.wind.wind()
+    }
+
     /// The trajectory being flown, if any.
     #[must_use]
     pub fn trajectory(&self) -> Option<&Trajectory> {
@@ -193,11 +202,27 @@ impl FlightLoop {
         &self.health
     }
 
+    /// The command within the actuators' limits.
+    fn limit(&mut self, time: f64, wanted: Control) -> Control {
+        let (before, last) = self.last.unwrap_or((time - TICK_PERIOD, self.trim.control));
+        // A time that is none, or goes back, moves no actuator.
+        let period = (time - before).max(0.0);
+        let control = self.limits.within(wanted, self.trim.control, last, period);
+        if libm::fabs(control.thrust - wanted.thrust) > 0.0 {
+            Health::count(&mut self.health.thrust_limited);
+        }
+        if libm::fabs(control.elevator - wanted.elevator) > 0.0 {
+            Health::count(&mut self.health.elevator_limited);
+        }
+        self.last = Some((time, self.limits.given(control, last, period)));
+        control
+    }
+
     /// The reference's motion, turned back to its path.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
         let (x, z) = self.position;
-        let (sin, cos) = libm::sincos(reference.air.flight_path);
-        let off = cos * (reference.z - z) - sin * (reference.x - x);
+        let (ahead, up) = self.wind.wind().carry(&reference.air);
+        let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
         let turn = (self.cross_track * off).clamp(-MOST_TURN, MOST_TURN);
         AirState {
             pitch: reference.air.pitch + turn,

@@ -12,8 +12,10 @@ pub struct Health {
     pub predictions_diverged: u32,
     /// Positions that were not finite; the last one was kept.
     pub positions_not_finite: u32,
-    /// Thrust commands below zero, raised to it.
-    pub thrust_raised: u32,
+    /// Thrust commands beyond what the motor gives, taken back to it.
+    pub thrust_limited: u32,
+    /// Elevator commands beyond its range or its rate, taken back to them.
+    pub elevator_limited: u32,
     /// Cycles that gave a feasible trajectory.
     pub plans_feasible: u32,
     /// Cycles without one that flew on along the last trajectory.
@@ -50,12 +52,12 @@ mod tests {
     #[test]
     fn a_full_counter_stays_full() {
         let mut health = Health {
-            thrust_raised: u32::MAX - 1,
+            thrust_limited: u32::MAX - 1,
             ..Health::default()
         };
         for _ in 0..3 {
-            Health::count(&mut health.thrust_raised);
-            assert_eq!(health.thrust_raised, u32::MAX);
+            Health::count(&mut health.thrust_limited);
+            assert_eq!(health.thrust_limited, u32::MAX);
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::control::LqrWeights;
 use crate::corridor::Padding;
 use crate::estimate::EkfTuning;
 use crate::qp::{Initial, Penalty, SteadyState, Weights};
-use crate::vehicle::{Airframe, JacobianForm, Trim, TrimError};
+use crate::vehicle::{ActuatorLimits, Airframe, JacobianForm, Trim, TrimError};
 
 /// Limits of the attitude rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +58,8 @@ pub struct PlannerSettings {
     pub paths: usize,
     /// Height to return to [m].
     pub altitude: f64,
+    /// How far the lidar sees [m]; for the map with memory.
+    pub sight: f64,
     /// Seed of the path search.
     pub seed: u64,
 }
@@ -89,6 +91,8 @@ impl Cruise {
 pub struct Settings {
     /// The aircraft as the core knows it.
     pub airframe: Airframe,
+    /// What its motor and elevator can do, as far as the core knows.
+    pub actuators: ActuatorLimits,
     /// Straight and level flight, about which everything is linearised.
     pub cruise: Cruise,
     /// Thrust about which the regulator is designed [N]; none takes that of the trim.
@@ -97,6 +101,8 @@ pub struct Settings {
     pub design_jacobian: JacobianForm,
     /// The estimator's tuning.
     pub estimator: EkfTuning,
+    /// Time constant of the wind's estimate [s]; none takes the air to stand still, as the paper does.
+    pub wind: Option<f64>,
     /// The regulator's weights.
     pub regulator: LqrWeights,
     /// Flight path angle by which the regulator's reference turns back per metre off the trajectory
@@ -112,11 +118,13 @@ impl Settings {
     pub const fn reference() -> Self {
         Self {
             airframe: Airframe::REFERENCE,
+            actuators: ActuatorLimits::NONE,
             cruise: Cruise::Authors,
             // Sic: the authors trim at 4.3 N and linearise with 4.0 N.
             design_thrust: Some(4.0),
             design_jacobian: JacobianForm::Authors,
             estimator: EkfTuning::AUTHORS,
+            wind: None,
             regulator: LqrWeights::PAPER,
             cross_track: 0.0,
             planner: PlannerSettings {
@@ -131,6 +139,7 @@ impl Settings {
                 iteration: None,
                 paths: 25,
                 altitude: 50.0,
+                sight: 45.0,
                 seed: 0,
             },
         }
@@ -162,6 +171,7 @@ impl Settings {
         let paper = Self::paper();
         Self {
             estimator: EkfTuning::SENSORS,
+            wind: Some(0.3),
             cross_track: 0.08,
             planner: PlannerSettings {
                 steady_state: SteadyState::MomentBalance,

@@ -4,7 +4,9 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
 use crate::plan::CollocationPoints;
 use crate::qp::Solution;
-use crate::vehicle::{AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState};
+use crate::vehicle::{
+    AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState, Wind,
+};
 
 /// What the vehicle should do at one moment.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,8 +33,9 @@ pub struct Trajectory {
 enum Between {
     /// Straight lines (the paper).
     Lines,
-    /// The motion of the point mass, thrust and rate of the angle of attack constant over a stage.
-    Flown(Airframe),
+    /// The motion of the point mass in a steady wind, thrust and rate of the angle of attack
+    /// constant over a stage.
+    Flown(Airframe, Wind),
 }
 
 impl Trajectory {
@@ -73,10 +76,11 @@ impl Trajectory {
         knots: &[PathState; KNOTS],
         controls: &[PathControl; STAGES],
         airframe: &Airframe,
+        wind: &Wind,
         start: f64,
     ) {
         self.start = start;
-        self.between = Between::Flown(*airframe);
+        self.between = Between::Flown(*airframe, *wind);
         for (stage, (place, knot)) in self.knots.iter_mut().zip(knots).enumerate() {
             let (state, feedforward) = knot.reference(airframe, &controls[stage.min(STAGES - 1)]);
             *place = Reference { state, feedforward };
@@ -156,8 +160,8 @@ impl Trajectory {
         let stage = (stages.max(0.0) as usize).min(STAGES - 1);
         let share = stages - stage as f64;
         let (from, to) = (&self.knots[stage], &self.knots[stage + 1]);
-        if let Between::Flown(airframe) = &self.between {
-            return Some(flown(airframe, from, to, share));
+        if let Between::Flown(airframe, wind) = &self.between {
+            return Some(flown(airframe, wind, from, to, share));
         }
         let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
         let air = from.state.air.to_vector() * (1.0 - share) + to.state.air.to_vector() * share;
@@ -176,14 +180,20 @@ impl Trajectory {
 }
 
 /// The motion of the point mass at a share of the way from one knot to the next.
-fn flown(airframe: &Airframe, from: &Reference, to: &Reference, share: f64) -> Reference {
+fn flown(
+    airframe: &Airframe,
+    wind: &Wind,
+    from: &Reference,
+    to: &Reference,
+    share: f64,
+) -> Reference {
     let rise = to.state.air.angle_of_attack() - from.state.air.angle_of_attack();
     let control = PathControl {
         angle_of_attack_rate: rise / STAGE_PERIOD,
         thrust: from.feedforward.thrust,
     };
     let knot = PathState::of(&from.state);
-    let at = knot.after(airframe, &control, share * STAGE_PERIOD, 2);
+    let at = knot.after_in(wind, airframe, &control, share * STAGE_PERIOD, 2);
     let (state, feedforward) = at.reference(airframe, &control);
     Reference { state, feedforward }
 }

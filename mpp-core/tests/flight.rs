@@ -189,7 +189,7 @@ fn thrust_is_never_negative() {
         assert!(out.control.thrust >= 0.0);
         raised += u32::from(out.reference.feedforward.thrust < 0.0);
     }
-    assert!(raised > 400 && flight.health().thrust_raised == raised);
+    assert!(raised > 400 && flight.health().thrust_limited == raised);
 }
 
 #[test]

@@ -48,14 +48,14 @@ fn discs(discs: &[(f64, f64)]) -> ClearanceField {
     let mut fan = LidarScan::new();
     (fan.angle_min, fan.angle_increment) = (-0.9, 0.018);
     fan.ranges = [0.0; 100].into_iter().collect();
-    map.insert(&fan, 100.0, 50.0, 0.0);
+    map.insert(&fan, 45.0, 100.0, 50.0, 0.0);
     for _ in 0..2 {
         for (x, z) in discs {
             let mut scan = LidarScan::new();
             scan.angle_min = libm::atan2(z - 50.0, x - 100.0);
             let range = libm::hypot(x - 100.0, z - 50.0) as f32;
             assert!(scan.ranges.push(range).is_ok());
-            map.insert(&scan, 100.0, 50.0, 0.0);
+            map.insert(&scan, 45.0, 100.0, 50.0, 0.0);
         }
     }
     field(&map)
@@ -230,8 +230,8 @@ fn a_single_obstacle_is_passed_on_both_sides() {
 #[test]
 fn a_wall_is_passed_through_its_gap_and_within_the_band() {
     for gap in [44.0, 47.0, 53.0, 56.0, 59.0] {
-        let wall: Vec<(f64, f64)> = (0..45)
-            .map(|i| (121.0, 36.0 + 0.6 * f64::from(i)))
+        let wall: Vec<(f64, f64)> = (0..90)
+            .map(|i| (121.0, 36.0 + 0.3 * f64::from(i)))
             .filter(|(_, z)| f64::abs(z - gap) > 2.0)
             .collect();
         let (_, paths) = paths(&discs(&wall), &TASK);

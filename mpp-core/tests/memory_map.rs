@@ -6,7 +6,7 @@ mod common {
     pub(crate) mod memory;
 }
 
-use common::cells::{CELL, COLS, ROWS, centres};
+use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::draw::Draw;
 use common::memory::{field, noise, random_map};
 use mpp_core::map::MemoryMap;
@@ -31,11 +31,22 @@ fn rows(map: &MemoryMap) -> Vec<(u128, u128)> {
     (0..ROWS).map(|row| map.row(row)).collect()
 }
 
+/// Centres of the occupied cells, by row and column.
+fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
+    let mut centres = Vec::new();
+    for row in 0..ROWS as i32 {
+        for col in (0..COLS as i32).filter(|col| occupied(map, row, *col)) {
+            centres.push(centre(map, row, col));
+        }
+    }
+    centres
+}
+
 #[test]
 fn a_hit_is_marked_where_the_beam_ended_with_a_shadow_of_a_metre() {
     for (pitch, range) in [(0.0, 20.1), (0.4, 15.3), (-0.5, 25.7), (0.1, 0.4)] {
         let mut map = started();
-        map.insert(&beam(range), 100.2, 50.2, pitch);
+        map.insert(&beam(range), 45.0, 100.2, 50.2, pitch);
         let known = field(&map);
         let (up, ahead) = libm::sincos(pitch);
         let at = |along: f64| (100.2 + along * ahead, 50.2 + along * up);
@@ -60,14 +71,14 @@ fn a_hit_is_marked_where_the_beam_ended_with_a_shadow_of_a_metre() {
 #[test]
 fn a_hit_stays_when_it_is_out_of_sight() {
     let mut map = started();
-    map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+    map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
     let before = centres(&map);
     assert!(!before.is_empty());
     for step in 1..100 {
         let x = 100.0 + 0.25 * f64::from(step);
         map.roll(x, 50.0);
         // The aircraft looks up, past it.
-        map.insert(&beam(0.0), x, 51.0, 0.6);
+        map.insert(&beam(0.0), 45.0, x, 51.0, 0.6);
     }
     assert_eq!(centres(&map), before);
 }
@@ -77,11 +88,11 @@ fn passing_beams_clear_a_false_hit_and_the_more_often_it_was_seen_the_later() {
     let passes_to_clear = |hits: usize, passing: f32| {
         let mut map = started();
         for _ in 0..hits {
-            map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+            map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
         }
         assert!(field(&map).is_occupied(120.3, 50.2));
         (1..40).find(|_| {
-            map.insert(&beam(passing), 100.2, 50.2, 0.0);
+            map.insert(&beam(passing), 45.0, 100.2, 50.2, 0.0);
             !field(&map).is_occupied(120.3, 50.2)
         })
     };
@@ -100,10 +111,10 @@ fn passing_beams_clear_a_false_hit_and_the_more_often_it_was_seen_the_later() {
 fn one_hit_on_what_was_free_long_is_believed() {
     let mut map = started();
     for _ in 0..100 {
-        map.insert(&beam(35.0), 100.2, 50.2, 0.0);
+        map.insert(&beam(35.0), 45.0, 100.2, 50.2, 0.0);
     }
     let hits = (1..10).find(|_| {
-        map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+        map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
         field(&map).is_occupied(120.3, 50.2)
     });
     assert!(hits.is_some_and(|hits| hits <= 3), "{hits:?}");
@@ -112,7 +123,7 @@ fn one_hit_on_what_was_free_long_is_believed() {
 #[test]
 fn unanswered_beams_are_sight_of_forty_metres() {
     let mut map = started();
-    map.insert(&beam(0.0), 100.2, 50.2, 0.0);
+    map.insert(&beam(0.0), 45.0, 100.2, 50.2, 0.0);
     let known = field(&map);
     assert!(centres(&map).is_empty());
     for step in 1..80 {
@@ -160,7 +171,7 @@ fn an_aircraft_behind_its_window_gets_a_new_one() {
             (map.first_x()..map.first_x() + 10.0).contains(&100.0),
             "{wrong}"
         );
-        map.insert(&beam(20.1), 100.2, 50.2, 0.0);
+        map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
         assert!(field(&map).is_occupied(120.3, 50.2));
     }
 }
@@ -198,9 +209,9 @@ fn no_number_is_too_wild() {
         for second in wild {
             let mut map = MemoryMap::new();
             map.roll(first, 50.0);
-            map.insert(&noise(&mut draw), second, first, 0.0);
+            map.insert(&noise(&mut draw), 45.0, second, first, 0.0);
             map.roll(second, 50.0);
-            map.insert(&noise(&mut draw), second, 50.0, second);
+            map.insert(&noise(&mut draw), 45.0, second, 50.0, second);
             assert!(field(&map).distance(second, 50.0).is_nan() || rows(&map).len() == ROWS);
         }
     }
@@ -212,7 +223,7 @@ fn what_is_known_leaves_nothing_unknown() {
     for x in [0.0, 37.3, 1000.1] {
         let mut map = MemoryMap::new();
         map.roll(x, 50.0);
-        map.insert(&beam(5.0), x, 50.0, 0.0);
+        map.insert(&beam(5.0), 45.0, x, 50.0, 0.0);
         let wall = |at: f64, z: f64| at > x + 20.0 && z < 45.0;
         map.know(wall);
         assert!(rows(&map).iter().all(|(_, unknown)| *unknown == 0));

@@ -4,10 +4,11 @@ use crate::link::{LinkError, PipeLink};
 use crate::run::{FlyError, fly};
 use crate::scenario::Scenario;
 use flight_node::parameters::Tuning;
+use mpp_core::estimate::WindEstimator;
 use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 
 /// What a cycle begins with.
 #[derive(Clone, Debug)]
@@ -18,6 +19,8 @@ pub struct Inputs {
     pub truth: VehicleState,
     /// The state that the core plans from.
     pub state: VehicleState,
+    /// The wind that the core reckons with.
+    pub wind: Wind,
     /// The scan, as the core got it.
     pub scan: LidarScan,
 }
@@ -28,15 +31,18 @@ pub struct Inputs {
 /// [`FlyError`].
 pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
     let mut inputs = Vec::new();
+    let mut wind = WindEstimator::new(settings(scenario)?.wind);
     fly(scenario, &mut PipeLink::of(scenario), |moment| {
+        let (truth, air) = (moment.tick.state, moment.tick.estimate);
+        wind.update(moment.tick.t, (truth.x, truth.z), &air);
         let Some(wire) = moment.scan else {
             return;
         };
-        let (truth, air) = (moment.tick.state, moment.tick.estimate);
         inputs.push(Inputs {
             time: moment.tick.t,
             truth,
             state: VehicleState { air, ..truth },
+            wind: wind.wind(),
             scan: LidarScan {
                 angle_min: f64::from(wire.angle_min),
                 angle_increment: f64::from(wire.angle_increment),
@@ -86,7 +92,7 @@ mod tests {
             let recorded = record(&scenario).unwrap();
             assert!(log.plans.len() >= 4 && recorded.len() >= log.plans.len());
             for (inputs, plan) in recorded.iter().zip(&log.plans) {
-                planner.begin(inputs.time, &inputs.state, &inputs.scan);
+                planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
                 while planner.advance() {}
                 planner.finish();
                 let summary = planner.summary();

@@ -2,7 +2,7 @@
 //!
 //! The same plant, field, gusts and actuators, from the same seed. The core is the same too, but
 //!
-//! * its planner starts from the true state, and its map holds every circle of the field, everything
+//! * its planner starts from the true state in the true wind, and its map holds every circle of the field, everything
 //!   else being free: nothing is hidden and nothing unknown;
 //! * its sensors are exact, so that the regulator tracks by an estimate without noise;
 //! * it replans at [`REPLAN_HZ`], its plans are flown a tick later, and every candidate gets all
@@ -15,7 +15,7 @@ use crate::scenario::{ALTITUDE, Scenario};
 use crate::world::Obstacle;
 use flight_node::Order;
 use mpp_core::planner::Planner;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 
 /// Replanning rate of an oracle [Hz].
 pub const REPLAN_HZ: f64 = 10.0;
@@ -26,7 +26,7 @@ const REACH: f64 = 80.0;
 pub struct Oracle {
     obstacles: Vec<Obstacle>,
     /// None before the first tick.
-    truth: Option<VehicleState>,
+    truth: Option<(VehicleState, Wind)>,
 }
 
 impl Oracle {
@@ -38,9 +38,9 @@ impl Oracle {
         }
     }
 
-    /// Sees where the aircraft is.
-    pub(crate) fn see(&mut self, truth: &VehicleState) {
-        self.truth = Some(*truth);
+    /// Sees where the aircraft is, and how the air moves.
+    pub(crate) fn see(&mut self, truth: &VehicleState, wind: Wind) {
+        self.truth = Some((*truth, wind));
     }
 
     /// Puts the truth in the place of what the core believes.
@@ -51,8 +51,10 @@ impl Oracle {
                     iteration.deepened = usize::MAX;
                 }
             }
-            Order::Begin { state, scan, .. } => {
-                *state = self.truth.unwrap_or(*state);
+            Order::Begin {
+                state, wind, scan, ..
+            } => {
+                (*state, *wind) = self.truth.unwrap_or((*state, *wind));
                 // Beams would unlearn cells that they graze.
                 scan.ranges.clear();
                 let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH;

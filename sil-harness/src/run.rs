@@ -17,7 +17,7 @@ use crate::sensors::AirDataSensors;
 use crate::world::ObstacleField;
 use hil_protocol::{ControlMode, LidarScan, PlanReport, PlanTrajectory, SensorFrame};
 use mpp_core::planner::SetupError;
-use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState};
+use mpp_core::vehicle::{AirState, Control, TrimError, VehicleState, Wind};
 use nalgebra::Vector4;
 use session::{Answer, Session};
 use std::fmt;
@@ -125,7 +125,8 @@ pub fn fly_with(
         }
         let before = *aircraft.state();
         if scenario.oracle {
-            session.reveal(&before)?;
+            let (x, z) = aircraft.wind();
+            session.reveal(&before, Wind { x, z })?;
         }
         let measured = sensors.measure(&before);
         let scan = steering

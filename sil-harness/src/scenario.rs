@@ -233,6 +233,7 @@ impl Scenario {
             beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
             range_max: (self.lidar.range_max + beyond) as f32,
             altitude: ALTITUDE,
+            actuators: self.faults.actuators.told(),
         }
     }
 

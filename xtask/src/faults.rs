@@ -218,6 +218,12 @@ const HELLO: Hello = Hello {
 };
 
 const CONFIGURE: Configure = Configure {
+    actuators: hil_protocol::ActuatorLimits {
+        thrust_max: None,
+        thrust_lag: None,
+        elevator_range: None,
+        elevator_rate: None,
+    },
     preset: Preset::Flight,
     airframe: AirframeId::Reference,
     paths: 25,

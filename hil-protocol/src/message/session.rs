@@ -59,12 +59,37 @@ pub struct Configure {
     pub range_max: f32,
     /// World height to return to, positive up \[m\].
     pub altitude: f64,
+    /// What motor and elevator can do.
+    pub actuators: ActuatorLimits,
 }
 
 impl Configure {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize =
-        2 * size::BYTE + 2 * size::U16 + 3 * size::U32 + size::U64 + size::F32 + size::F64;
+    pub const MAX_SIZE: usize = 2 * size::BYTE
+        + 2 * size::U16
+        + 3 * size::U32
+        + size::U64
+        + size::F32
+        + size::F64
+        + ActuatorLimits::MAX_SIZE;
+}
+
+/// Limits of the actuators; `None` is no limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ActuatorLimits {
+    /// Greatest thrust \[N\].
+    pub thrust_max: Option<f32>,
+    /// Time constant of the thrust's first-order lag \[s\].
+    pub thrust_lag: Option<f32>,
+    /// Greatest distance of the elevator from its trim, in units of the command.
+    pub elevator_range: Option<f32>,
+    /// Greatest rate of the elevator \[1/s\].
+    pub elevator_rate: Option<f32>,
+}
+
+impl ActuatorLimits {
+    /// Size of the longest form \[bytes\].
+    pub const MAX_SIZE: usize = 4 * (size::BYTE + size::F32);
 }
 
 /// A named set of the planner's parameters. The order is what goes over the wire: append only.
@@ -131,6 +156,8 @@ pub enum ConfigureVerdict {
     RangeMax,
     /// A session is running; it goes on as it was.
     AlreadyConfigured,
+    /// A limit of an actuator is not a positive, finite number.
+    Actuators,
 }
 
 /// Harness to core: another value for one of the core's parameters. Answered by a

@@ -51,19 +51,34 @@ fn configure() -> impl Strategy<Value = Configure> {
     let presets = select(&[Preset::Reference, Preset::Paper, Preset::Flight]);
     let airframes = select(&[AirframeId::Paper, AirframeId::Reference]);
     let ticks = any::<[u32; 3]>();
-    let rest = (any::<u64>(), any::<u16>(), f32::ANY, f64::ANY);
+    let rest = (any::<u64>(), any::<u16>(), f32::ANY, f64::ANY, limits());
     (presets, airframes, any::<u16>(), ticks, rest).prop_map(
-        |(preset, airframe, paths, ticks, (seed, beams, range_max, altitude))| Configure {
-            preset,
-            airframe,
-            paths,
-            replan_period_ticks: ticks[0],
-            latency_ticks: ticks[1],
-            slices_per_tick: ticks[2],
-            seed,
-            beams,
-            range_max,
-            altitude,
+        |(preset, airframe, paths, ticks, (seed, beams, range_max, altitude, actuators))| {
+            Configure {
+                preset,
+                airframe,
+                paths,
+                replan_period_ticks: ticks[0],
+                latency_ticks: ticks[1],
+                slices_per_tick: ticks[2],
+                seed,
+                beams,
+                range_max,
+                altitude,
+                actuators,
+            }
+        },
+    )
+}
+
+fn limits() -> impl Strategy<Value = ActuatorLimits> {
+    let limit = || proptest::option::of(f32::ANY);
+    (limit(), limit(), limit(), limit()).prop_map(
+        |(thrust_max, thrust_lag, elevator_range, elevator_rate)| ActuatorLimits {
+            thrust_max,
+            thrust_lag,
+            elevator_range,
+            elevator_rate,
         },
     )
 }
@@ -81,6 +96,7 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::SlicesPerTick,
             ConfigureVerdict::RangeMax,
             ConfigureVerdict::AlreadyConfigured,
+            ConfigureVerdict::Actuators,
         ]),
     ]
 }

@@ -38,6 +38,7 @@ impl ClearanceField {
         for row in 0..ROWS {
             (self.occupied[row], self.unknown[row]) = map.row(row);
         }
+        self.complete();
         for row in 0..ROWS {
             let near = self.near(row);
             let distances = &mut self.distance[row];
@@ -54,6 +55,24 @@ impl ClearanceField {
                         bits &= bits - 1;
                     }
                 }
+            }
+        }
+    }
+
+    /// Of an obstacle that another one hides in part, beams touch what sticks out. What is unknown
+    /// within a metre of an occupied cell counts as occupied too.
+    fn complete(&mut self) {
+        for diagonally in [false, true] {
+            let mut below = 0;
+            for row in 0..ROWS {
+                let own = self.occupied[row];
+                let beside = self.occupied_row(Some(row + 1)) | below;
+                let mut near = beside | own << 1 | own >> 1;
+                if diagonally {
+                    near |= beside << 1 | beside >> 1;
+                }
+                self.occupied[row] = own | near & self.unknown[row];
+                below = own;
             }
         }
     }

@@ -29,12 +29,12 @@ const LIMIT: i8 = 100;
 /// Steps along a beam [m]: within cells, and within the shadow.
 const STEP: f64 = 0.35;
 const SHADOW_STEP: f64 = 0.25;
-const SHADOW_STEPS: u8 = 4;
+const SHADOW_STEPS: u8 = 2;
 /// Share of its range by which a hit may be too far, and length before a hit that says nothing [m].
 const RANGE_DOUBT: f64 = 0.03;
 const DOUBT: f64 = 1.0;
-/// Sight of a beam that did not return [m].
-const UNANSWERED_SIGHT: f64 = 40.0;
+/// Share of the lidar's sight that a beam without return speaks for.
+const UNANSWERED: f64 = 8.0 / 9.0;
 /// Bound of the steps along one beam.
 const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 
@@ -102,9 +102,9 @@ impl MemoryMap {
         }
     }
 
-    /// Takes in a scan made at `(x, z)` [m] and a pitch [rad].
-    pub fn insert(&mut self, scan: &LidarScan, x: f64, z: f64, pitch: f64) {
-        self.insert_beams(scan, 0..scan.ranges.len(), x, z, pitch);
+    /// Takes in a scan made at `(x, z)` [m] and a pitch [rad] by a lidar with this sight [m].
+    pub fn insert(&mut self, scan: &LidarScan, sight: f64, x: f64, z: f64, pitch: f64) {
+        self.insert_beams(scan, 0..scan.ranges.len(), sight, x, z, pitch);
     }
 
     /// Takes in some beams of a scan, as far as it has them.
@@ -112,6 +112,7 @@ impl MemoryMap {
         &mut self,
         scan: &LidarScan,
         beams: Range<usize>,
+        sight: f64,
         x: f64,
         z: f64,
         pitch: f64,
@@ -125,7 +126,7 @@ impl MemoryMap {
             if range > 0.0 {
                 self.pass(at, range - DOUBT - RANGE_DOUBT * range, PASSED);
                 if let Some(evidence) = self.cell_mut(self.locate(at(range))) {
-                    *evidence = evidence.saturating_add(HIT).min(LIMIT);
+                    *evidence = weighed(*evidence, HIT);
                 }
                 for step in 1..=SHADOW_STEPS {
                     let behind = at(range + SHADOW_STEP * f64::from(step));
@@ -134,7 +135,7 @@ impl MemoryMap {
                     }
                 }
             } else {
-                self.pass(at, UNANSWERED_SIGHT, PASSED_UNANSWERED);
+                self.pass(at, UNANSWERED * sight, PASSED_UNANSWERED);
             }
         }
     }
@@ -153,7 +154,7 @@ impl MemoryMap {
             }
             last = Some(place);
             if let Some(evidence) = self.cell_mut(place) {
-                *evidence = evidence.saturating_sub(evidence_against).max(-LIMIT);
+                *evidence = weighed(*evidence, -evidence_against);
             }
         }
     }
@@ -210,6 +211,14 @@ impl MemoryMap {
 impl Default for MemoryMap {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Evidence with more of it; what was seen is never again as unknown as what was not.
+fn weighed(evidence: i8, more: i8) -> i8 {
+    match evidence.saturating_add(more).clamp(-LIMIT, LIMIT) {
+        0 => -1,
+        sum => sum,
     }
 }
 

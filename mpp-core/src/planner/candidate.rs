@@ -3,8 +3,7 @@
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::ClearanceField;
 use crate::qp::{Dynamics, Solution, StageState};
-use crate::settings::AttitudeLimits;
-use crate::vehicle::{Airframe, PathControl, PathState, Trim};
+use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
 use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
 
 /// Angles of the program are in tenths of a radian, so that they weigh about as much as metres.
@@ -22,18 +21,17 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// Flies a program's controls from the first knot on, within what the aircraft can do.
+    /// Flies a program's controls from the first knot on, at `most` so far [rad] from the trim's angle
+    /// of attack and with a thrust up to `thrust_max` [N].
     pub(super) fn roll_out(
         &mut self,
         solution: &Solution,
-        airframe: &Airframe,
-        trim: &Trim,
-        limits: &AttitudeLimits,
+        frame: &Frame,
+        most: f64,
         thrust_max: f64,
     ) {
+        let trim = &frame.trim;
         let level = trim.state.angle_of_attack();
-        // Soft rows may ask for somewhat more than the limit.
-        let most = 1.5 * limits.angle_of_attack + 0.05;
         let [first, later @ ..] = &mut self.knots;
         let mut state = *first;
         let stages = self.controls.iter_mut().zip(later).zip(&solution.controls);
@@ -44,7 +42,7 @@ impl Candidate {
                 angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
                 thrust: (trim.control.thrust + thrust).min(thrust_max).max(0.0),
             };
-            state = state.after(airframe, control, STAGE_PERIOD, STEPS);
+            state = frame.after(&state, control);
             *knot = state;
         }
     }
@@ -68,13 +66,19 @@ pub(super) fn same_signature(
 }
 
 /// Where the program's deviations are measured from: level flight at trim from the aircraft on.
-pub(super) struct Frame<'a> {
-    pub(super) airframe: &'a Airframe,
-    pub(super) trim: &'a Trim,
+pub(super) struct Frame {
+    pub(super) airframe: Airframe,
+    pub(super) trim: Trim,
+    pub(super) wind: Wind,
     pub(super) start: PathState,
 }
 
-impl Frame<'_> {
+impl Frame {
+    /// A stage later.
+    fn after(&self, knot: &PathState, control: &PathControl) -> PathState {
+        knot.after_in(&self.wind, &self.airframe, control, STAGE_PERIOD, STEPS)
+    }
+
     /// The program's state: deviation in position and speed, pitch and flight path in tenths of a
     /// radian; the pitch rate has no part.
     pub(super) fn deviation(&self, state: &PathState, stage: usize) -> Vector6<f64> {
@@ -94,7 +98,7 @@ impl Frame<'_> {
     pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
         let stages = candidate.knots.iter().zip(&candidate.controls);
         for (stage, (dynamics, (knot, control))) in dynamics.iter_mut().zip(stages).enumerate() {
-            let (state, input) = knot.sensitivity(self.airframe, control, STAGE_PERIOD);
+            let (state, input) = knot.sensitivity(&self.airframe, control, STAGE_PERIOD);
             // The program's (pitch, path) from the point mass's (path, angle of attack), and back.
             let mut a = Matrix6::zeros();
             let mut b = Matrix6x2::zeros();
@@ -116,7 +120,7 @@ impl Frame<'_> {
                 let column: [f64; 5] = input.column(index).into_owned().into();
                 b.set_column(index, &outputs(&column));
             }
-            let next = knot.after(self.airframe, control, STAGE_PERIOD, STEPS);
+            let next = self.after(knot, control);
             let thrust = control.thrust - self.trim.control.thrust;
             let offset = self.deviation(&next, stage + 1)
                 - a * self.deviation(knot, stage)

@@ -9,20 +9,21 @@
 //! Every candidate is improved once; the best few then get further rounds. The nonlinear roll-out of
 //! the controls is what is judged, against the map itself, and what is flown.
 
-use super::candidate::{ANGLE_SCALE, Candidate, Frame, same_signature};
+use super::candidate::{ANGLE_SCALE, Candidate, Frame};
+use super::propose::TREE_PATHS;
 use super::{FEASIBLE, Phase, Planner};
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::KNOTS;
 use crate::corridor::Keep;
 use crate::map::{ClearanceField, GridPoint, MemoryMap};
-use crate::plan::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, resample};
+use crate::plan::{Lattice, LatticeTask, MAX_LATTICE_PATHS};
 use crate::qp::Status;
 use crate::settings::{AttitudeLimits, Iteration};
-use crate::vehicle::{PathControl, PathState};
+use crate::vehicle::PathState;
 
 /// Candidates of a cycle: the previous plan, the lattice's paths, the tree's.
 const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + TREE_PATHS;
-/// Distinct paths that are taken from the tree.
-const TREE_PATHS: usize = 2;
+/// Share of the elevator's range that plans use; the rest is the regulator's.
+const PLANNED_SHARE: f64 = 0.9;
 /// What programs keep beyond the margin [m], so that their roll-outs still keep it.
 const ROUNDING: f64 = 0.05;
 
@@ -36,8 +37,8 @@ pub(super) struct Workspace {
     pub(super) field: ClearanceField,
     /// Beams of the scan that the map has taken in.
     pub(super) beams: usize,
-    lattice: Lattice,
-    candidates: heapless::Vec<Candidate, CANDIDATES>,
+    pub(super) lattice: Lattice,
+    pub(super) candidates: heapless::Vec<Candidate, CANDIDATES>,
     /// Improvements so far.
     improvements: usize,
     /// The candidates by price after the first improvement of each.
@@ -90,8 +91,7 @@ impl Planner {
     #[inline(never)]
     pub(super) fn remember(&mut self) {
         let state = &self.state;
-        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
-        else {
+        let Some((iteration, limits)) = self.limits() else {
             self.phase = Phase::Done;
             return;
         };
@@ -108,18 +108,20 @@ impl Planner {
         }
         if beams.start < self.scan.ranges.len() {
             work.beams = beams.end;
+            let sight = self.settings.sight;
             let (x, z, pitch) = (state.x, state.z, state.air.pitch);
-            work.map.insert_beams(&self.scan, beams, x, z, pitch);
+            work.map.insert_beams(&self.scan, beams, sight, x, z, pitch);
             return;
         }
         work.field.build(&work.map);
         work.candidates.clear();
         work.improvements = 0;
         self.take_up_previous();
+        let (run, rise) = self.wind.carry(&self.state.air);
         self.iterated.lattice.start(&LatticeTask {
             x: self.state.x,
             z: self.state.z,
-            slope: libm::tan(self.state.air.flight_path),
+            slope: rise / run.max(1.0),
             altitude,
             band: iteration.band,
             curvature: self.curvature(&limits),
@@ -127,56 +129,20 @@ impl Planner {
         self.phase = Phase::Lattice;
     }
 
+    /// What rounds and attitude go by, within what the actuators can do.
+    fn limits(&self) -> Option<(Iteration, AttitudeLimits)> {
+        let (mut iteration, mut attitude) = (self.settings.iteration?, self.settings.attitude?);
+        let most = PLANNED_SHARE * self.actuators.angle_of_attack(&self.airframe);
+        attitude.angle_of_attack = attitude.angle_of_attack.min(most);
+        let most = self.actuators.thrust_max.unwrap_or(f64::INFINITY);
+        iteration.thrust_max = iteration.thrust_max.min(most);
+        Some((iteration, attitude))
+    }
+
     /// Curvature [1/m] that the angle of attack allows in level flight at cruise.
     fn curvature(&self, limits: &AttitudeLimits) -> f64 {
         let a = &self.airframe;
         0.5 * a.air_density * a.wing_area * a.lift_alpha * limits.angle_of_attack / a.mass
-    }
-
-    /// The previous plan, from here on, is a candidate.
-    fn take_up_previous(&mut self) {
-        if self.best.sample(self.time).is_none() {
-            return;
-        }
-        let cruise = self.trim.state.airspeed;
-        let mut candidate = self.cruising();
-        let mut last = PathState::of(&self.state);
-        for (stage, knot) in candidate.knots.iter_mut().enumerate().skip(1) {
-            let time = self.time + STAGE_PERIOD * stage as f64;
-            *knot = match self.best.sample(time) {
-                Some(reference) => PathState::of(&reference.state),
-                None => PathState {
-                    x: last.x + cruise * STAGE_PERIOD,
-                    z: last.z,
-                    airspeed: cruise,
-                    flight_path: 0.0,
-                    angle_of_attack: self.trim.state.angle_of_attack(),
-                },
-            };
-            last = *knot;
-        }
-        self.propose(candidate);
-    }
-
-    /// One candidate more, if there is room.
-    fn propose(&mut self, candidate: Candidate) {
-        let candidates = &mut self.iterated.candidates;
-        if candidates.len() < self.settings.paths {
-            let _ = candidates.push(candidate);
-        }
-    }
-
-    /// A candidate at cruise, standing where the aircraft is.
-    fn cruising(&self) -> Candidate {
-        let thrust = self.trim.control.thrust;
-        Candidate {
-            knots: [PathState::of(&self.state); KNOTS],
-            controls: [PathControl {
-                angle_of_attack_rate: 0.0,
-                thrust,
-            }; STAGES],
-            price: f64::INFINITY,
-        }
     }
 
     /// One station of the lattice; after the last, its paths, and a tree in the same map.
@@ -196,41 +162,6 @@ impl Planner {
         self.start_tree();
     }
 
-    /// A lattice path, flown at cruise speed.
-    fn along(&self, path: &LatticePath) -> Candidate {
-        let start = PathState::of(&self.state);
-        let spacing = self.iterated.lattice.spacing();
-        let at = |x: f64| {
-            let stations = ((x - start.x) / spacing).clamp(0.0, (path.len() - 2) as f64);
-            let station = stations as usize;
-            let height = |station: usize| path.get(station).copied().unwrap_or(start.z);
-            let (from, to) = (height(station), height(station + 1));
-            let share = (x - start.x) / spacing - station as f64;
-            (from + (to - from) * share, (to - from) / spacing)
-        };
-        let mut candidate = self.cruising();
-        let step = self.trim.state.airspeed * STAGE_PERIOD;
-        let mut x = start.x;
-        for knot in candidate.knots.iter_mut().skip(1) {
-            let slope = at(x).1;
-            x += step / libm::sqrt(1.0 + slope * slope);
-            let (z, slope) = at(x);
-            *knot = self.steady(x, z, libm::atan(slope));
-        }
-        candidate
-    }
-
-    /// A knot at cruise.
-    fn steady(&self, x: f64, z: f64, flight_path: f64) -> PathState {
-        PathState {
-            x,
-            z,
-            airspeed: self.trim.state.airspeed,
-            flight_path,
-            angle_of_attack: self.trim.state.angle_of_attack(),
-        }
-    }
-
     /// Writes the map with memory to the grid that the tree grows in.
     fn project_map(&mut self) {
         let (x, z) = (self.state.x, self.state.z);
@@ -247,47 +178,14 @@ impl Planner {
         });
     }
 
-    /// The tree's paths that pass some obstacle on another side than every candidate so far.
-    #[inline(never)]
-    pub(super) fn take_tree_paths(&mut self) {
-        let mut from = 0;
-        let mut taken = 0;
-        while taken < TREE_PATHS {
-            let Some(next) = self.search.next_path(from, &mut self.path) else {
-                break;
-            };
-            from = next;
-            self.points = resample(&self.path, self.settings.rules);
-            let mut candidate = self.cruising();
-            let mut before = self.points[0];
-            for (knot, point) in candidate.knots.iter_mut().zip(&self.points).skip(1) {
-                let slope = libm::atan2(point.row - before.row, point.col - before.col);
-                *knot = self.steady(
-                    self.state.x + point.col - GridPoint::AIRCRAFT.col,
-                    self.state.z + point.row - GridPoint::AIRCRAFT.row,
-                    slope,
-                );
-                before = *point;
-            }
-            let work = &mut self.iterated;
-            let field = &work.field;
-            let known = |other: &Candidate| same_signature(field, &candidate.knots, &other.knots);
-            if !work.candidates.iter().any(known) {
-                taken += 1;
-                self.propose(candidate);
-            }
-        }
-        self.phase = Phase::Linearise;
-    }
-
     /// Sets up the program of the next candidate to improve, about the candidate itself.
     #[inline(never)]
     pub(super) fn linearise(&mut self) {
-        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
-        else {
+        let Some((iteration, limits)) = self.limits() else {
             self.phase = Phase::Done;
             return;
         };
+        let frame = self.frame();
         let work = &mut self.iterated;
         if work.improvements == work.candidates.len() {
             work.order = order(&work.candidates);
@@ -296,11 +194,6 @@ impl Planner {
         let Some(candidate) = turn.and_then(|index| work.candidates.get(index)) else {
             self.phase = Phase::Done;
             return;
-        };
-        let frame = Frame {
-            airframe: &self.airframe,
-            trim: &self.trim,
-            start: PathState::of(&self.state),
         };
         let keep = Keep {
             margin: iteration.margin + ROUNDING,
@@ -351,19 +244,24 @@ impl Planner {
         self.phase = Phase::Linearise;
     }
 
+    fn frame(&self) -> Frame {
+        Frame {
+            airframe: self.airframe,
+            trim: self.trim,
+            wind: self.wind,
+            start: PathState::of(&self.state),
+        }
+    }
+
     fn fly_out(&mut self) {
-        let (Some(iteration), Some(limits)) = (self.settings.iteration, self.settings.attitude)
-        else {
+        let Some((iteration, limits)) = self.limits() else {
             return;
         };
         let mut flown = self.cruising();
-        flown.roll_out(
-            &self.candidate,
-            &self.airframe,
-            &self.trim,
-            &limits,
-            iteration.thrust_max,
-        );
+        // Soft rows may ask for somewhat more than the limit.
+        let most = 1.5 * limits.angle_of_attack + 0.05;
+        let most = most.min(self.actuators.angle_of_attack(&self.airframe));
+        flown.roll_out(&self.candidate, &self.frame(), most, iteration.thrust_max);
         let judgement = self.judge(&flown, &iteration);
         flown.price = judgement.price;
         self.summary.feasible += usize::from(judgement.lack <= FEASIBLE);
@@ -371,8 +269,13 @@ impl Planner {
             self.best_price = judgement.price;
             self.summary.cost = judgement.effort;
             self.summary.violation = judgement.lack;
-            self.best
-                .fly_out(&flown.knots, &flown.controls, &self.airframe, self.time);
+            self.best.fly_out(
+                &flown.knots,
+                &flown.controls,
+                &self.airframe,
+                &self.wind,
+                self.time,
+            );
         }
         let work = &mut self.iterated;
         if let Some(index) = work.turn(&iteration)

@@ -14,42 +14,23 @@ mod candidate;
 mod cycle;
 mod iterated;
 mod judge;
+mod propose;
+mod setup;
 
-use crate::config::{KNOTS, MAX_PATHS};
+use crate::config::KNOTS;
 use crate::corridor::Corridor;
 use crate::map::{ClearanceField, GridPoint, MemoryMap, OccupancyGrid};
 use crate::plan::{CollocationPoints, Path, Search};
-use crate::qp::{
-    Bounds, CondenseError, Condensed, ModelError, Problem, Solution, Solver, StageModel,
-};
+use crate::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel};
 use crate::sense::LidarScan;
 use crate::settings::{AttitudeLimits, PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{AirState, Airframe, Trim, TrimError, VehicleState, linearize};
-use rand_core::SeedableRng;
+use crate::vehicle::{ActuatorLimits, AirState, Airframe, Trim, VehicleState, Wind};
 use rand_pcg::Pcg64Mcg;
+pub use setup::SetupError;
 
 /// A trajectory whose rows are violated by no more than this [m or rad] is feasible.
 const FEASIBLE: f64 = 1e-6;
-
-/// Why a planner cannot be set up. The vehicle does not start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum SetupError {
-    /// The airframe has no level trim at the cruise thrust.
-    Trim(TrimError),
-    /// The regulator has no stabilising gain.
-    Regulator(crate::control::RiccatiError),
-    /// The plan's model has no steady state.
-    Model(ModelError),
-    /// The program's Hessian is not positive definite.
-    Condense(CondenseError),
-    /// More paths than [`MAX_PATHS`].
-    TooManyPaths,
-    /// A number is not finite, or a penalty not positive; or an iteration lacks penalty or attitude
-    /// rows.
-    Number,
-}
 
 /// What a finished or interrupted cycle came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,12 +96,14 @@ pub struct Planner {
     settings: PlannerSettings,
     trim: Trim,
     airframe: Airframe,
+    actuators: ActuatorLimits,
     shared: Condensed,
     /// None until the planner is set up.
     random: Option<Pcg64Mcg>,
     phase: Phase,
     time: f64,
     state: VehicleState,
+    wind: Wind,
     scan: LidarScan,
     grid: OccupancyGrid,
     search: Search,
@@ -158,11 +141,13 @@ impl Planner {
                 },
             },
             airframe: settings.airframe,
+            actuators: settings.actuators,
             shared: Condensed::new(),
             random: None,
             phase: Phase::Idle,
             time: 0.0,
             state: still,
+            wind: Wind::STILL,
             scan: LidarScan::new(),
             grid: OccupancyGrid::new(),
             search: Search::new(),
@@ -187,77 +172,12 @@ impl Planner {
         }
     }
 
-    /// Sets up the model about level trim.
-    ///
-    /// # Errors
-    /// [`SetupError`]: nothing is planned.
-    pub fn set_up(&mut self, settings: &Settings) -> Result<(), SetupError> {
-        // Whatever fails below: a planner that is half set up plans nothing.
-        self.random = None;
-        self.phase = Phase::Idle;
-        let planner = &settings.planner;
-        check(planner)?;
-        let airframe = &settings.airframe;
-        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
-        let linear = linearize(airframe, &trim.state, trim.control, planner.jacobian);
-        let model = StageModel::new(
-            airframe,
-            &trim,
-            &linear,
-            planner.steady_state,
-            planner.initial,
-        )
-        .map_err(SetupError::Model)?;
-        self.shared
-            .condense(&model, &planner.weights)
-            .map_err(SetupError::Condense)?;
-        self.settings = *planner;
-        if planner.paths == 0 {
-            // The baseline tracks paths as they are.
-            self.settings.iteration = None;
-        }
-        self.trim = trim;
-        self.airframe = *airframe;
-        self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
-        // Rows that these settings do not have must not stay from others.
-        self.problem.bounds.clear();
-        self.iterated.forget();
-        self.best.clear();
-        self.phase = Phase::Idle;
-        Ok(())
-    }
-
-    /// Takes over, for the cycles to come, what needs no other model: paths (at most
-    /// [`MAX_PATHS`]), altitude, padding, penalty and attitude limits.
-    ///
-    /// # Errors
-    /// [`SetupError`]: they stay as they were.
-    pub fn retune(&mut self, settings: &PlannerSettings) -> Result<(), SetupError> {
-        let PlannerSettings {
-            paths,
-            altitude,
-            padding,
-            penalty,
-            attitude,
-            ..
-        } = *settings;
-        let retuned = PlannerSettings {
-            paths,
-            altitude,
-            padding,
-            penalty,
-            attitude,
-            ..self.settings
-        };
-        check(&retuned)?;
-        self.settings = retuned;
-        Ok(())
-    }
-
-    /// Starts a cycle at a time [s] from a state and a checked scan; drops one under way.
-    pub fn begin(&mut self, time: f64, state: &VehicleState, scan: &LidarScan) {
+    /// Starts a cycle at a time [s] from a state in a wind and a checked scan; drops one under way.
+    /// Without an iteration the wind has no part.
+    pub fn begin(&mut self, time: f64, state: &VehicleState, wind: &Wind, scan: &LidarScan) {
         self.time = time;
         self.state = *state;
+        self.wind = *wind;
         self.scan.clone_from(scan);
         self.problem.initial = self.shared.initial_state(&self.trim, &state.air);
         self.problem.target = [0.0, self.settings.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
@@ -406,28 +326,6 @@ impl Planner {
     pub fn trim(&self) -> &Trim {
         &self.trim
     }
-}
-
-/// Whether a planner can go by these settings.
-fn check(planner: &PlannerSettings) -> Result<(), SetupError> {
-    if planner.paths > MAX_PATHS {
-        return Err(SetupError::TooManyPaths);
-    }
-    let priced = planner
-        .penalty
-        .is_none_or(|p| p.linear > 0.0 && p.quadratic > 0.0);
-    let iterable = planner.iteration.is_none_or(|iteration| {
-        let numbers = [iteration.margin, iteration.band, iteration.thrust_max];
-        numbers
-            .iter()
-            .all(|number| *number > 0.0 && number.is_finite())
-            && planner.penalty.is_some()
-            && planner.attitude.is_some()
-    });
-    if !planner.altitude.is_finite() || !priced || !iterable {
-        return Err(SetupError::Number);
-    }
-    Ok(())
 }
 
 impl Default for Planner {

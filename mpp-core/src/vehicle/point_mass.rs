@@ -3,7 +3,7 @@
 //!
 //! The angle of attack is a state, its rate a control: a plan then never asks for a jump of lift.
 
-use super::{AirState, Airframe, Control, GRAVITY, VehicleState};
+use super::{AirState, Airframe, Control, GRAVITY, VehicleState, Wind};
 use nalgebra::{Matrix5, SMatrix};
 
 /// Least airspeed of a roll-out [m/s]: the equations divide by it.
@@ -56,6 +56,24 @@ impl PathState {
             state = state.runge_kutta(airframe, control, h);
         }
         state
+    }
+
+    /// The state after `dt` [s] in moving air, as [`Self::after`].
+    #[must_use]
+    pub fn after_in(
+        &self,
+        wind: &Wind,
+        airframe: &Airframe,
+        control: &PathControl,
+        dt: f64,
+        steps: u8,
+    ) -> Self {
+        let still = self.after(airframe, control, dt, steps);
+        Self {
+            x: still.x + wind.x * dt,
+            z: still.z + wind.z * dt,
+            ..still
+        }
     }
 
     fn runge_kutta(&self, airframe: &Airframe, control: &PathControl, h: f64) -> Self {

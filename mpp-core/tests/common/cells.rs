@@ -13,17 +13,6 @@ pub(crate) fn occupied(map: &MemoryMap, row: i32, col: i32) -> bool {
     inside && map.row(row as usize).0 >> col & 1 == 1
 }
 
-/// Centres of the occupied cells, by row and column.
-pub(crate) fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
-    let mut centres = Vec::new();
-    for row in 0..ROWS as i32 {
-        for col in (0..COLS as i32).filter(|col| occupied(map, row, *col)) {
-            centres.push(centre(map, row, col));
-        }
-    }
-    centres
-}
-
 /// Centre of a cell of the window [m].
 pub(crate) fn centre(map: &MemoryMap, row: i32, col: i32) -> (f64, f64) {
     (

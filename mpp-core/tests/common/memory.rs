@@ -25,7 +25,7 @@ pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
     map.roll(x, 50.0);
     for _ in 0..scans {
         let (z, pitch) = (draw.between(42.0, 58.0), draw.between(-0.3, 0.3));
-        map.insert(&noise(draw), x, z, pitch);
+        map.insert(&noise(draw), 45.0, x, z, pitch);
     }
     map
 }

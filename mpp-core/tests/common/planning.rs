@@ -4,7 +4,7 @@
 use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 
 /// A trajectory within this violation counts as feasible [m, rad].
 pub(crate) const FEASIBLE: f64 = 1e-6;
@@ -37,7 +37,7 @@ pub(crate) fn level(planner: &Planner) -> VehicleState {
 
 /// One whole cycle.
 pub(crate) fn plan(planner: &mut Planner, state: &VehicleState, discs: &[Disc]) -> Verdict {
-    planner.begin(3.0, state, &scan(discs, state));
+    planner.begin(3.0, state, &Wind::STILL, &scan(discs, state));
     while planner.advance() {}
     planner.finish()
 }

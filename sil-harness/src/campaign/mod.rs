@@ -24,7 +24,7 @@ use crate::oracle::REPLAN_HZ;
 use crate::run::{FlyError, fly};
 use crate::scenario::{Preset, Scenario, ScenarioError, ScenarioFile};
 use hil_protocol::Message;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -325,8 +325,8 @@ impl Link for Stopwatch {
         sent
     }
 
-    fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
-        self.link.reveal(truth)
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        self.link.reveal(truth, wind)
     }
 
     fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {

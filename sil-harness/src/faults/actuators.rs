@@ -21,6 +21,20 @@ pub struct ActuatorLimits {
     pub elevator_rate: Option<f64>,
 }
 
+impl ActuatorLimits {
+    /// What the core is told of them.
+    #[must_use]
+    pub fn told(&self) -> hil_protocol::ActuatorLimits {
+        let narrow = |limit: Option<f64>| limit.map(|limit| limit as f32);
+        hil_protocol::ActuatorLimits {
+            thrust_max: narrow(self.thrust_max),
+            thrust_lag: narrow(self.thrust_lag),
+            elevator_range: narrow(self.elevator_range),
+            elevator_rate: narrow(self.elevator_rate),
+        }
+    }
+}
+
 /// The actuators of one flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Actuators {

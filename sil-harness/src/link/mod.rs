@@ -7,7 +7,7 @@ mod tcp;
 
 pub use fifo::FifoLink;
 use hil_protocol::{ConfigureVerdict, DecodeError, EncodeError, Message};
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 pub use pipe::PipeLink;
 pub use server::serve;
 use std::fmt;
@@ -35,8 +35,8 @@ pub trait Link {
     ///
     /// # Errors
     /// [`LinkError::Peer`]: the core at the other end is none.
-    fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
-        let _ = truth;
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        let _ = (truth, wind);
         Err(LinkError::no_oracle())
     }
 }

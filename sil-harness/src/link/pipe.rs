@@ -5,7 +5,7 @@ use crate::oracle::Oracle;
 use crate::scenario::Scenario;
 use flight_node::FlightNode;
 use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 use std::collections::VecDeque;
 
 /// A core of our own; bytes go in and come out as they would over a wire.
@@ -84,10 +84,10 @@ impl Link for PipeLink {
         })
     }
 
-    fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
         match &mut self.oracle {
             Some(oracle) => {
-                oracle.see(truth);
+                oracle.see(truth, wind);
                 Ok(())
             }
             None => Err(LinkError::no_oracle()),

@@ -8,6 +8,7 @@ use flight_node::parameters::Tuning;
 use hil_protocol::LidarScan as WireScan;
 use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
+use mpp_core::estimate::WindEstimator;
 use mpp_core::map::GridPoint;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
@@ -64,6 +65,7 @@ pub struct Map {
 /// A planner to look into.
 pub struct Inspector {
     planner: Box<Planner>,
+    wind: WindEstimator,
 }
 
 impl Inspector {
@@ -74,11 +76,16 @@ impl Inspector {
     pub fn new(tuning: &Tuning) -> Result<Self, SetupError> {
         let mut planner = Box::new(Planner::new());
         planner.set_up(&tuning.settings)?;
-        Ok(Self { planner })
+        let wind = WindEstimator::new(tuning.settings.wind);
+        Ok(Self { planner, wind })
     }
 
     /// The cycle that begins at this moment, if a scan was taken; `tuning` is what is in force.
     pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
+        let truth = &moment.tick.state;
+        let position = (truth.x, truth.z);
+        self.wind
+            .update(moment.tick.t, position, &moment.tick.estimate);
         let scan = moment.scan?;
         let state = VehicleState {
             air: moment.tick.estimate,
@@ -87,7 +94,7 @@ impl Inspector {
         let planner = &mut self.planner;
         // As the core: what it refuses was never in force.
         let _ = planner.retune(&tuning.settings.planner);
-        planner.begin(moment.tick.t, &state, &core_scan(scan));
+        planner.begin(moment.tick.t, &state, &self.wind.wind(), &core_scan(scan));
 
         let mut detail = PlanDetail {
             tick: scan.tick,

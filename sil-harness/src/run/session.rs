@@ -13,7 +13,7 @@ use hil_protocol::{
     StepReport,
 };
 use mpp_core::config::{STAGES, TICK_PERIOD};
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{VehicleState, Wind};
 
 /// How often a core may restart before one answer.
 const RESTARTS: usize = 3;
@@ -62,8 +62,8 @@ pub(super) struct Session<'a> {
 
 impl<'a> Session<'a> {
     /// Shows the truth to a core that is an oracle.
-    pub(super) fn reveal(&mut self, truth: &VehicleState) -> Result<(), LinkError> {
-        self.link.reveal(truth)
+    pub(super) fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        self.link.reveal(truth, wind)
     }
 
     /// Hello both ways, and the configuration.

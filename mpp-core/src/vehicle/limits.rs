@@ -1,0 +1,79 @@
+//! What motor and elevator can do, as far as the core is told.
+
+use super::{Airframe, Control};
+
+/// Limits of the actuators; `None` is no limit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ActuatorLimits {
+    /// Greatest thrust [N]; the least is always 0.
+    pub thrust_max: Option<f64>,
+    /// Time constant of the thrust's first-order lag [s].
+    pub thrust_lag: Option<f64>,
+    /// Greatest distance of the elevator from its trim, in units of the command.
+    pub elevator_range: Option<f64>,
+    /// Greatest rate of the elevator [1/s].
+    pub elevator_rate: Option<f64>,
+}
+
+impl ActuatorLimits {
+    /// No limits but that of a propeller, which does not brake.
+    pub const NONE: Self = Self {
+        thrust_max: None,
+        thrust_lag: None,
+        elevator_range: None,
+        elevator_rate: None,
+    };
+
+    /// Whether every limit is a positive, finite number.
+    #[must_use]
+    pub fn is_valid(&self) -> bool {
+        let limits = [
+            self.thrust_max,
+            self.thrust_lag,
+            self.elevator_range,
+            self.elevator_rate,
+        ];
+        limits
+            .iter()
+            .flatten()
+            .all(|limit| *limit > 0.0 && limit.is_finite())
+    }
+
+    /// The nearest command within the limits, `dt` [s] after `last` was given.
+    #[must_use]
+    pub fn within(&self, command: Control, trim: Control, last: Control, dt: f64) -> Control {
+        let mut within = command;
+        within.thrust = within
+            .thrust
+            .min(self.thrust_max.unwrap_or(f64::INFINITY))
+            .max(0.0);
+        for (middle, most) in [
+            (trim.elevator, self.elevator_range),
+            (last.elevator, self.elevator_rate.map(|rate| rate * dt)),
+        ] {
+            if let Some(most) = most {
+                within.elevator = within.elevator.min(middle + most).max(middle - most);
+            }
+        }
+        within
+    }
+
+    /// What the actuators give in the `dt` [s] after `last`, of a command within the limits.
+    #[must_use]
+    pub fn given(&self, within: Control, last: Control, dt: f64) -> Control {
+        let mut given = within;
+        if let Some(lag) = self.thrust_lag {
+            let share = 1.0 - libm::exp(-dt / lag);
+            given.thrust = last.thrust + share * (within.thrust - last.thrust);
+        }
+        given
+    }
+
+    /// Greatest distance of the angle of attack from its trim [rad] that the elevator balances.
+    #[must_use]
+    pub fn angle_of_attack(&self, airframe: &Airframe) -> f64 {
+        let per_unit = libm::fabs(airframe.moment_elevator / airframe.moment_alpha);
+        self.elevator_range
+            .map_or(f64::INFINITY, |range| range * per_unit)
+    }
+}

@@ -1,0 +1,235 @@
+//! Moving air and limited actuators: what the flight loop makes of them, and what plans do.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod world;
+}
+
+use common::world::scan;
+use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
+use mpp_core::estimate::{Measurement, WindEstimator};
+use mpp_core::flight::FlightLoop;
+use mpp_core::planner::{Planner, SetupError, Verdict};
+use mpp_core::sense::SensorFrame;
+use mpp_core::settings::Settings;
+use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
+use proptest::prelude::*;
+
+const TRIM: Control = Control {
+    thrust: 4.0,
+    elevator: 3.75,
+};
+
+fn some_limits() -> impl Strategy<Value = ActuatorLimits> {
+    let limit = |most: f64| prop::option::of(0.01..most);
+    (limit(30.0), limit(1.0), limit(5.0), limit(50.0)).prop_map(
+        |(thrust_max, thrust_lag, elevator_range, elevator_rate)| ActuatorLimits {
+            thrust_max,
+            thrust_lag,
+            elevator_range,
+            elevator_rate,
+        },
+    )
+}
+
+fn some_control() -> impl Strategy<Value = Control> {
+    (-50.0..50.0, -50.0..50.0).prop_map(|(thrust, elevator)| Control { thrust, elevator })
+}
+
+proptest! {
+    /// Rates hold from wherever the elevator is; the range holds where it was kept before.
+    #[test]
+    fn commands_keep_every_limit_and_those_that_do_stay(
+        limits in some_limits(), commands in prop::collection::vec(some_control(), 1..40),
+    ) {
+        let mut last = TRIM;
+        for command in commands {
+            let within = limits.within(command, TRIM, last, TICK_PERIOD);
+            prop_assert!(within.thrust >= 0.0);
+            prop_assert!(limits.thrust_max.is_none_or(|most| within.thrust <= most));
+            let off = (within.elevator - TRIM.elevator).abs();
+            prop_assert!(limits.elevator_range.is_none_or(|range| off <= range + 1e-12));
+            let moved = (within.elevator - last.elevator).abs();
+            prop_assert!(limits.elevator_rate.is_none_or(|rate| moved <= rate * TICK_PERIOD + 1e-12));
+            prop_assert_eq!(limits.within(within, TRIM, last, TICK_PERIOD), within);
+            let given = limits.given(within, last, TICK_PERIOD);
+            let (low, high) = (last.thrust.min(within.thrust), last.thrust.max(within.thrust));
+            prop_assert!((low..=high).contains(&given.thrust));
+            if limits.thrust_lag.is_none() {
+                prop_assert_eq!(given, within);
+            }
+            last = given;
+        }
+    }
+
+    #[test]
+    fn the_estimated_wind_is_what_carries_the_aircraft(
+        x in -3.0..3.0, z in -3.0..3.0, path in -0.5..0.5, airspeed in 8.0..16.0,
+    ) {
+        let (wind, air) = (Wind { x, z }, AirState { airspeed, flight_path: path, ..AirState::default() });
+        let mut estimator = WindEstimator::new(Some(0.3));
+        let (ahead, up) = wind.carry(&air);
+        for tick in 0..300 {
+            let time = f64::from(tick) * TICK_PERIOD;
+            estimator.update(time, (ahead * time, 50.0 + up * time), &air);
+        }
+        let found = estimator.wind();
+        prop_assert!((found.x - x).abs() < 1e-3 && (found.z - z).abs() < 1e-3, "{found:?}");
+        let (mut still, mut before) = (WindEstimator::new(None), estimator.clone());
+        still.update(0.0, (0.0, 50.0), &air);
+        still.update(1.0, (30.0, 50.0), &air);
+        prop_assert_eq!(still.wind(), Wind::STILL);
+        // A clock that stands still or goes back teaches nothing.
+        before.update(2.99, (1e3, 1e3), &air);
+        prop_assert_eq!(before.wind(), found);
+    }
+}
+
+fn plan_in(settings: &Settings, wind: &Wind, discs: &[(f64, f64, f64)]) -> Box<Planner> {
+    let mut planner = Box::new(Planner::new());
+    planner.set_up(settings).unwrap();
+    let air = planner.trim().state;
+    let state = VehicleState {
+        x: 100.0,
+        z: 50.0,
+        air,
+    };
+    planner.begin(3.0, &state, wind, &scan(discs, &state));
+    while planner.advance() {}
+    assert_ne!(planner.finish(), Verdict::Nothing);
+    planner
+}
+
+/// A plan is a motion over ground: between its knots the aircraft moves as it does through the air,
+/// and with the wind.
+#[test]
+fn a_plan_moves_with_the_wind() {
+    for wind in [Wind { x: 0.0, z: 0.8 }, Wind { x: -2.0, z: -1.0 }] {
+        let planner = plan_in(&Settings::flight(), &wind, &[(130.0, 50.0, 1.0)]);
+        let plan = planner.best();
+        for pair in plan.knots.windows(2) {
+            let [from, to] = pair else { continue };
+            // Simpson's rule over what is sampled in between.
+            let at = |share: f64| {
+                let stage = plan.knots.iter().position(|knot| knot == from).unwrap_or(0);
+                let time = plan.start + STAGE_PERIOD * (stage as f64 + share);
+                plan.sample(time)
+                    .map(|reference| wind.carry(&reference.state.air))
+                    .unwrap()
+            };
+            let (start, middle, end) = (
+                wind.carry(&from.state.air),
+                at(0.5),
+                wind.carry(&to.state.air),
+            );
+            let mean = |a: f64, b: f64, c: f64| STAGE_PERIOD * (a + 4.0 * b + c) / 6.0;
+            let x = to.state.x - from.state.x - mean(start.0, middle.0, end.0);
+            let z = to.state.z - from.state.z - mean(start.1, middle.1, end.1);
+            assert!(x.abs() < 5e-3 && z.abs() < 5e-3, "{x}, {z} m");
+        }
+        // And it comes back to its height all the same.
+        let end = plan.knots[plan.knots.len() - 1].state.z;
+        assert!((end - 50.0).abs() < 3.5, "ends at {end} m");
+    }
+}
+
+fn with_actuators(actuators: ActuatorLimits) -> Settings {
+    Settings {
+        actuators,
+        ..Settings::flight()
+    }
+}
+
+#[test]
+fn plans_ask_for_no_more_than_the_actuators_give() {
+    let free = Settings::flight();
+    let discs = [(115.0, 50.2, 1.0), (128.0, 47.0, 1.5), (140.0, 52.0, 1.0)];
+    let most = |plan: &Trajectory, trim: &Trim| {
+        let elevator = plan
+            .knots
+            .iter()
+            .map(|knot| (knot.feedforward.elevator - trim.control.elevator).abs());
+        let thrust = plan.knots.iter().map(|knot| knot.feedforward.thrust);
+        (elevator.fold(0.0, f64::max), thrust.fold(0.0, f64::max))
+    };
+    let unlimited = plan_in(&free, &Wind::STILL, &discs);
+    let asked = most(unlimited.best(), unlimited.trim());
+    assert!(asked.0 > 2.5, "{asked:?}");
+    let limited = plan_in(
+        &with_actuators(ActuatorLimits {
+            thrust_max: Some(5.0),
+            elevator_range: Some(2.0),
+            ..ActuatorLimits::NONE
+        }),
+        &Wind::STILL,
+        &discs,
+    );
+    let asked = most(limited.best(), limited.trim());
+    // The rate of the angle of attack asks for a little of the elevator too.
+    assert!(asked.0 < 2.3 && asked.1 <= 5.0, "{asked:?}");
+}
+
+#[test]
+fn what_the_elevator_balances_is_the_trim_of_another_angle_of_attack() {
+    let limits = ActuatorLimits {
+        elevator_range: Some(2.0),
+        ..ActuatorLimits::NONE
+    };
+    for airframe in [Airframe::PAPER, Airframe::REFERENCE] {
+        let reach = limits.angle_of_attack(&airframe);
+        let moved = airframe.elevator_for(0.15) - airframe.elevator_for(0.15 + reach);
+        assert!((moved.abs() - 2.0).abs() < 1e-9, "{moved}");
+    }
+    assert!(
+        ActuatorLimits::NONE
+            .angle_of_attack(&Airframe::PAPER)
+            .is_infinite()
+    );
+}
+
+#[test]
+fn the_loop_clamps_counts_and_predicts_by_what_is_given() {
+    let limits = ActuatorLimits {
+        thrust_max: Some(6.0),
+        thrust_lag: Some(0.2),
+        elevator_range: Some(1.0),
+        elevator_rate: Some(20.0),
+    };
+    let mut flight = FlightLoop::new(&with_actuators(limits)).unwrap();
+    let level = flight.state();
+    // Nose far up: the regulator wants it down at once.
+    let frame = SensorFrame {
+        measurement: Measurement {
+            airspeed: level.air.airspeed,
+            pitch: level.air.pitch + 0.02,
+        },
+        x: 0.0,
+        z: 50.0,
+    };
+    let trim = Settings::flight()
+        .cruise
+        .trim(&Settings::flight().airframe)
+        .unwrap();
+    let mut last = trim.control.elevator;
+    for tick in 0..60 {
+        let out = flight.step(f64::from(tick) * TICK_PERIOD, &frame);
+        assert!((out.control.elevator - last).abs() <= 0.2 + 1e-9);
+        assert!((out.control.elevator - trim.control.elevator).abs() <= 1.0 + 1e-9);
+        last = out.control.elevator;
+    }
+    assert!(flight.health().elevator_limited > 0);
+    flight.step(f64::NAN, &frame);
+    assert!(flight.step(1.0, &frame).control.thrust.is_finite());
+}
+
+#[test]
+fn limits_that_are_none_are_refused() {
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let settings = with_actuators(ActuatorLimits {
+            elevator_rate: Some(bad),
+            ..ActuatorLimits::NONE
+        });
+        assert_eq!(Planner::new().set_up(&settings), Err(SetupError::Number));
+    }
+}

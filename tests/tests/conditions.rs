@@ -1,0 +1,89 @@
+//! Flights of preset `flight` in moving air, with limited actuators and in an aircraft that it does not
+//! quite know, judged by their physical outcome.
+
+use sil_harness::faults::{ActuatorLimits, Faults, GustConfig, ModelError, Signs};
+use sil_harness::link::PipeLink;
+use sil_harness::log::FlightLog;
+use sil_harness::run::fly;
+use sil_harness::scenario::{Preset, Scenario};
+
+/// Six flights past 40 obstacles, replanned at 4 Hz, all of which survive inside the band.
+fn flown(faults: Faults) -> Vec<FlightLog> {
+    let flights = (0..6).map(|seed| {
+        let scenario = Scenario {
+            obstacles: 40,
+            replan_ticks: 25,
+            faults,
+            ..Scenario::new(Preset::Flight, seed)
+        };
+        fly(&scenario, &mut PipeLink::new(), |_| {})
+    });
+    let flights: Vec<FlightLog> = flights.collect::<Result<_, _>>().unwrap_or_default();
+    let strict = flights.iter().filter(|log| log.summary.strict).count();
+    assert_eq!(strict, 6, "of 6");
+    flights
+}
+
+#[test]
+fn the_core_asks_for_no_more_than_its_actuators_give() {
+    let actuators = ActuatorLimits {
+        thrust_max: Some(15.0),
+        elevator_range: Some(2.0),
+        elevator_rate: Some(20.0),
+        ..ActuatorLimits::default()
+    };
+    let faults = Faults {
+        actuators,
+        ..Faults::default()
+    };
+    for log in flown(faults) {
+        let asked = log.ticks.elevator.iter().zip(&log.ticks.thrust);
+        let given = log
+            .ticks
+            .applied_elevator
+            .iter()
+            .zip(&log.ticks.applied_thrust);
+        for ((elevator, thrust), (given_elevator, given_thrust)) in asked.zip(given) {
+            // Limits go over the link in single precision.
+            assert!((elevator - given_elevator).abs() < 1e-6);
+            assert!((thrust - given_thrust).abs() < 1e-6);
+        }
+    }
+}
+
+#[test]
+fn gusts_of_a_metre_a_second_are_flown_through() {
+    let faults = Faults {
+        gusts: GustConfig { intensity: 1.0 },
+        ..Faults::default()
+    };
+    for log in flown(faults) {
+        let strongest = log
+            .ticks
+            .wind_z
+            .iter()
+            .fold(0.0, |most: f64, wind| most.max(wind.abs()));
+        assert!(strongest > 0.5, "{strongest} m/s");
+    }
+}
+
+/// An aircraft that is a tenth heavier or lighter, and stiffer or not, is still estimated: no reading
+/// of a healthy sensor is taken for a fault.
+#[test]
+fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
+    let faults = Faults {
+        model_error: ModelError {
+            mass: 0.1,
+            lift_slope: 0.1,
+            pitch_stiffness: 0.1,
+            signs: Signs::Drawn,
+        },
+        ..Faults::default()
+    };
+    for log in flown(faults) {
+        assert!(log.rejections.is_empty(), "{:?}", log.rejections);
+        let off = log.ticks.est_pitch.iter().zip(&log.ticks.pitch);
+        let worst = off.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
+        assert!(worst < 0.05, "{worst} rad");
+    }
+}
