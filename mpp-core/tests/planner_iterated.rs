@@ -24,10 +24,10 @@ use mpp_core::vehicle::{PathControl, PathState, VehicleState, Wind};
 const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + 2;
 /// Each candidate once, then two further rounds of the best two.
 const PROGRAMS: usize = CANDIDATES + 2 * 2;
-/// One map, the stations, one tree, and each program's set-up, its solution at 8 steps a slice and
-/// the look for the next.
+/// One map, the stations, one tree, and each program's faces, its set-up, its solution at 8 steps
+/// a slice and the look for the next.
 const MOST_SLICES: usize =
-    1 + STATIONS + TREE_SAMPLES / 10 + 1 + (CANDIDATES + 2 * 2) * (MAX_ITERATIONS / 8 + 3);
+    1 + STATIONS + TREE_SAMPLES / 10 + 1 + PROGRAMS * (MAX_ITERATIONS / 8 + 4);
 
 /// 60 discs at random in 50 m x 24 m.
 fn dense(seed: u64) -> Vec<Disc> {

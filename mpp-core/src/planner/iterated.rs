@@ -2,8 +2,10 @@
 //! linearisation about what the aircraft would really fly.
 //!
 //! ```text
-//! begin --> Remember --> Lattice --> Tree --> Linearise <--> Improve --> Done
-//!           map          paths       paths    a candidate    its program, flown out
+//!                                            +--------- next candidate ---------+
+//!                                            v                                  |
+//! begin --> Remember --> Lattice --> Tree --> Corridor --> Linearise --> Improve --> Done
+//!           map          paths       paths    faces        program       solved, flown out
 //! ```
 //!
 //! Every candidate is improved once; the best few then get further rounds. The nonlinear roll-out of
@@ -178,14 +180,13 @@ impl Planner {
         });
     }
 
-    /// Sets up the program of the next candidate to improve, about the candidate itself.
+    /// Sets the faces between the next candidate to improve and the obstacles about it.
     #[inline(never)]
-    pub(super) fn linearise(&mut self) {
-        let Some((iteration, limits)) = self.limits() else {
+    pub(super) fn separate(&mut self) {
+        let Some((iteration, _)) = self.limits() else {
             self.phase = Phase::Done;
             return;
         };
-        let frame = self.frame();
         let work = &mut self.iterated;
         if work.improvements == work.candidates.len() {
             work.order = order(&work.candidates);
@@ -203,6 +204,23 @@ impl Planner {
         let cruise = self.trim.state.airspeed;
         self.corridor
             .separate(&work.field, &candidate.knots, cruise, &keep);
+        self.phase = Phase::Linearise;
+    }
+
+    /// Sets up that candidate's program, about the candidate itself.
+    #[inline(never)]
+    pub(super) fn linearise(&mut self) {
+        let Some((iteration, limits)) = self.limits() else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let frame = self.frame();
+        let work = &mut self.iterated;
+        let turn = work.turn(&iteration);
+        let Some(candidate) = turn.and_then(|index| work.candidates.get(index)) else {
+            self.phase = Phase::Done;
+            return;
+        };
         let condensed = self
             .shared
             .condense_varying(&self.settings.weights, |dynamics| {
@@ -211,6 +229,7 @@ impl Planner {
         if condensed.is_err() {
             // A candidate without a model is passed over.
             work.improvements += 1;
+            self.phase = Phase::Corridor;
             return;
         }
         self.problem.bounds.set_corridor(&self.corridor);
@@ -241,7 +260,7 @@ impl Planner {
             self.fly_out();
         }
         self.iterated.improvements += 1;
-        self.phase = Phase::Linearise;
+        self.phase = Phase::Corridor;
     }
 
     fn frame(&self) -> Frame {

@@ -82,7 +82,7 @@ pub enum Phase {
     Linearise,
     /// Iterated: solves it, and flies it out.
     Improve,
-    /// Traces the corridor of a path.
+    /// Traces the corridor of a path; iterated: sets the faces about a candidate.
     Corridor,
     /// Solves the program of a corridor.
     Program,
@@ -234,6 +234,7 @@ impl Planner {
             Phase::Tree => self.grow_tree(),
             Phase::Linearise => self.linearise(),
             Phase::Improve => self.improve(),
+            Phase::Corridor if self.settings.iteration.is_some() => self.separate(),
             Phase::Corridor => self.trace_corridor(),
             Phase::Program => self.refine(),
         }

@@ -123,6 +123,6 @@ impl Planner {
                 self.propose(candidate);
             }
         }
-        self.phase = Phase::Linearise;
+        self.phase = Phase::Corridor;
     }
 }

@@ -54,9 +54,9 @@ pub struct PresetReport {
     pub map: Times,
     /// Path search.
     pub candidates: Times,
-    /// From paths to rows; with rounds of linearisation also their models, condensed.
+    /// From paths to half-planes.
     pub corridor: Times,
-    /// Programs, solved and flown out.
+    /// Programs: with rounds of linearisation condensed, then solved and flown out.
     #[serde(rename = "QP")]
     pub qp: Times,
     /// Beginning and end.
@@ -185,8 +185,8 @@ fn part(phase: Phase) -> usize {
     match phase {
         Phase::Map | Phase::Remember => 0,
         Phase::Lattice | Phase::Tree => 1,
-        Phase::Corridor | Phase::Linearise => 2,
-        Phase::Program | Phase::Improve => 3,
+        Phase::Corridor => 2,
+        Phase::Linearise | Phase::Program | Phase::Improve => 3,
         Phase::Idle | Phase::Done => 4,
     }
 }
