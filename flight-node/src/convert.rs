@@ -87,6 +87,7 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
             max: MAX_PATHS as u16,
         },
         SetupError::Number => ConfigureVerdict::NonFinite,
+        SetupError::Actuators => ConfigureVerdict::Actuators,
         _ => ConfigureVerdict::NotTrimmable,
     }
 }

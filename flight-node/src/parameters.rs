@@ -278,7 +278,7 @@ parameters! { 40:
     "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
         |tuning| iteration(tuning, |iteration| iteration.thrust_max),
         |tuning, value| change(tuning, |iteration| iteration.thrust_max = value);
-    "EKF_WIND_S", "s", [0.05, 60.0], None, BEFORE,
+    "WIND_TC_S", "s", [0.05, 60.0], None, BEFORE,
         |tuning| tuning.settings.wind,
         |tuning, value| tuning.settings.wind = Some(value);
     "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,

@@ -4,12 +4,14 @@ use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
 use crate::estimate::{Ekf, Innovation, Verdict as MeasurementVerdict, WindEstimator};
 use crate::health::Health;
-use crate::planner::{SetupError, Verdict};
+use crate::planner::{SetupError, Verdict, check_vehicle};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, Wind, linearize};
 
+/// Least motion ahead over ground by which a course is reckoned [m/s].
+const LEAST_ADVANCE: f64 = 1.0;
 /// Most by which a reference is turned back to its path [rad].
 const MOST_TURN: f64 = 0.15;
 
@@ -61,8 +63,10 @@ pub struct FlightLoop {
     cross_track: f64,
     trajectory: Option<Trajectory>,
     position: (f64, f64),
-    /// When the last step was, and what the actuators have given since.
+    /// When the last step was, and what it commanded.
     last: Option<(f64, Control)>,
+    /// What the actuators gave before the last command.
+    given: Control,
     health: Health,
 }
 
@@ -74,6 +78,7 @@ impl FlightLoop {
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
         let airframe = &settings.airframe;
         let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        check_vehicle(settings, &trim)?;
         let design = Control {
             thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
             ..trim.control
@@ -90,6 +95,7 @@ impl FlightLoop {
             trajectory: None,
             position: (0.0, settings.planner.altitude),
             last: None,
+            given: trim.control,
             health: Health::default(),
         })
     }
@@ -97,10 +103,13 @@ impl FlightLoop {
     /// One step at a time [s]: predicts under the last control over the time since, corrects by
     /// the measurement, and tracks the reference.
     pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
-        if let Some((before, control)) = self.last
-            && self.ekf.predict(control, time - before).is_err()
-        {
-            Health::count(&mut self.health.predictions_diverged);
+        if let Some((before, control)) = self.last {
+            let period = time - before;
+            // A time that is none, or goes back, moves no actuator.
+            self.given = self.limits.given(control, self.given, period.max(0.0));
+            if self.ekf.predict(self.given, period).is_err() {
+                Health::count(&mut self.health.predictions_diverged);
+            }
         }
         let innovation = self.ekf.update(&frame.measurement);
         self.count_verdict(innovation.airspeed);
@@ -108,7 +117,10 @@ impl FlightLoop {
         let position_used = frame.x.is_finite() && frame.z.is_finite();
         if position_used {
             self.position = (frame.x, frame.z);
-            self.wind.update(time, self.position, self.ekf.estimate());
+            let air = self.ekf.estimate();
+            if !self.wind.update(time, self.position, air) {
+                Health::count(&mut self.health.winds_refused);
+            }
         } else {
             Health::count(&mut self.health.positions_not_finite);
         }
@@ -126,7 +138,8 @@ impl FlightLoop {
             &self.turned_back(&reference.state),
             reference.feedforward,
         );
-        let control = self.limit(time, wanted);
+        let control = self.limit(wanted);
+        self.last = Some((time, control));
         StepOutput {
             control,
             reference,
@@ -203,25 +216,27 @@ impl FlightLoop {
     }
 
     /// The command within the actuators' limits.
-    fn limit(&mut self, time: f64, wanted: Control) -> Control {
-        let (before, last) = self.last.unwrap_or((time - TICK_PERIOD, self.trim.control));
-        // A time that is none, or goes back, moves no actuator.
-        let period = (time - before).max(0.0);
-        let control = self.limits.within(wanted, self.trim.control, last, period);
+    fn limit(&mut self, wanted: Control) -> Control {
+        if !(wanted.thrust.is_finite() && wanted.elevator.is_finite()) {
+            Health::count(&mut self.health.commands_not_finite);
+            return self.trim.control;
+        }
+        let trim = self.trim.control;
+        let control = self.limits.within(wanted, trim, self.given, TICK_PERIOD);
         if libm::fabs(control.thrust - wanted.thrust) > 0.0 {
             Health::count(&mut self.health.thrust_limited);
         }
         if libm::fabs(control.elevator - wanted.elevator) > 0.0 {
             Health::count(&mut self.health.elevator_limited);
         }
-        self.last = Some((time, self.limits.given(control, last, period)));
         control
     }
 
     /// The reference's motion, turned back to its path.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
         let (x, z) = self.position;
-        let (ahead, up) = self.wind.wind().carry(&reference.air);
+        let (ahead, up) = self.wind.wind().ground_velocity(&reference.air);
+        let ahead = ahead.max(LEAST_ADVANCE);
         let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
         let turn = (self.cross_track * off).clamp(-MOST_TURN, MOST_TURN);
         AirState {

@@ -12,6 +12,10 @@ pub struct Health {
     pub predictions_diverged: u32,
     /// Positions that were not finite; the last one was kept.
     pub positions_not_finite: u32,
+    /// Positions that stood for more wind than is believed; the wind's estimate was kept.
+    pub winds_refused: u32,
+    /// Commands that were not finite; trim was commanded.
+    pub commands_not_finite: u32,
     /// Thrust commands beyond what the motor gives, taken back to it.
     pub thrust_limited: u32,
     /// Elevator commands beyond its range or its rate, taken back to them.

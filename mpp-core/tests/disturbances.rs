@@ -7,7 +7,7 @@ mod common {
 
 use common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
-use mpp_core::estimate::{Measurement, WindEstimator};
+use mpp_core::estimate::{Ekf, Measurement, WindEstimator};
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError, Verdict};
 use mpp_core::sense::SensorFrame;
@@ -69,7 +69,7 @@ proptest! {
     ) {
         let (wind, air) = (Wind { x, z }, AirState { airspeed, flight_path: path, ..AirState::default() });
         let mut estimator = WindEstimator::new(Some(0.3));
-        let (ahead, up) = wind.carry(&air);
+        let (ahead, up) = wind.ground_velocity(&air);
         for tick in 0..300 {
             let time = f64::from(tick) * TICK_PERIOD;
             estimator.update(time, (ahead * time, 50.0 + up * time), &air);
@@ -82,8 +82,61 @@ proptest! {
         prop_assert_eq!(still.wind(), Wind::STILL);
         // A clock that stands still or goes back teaches nothing.
         before.update(2.99, (1e3, 1e3), &air);
+        before.update(2.5, (1e3, 1e3), &air);
         prop_assert_eq!(before.wind(), found);
+        before.update(3.0, (ahead * 3.0, 50.0 + up * 3.0), &air);
+        let after = before.wind();
+        prop_assert!((after.x - x).abs() < 1e-3 && (after.z - z).abs() < 1e-3, "{after:?}");
     }
+}
+
+/// A position that stands still, leaps or is wild is no wind, and does not reach the elevator.
+#[test]
+fn a_wrong_position_is_refused_and_counted() {
+    let faults: [fn(u32, f64) -> f64; 3] = [
+        |_, _| 120.0,
+        |tick, x| x - 4.5 * f64::from(u32::from(tick >= 100)),
+        |tick, x| if tick == 100 { 1e160 } else { x },
+    ];
+    for fault in faults {
+        let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+        let level = flight.state();
+        let trim = Settings::flight()
+            .cruise
+            .trim(&Settings::flight().airframe)
+            .unwrap();
+        for tick in 0..400 {
+            let time = f64::from(tick) * TICK_PERIOD;
+            let frame = SensorFrame {
+                measurement: Measurement {
+                    airspeed: level.air.airspeed,
+                    pitch: level.air.pitch,
+                },
+                x: fault(tick, level.air.airspeed * time),
+                z: 50.0,
+            };
+            let out = flight.step(time, &frame);
+            assert!((out.control.elevator - trim.control.elevator).abs() < 0.1);
+            let wind = flight.wind();
+            assert!(wind.x.abs() < 0.5 && wind.z.abs() < 0.5, "{wind:?}");
+        }
+        assert!(flight.health().winds_refused > 0);
+        assert_eq!(flight.health().commands_not_finite, 0);
+    }
+}
+
+/// Nothing is compared across a gap: the motion through the air has changed meanwhile.
+#[test]
+fn a_gap_in_the_positions_is_no_wind() {
+    let mut estimator = WindEstimator::new(Some(0.3));
+    let air = |path: f64| AirState {
+        airspeed: 12.0,
+        flight_path: path,
+        ..AirState::default()
+    };
+    estimator.update(0.0, (0.0, 50.0), &air(-0.3));
+    estimator.update(1.0, (11.8, 50.0), &air(0.3));
+    assert_eq!(estimator.wind(), Wind::STILL);
 }
 
 fn plan_in(settings: &Settings, wind: &Wind, discs: &[(f64, f64, f64)]) -> Box<Planner> {
@@ -115,13 +168,13 @@ fn a_plan_moves_with_the_wind() {
                 let stage = plan.knots.iter().position(|knot| knot == from).unwrap_or(0);
                 let time = plan.start + STAGE_PERIOD * (stage as f64 + share);
                 plan.sample(time)
-                    .map(|reference| wind.carry(&reference.state.air))
+                    .map(|reference| wind.ground_velocity(&reference.state.air))
                     .unwrap()
             };
             let (start, middle, end) = (
-                wind.carry(&from.state.air),
+                wind.ground_velocity(&from.state.air),
                 at(0.5),
-                wind.carry(&to.state.air),
+                wind.ground_velocity(&to.state.air),
             );
             let mean = |a: f64, b: f64, c: f64| STAGE_PERIOD * (a + 4.0 * b + c) / 6.0;
             let x = to.state.x - from.state.x - mean(start.0, middle.0, end.0);
@@ -167,7 +220,7 @@ fn plans_ask_for_no_more_than_the_actuators_give() {
     );
     let asked = most(limited.best(), limited.trim());
     // The rate of the angle of attack asks for a little of the elevator too.
-    assert!(asked.0 < 2.3 && asked.1 <= 5.0, "{asked:?}");
+    assert!(asked.0 < 2.0 + 1e-9 && asked.1 <= 5.0, "{asked:?}");
 }
 
 #[test]
@@ -219,17 +272,71 @@ fn the_loop_clamps_counts_and_predicts_by_what_is_given() {
         last = out.control.elevator;
     }
     assert!(flight.health().elevator_limited > 0);
+    assert_eq!(flight.health().thrust_limited, 0);
     flight.step(f64::NAN, &frame);
     assert!(flight.step(1.0, &frame).control.thrust.is_finite());
 }
 
+/// A thrust that lags is predicted as it lags: by hand, the filter that knows the same is the same.
+#[test]
+fn the_filter_predicts_by_the_lagging_thrust() {
+    let limits = ActuatorLimits {
+        thrust_lag: Some(0.5),
+        ..ActuatorLimits::NONE
+    };
+    let settings = with_actuators(limits);
+    let trim = settings.cruise.trim(&settings.airframe).unwrap();
+    let mut flight = FlightLoop::new(&settings).unwrap();
+    let mut by_hand = Ekf::new(settings.airframe, settings.estimator, trim.state);
+    let mut plan = Trajectory::new();
+    for knot in &mut plan.knots {
+        knot.state.air = trim.state;
+        knot.feedforward = Control {
+            thrust: 9.0,
+            ..trim.control
+        };
+    }
+    flight.adopt(0.0, Verdict::Feasible, &plan);
+    let measurement = Measurement {
+        airspeed: trim.state.airspeed,
+        pitch: trim.state.pitch,
+    };
+    let (mut given, mut elevator) = (trim.control.thrust, trim.control.elevator);
+    for tick in 0..100 {
+        let time = f64::from(tick) * TICK_PERIOD;
+        if tick > 0 {
+            given += (9.0 - given) * (1.0 - libm::exp(-TICK_PERIOD / 0.5));
+            let control = Control {
+                thrust: given,
+                elevator,
+            };
+            by_hand.predict(control, TICK_PERIOD).unwrap();
+        }
+        by_hand.update(&measurement);
+        let frame = SensorFrame {
+            measurement,
+            x: 12.0 * time,
+            z: 50.0,
+        };
+        elevator = flight.step(time, &frame).control.elevator;
+        let off = flight.estimate().to_vector() - by_hand.estimate().to_vector();
+        assert!(off.amax() < 1e-9, "{off} at {tick}");
+    }
+    assert!(given > 8.0);
+}
+
 #[test]
 fn limits_that_are_none_are_refused() {
+    let weak = with_actuators(ActuatorLimits {
+        thrust_max: Some(0.5),
+        ..ActuatorLimits::NONE
+    });
+    assert_eq!(FlightLoop::new(&weak).err(), Some(SetupError::Actuators));
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let settings = with_actuators(ActuatorLimits {
             elevator_rate: Some(bad),
             ..ActuatorLimits::NONE
         });
-        assert_eq!(Planner::new().set_up(&settings), Err(SetupError::Number));
+        assert_eq!(Planner::new().set_up(&settings), Err(SetupError::Actuators));
     }
 }

@@ -43,7 +43,7 @@ fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn a_hit_is_marked_where_the_beam_ended_with_a_shadow_of_a_metre() {
+fn a_hit_is_marked_where_the_beam_ended_with_a_shadow() {
     for (pitch, range) in [(0.0, 20.1), (0.4, 15.3), (-0.5, 25.7), (0.1, 0.4)] {
         let mut map = started();
         map.insert(&beam(range), 45.0, 100.2, 50.2, pitch);
@@ -58,7 +58,7 @@ fn a_hit_is_marked_where_the_beam_ended_with_a_shadow_of_a_metre() {
         for (x, z) in centres(&map) {
             let off = (x - 100.2) * ahead + (z - 50.2) * up - range;
             let beside = (z - 50.2) * ahead - (x - 100.2) * up;
-            assert!((-CELL..1.0 + CELL).contains(&off) && beside.abs() < CELL);
+            assert!((-CELL..0.5 + CELL).contains(&off) && beside.abs() < CELL);
         }
         // Known free up to a metre and 3 % before it, unknown elsewhere.
         let (x, z) = at(0.5 * (range - 1.6));
@@ -121,17 +121,32 @@ fn one_hit_on_what_was_free_long_is_believed() {
 }
 
 #[test]
-fn unanswered_beams_are_sight_of_forty_metres() {
-    let mut map = started();
-    map.insert(&beam(0.0), 45.0, 100.2, 50.2, 0.0);
-    let known = field(&map);
-    assert!(centres(&map).is_empty());
-    for step in 1..80 {
-        let along = 0.5 * f64::from(step);
-        assert!(!known.is_unknown(100.2 + along, 50.2), "{along}");
+fn unanswered_beams_speak_for_eight_ninths_of_the_sight() {
+    for (sight, seen) in [(45.0, 40.0), (18.0, 16.0)] {
+        let mut map = started();
+        map.insert(&beam(0.0), sight, 100.2, 50.2, 0.0);
+        let known = field(&map);
+        assert!(centres(&map).is_empty());
+        for step in 1..2 * seen as i32 {
+            let along = 0.5 * f64::from(step);
+            assert!(!known.is_unknown(100.2 + along, 50.2), "{along}");
+        }
+        assert!(known.is_unknown(100.2 + seen + 1.0, 50.2));
+        assert!(known.is_unknown(100.2 + 10.0, 51.2), "beside the beam");
     }
-    assert!(known.is_unknown(100.2 + 41.0, 50.2));
-    assert!(known.is_unknown(100.2 + 20.0, 51.2), "beside the beam");
+}
+
+/// Two beams that pass take back what a hit said; the cell is then free, not unknown again.
+#[test]
+fn what_was_seen_is_never_unknown_again() {
+    let mut map = started();
+    let at = (120.3, 50.2);
+    map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+    for _ in 0..4 {
+        map.insert(&beam(35.0), 45.0, 100.2, 50.2, 0.0);
+        assert!(!field(&map).is_unknown(at.0, at.1));
+    }
+    assert!(!field(&map).is_occupied(at.0, at.1));
 }
 
 #[test]

@@ -156,7 +156,8 @@ pub enum ConfigureVerdict {
     RangeMax,
     /// A session is running; it goes on as it was.
     AlreadyConfigured,
-    /// A limit of an actuator is not a positive, finite number.
+    /// A limit of an actuator is not a positive, finite number, or the thrust does not carry level
+    /// flight.
     Actuators,
 }
 

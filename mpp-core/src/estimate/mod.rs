@@ -51,7 +51,7 @@ impl EkfTuning {
 
     /// As the sensors and the equations of motion are: little noise in the process, so that the flight
     /// path angle, which no sensor sees, follows from the equations. Only the moments are uncertain: a
-    /// tenth of the pitch stiffness turns the aircraft by up to 0.3 rad/s within a tick.
+    /// tenth of the pitch stiffness turns the reference airframe by up to 0.3 rad/s within a tick.
     pub const SENSORS: Self = Self {
         process_noise: [1e-4, 1e-6, 1e-1, 1e-6],
         ..Self::EXACT

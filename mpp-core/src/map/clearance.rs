@@ -60,7 +60,8 @@ impl ClearanceField {
     }
 
     /// Of an obstacle that another one hides in part, beams touch what sticks out. What is unknown
-    /// within a metre of an occupied cell counts as occupied too.
+    /// within about a metre of an occupied cell counts as occupied too; before a face, where a range may
+    /// be wrong, as well.
     fn complete(&mut self) {
         for diagonally in [false, true] {
             let mut below = 0;

@@ -119,7 +119,7 @@ impl Planner {
         work.candidates.clear();
         work.improvements = 0;
         self.take_up_previous();
-        let (run, rise) = self.wind.carry(&self.state.air);
+        let (run, rise) = self.wind.ground_velocity(&self.state.air);
         self.iterated.lattice.start(&LatticeTask {
             x: self.state.x,
             z: self.state.z,

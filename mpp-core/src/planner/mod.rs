@@ -28,6 +28,7 @@ use crate::trajectory::Trajectory;
 use crate::vehicle::{ActuatorLimits, AirState, Airframe, Trim, VehicleState, Wind};
 use rand_pcg::Pcg64Mcg;
 pub use setup::SetupError;
+pub(crate) use setup::check_vehicle;
 
 /// A trajectory whose rows are violated by no more than this [m or rad] is feasible.
 const FEASIBLE: f64 = 1e-6;

@@ -4,7 +4,7 @@ use super::{Phase, Planner};
 use crate::config::MAX_PATHS;
 use crate::qp::{CondenseError, ModelError, StageModel};
 use crate::settings::{PlannerSettings, Settings};
-use crate::vehicle::{TrimError, linearize};
+use crate::vehicle::{Trim, TrimError, linearize};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -22,9 +22,11 @@ pub enum SetupError {
     Condense(CondenseError),
     /// More paths than [`MAX_PATHS`].
     TooManyPaths,
-    /// A number is not finite, or a penalty or an actuator's limit not positive; or an iteration lacks penalty or attitude
-    /// rows.
+    /// A number is not finite, or a penalty, the lidar's sight or the wind's time constant not
+    /// positive; or an iteration lacks penalty or attitude rows.
     Number,
+    /// An actuator's limit is not a positive, finite number, or the thrust does not carry level flight.
+    Actuators,
 }
 
 impl Planner {
@@ -38,11 +40,9 @@ impl Planner {
         self.phase = Phase::Idle;
         let planner = &settings.planner;
         check(planner)?;
-        if !settings.actuators.is_valid() {
-            return Err(SetupError::Number);
-        }
         let airframe = &settings.airframe;
         let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        check_vehicle(settings, &trim)?;
         let linear = linearize(airframe, &trim.state, trim.control, planner.jacobian);
         let model = StageModel::new(
             airframe,
@@ -100,6 +100,24 @@ impl Planner {
     }
 }
 
+/// Whether step and planner can go by what is said of actuators and wind.
+pub(crate) fn check_vehicle(settings: &Settings, trim: &Trim) -> Result<(), SetupError> {
+    let limits = &settings.actuators;
+    let carries = limits
+        .thrust_max
+        .is_none_or(|most| most >= trim.control.thrust);
+    if !limits.is_valid() || !carries {
+        return Err(SetupError::Actuators);
+    }
+    if settings
+        .wind
+        .is_some_and(|constant| !(constant > 0.0 && constant.is_finite()))
+    {
+        return Err(SetupError::Number);
+    }
+    Ok(())
+}
+
 /// Whether a planner can go by these settings.
 fn check(planner: &PlannerSettings) -> Result<(), SetupError> {
     if planner.paths > MAX_PATHS {
@@ -116,7 +134,8 @@ fn check(planner: &PlannerSettings) -> Result<(), SetupError> {
             && planner.penalty.is_some()
             && planner.attitude.is_some()
     });
-    if !planner.altitude.is_finite() || !priced || !iterable {
+    let sees = planner.sight > 0.0 && planner.sight.is_finite();
+    if !planner.altitude.is_finite() || !sees || !priced || !iterable {
         return Err(SetupError::Number);
     }
     Ok(())

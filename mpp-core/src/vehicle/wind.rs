@@ -17,7 +17,7 @@ impl Wind {
 
     /// Velocity over ground of an aircraft that moves like this through the air, `(x, z)` [m/s].
     #[must_use]
-    pub fn carry(&self, air: &AirState) -> (f64, f64) {
+    pub fn ground_velocity(&self, air: &AirState) -> (f64, f64) {
         let (sin, cos) = libm::sincos(air.flight_path);
         (air.airspeed * cos + self.x, air.airspeed * sin + self.z)
     }
