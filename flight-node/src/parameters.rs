@@ -62,10 +62,15 @@ impl Tuning {
             return Err(ParameterVerdict::InFlight);
         }
         let tracked = self.settings.planner.paths == 0;
+        let cruise = self.settings.cruise;
         set(parameter.name, &mut self, value);
         // Paths that are tracked as they are, and others, are planned by different cycles.
         if in_flight && tracked != (self.settings.planner.paths == 0) {
             return Err(ParameterVerdict::InFlight);
+        }
+        // The elevator's range is about the trim that it was told with.
+        if self.settings.actuators.elevator_range.is_some() && self.settings.cruise != cruise {
+            return Err(ParameterVerdict::SetUp(ConfigureVerdict::Actuators));
         }
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
         Ok(self)

@@ -2,8 +2,8 @@
 
 use crate::radio::{CONFIG, Radio, command, scenario, write};
 use flight_node::parameters::{PARAMETERS, Tuning};
-use hil_protocol::ParameterVerdict;
 use hil_protocol::mavlink::messages::*;
+use hil_protocol::{ConfigureVerdict, ParameterVerdict};
 use mpp_core::settings::Settings;
 use sil_harness::ground::param_file::values;
 use sil_harness::ground::vehicle::VehicleConfig;
@@ -98,6 +98,18 @@ fn refusals_name_their_reason() {
         ParameterVerdict::SetUp(_)
     ));
     assert_eq!(tuning.with(200, 1.0, false), Err(ParameterVerdict::Unknown));
+    // Actuators are the business of preset `flight`; the elevator's range is about one trim.
+    assert_eq!(
+        verdict("ACT_ELEV_RANGE", 2.0, false),
+        ParameterVerdict::Unknown
+    );
+    let flight = self::tuning(Preset::Flight);
+    let limited = flight.with(number("ACT_ELEV_RANGE"), 2.0, false).unwrap();
+    assert!(flight.with(number("MPP_CRUISE_MS"), 14.0, false).is_ok());
+    assert_eq!(
+        limited.with(number("MPP_CRUISE_MS"), 14.0, false),
+        Err(ParameterVerdict::SetUp(ConfigureVerdict::Actuators))
+    );
 }
 
 #[test]
