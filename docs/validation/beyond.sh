@@ -23,7 +23,7 @@ fly() {
 fly sparse 1000 --obstacles 20,40 --replan-hz 1
 fly dense 500 --obstacles 80,120,160 --replan-hz 4
 for condition in actuators-thrust actuators-elevator gusts model-error lidar-faults all-together; do
-  fly "$condition" 500 --scenario "docs/scenarios/$condition.toml" --obstacles 40 --replan-hz 4
+  fly "$condition" 200 --scenario "docs/scenarios/$condition.toml" --obstacles 40 --replan-hz 4
 done
 for scene in flytrap dynamics long-way; do
   fly "$scene" 100 --scene "$scene" --obstacles 0 --replan-hz 1,4
@@ -31,4 +31,4 @@ done
 "$harness" figures --out "$out/figures" --rows "$out/dense.jsonl"
 
 printf '\n== cost of a cycle\n'
-"$harness" bench cycle --obstacles 40 --flights 20 --seed "$seed" | tee "$out/cycle.txt"
+"$harness" bench cycle --obstacles 40 --flights 10 --seed "$seed" | tee "$out/cycle.txt"
