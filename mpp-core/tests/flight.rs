@@ -194,6 +194,21 @@ fn thrust_is_never_negative() {
 }
 
 #[test]
+fn a_command_that_is_not_a_number_is_trim_and_counted() {
+    let mut flight = flight_loop();
+    let mut broken = trajectory(0.0);
+    for knot in &mut broken.knots {
+        knot.feedforward.elevator = f64::NAN;
+    }
+    let state = flight.state();
+    let trim = flight.step(0.0, &frame(&state)).reference.feedforward;
+    flight.adopt(0.0, Verdict::Feasible, &broken);
+    assert_eq!(flight.step(0.01, &frame(&state)).control, trim);
+    assert_eq!(flight.health().commands_not_finite, 1);
+    assert!(flight.estimate().is_finite());
+}
+
+#[test]
 fn an_airframe_that_does_not_fly_is_refused() {
     let heavy = Settings {
         airframe: Airframe {

@@ -2,15 +2,16 @@
 
 mod common {
     pub(crate) mod airframes;
+    pub(crate) mod seeded;
 }
 
 use common::airframes::named;
+use common::seeded::seeded;
 use mpp_core::vehicle::{
     Airframe, PathControl, PathState, Trim, VehicleState, air_rate, vehicle_rate,
 };
 use nalgebra::{Matrix5, SMatrix, Vector5};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 type Vector = Vector5<f64>;
 
@@ -87,15 +88,6 @@ fn differences(
         b.set_column(index, &(change / (2.0 * STEP)));
     }
     (a, b)
-}
-
-/// The same cases in every run.
-fn seeded() -> ProptestConfig {
-    ProptestConfig {
-        rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
 }
 
 proptest! {

@@ -2,16 +2,17 @@
 
 mod common {
     pub(crate) mod airframes;
+    pub(crate) mod seeded;
 }
 
 use common::airframes::named;
+use common::seeded::seeded;
 use mpp_core::control::{Lqr, LqrWeights, RiccatiError, solve_riccati};
 use mpp_core::vehicle::{
     AirState, Airframe, Control, JacobianForm, Linearization, Trim, linearize,
 };
 use nalgebra::{Matrix4, Vector4};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// Residual of the Riccati equation, relative to its largest term.
 const RESIDUAL: f64 = 1e-9;
@@ -77,15 +78,6 @@ fn cost_of(linear: &Linearization, lqr: &Lqr, weights: &LqrWeights, start: Vecto
         x = next;
     }
     cost
-}
-
-/// The same cases in every run.
-fn seeded() -> ProptestConfig {
-    ProptestConfig {
-        rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
 }
 
 proptest! {

@@ -2,16 +2,17 @@
 
 mod common {
     pub(crate) mod airframes;
+    pub(crate) mod seeded;
 }
 
 use common::airframes::named;
+use common::seeded::seeded;
 use mpp_core::vehicle::{
     AirState, Airframe, Control, GRAVITY, JacobianForm, Linearization, Trim, TrimError,
     VehicleState, air_rate, linearize, vehicle_rate,
 };
 use nalgebra::{Matrix4, Matrix4x2, Vector4};
 use proptest::prelude::*;
-use proptest::test_runner::RngSeed;
 
 /// Half a step of the central differences: their error is its square times third derivatives.
 const STEP: f64 = 1e-4;
@@ -81,15 +82,6 @@ fn differences(airframe: &Airframe, state: &AirState, control: Control) -> Linea
         b.set_column(index, &(change / (2.0 * STEP)));
     }
     Linearization { a, b }
-}
-
-/// The same cases in every run.
-fn seeded() -> ProptestConfig {
-    ProptestConfig {
-        rng_seed: RngSeed::Fixed(1),
-        failure_persistence: None,
-        ..ProptestConfig::default()
-    }
 }
 
 proptest! {
