@@ -195,6 +195,45 @@ fn no_path_is_cheaper_than_the_first_and_the_others_follow_by_cost() {
 }
 
 #[test]
+fn onward_tells_what_the_best_path_costs_from_the_via_station() {
+    let mut compared = 0;
+    for seed in 0..25 {
+        let mut draw = Draw::new(seed);
+        let field = field(&random_map(&mut draw, 100.0, 2));
+        let task = tasks(&mut draw);
+        let mut lattice = Box::new(Lattice::new());
+        lattice.start(&task);
+        while lattice.advance(&field) {}
+        let mut found = heapless::Vec::new();
+        lattice.paths(&mut found);
+        let spacing = lattice.spacing();
+        let via = ((lattice.via() - task.x) / spacing).round() as usize;
+        let costs = Costs {
+            field: &field,
+            task,
+            spacing,
+        };
+        for path in &found {
+            let slopes = slopes(path, first_slope(&task, spacing));
+            let rest = costs.path(&slopes) - costs.path(&slopes[..=via]);
+            let rest = (f64::from(rest) / 16.0).min(2000.0);
+            let slope = 2.0 * RISE / spacing * f64::from(slopes[via]);
+            let onward = lattice.onward(path[via], slope);
+            assert!((onward - rest).abs() < 1e-3, "seed {seed}: {onward}");
+            // Half a step aside it is between what it is at either end.
+            let aside = lattice.onward(path[via] + RISE, slope);
+            let between = lattice.onward(path[via] + 0.5 * RISE, slope);
+            assert!((between - 0.5 * (onward + aside)).abs() < 1e-3);
+            compared += 1;
+        }
+        for (z, slope) in [(f64::INFINITY, 9.0), (f64::NEG_INFINITY, -9.0)] {
+            assert!((0.0..=2000.0).contains(&lattice.onward(z, slope)));
+        }
+    }
+    assert!(compared > 50, "{compared}");
+}
+
+#[test]
 fn nothing_in_the_way_is_flown_straight_on_and_back_to_the_altitude() {
     let empty = ClearanceField::new();
     let (_, level) = paths(&empty, &TASK);

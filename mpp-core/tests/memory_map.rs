@@ -43,7 +43,7 @@ fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
 }
 
 #[test]
-fn a_hit_is_marked_where_the_beam_ended_with_a_shadow() {
+fn a_hit_is_marked_where_the_beam_ended_and_completed_behind() {
     for (pitch, range) in [(0.0, 20.1), (0.4, 15.3), (-0.5, 25.7), (0.1, 0.4)] {
         let mut map = started();
         map.insert(&beam(range), 45.0, 100.2, 50.2, pitch);
@@ -58,7 +58,7 @@ fn a_hit_is_marked_where_the_beam_ended_with_a_shadow() {
         for (x, z) in centres(&map) {
             let off = (x - 100.2) * ahead + (z - 50.2) * up - range;
             let beside = (z - 50.2) * ahead - (x - 100.2) * up;
-            assert!((-CELL..0.5 + CELL).contains(&off) && beside.abs() < CELL);
+            assert!((-CELL..CELL).contains(&off) && beside.abs() < CELL);
         }
         // Known free up to a metre and 3 % before it, unknown elsewhere.
         let (x, z) = at(0.5 * (range - 1.6));

@@ -210,7 +210,7 @@ def test_what_counts_as_occupied_is_where_obstacles_are(flight):
             for number in range(round(length / edge)):
                 u, v = x + edge * (number + 0.5), z + edge / 2
                 near = min(((u - o["x"]) ** 2 + (v - o["z"]) ** 2) ** 0.5 - o["radius"] for o in log["header"]["field"])
-                # Errors of the lidar, and the shadow behind a return.
+                # Errors of the lidar, and hidden parts that the map completes.
                 assert near < 2.5, (detail["tick"], u, v)
                 cells += 1
     assert cells > 10 * len(seen)

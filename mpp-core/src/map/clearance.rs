@@ -181,8 +181,8 @@ fn cells([least, greatest]: [f64; 2], edge: f64, count: usize) -> Option<[usize;
     inside.then(|| [first.max(0.0) as usize, (last as usize).min(count - 1)])
 }
 
-/// Cell index and share of the way to the next, kept inside.
-fn split(position: f64, cells: usize) -> (usize, f64) {
+/// Index of `cells` and share of the way to the next, kept inside.
+pub(crate) fn split(position: f64, cells: usize) -> (usize, f64) {
     let inside = position.clamp(0.0, (cells - 1) as f64 - 1e-9);
     let index = inside as usize;
     (index, inside - index as f64)

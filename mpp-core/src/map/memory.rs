@@ -1,8 +1,8 @@
 //! The map with memory: evidence of obstacles in the world frame, in a window that rolls along with
 //! the aircraft.
 //!
-//! A beam speaks against obstacles on its way and for one where it ended. An obstacle has a back that
-//! no beam sees: a *shadow* behind each hit counts as occupied until a beam passes there.
+//! A beam speaks against obstacles on its way and for one where it ended. Of the back of an obstacle, which
+//! no beam sees, the map knows nothing: [`super::ClearanceField`] completes it.
 
 use crate::sense::LidarScan;
 use core::ops::Range;
@@ -26,10 +26,8 @@ const PASSED_UNANSWERED: i8 = 10;
 /// Bound of the evidence either way: what is believed can be unlearned.
 const LIMIT: i8 = 100;
 
-/// Steps along a beam [m]: within cells, and within the shadow.
+/// Steps along a beam, within cells [m].
 const STEP: f64 = 0.35;
-const SHADOW_STEP: f64 = 0.25;
-const SHADOW_STEPS: u8 = 2;
 /// Share of its range by which a hit may be too far, and length before a hit that says nothing [m].
 const RANGE_DOUBT: f64 = 0.03;
 const DOUBT: f64 = 1.0;
@@ -127,12 +125,6 @@ impl MemoryMap {
                 self.pass(at, range - DOUBT - RANGE_DOUBT * range, PASSED);
                 if let Some(evidence) = self.cell_mut(self.locate(at(range))) {
                     *evidence = weighed(*evidence, HIT);
-                }
-                for step in 1..=SHADOW_STEPS {
-                    let behind = at(range + SHADOW_STEP * f64::from(step));
-                    if let Some(evidence) = self.cell_mut(self.locate(behind)) {
-                        *evidence = (*evidence).max(OCCUPIED);
-                    }
                 }
             } else {
                 self.pass(at, UNANSWERED * sight, PASSED_UNANSWERED);

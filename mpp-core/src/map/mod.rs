@@ -12,6 +12,7 @@ mod walk;
 use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use crate::sense::LidarScan;
+pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
 pub use memory::MemoryMap;
 pub(crate) use walk::CellWalk;

@@ -6,7 +6,7 @@
 //! meet at the *via* station, where the cost of the best path through every height is then known.
 //! Its minima are paths that pass obstacles differently, or the same ones at other heights.
 
-use crate::map::ClearanceField;
+use crate::map::{ClearanceField, split};
 
 /// Stations, the aircraft's included.
 pub const STATIONS: usize = 17;
@@ -48,6 +48,8 @@ const BAND_MARGIN: f64 = 0.5;
 const COST_UNIT: f64 = 16.0;
 const NEVER: u32 = 1 << 28;
 const DEAREST: f64 = 1e7;
+/// What [`Lattice::onward`] says at most, and of places that no path leads on from.
+const DEAREST_ONWARD: f64 = 2000.0;
 
 type Layer = [[u32; SLOPES]; HEIGHTS];
 type Choice = [[u8; SLOPES]; HEIGHTS];
@@ -232,6 +234,27 @@ impl Lattice {
                 *price = (COST_UNIT * cost).min(DEAREST) as u32;
             }
         }
+    }
+
+    /// Where the via station stands downrange [m].
+    #[must_use]
+    pub fn via(&self) -> f64 {
+        self.task.x + self.spacing * VIA as f64
+    }
+
+    /// Once the search is over: what the best path costs on from a height [m] and a slope at the via
+    /// station, between lattice points linearly; at most 2,000.
+    #[must_use]
+    pub fn onward(&self, z: f64, slope: f64) -> f64 {
+        let (height, up) = split((z - self.task.z) / RISE + f64::from(MIDDLE), HEIGHTS);
+        let (slope, steeper) = split(slope / self.slope_step + f64::from(LEVEL), SLOPES);
+        let at = |height: usize, slope: usize| {
+            let costs = self.layer.get(height);
+            let cost = costs.and_then(|costs| costs.get(slope)).copied();
+            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(DEAREST_ONWARD)
+        };
+        let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
+        along(height) * (1.0 - up) + along(height + 1) * up
     }
 
     /// Writes the paths through the via station's best heights, best first, once the search is over.

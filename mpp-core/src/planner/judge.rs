@@ -13,6 +13,10 @@ const LACK_PRICE: f64 = 100.0;
 /// Price of a point of which nothing is known, falling to nothing at the distance [`SIGHT`].
 const UNKNOWN_PRICE: f64 = 5.0;
 
+/// Share of these prices beyond the lattice's via station. By the time the aircraft is there, it flies
+/// another plan: what the best path of the lattice costs on from there is added.
+const FAR_SHARE: f64 = 0.5;
+
 /// Worst lack of clearance [m], cost, and what ranks.
 pub(super) struct Judgement {
     pub(super) lack: f64,
@@ -24,21 +28,28 @@ impl Planner {
     /// What a roll-out is worth.
     pub(super) fn judge(&self, flown: &Candidate, iteration: &Iteration) -> Judgement {
         let field = &self.iterated.field;
+        let lattice = &self.iterated.lattice;
+        let via = lattice.via();
         let (mut lack, mut price) = (0.0_f64, 0.0);
         for (stage, pair) in flown.knots.windows(2).enumerate() {
             let [from, to] = pair else { continue };
             let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
+            let (run, rise) = (to.x - from.x, to.z - from.z);
+            if from.x <= via && via < to.x {
+                let slope = rise / run;
+                price += lattice.onward(from.z + slope * (via - from.x), slope);
+            }
             for sample in 1..=SAMPLES {
                 let share = sample as f64 / SAMPLES as f64;
-                let x = from.x + (to.x - from.x) * share;
-                let z = from.z + (to.z - from.z) * share;
+                let (x, z) = (from.x + run * share, from.z + rise * share);
+                let weight = if x > via { FAR_SHARE } else { 1.0 };
                 let outside = ((z - self.settings.altitude).abs() - iteration.band).max(0.0);
                 let missing = (iteration.margin - field.distance(x, z)).max(0.0) + outside;
                 lack = lack.max(missing);
-                price += LACK_PRICE * discount * missing * missing;
+                price += weight * LACK_PRICE * discount * missing * missing;
                 let ahead = x - self.state.x;
                 if ahead < SIGHT && field.is_unknown(x, z) {
-                    price += UNKNOWN_PRICE * (1.0 - ahead / SIGHT);
+                    price += weight * UNKNOWN_PRICE * (1.0 - ahead / SIGHT);
                 }
             }
         }
