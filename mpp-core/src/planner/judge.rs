@@ -1,4 +1,5 @@
-//! What a roll-out is worth: its clearance in the map itself, what it does not know, its effort.
+//! What a roll-out is worth: its clearance in the map itself, what it does not know, its effort,
+//! and the way on from where it leads.
 
 use super::Planner;
 use super::candidate::Candidate;
