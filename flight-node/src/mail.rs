@@ -1,10 +1,11 @@
 //! What step and planner tell each other.
 
 use crate::parameters::Tuning;
+use mpp_core::estimate::Conditions;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_core::vehicle::VehicleState;
 
 /// From the step to the planner.
 #[expect(
@@ -26,8 +27,8 @@ pub enum Order {
         tick: u32,
         /// Where the aircraft was then.
         state: VehicleState,
-        /// The motion of the air then.
-        wind: Wind,
+        /// The air and the aircraft's lift then.
+        conditions: Conditions,
         /// What it saw.
         scan: LidarScan,
         /// The values in force.

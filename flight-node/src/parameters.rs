@@ -166,7 +166,7 @@ fn positive(value: f64) -> Option<f64> {
     (value > 0.0).then_some(value)
 }
 
-parameters! { 40:
+parameters! { 41:
     "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
         |tuning| Some(tuning.settings.planner.paths as f64),
         |tuning, value| tuning.settings.planner.paths = value as usize;
@@ -283,7 +283,7 @@ parameters! { 40:
     "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
         |tuning| iteration(tuning, |iteration| iteration.thrust_max),
         |tuning, value| change(tuning, |iteration| iteration.thrust_max = value);
-    "WIND_TC_S", "s", [0.05, 60.0], None, BEFORE,
+    "WIND_TC_S", "s", [0.01, 60.0], None, BEFORE,
         |tuning| tuning.settings.wind,
         |tuning, value| tuning.settings.wind = Some(value);
     "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
@@ -298,4 +298,7 @@ parameters! { 40:
     "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.elevator_rate),
         |tuning, value| tuning.settings.actuators.elevator_rate = positive(value);
+    "THR_SPEED_GAIN", "N s/m", [0.0, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.airspeed_hold),
+        |tuning, value| tuning.settings.airspeed_hold = value;
 }

@@ -80,7 +80,7 @@ impl PlanTask {
             Order::Begin {
                 tick,
                 state,
-                wind,
+                conditions,
                 scan,
                 tuning,
             } => {
@@ -88,7 +88,7 @@ impl PlanTask {
                 self.slices_per_tick = tuning.configure.slices_per_tick;
                 // Values are checked as they are ordered: what is not taken here was never in force.
                 let _ = self.planner.retune(&tuning.settings.planner);
-                self.planner.begin(time(*tick), state, wind, scan);
+                self.planner.begin(time(*tick), state, conditions, scan);
                 self.cycle = Some(Cycle {
                     tick: *tick,
                     slices: 0,

@@ -2,13 +2,15 @@
 
 use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
-use crate::estimate::{Ekf, Innovation, Verdict as MeasurementVerdict, WindEstimator};
+use crate::estimate::{
+    Conditions, ConditionsEstimator, Ekf, Innovation, Verdict as MeasurementVerdict,
+};
 use crate::health::Health;
 use crate::planner::{SetupError, Verdict, check_vehicle};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
-use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, Wind, linearize};
+use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, linearize};
 
 /// Least motion ahead over ground by which a course is reckoned [m/s].
 const LEAST_ADVANCE: f64 = 1.0;
@@ -56,11 +58,13 @@ pub struct StepOutput {
 #[derive(Clone, Debug)]
 pub struct FlightLoop {
     ekf: Ekf,
-    wind: WindEstimator,
+    airframe: Airframe,
+    conditions: ConditionsEstimator,
     lqr: Lqr,
     trim: Trim,
     limits: ActuatorLimits,
     cross_track: f64,
+    airspeed_hold: f64,
     trajectory: Option<Trajectory>,
     position: (f64, f64),
     /// When the last step was, and what it commanded.
@@ -87,11 +91,13 @@ impl FlightLoop {
         let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
         Ok(Self {
             ekf: Ekf::new(*airframe, settings.estimator, trim.state),
-            wind: WindEstimator::new(settings.wind),
+            airframe: *airframe,
+            conditions: ConditionsEstimator::new(settings),
             lqr,
             trim,
             limits: settings.actuators,
             cross_track: settings.cross_track,
+            airspeed_hold: settings.airspeed_hold,
             trajectory: None,
             position: (0.0, settings.planner.altitude),
             last: None,
@@ -118,9 +124,11 @@ impl FlightLoop {
         if position_used {
             self.position = (frame.x, frame.z);
             let air = self.ekf.estimate();
-            if !self.wind.update(time, self.position, air) {
+            if !self.conditions.update(time, self.position, air, self.given) {
                 Health::count(&mut self.health.winds_refused);
             }
+            let airframe = self.conditions().airframe(&self.airframe);
+            self.ekf.set_airframe(&airframe);
         } else {
             Health::count(&mut self.health.positions_not_finite);
         }
@@ -133,11 +141,13 @@ impl FlightLoop {
             Some(reference) => (Mode::Tracking, reference),
             None => (Mode::TrimHold, self.level_reference()),
         };
-        let wanted = self.lqr.track(
+        let mut wanted = self.lqr.track(
             self.ekf.estimate(),
             &self.turned_back(&reference.state),
             reference.feedforward,
         );
+        let slower = reference.state.air.airspeed - self.ekf.estimate().airspeed;
+        wanted.thrust += self.airspeed_hold * slower;
         let control = self.limit(wanted);
         self.last = Some((time, control));
         StepOutput {
@@ -197,10 +207,10 @@ impl FlightLoop {
         }
     }
 
-    /// The motion of the air that a plan reckons with.
+    /// What a plan reckons with besides the state.
     #[must_use]
-    pub fn wind(&self) -> Wind {
-        self.wind.wind()
+    pub fn conditions(&self) -> Conditions {
+        self.conditions.conditions()
     }
 
     /// The trajectory being flown, if any.
@@ -235,7 +245,7 @@ impl FlightLoop {
     /// The reference's motion, turned back to its path.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
         let (x, z) = self.position;
-        let (ahead, up) = self.wind.wind().ground_velocity(&reference.air);
+        let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
         let ahead = ahead.max(LEAST_ADVANCE);
         let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
         let turn = (self.cross_track * off).clamp(-MOST_TURN, MOST_TURN);

@@ -38,7 +38,7 @@
 //!
 //! // A scan without returns, taken as the flight starts.
 //! let scan = LidarScan::new();
-//! planner.begin(0.0, &flight.state(), &flight.wind(), &scan);
+//! planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
 //! let frame = SensorFrame {
 //!     measurement: Measurement { airspeed: 12.0, pitch: 0.156 },
 //!     x: 0.0,

@@ -101,13 +101,17 @@ pub struct Settings {
     pub design_jacobian: JacobianForm,
     /// The estimator's tuning.
     pub estimator: EkfTuning,
-    /// Time constant of the wind's estimate [s]; none takes the air to stand still, as the paper does.
+    /// Time constant of the wind's estimate [s]; none takes the air to stand still and the airframe to be
+    /// as known, as the paper does.
     pub wind: Option<f64>,
     /// The regulator's weights.
     pub regulator: LqrWeights,
     /// Flight path angle by which the regulator's reference turns back per metre off the trajectory
     /// [rad/m]; 0 regulates the motion alone, as the paper does.
     pub cross_track: f64,
+    /// Thrust per lack of airspeed against the trajectory [N s/m]; 0 flies its thrust as planned, as the
+    /// paper does.
+    pub airspeed_hold: f64,
     /// The planner.
     pub planner: PlannerSettings,
 }
@@ -127,6 +131,7 @@ impl Settings {
             wind: None,
             regulator: LqrWeights::PAPER,
             cross_track: 0.0,
+            airspeed_hold: 0.0,
             planner: PlannerSettings {
                 rules: Rules::Authors,
                 jacobian: JacobianForm::Authors,
@@ -171,8 +176,9 @@ impl Settings {
         let paper = Self::paper();
         Self {
             estimator: EkfTuning::SENSORS,
-            wind: Some(0.3),
+            wind: Some(0.02),
             cross_track: 0.08,
+            airspeed_hold: 10.0,
             planner: PlannerSettings {
                 steady_state: SteadyState::MomentBalance,
                 weights: Weights {

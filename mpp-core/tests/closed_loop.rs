@@ -41,7 +41,7 @@ fn fly(settings: &Settings, start_z: f64, discs: &[Disc], seconds: i32) -> Flown
         if tick % 100 == 0 {
             let scan = scan(discs, &state);
             assert_eq!(scan.check(100, SIGHT), Ok(()));
-            planner.begin(time, &flight.state(), &flight.wind(), &scan);
+            planner.begin(time, &flight.state(), &flight.conditions(), &scan);
             while planner.advance() {}
             let verdict = planner.finish();
             flight.adopt(time, verdict, planner.best());

@@ -7,7 +7,7 @@ mod common {
 
 use common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
-use mpp_core::estimate::{Ekf, Measurement, WindEstimator};
+use mpp_core::estimate::{Conditions, Ekf, Measurement, WindEstimator};
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError, Verdict};
 use mpp_core::sense::SensorFrame;
@@ -117,7 +117,7 @@ fn a_wrong_position_is_refused_and_counted() {
             };
             let out = flight.step(time, &frame);
             assert!((out.control.elevator - trim.control.elevator).abs() < 0.1);
-            let wind = flight.wind();
+            let wind = flight.conditions().wind;
             assert!(wind.x.abs() < 0.5 && wind.z.abs() < 0.5, "{wind:?}");
         }
         assert!(flight.health().winds_refused > 0);
@@ -148,7 +148,11 @@ fn plan_in(settings: &Settings, wind: &Wind, discs: &[(f64, f64, f64)]) -> Box<P
         z: 50.0,
         air,
     };
-    planner.begin(3.0, &state, wind, &scan(discs, &state));
+    let conditions = Conditions {
+        wind: *wind,
+        ..Conditions::STILL
+    };
+    planner.begin(3.0, &state, &conditions, &scan(discs, &state));
     while planner.advance() {}
     assert_ne!(planner.finish(), Verdict::Nothing);
     planner
@@ -284,7 +288,11 @@ fn the_filter_predicts_by_the_lagging_thrust() {
         thrust_lag: Some(0.5),
         ..ActuatorLimits::NONE
     };
-    let settings = with_actuators(limits);
+    let settings = Settings {
+        wind: None,
+        airspeed_hold: 0.0,
+        ..with_actuators(limits)
+    };
     let trim = settings.cruise.trim(&settings.airframe).unwrap();
     let mut flight = FlightLoop::new(&settings).unwrap();
     let mut by_hand = Ekf::new(settings.airframe, settings.estimator, trim.state);

@@ -175,7 +175,11 @@ fn time_that_is_none_is_counted_and_survived() {
 
 #[test]
 fn thrust_is_never_negative() {
-    let mut flight = flight_loop();
+    let settings = Settings {
+        airspeed_hold: 0.0,
+        ..Settings::flight()
+    };
+    let mut flight = FlightLoop::new(&settings).unwrap();
     let mut diving = trajectory(0.0);
     diving
         .knots

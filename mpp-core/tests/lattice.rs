@@ -164,7 +164,7 @@ fn every_path_starts_at_the_aircraft_and_turns_by_one_step_at_most() {
             assert!(slopes.iter().all(|slope| slope.abs() <= SLOPES));
             // One step of slope over one spacing is no more than the aircraft can turn.
             let curvature = 2.0 * RISE / (spacing * spacing);
-            assert!(curvature <= task.curvature * (1.0 + 1e-9) || spacing >= 6.0 - 1e-9);
+            assert!(curvature <= task.curvature * (1.0 + 1e-9) || spacing >= 4.5 - 1e-9);
         }
         found += paths.len();
     }

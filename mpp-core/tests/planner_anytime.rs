@@ -8,6 +8,7 @@ mod common {
 use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
 use common::world::{Disc, scan};
 use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
+use mpp_core::estimate::Conditions;
 use mpp_core::estimate::Measurement;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
@@ -15,7 +16,6 @@ use mpp_core::qp::{MAX_ITERATIONS, Weights};
 use mpp_core::sense::SensorFrame;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Wind;
 
 /// One map, the trees of a cycle at 10 samples a slice, and each path's corridor and program at 8
 /// steps a slice.
@@ -32,7 +32,7 @@ fn more_slices_never_give_a_worse_plan() {
     for settings in presets() {
         let mut planner = planner(&settings);
         let state = level(&planner);
-        planner.begin(0.0, &state, &Wind::STILL, &scan(&SCATTERED, &state));
+        planner.begin(0.0, &state, &Conditions::STILL, &scan(&SCATTERED, &state));
         let mut last = (rank(planner.summary()), planner.best().clone());
         loop {
             let more = planner.advance();
@@ -63,7 +63,7 @@ fn more_slices_never_give_a_worse_plan() {
 fn an_interrupted_cycle_says_so_and_stops() {
     let mut planner = planner(&Settings::paper());
     let state = level(&planner);
-    planner.begin(0.0, &state, &Wind::STILL, &scan(&SCATTERED, &state));
+    planner.begin(0.0, &state, &Conditions::STILL, &scan(&SCATTERED, &state));
     assert!(planner.is_working() && planner.advance());
     assert_eq!(planner.finish(), Verdict::Nothing);
     assert!(!planner.summary().complete && !planner.is_working() && !planner.advance());
@@ -75,7 +75,7 @@ fn two_cycles(planner: &mut Planner, mut between: impl FnMut()) -> Vec<(Trajecto
     let state = level(planner);
     let mut plans = Vec::new();
     for discs in [&SCATTERED[..], &SCATTERED[1..]] {
-        planner.begin(0.5, &state, &Wind::STILL, &scan(discs, &state));
+        planner.begin(0.5, &state, &Conditions::STILL, &scan(discs, &state));
         while planner.advance() {
             between();
         }
@@ -92,7 +92,7 @@ fn the_same_seed_gives_the_same_bits_whatever_runs_between_slices() {
         let mut flight = FlightLoop::new(&settings).unwrap();
         let mut other = planner(&settings);
         let state = level(&other);
-        other.begin(0.0, &state, &Wind::STILL, &scan(&SCATTERED, &state));
+        other.begin(0.0, &state, &Conditions::STILL, &scan(&SCATTERED, &state));
         let mut time = 0.0;
         let busy = two_cycles(&mut planner(&settings), || {
             time += 0.01;

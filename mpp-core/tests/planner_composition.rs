@@ -10,11 +10,12 @@ use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_
 use common::world::{Disc, scan};
 use mpp_core::config::TREE_SAMPLES;
 use mpp_core::corridor::Corridor;
+use mpp_core::estimate::Conditions;
 use mpp_core::plan::{CollocationPoints, Extension, Path, Search, resample};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel, Status};
 use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::{VehicleState, Wind, linearize};
+use mpp_core::vehicle::{VehicleState, linearize};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -96,7 +97,7 @@ fn best_of_all(
     let (mut solver, mut solution) = (Box::new(Solver::new()), Solution::new());
     let mut best = (f64::INFINITY, f64::INFINITY);
     let mut seen = 0;
-    planner.begin(0.0, state, &Wind::STILL, &scan(discs, state));
+    planner.begin(0.0, state, &Conditions::STILL, &scan(discs, state));
     let mut working = true;
     while working {
         working = planner.advance();
@@ -179,7 +180,7 @@ fn every_path_of_every_tree_is_a_candidate_in_turn() {
     for settings in paper_cycles() {
         let mut planner = planner(&settings);
         let state = level(&planner);
-        planner.begin(0.0, &state, &Wind::STILL, &scan(&SCATTERED, &state));
+        planner.begin(0.0, &state, &Conditions::STILL, &scan(&SCATTERED, &state));
         let mut seen = Vec::new();
         while planner.advance() {
             if planner.summary().candidates > seen.len() {

@@ -13,12 +13,13 @@ use common::draw::Draw;
 use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
 use common::world::{Disc, scan};
 use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES, TREE_SAMPLES};
+use mpp_core::estimate::Conditions;
 use mpp_core::plan::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, SetupError, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty};
 use mpp_core::settings::{Iteration, PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::{PathControl, PathState, VehicleState, Wind};
+use mpp_core::vehicle::{PathControl, PathState, VehicleState};
 
 /// The previous plan, the lattice's paths, two of the tree.
 const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + 2;
@@ -92,7 +93,7 @@ fn the_previous_plan_is_a_candidate_as_long_as_it_lasts() {
         let mut planner = planner(&Settings::flight());
         let state = level(&planner);
         plan(&mut planner, &state, &[]);
-        planner.begin(time, &state, &Wind::STILL, &scan(&[], &state));
+        planner.begin(time, &state, &Conditions::STILL, &scan(&[], &state));
         while planner.advance() {}
         planner.finish();
         planner.summary().candidates
@@ -116,7 +117,7 @@ fn slices_are_bounded_in_dense_fields() {
             planner.begin(
                 0.25 * f64::from(cycle),
                 &state,
-                &Wind::STILL,
+                &Conditions::STILL,
                 &scan(&discs, &state),
             );
             while planner.advance() {}
@@ -143,7 +144,7 @@ fn starving_gives_the_best_so_far_and_the_next_cycle_is_sound() {
     let mut offered = 0;
     for budget in 0..=slices {
         let mut starved = planner(&Settings::flight());
-        starved.begin(3.0, &state, &Wind::STILL, &scan(&discs, &state));
+        starved.begin(3.0, &state, &Conditions::STILL, &scan(&discs, &state));
         for _ in 0..budget {
             starved.advance();
         }
@@ -270,7 +271,7 @@ fn what_is_out_of_sight_is_still_flown_around() {
     plan(&mut planner, &state, &wall);
     let mut blind = scan(&[], &state);
     blind.ranges.clear();
-    planner.begin(3.0, &state, &Wind::STILL, &blind);
+    planner.begin(3.0, &state, &Conditions::STILL, &blind);
     while planner.advance() {}
     assert_eq!(planner.finish(), Verdict::Feasible);
     let nearest = planner
@@ -303,7 +304,7 @@ fn a_new_set_up_forgets_the_map_and_the_plan_of_a_former_flight() {
         state.x += 2.0;
     }
     // As if the flight had ended in the middle of a cycle.
-    used.begin(9.0, &state, &Wind::STILL, &scan(&dense(4), &state));
+    used.begin(9.0, &state, &Conditions::STILL, &scan(&dense(4), &state));
     for _ in 0..30 {
         used.advance();
     }

@@ -1,14 +1,15 @@
 //! The planning cycles of a flight, recorded from outside, and a planner to plan them again.
 
 use crate::link::{LinkError, PipeLink};
+use crate::log::Tick;
 use crate::run::{FlyError, fly};
 use crate::scenario::Scenario;
 use flight_node::parameters::Tuning;
-use mpp_core::estimate::WindEstimator;
-use mpp_core::planner::Planner;
+use mpp_core::estimate::{Conditions, ConditionsEstimator};
+use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_core::vehicle::{ActuatorLimits, Control, VehicleState};
 
 /// What a cycle begins with.
 #[derive(Clone, Debug)]
@@ -19,8 +20,8 @@ pub struct Inputs {
     pub truth: VehicleState,
     /// The state that the core plans from.
     pub state: VehicleState,
-    /// The wind that the core reckons with.
-    pub wind: Wind,
+    /// What the core reckons with besides.
+    pub conditions: Conditions,
     /// The scan, as the core got it.
     pub scan: LidarScan,
 }
@@ -31,10 +32,10 @@ pub struct Inputs {
 /// [`FlyError`].
 pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
     let mut inputs = Vec::new();
-    let mut wind = WindEstimator::new(settings(scenario)?.wind);
+    let mut reckoning = Reckoning::new(&settings(scenario)?).map_err(FlyError::SetUp)?;
     fly(scenario, &mut PipeLink::of(scenario), |moment| {
         let (truth, air) = (moment.tick.state, moment.tick.estimate);
-        wind.update(moment.tick.t, (truth.x, truth.z), &air);
+        reckoning.update(moment.tick);
         let Some(wire) = moment.scan else {
             return;
         };
@@ -42,7 +43,7 @@ pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
             time: moment.tick.t,
             truth,
             state: VehicleState { air, ..truth },
-            wind: wind.wind(),
+            conditions: reckoning.conditions(),
             scan: LidarScan {
                 angle_min: f64::from(wire.angle_min),
                 angle_increment: f64::from(wire.angle_increment),
@@ -51,6 +52,47 @@ pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
         });
     })?;
     Ok(inputs)
+}
+
+/// What the core reckons with besides the state, found again from what is logged.
+pub struct Reckoning {
+    estimator: ConditionsEstimator,
+    limits: ActuatorLimits,
+    /// What the actuators gave, as far as the core knows, and the command since.
+    given: Control,
+    last: Option<(f64, Control)>,
+}
+
+impl Reckoning {
+    /// Of a flight with these settings, before its first tick.
+    ///
+    /// # Errors
+    /// When the core could not be set up either.
+    pub fn new(settings: &Settings) -> Result<Self, SetupError> {
+        let trim = settings.cruise.trim(&settings.airframe);
+        Ok(Self {
+            estimator: ConditionsEstimator::new(settings),
+            limits: settings.actuators,
+            given: trim.map_err(SetupError::Trim)?.control,
+            last: None,
+        })
+    }
+
+    /// Takes in a tick.
+    pub fn update(&mut self, tick: &Tick) {
+        if let Some((before, command)) = self.last.replace((tick.t, tick.control)) {
+            self.given = self.limits.given(command, self.given, tick.t - before);
+        }
+        let position = (tick.state.x, tick.state.z);
+        self.estimator
+            .update(tick.t, position, &tick.estimate, self.given);
+    }
+
+    /// The conditions now.
+    #[must_use]
+    pub fn conditions(&self) -> Conditions {
+        self.estimator.conditions()
+    }
 }
 
 /// The settings that the core flies a scenario with.
@@ -92,7 +134,7 @@ mod tests {
             let recorded = record(&scenario).unwrap();
             assert!(log.plans.len() >= 4 && recorded.len() >= log.plans.len());
             for (inputs, plan) in recorded.iter().zip(&log.plans) {
-                planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
+                planner.begin(inputs.time, &inputs.state, &inputs.conditions, &inputs.scan);
                 while planner.advance() {}
                 planner.finish();
                 let summary = planner.summary();

@@ -2,8 +2,8 @@
 //!
 //! The same plant, field, gusts and actuators, from the same seed. The core is the same too, but
 //!
-//! * its planner starts from the true state in the true wind, and its map holds every circle of the field, everything
-//!   else being free: nothing is hidden and nothing unknown;
+//! * its planner starts from the true position with the true velocity over ground, and its map holds every
+//!   circle of the field, everything else being free: nothing is hidden and nothing unknown;
 //! * its sensors are exact, so that the regulator tracks by an estimate without noise;
 //! * it replans at [`REPLAN_HZ`], its plans are flown a tick later, and every candidate gets all
 //!   rounds of linearisation.
@@ -52,9 +52,21 @@ impl Oracle {
                 }
             }
             Order::Begin {
-                state, wind, scan, ..
+                state,
+                conditions,
+                scan,
+                ..
             } => {
-                (*state, *wind) = self.truth.unwrap_or((*state, *wind));
+                if let Some((truth, wind)) = &self.truth {
+                    // The regulator tracks by the estimated motion: what is wrong with it counts as wind.
+                    let (x, z) = wind.ground_velocity(&truth.air);
+                    let (ahead, up) = Wind::STILL.ground_velocity(&state.air);
+                    conditions.wind = Wind {
+                        x: x - ahead,
+                        z: z - up,
+                    };
+                    (state.x, state.z) = (truth.x, truth.z);
+                }
                 // Beams would unlearn cells that they graze.
                 scan.ranges.clear();
                 let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH;

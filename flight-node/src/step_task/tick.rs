@@ -139,7 +139,7 @@ impl StepTask {
         self.order = Some(Order::Begin {
             tick,
             state: flight.control.state(),
-            wind: flight.control.wind(),
+            conditions: flight.control.conditions(),
             scan: self.scan.clone(),
             tuning: flight.tuning,
         });

@@ -1,8 +1,12 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
+mod conditions;
+mod lift;
 mod wind;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+pub use conditions::{Conditions, ConditionsEstimator};
+pub use lift::LiftEstimator;
 use nalgebra::{Matrix4, SMatrix, Vector4};
 pub use wind::WindEstimator;
 
@@ -113,6 +117,11 @@ impl Ekf {
     #[must_use]
     pub fn estimate(&self) -> &AirState {
         &self.estimate
+    }
+
+    /// Goes by another airframe from now on.
+    pub fn set_airframe(&mut self, airframe: &Airframe) {
+        self.airframe = *airframe;
     }
 
     /// The current covariance, 4 x 4, in the order and units of the state.

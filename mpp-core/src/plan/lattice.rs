@@ -25,7 +25,7 @@ const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
 const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
 /// Distance between stations at full agility [m], and how much longer it may become.
 const SPACING: f64 = 3.0;
-const STRETCH: f64 = 2.0;
+const STRETCH: f64 = 1.5;
 /// Points of an edge that are looked at, and their heights at half of [`RISE`].
 const QUARTERS: usize = 4;
 const POINTS: usize = 2 * HEIGHTS - 1;

@@ -19,13 +19,14 @@ mod setup;
 
 use crate::config::KNOTS;
 use crate::corridor::Corridor;
+use crate::estimate::Conditions;
 use crate::map::{ClearanceField, GridPoint, MemoryMap, OccupancyGrid};
 use crate::plan::{CollocationPoints, Path, Search};
 use crate::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel};
 use crate::sense::LidarScan;
 use crate::settings::{AttitudeLimits, PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{ActuatorLimits, AirState, Airframe, Trim, VehicleState, Wind};
+use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
 use rand_pcg::Pcg64Mcg;
 pub use setup::SetupError;
 pub(crate) use setup::check_vehicle;
@@ -95,6 +96,9 @@ pub enum Phase {
 #[derive(Clone, Debug)]
 pub struct Planner {
     settings: PlannerSettings,
+    /// Airframe and trim as set up.
+    known: (Airframe, Trim),
+    /// Those of the cycle.
     trim: Trim,
     airframe: Airframe,
     actuators: ActuatorLimits,
@@ -134,13 +138,8 @@ impl Planner {
         };
         Self {
             settings: settings.planner,
-            trim: Trim {
-                state: STILL,
-                control: crate::vehicle::Control {
-                    thrust: 0.0,
-                    elevator: 0.0,
-                },
-            },
+            known: (settings.airframe, NO_TRIM),
+            trim: NO_TRIM,
             airframe: settings.airframe,
             actuators: settings.actuators,
             shared: Condensed::new(),
@@ -173,12 +172,20 @@ impl Planner {
         }
     }
 
-    /// Starts a cycle at a time [s] from a state in a wind and a checked scan; drops one under way.
-    /// Without an iteration the wind has no part.
-    pub fn begin(&mut self, time: f64, state: &VehicleState, wind: &Wind, scan: &LidarScan) {
+    /// Starts a cycle at a time [s] from a state under these conditions and a checked scan; drops one
+    /// under way. Without an iteration the conditions have no part.
+    pub fn begin(
+        &mut self,
+        time: f64,
+        state: &VehicleState,
+        conditions: &Conditions,
+        scan: &LidarScan,
+    ) {
         self.time = time;
         self.state = *state;
-        self.wind = *wind;
+        if self.settings.iteration.is_some() {
+            self.reckon_with(conditions);
+        }
         self.scan.clone_from(scan);
         self.problem.initial = self.shared.initial_state(&self.trim, &state.air);
         self.problem.target = [0.0, self.settings.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
@@ -203,6 +210,16 @@ impl Planner {
             Some(_) => Phase::Remember,
             None => Phase::Map,
         };
+    }
+
+    /// Plans by the airframe as it flies, and cruises at the angle of attack that it is set up for: the
+    /// elevator keeps as much of its range to either side, at another airspeed.
+    fn reckon_with(&mut self, conditions: &Conditions) {
+        let (airframe, trim) = &self.known;
+        self.wind = conditions.wind;
+        self.airframe = conditions.airframe(airframe);
+        let alpha = trim.state.angle_of_attack();
+        self.trim = Trim::at_angle_of_attack(&self.airframe, alpha).unwrap_or(*trim);
     }
 
     /// What the next slice does.
@@ -341,6 +358,14 @@ const STILL: AirState = AirState {
     pitch: 0.0,
     pitch_rate: 0.0,
     flight_path: 0.0,
+};
+
+const NO_TRIM: Trim = Trim {
+    state: STILL,
+    control: Control {
+        thrust: 0.0,
+        elevator: 0.0,
+    },
 };
 
 const NO_SUMMARY: PlanSummary = PlanSummary {

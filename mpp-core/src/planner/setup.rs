@@ -60,6 +60,7 @@ impl Planner {
             // The baseline tracks paths as they are.
             self.settings.iteration = None;
         }
+        self.known = (*airframe, trim);
         self.trim = trim;
         self.airframe = *airframe;
         self.actuators = settings.actuators;

@@ -76,4 +76,11 @@ impl Airframe {
     pub fn elevator_for(&self, angle_of_attack: f64) -> f64 {
         -(self.moment_alpha * angle_of_attack + self.moment_zero) / self.moment_elevator
     }
+
+    /// Angle of attack [rad] at which an elevator command [-] balances the pitching moment: the inverse
+    /// of [`Airframe::elevator_for`].
+    #[must_use]
+    pub fn angle_of_attack_for(&self, elevator: f64) -> f64 {
+        -(self.moment_elevator * elevator + self.moment_zero) / self.moment_alpha
+    }
 }

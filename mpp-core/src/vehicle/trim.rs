@@ -90,6 +90,33 @@ impl Trim {
         }
         Err(TrimError::NotConverged)
     }
+
+    /// Steady level flight at an angle of attack [rad]: airspeed and thrust from `L + T sin alpha = m g`
+    /// and `T cos alpha = D`.
+    ///
+    /// # Errors
+    /// [`TrimError::NonFinite`] when the wing does not carry the aircraft at that angle.
+    pub fn at_angle_of_attack(airframe: &Airframe, alpha: f64) -> Result<Self, TrimError> {
+        let a = airframe;
+        let (sin_alpha, cos_alpha) = libm::sincos(alpha);
+        let lift = a.lift_zero + a.lift_alpha * alpha;
+        let drag = a.drag_zero + a.drag_induced * lift * lift;
+        let carried = lift + drag * sin_alpha / cos_alpha;
+        let speed_squared = 2.0 * a.mass * GRAVITY / (a.air_density * a.wing_area * carried);
+        let pressure_area = 0.5 * a.air_density * speed_squared * a.wing_area;
+        finite(Self {
+            state: AirState {
+                airspeed: libm::sqrt(speed_squared),
+                pitch: alpha,
+                pitch_rate: 0.0,
+                flight_path: 0.0,
+            },
+            control: Control {
+                thrust: pressure_area * drag / cos_alpha,
+                elevator: a.elevator_for(alpha),
+            },
+        })
+    }
 }
 
 fn finite(trim: Trim) -> Result<Trim, TrimError> {

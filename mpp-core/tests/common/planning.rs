@@ -2,9 +2,10 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use crate::common::world::{Disc, scan};
+use mpp_core::estimate::Conditions;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_core::vehicle::VehicleState;
 
 /// A trajectory within this violation counts as feasible [m, rad].
 pub(crate) const FEASIBLE: f64 = 1e-6;
@@ -37,7 +38,7 @@ pub(crate) fn level(planner: &Planner) -> VehicleState {
 
 /// One whole cycle.
 pub(crate) fn plan(planner: &mut Planner, state: &VehicleState, discs: &[Disc]) -> Verdict {
-    planner.begin(3.0, state, &Wind::STILL, &scan(discs, state));
+    planner.begin(3.0, state, &Conditions::STILL, &scan(discs, state));
     while planner.advance() {}
     planner.finish()
 }

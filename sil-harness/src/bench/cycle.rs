@@ -166,7 +166,7 @@ fn plan(planner: &mut Planner, inputs: &Inputs) -> Parts {
         parts[part] += now - last;
         last = now;
     };
-    planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
+    planner.begin(inputs.time, &inputs.state, &inputs.conditions, &inputs.scan);
     took(PARTS - 1);
     loop {
         let part = part(planner.phase());

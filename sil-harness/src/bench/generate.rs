@@ -37,7 +37,7 @@ fn collect(
     settings.planner.iteration = None;
     let mut planner = planner(&settings)?;
     for inputs in record(scenario)? {
-        planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
+        planner.begin(inputs.time, &inputs.state, &inputs.conditions, &inputs.scan);
         let mut known = 0;
         while planner.advance() && instances.len() < count {
             let Some(problem) = planner.program() else {

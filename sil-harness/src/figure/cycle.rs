@@ -115,13 +115,13 @@ fn plan(
         .map_err(|error| FigureError::Cycle(format!("{error:?}")))?;
     // The planner's random numbers go on from cycle to cycle.
     for inputs in earlier {
-        planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
+        planner.begin(inputs.time, &inputs.state, &inputs.conditions, &inputs.scan);
         while planner.advance() {}
         planner.finish();
     }
     let mut candidates = Vec::new();
     let mut solver = Box::new(Solver::new());
-    planner.begin(inputs.time, &inputs.state, &inputs.wind, &inputs.scan);
+    planner.begin(inputs.time, &inputs.state, &inputs.conditions, &inputs.scan);
     while planner.advance() {
         let Some(problem) = planner.program() else {
             continue;

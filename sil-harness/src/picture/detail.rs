@@ -3,12 +3,12 @@
 //! The core tells only what it chose. The same planner, given the same scans and states, goes
 //! through the same candidates here, one slice at a time.
 
+use crate::cycles::Reckoning;
 use crate::run::Moment;
 use flight_node::parameters::Tuning;
 use hil_protocol::LidarScan as WireScan;
 use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
-use mpp_core::estimate::WindEstimator;
 use mpp_core::map::GridPoint;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
@@ -65,7 +65,7 @@ pub struct Map {
 /// A planner to look into.
 pub struct Inspector {
     planner: Box<Planner>,
-    wind: WindEstimator,
+    reckoning: Reckoning,
 }
 
 impl Inspector {
@@ -76,16 +76,13 @@ impl Inspector {
     pub fn new(tuning: &Tuning) -> Result<Self, SetupError> {
         let mut planner = Box::new(Planner::new());
         planner.set_up(&tuning.settings)?;
-        let wind = WindEstimator::new(tuning.settings.wind);
-        Ok(Self { planner, wind })
+        let reckoning = Reckoning::new(&tuning.settings)?;
+        Ok(Self { planner, reckoning })
     }
 
     /// The cycle that begins at this moment, if a scan was taken; `tuning` is what is in force.
     pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
-        let truth = &moment.tick.state;
-        let position = (truth.x, truth.z);
-        self.wind
-            .update(moment.tick.t, position, &moment.tick.estimate);
+        self.reckoning.update(moment.tick);
         let scan = moment.scan?;
         let state = VehicleState {
             air: moment.tick.estimate,
@@ -94,7 +91,8 @@ impl Inspector {
         let planner = &mut self.planner;
         // As the core: what it refuses was never in force.
         let _ = planner.retune(&tuning.settings.planner);
-        planner.begin(moment.tick.t, &state, &self.wind.wind(), &core_scan(scan));
+        let conditions = self.reckoning.conditions();
+        planner.begin(moment.tick.t, &state, &conditions, &core_scan(scan));
 
         let mut detail = PlanDetail {
             tick: scan.tick,

@@ -1,0 +1,181 @@
+//! What the flight loop makes of an aircraft that lifts more or less than it was told.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod sensors;
+    pub(crate) mod world;
+}
+
+use common::sensors::frame;
+use common::world::scan;
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::estimate::{Conditions, LiftEstimator};
+use mpp_core::flight::FlightLoop;
+use mpp_core::planner::Planner;
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::{
+    ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, vehicle_rate,
+};
+use proptest::prelude::*;
+
+const KNOWN: Airframe = Airframe::REFERENCE;
+
+/// Shows the heights of an aircraft at level trim that has this much more lift: `z = a t^2 / 2`.
+fn climb(estimator: &mut LiftEstimator, lift: f64, ticks: std::ops::Range<u32>) {
+    let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
+    let pressure_area = 0.5 * KNOWN.air_density * 144.0 * KNOWN.wing_area;
+    let acceleration = pressure_area * lift / KNOWN.mass;
+    for tick in ticks {
+        let time = f64::from(tick) * TICK_PERIOD;
+        let height = 50.0 + 0.5 * acceleration * time * time;
+        estimator.update(time, height, &trim.state, trim.control);
+    }
+}
+
+proptest! {
+    #[test]
+    fn lift_beyond_the_airframe_s_is_found_from_heights(lift in -0.35..0.35) {
+        let mut estimator = LiftEstimator::new(&KNOWN);
+        climb(&mut estimator, lift, 0..200);
+        let early = estimator.offset() / lift;
+        climb(&mut estimator, lift, 200..4000);
+        let late = estimator.offset() / lift;
+        prop_assert!((0.6..0.8).contains(&early), "after 2 s {early}");
+        prop_assert!((late - 1.0).abs() < 0.02, "after 40 s {late}");
+    }
+
+    /// A leap, a gap, a clock that stands still or goes back, and what is no number teach nothing.
+    #[test]
+    fn a_wrong_height_is_no_lift(
+        height in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), 60.0..1e9],
+        time in prop_oneof![Just(1.99), Just(0.5), Just(2.5), Just(f64::NAN)],
+    ) {
+        let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
+        let mut estimator = LiftEstimator::new(&KNOWN);
+        climb(&mut estimator, 0.1, 0..200);
+        let before = estimator.offset();
+        let unchanged = |estimator: &LiftEstimator| (estimator.offset() - before).abs() < 1e-15;
+        let mut leapt = estimator.clone();
+        leapt.update(2.0, height, &trim.state, trim.control);
+        prop_assert!(unchanged(&leapt));
+        estimator.update(time, 50.0, &trim.state, trim.control);
+        prop_assert!(unchanged(&estimator));
+        let stalled = AirState { airspeed: 0.0, ..trim.state };
+        estimator.update(2.01, 50.0, &stalled, trim.control);
+        prop_assert!(unchanged(&estimator));
+    }
+
+    /// However wrong the heights are, no plan is asked to reckon with a wing of another kind.
+    #[test]
+    fn the_offset_stays_within_what_is_believed(heights in prop::collection::vec(40.0..60.0, 1..300)) {
+        let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
+        let mut estimator = LiftEstimator::new(&KNOWN);
+        for (tick, height) in (0_u32..).zip(heights) {
+            let control = Control { elevator: -20.0, ..trim.control };
+            estimator.update(f64::from(tick) * TICK_PERIOD, height, &trim.state, control);
+            prop_assert!(estimator.offset().abs() <= 0.4);
+        }
+    }
+
+    #[test]
+    fn flight_at_an_angle_of_attack_is_that_at_its_airspeed(airspeed in 9.0..20.0) {
+        let by_speed = Trim::at_speed(&KNOWN, airspeed, 0.0).unwrap();
+        let alpha = by_speed.state.angle_of_attack();
+        let by_angle = Trim::at_angle_of_attack(&KNOWN, alpha).unwrap();
+        prop_assert!((by_angle.state.airspeed - airspeed).abs() < 1e-9);
+        prop_assert!((by_angle.control.thrust - by_speed.control.thrust).abs() < 1e-9);
+        prop_assert!((KNOWN.angle_of_attack_for(by_angle.control.elevator) - alpha).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn no_level_flight_exists_where_the_wing_does_not_carry() {
+    assert!(Trim::at_angle_of_attack(&KNOWN, -0.3).is_err());
+    assert!(Trim::at_angle_of_attack(&KNOWN, f64::NAN).is_err());
+}
+
+/// With a tenth in mass, lift slope and pitch stiffness at their worst, an elevator of trim +-2 holds
+/// level flight at 12 m/s only at its stop, if at all.
+#[test]
+fn a_wrong_airframe_cruises_with_the_elevator_near_its_trim() {
+    for factor in [1.0, -1.0] {
+        let truth = Airframe {
+            mass: KNOWN.mass * (1.0 + 0.1 * factor),
+            lift_alpha: KNOWN.lift_alpha * (1.0 - 0.1 * factor),
+            moment_alpha: KNOWN.moment_alpha * (1.0 + 0.1 * factor),
+            ..KNOWN
+        };
+        let settings = Settings {
+            actuators: ActuatorLimits {
+                elevator_range: Some(2.0),
+                ..ActuatorLimits::NONE
+            },
+            ..Settings::flight()
+        };
+        let trim = settings.cruise.trim(&KNOWN).unwrap();
+        let needed = Trim::at_speed(&truth, 12.0, 0.0).unwrap().control.elevator;
+        assert!(factor * (needed - trim.control.elevator) > 1.5, "{needed}");
+
+        let (mean, end) = cruise(&settings, &truth);
+        let off = (mean - trim.control.elevator).abs();
+        assert!(off < 0.5 * (needed - trim.control.elevator).abs(), "{mean}");
+        // A low terminal weight is in no hurry to be back at the altitude.
+        assert!((end.z - 50.0).abs() < 2.5, "{end:?}");
+        assert!(factor * (end.air.airspeed - 12.0) > 0.5, "{end:?}");
+    }
+}
+
+/// Flies an aircraft through nothing for 20 s; the mean elevator of the last 5 s, and the end.
+fn cruise(settings: &Settings, truth: &Airframe) -> (f64, VehicleState) {
+    let mut planner = Box::new(Planner::new());
+    planner.set_up(settings).unwrap();
+    let mut flight = FlightLoop::new(settings).unwrap();
+    let mut state = VehicleState {
+        x: 0.0,
+        z: 50.0,
+        air: planner.trim().state,
+    };
+    let mut sum = 0.0;
+    for tick in 0..2000 {
+        let time = f64::from(tick) * TICK_PERIOD;
+        let control = flight.step(time, &frame(&state)).control;
+        if tick % 25 == 0 {
+            let conditions = flight.conditions();
+            planner.begin(time, &flight.state(), &conditions, &scan(&[], &state));
+            while planner.advance() {}
+            let verdict = planner.finish();
+            flight.adopt(time, verdict, planner.best());
+        }
+        if tick >= 1500 {
+            sum += control.elevator / 500.0;
+        }
+        for _ in 0..10 {
+            let rate = vehicle_rate(truth, &state, control);
+            state.x += rate.x * TICK_PERIOD / 10.0;
+            state.z += rate.z * TICK_PERIOD / 10.0;
+            let air = state.air.to_vector() + rate.air.to_vector() * (TICK_PERIOD / 10.0);
+            state.air = AirState::from_vector(&air);
+        }
+    }
+    (sum, state)
+}
+
+/// An airspeed below the trajectory's is answered by thrust, and no other preset does so.
+#[test]
+fn thrust_holds_the_airspeed_of_the_trajectory() {
+    for (settings, more) in [(Settings::flight(), true), (Settings::paper(), false)] {
+        let trim = settings.cruise.trim(&settings.airframe).unwrap();
+        let mut flight = FlightLoop::new(&settings).unwrap();
+        let slow = VehicleState {
+            x: 0.0,
+            z: 50.0,
+            air: AirState {
+                airspeed: trim.state.airspeed - 1.0,
+                ..trim.state
+            },
+        };
+        let step = flight.step(0.0, &frame(&slow));
+        assert_eq!(step.control.thrust > trim.control.thrust, more);
+    }
+    assert_eq!(Conditions::STILL.airframe(&KNOWN), KNOWN);
+}
