@@ -22,10 +22,9 @@ fly() {
 
 fly sparse 1000 --obstacles 20,40 --replan-hz 1
 fly dense 500 --obstacles 80,120,160 --replan-hz 4
-for condition in actuators-thrust actuators-elevator gusts model-error lidar-faults; do
-  fly "$condition" 200 --scenario "docs/scenarios/$condition.toml" --obstacles 40 --replan-hz 4
+for condition in actuators-thrust actuators-elevator gusts model-error lidar-faults all-together; do
+  fly "$condition" 1000 --scenario "docs/scenarios/$condition.toml" --obstacles 40 --replan-hz 4
 done
-fly all-together 1000 --scenario docs/scenarios/all-together.toml --obstacles 40 --replan-hz 4
 for scene in flytrap dynamics long-way; do
   fly "$scene" 100 --scene "$scene" --obstacles 0 --replan-hz 1,4
 done
