@@ -177,5 +177,9 @@ fn thrust_holds_the_airspeed_of_the_trajectory() {
         let step = flight.step(0.0, &frame(&slow));
         assert_eq!(step.control.thrust > trim.control.thrust, more);
     }
+}
+
+#[test]
+fn still_air_changes_no_airframe() {
     assert_eq!(Conditions::STILL.airframe(&KNOWN), KNOWN);
 }

@@ -8,8 +8,7 @@ mod common {
 use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
 use common::world::{Disc, scan};
 use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
-use mpp_core::estimate::Conditions;
-use mpp_core::estimate::Measurement;
+use mpp_core::estimate::{Conditions, Measurement};
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Weights};

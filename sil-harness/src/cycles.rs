@@ -117,16 +117,29 @@ pub fn planner(settings: &Settings) -> Result<Box<Planner>, FlyError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::faults::Faults;
     use crate::scenario::Preset;
 
     /// Planned again from what was recorded, every cycle takes the same slices and comes to the same
     /// cost: nothing that goes into a plan is missing.
     #[test]
     fn recorded_cycles_are_those_of_the_flight() {
-        for preset in [Preset::Reference, Preset::Paper, Preset::Flight] {
+        let mut limited = Faults::default();
+        limited.actuators.thrust_max = Some(15.0);
+        limited.actuators.thrust_lag = Some(0.2);
+        limited.actuators.elevator_range = Some(2.0);
+        limited.gusts.intensity = 1.0;
+        let free = Faults::default();
+        for (preset, faults) in [
+            (Preset::Reference, free),
+            (Preset::Paper, free),
+            (Preset::Flight, free),
+            (Preset::Flight, limited),
+        ] {
             let scenario = Scenario {
                 ticks: 500,
                 obstacles: 40,
+                faults,
                 ..Scenario::new(preset, 3)
             };
             let log = fly(&scenario, &mut PipeLink::new(), |_| {}).unwrap();

@@ -94,8 +94,8 @@ fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
     }
 }
 
-/// Limited actuators, gusts, a wrong airframe and a faulty lidar at once: without knowing its lift the
-/// core loses more than a quarter of these flights, with it fewer than a tenth.
+/// Limited actuators, gusts, a wrong airframe and a faulty lidar at once. A core that takes the airframe to
+/// be as told loses more than a quarter of such flights (decision 12).
 #[test]
 fn everything_at_once_is_flown_through_by_most() {
     let faults = Faults {

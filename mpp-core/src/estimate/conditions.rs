@@ -5,7 +5,7 @@ use crate::settings::Settings;
 use crate::vehicle::{AirState, Airframe, Control, Wind};
 
 /// The air, and the aircraft as it flies today.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
     /// Motion of the air.
     pub wind: Wind,
@@ -42,10 +42,10 @@ impl ConditionsEstimator {
     /// An estimator that starts from [`Conditions::STILL`].
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        let lift = || LiftEstimator::new(&settings.airframe);
+        let lift = LiftEstimator::new(&settings.airframe);
         Self {
             wind: WindEstimator::new(settings.wind),
-            lift: settings.wind.map(|_| lift()),
+            lift: settings.wind.is_some().then_some(lift),
         }
     }
 

@@ -1,19 +1,17 @@
 //! How much more lift the wing gives than the airframe that the core knows.
 
+use super::wind::LONGEST;
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY};
 
-/// How long lift must be seen to be believed as much as the airframe that was told [s]: vertical gusts
-/// of 1 m/s move the mean acceleration of so long a time by as much as an error of a tenth in mass, lift
-/// slope and pitch stiffness.
+/// How long lift must be seen to be believed as much as the airframe that was told [s]: gusts move the mean
+/// acceleration of a shorter time by more than errors of the airframe do.
 const DOUBT: f64 = 0.7;
 /// Beyond it, what was seen before is slowly forgotten [s].
 const MEMORY: f64 = 6.0;
-/// Greatest offset that is believed [-]: a quarter of the lift of level flight.
+/// Greatest offset that is believed [-]: somewhat more than a quarter of the lift of level flight.
 const MOST: f64 = 0.4;
 /// Greatest difference in acceleration that is lift [m/s^2]: beyond it the position is wrong.
 const MOST_ACCELERATION: f64 = 20.0;
-/// Longest time between two positions that are compared [s].
-const LONGEST: f64 = 0.05;
 
 /// Offset of the lift coefficient, at the angle of attack that the elevator balances.
 ///

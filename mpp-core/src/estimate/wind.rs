@@ -6,7 +6,7 @@ use crate::vehicle::{AirState, Wind};
 const MOST: f64 = 10.0;
 /// Longest time between two positions that are compared [s]: the motion through the air is taken to
 /// stay over it.
-const LONGEST: f64 = 0.05;
+pub(super) const LONGEST: f64 = 0.05;
 
 /// Low-passed difference between the velocity over ground and the estimated velocity through the
 /// air. An error of the estimate counts as wind too, so that the sum of the two, by which plans
