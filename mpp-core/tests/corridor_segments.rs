@@ -15,6 +15,7 @@ use mpp_core::vehicle::PathState;
 const CRUISE: f64 = 12.0;
 const KEEP: Keep = Keep {
     margin: 0.85,
+    room: 0.0,
     floor: 39.7,
     ceiling: 60.3,
 };
@@ -108,6 +109,43 @@ fn a_segment_whose_ends_keep_the_faces_keeps_the_margin_all_along() {
         }
     }
     assert!(kept > 1_000 && near > 1_000, "{kept} {near}");
+}
+
+/// Of the room that a trajectory has its faces give way by 0.2 m, and in a gap they ask for the margin alone.
+#[test]
+fn faces_keep_the_room_that_the_trajectory_has() {
+    const ROOM: f64 = 1.6;
+    let (mut roomy, mut tight) = (0, 0);
+    for seed in 0..60 {
+        let mut draw = Draw::new(seed);
+        let field = field(&random_map(&mut draw, 100.0, 1));
+        let knots = knots(&mut draw);
+        let margin = separated(&field, &knots, &KEEP);
+        let room = separated(&field, &knots, &Keep { room: ROOM, ..KEEP });
+        let kept = |pair: &[PathState]| {
+            let at = |share: f64| {
+                let (run, rise) = (pair[1].x - pair[0].x, pair[1].z - pair[0].z);
+                field.distance(pair[0].x + share * run, pair[0].z + share * rise)
+            };
+            let least = at(0.0).min(at(0.5)).min(at(1.0));
+            (least - 0.2).clamp(KEEP.margin, ROOM)
+        };
+        for stage in 0..KNOTS {
+            let neighbours = stage.saturating_sub(1)..(stage + 2).min(KNOTS);
+            let more = knots[neighbours].windows(2).map(kept);
+            let most = more.fold(KEEP.margin, f64::max) - KEEP.margin;
+            for (wide, narrow) in margin.bounds[stage].iter().zip(&room.bounds[stage]) {
+                let closer = wide - narrow;
+                assert!(
+                    (-1e-9..=most + 1e-9).contains(&closer),
+                    "{closer} of {most}"
+                );
+                roomy += usize::from(closer > 0.5);
+            }
+            tight += usize::from(most == 0.0);
+        }
+    }
+    assert!(roomy > 100 && tight > 50, "{roomy} {tight}");
 }
 
 /// A segment that has the room may move there: faces are no tighter than the best of eight.

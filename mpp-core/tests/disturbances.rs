@@ -227,6 +227,26 @@ fn plans_ask_for_no_more_than_the_actuators_give() {
     assert!(asked.0 < 2.0 + 1e-9 && asked.1 <= 5.0, "{asked:?}");
 }
 
+/// What a gust takes of its distance, an aircraft that turns little cannot win back.
+#[test]
+fn an_aircraft_that_turns_little_keeps_more_room() {
+    let disc = (135.0, 49.5, 1.0);
+    let clearance = |actuators: ActuatorLimits| {
+        let planner = plan_in(&with_actuators(actuators), &Wind::STILL, &[disc]);
+        let plan = planner.best();
+        (0..450_u32)
+            .filter_map(|tick| plan.sample(plan.start + TICK_PERIOD * f64::from(tick)))
+            .map(|it| libm::hypot(it.state.x - disc.0, it.state.z - disc.1) - disc.2)
+            .fold(f64::INFINITY, f64::min)
+    };
+    let agile = clearance(ActuatorLimits::NONE);
+    let sluggish = clearance(ActuatorLimits {
+        elevator_range: Some(2.0),
+        ..ActuatorLimits::NONE
+    });
+    assert!(agile > 0.3 && sluggish > agile + 0.4, "{agile} {sluggish}");
+}
+
 #[test]
 fn what_the_elevator_balances_is_the_trim_of_another_angle_of_attack() {
     let limits = ActuatorLimits {

@@ -25,6 +25,7 @@ const TASK: LatticeTask = LatticeTask {
     altitude: 50.0,
     band: 10.3,
     curvature: 1.0 / 18.0,
+    room_price: 0.0,
 };
 
 fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) {
@@ -91,8 +92,10 @@ impl Costs<'_> {
             let z = self.task.z + 0.5 * RISE * f64::from(halves);
             let off = z - self.task.altitude;
             let outside = (off.abs() - self.task.band + 0.5).max(0.0);
-            let lack = (1.2 - self.field.distance(x, z)).max(0.0) + outside;
-            let mut price = 10.0 * lack * lack;
+            let distance = self.field.distance(x, z);
+            let lack = (1.2 - distance).max(0.0) + outside;
+            let crowded = (2.0 - distance).max(0.0);
+            let mut price = 10.0 * lack * lack + self.task.room_price * crowded * crowded;
             if ahead < SIGHT && self.field.is_unknown(x, z) {
                 price += 5.0 * (1.0 - ahead / SIGHT);
             }
@@ -144,6 +147,7 @@ fn tasks(draw: &mut Draw) -> LatticeTask {
         z: 50.0 + draw.between(-9.0, 9.0),
         slope: draw.between(-0.9, 0.9),
         curvature: draw.between(0.005, 0.1),
+        room_price: draw.between(-1.0, 2.0).max(0.0),
         ..TASK
     }
 }

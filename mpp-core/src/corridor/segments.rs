@@ -11,6 +11,8 @@ use crate::vehicle::PathState;
 
 /// Obstacles farther than this from a segment [m] do not matter to it.
 const REACH: f64 = 4.0;
+/// Room that a program may use up on its way to a cheaper trajectory [m].
+const GIVE: f64 = 0.2;
 /// Where nothing else is in the way, a trajectory may move by this much [m].
 const FREE: f64 = 60.0;
 
@@ -21,8 +23,10 @@ const DOWN: usize = 4;
 /// What a trajectory keeps to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keep {
-    /// Distance from the centres of occupied cells [m].
+    /// Least distance from the centres of occupied cells [m].
     pub margin: f64,
+    /// Distance that is kept where the trajectory has it [m]; less than the margin asks for nothing more.
+    pub room: f64,
     /// Least height [m].
     pub floor: f64,
     /// Greatest height [m].
@@ -55,11 +59,12 @@ impl Corridor {
             ) else {
                 continue;
             };
+            let distance = kept(field, from, to, keep);
             let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
             field.surface(range(from.x, to.x), range(from.z, to.z), |x, z| {
                 let (direction, vector) = farthest_direction(from, to, x, z);
                 let [up, forward] = *vector;
-                let mut reach = up * (z - start.z) - keep.margin;
+                let mut reach = up * (z - start.z) - distance;
                 reach += forward * (x - start.x - cruise * STAGE_PERIOD * stage as f64);
                 before[direction] = before[direction].min(reach);
                 let later = reach - forward * cruise * STAGE_PERIOD;
@@ -67,6 +72,20 @@ impl Corridor {
             });
         }
     }
+}
+
+/// The distance that a segment keeps [m]. Of the room that a trajectory has, a program may use up
+/// [`GIVE`].
+fn kept(field: &ClearanceField, from: &PathState, to: &PathState, keep: &Keep) -> f64 {
+    if keep.room <= keep.margin {
+        return keep.margin;
+    }
+    let (run, rise) = (to.x - from.x, to.z - from.z);
+    let room = [0.0, 0.5, 1.0]
+        .map(|share| field.distance(from.x + share * run, from.z + share * rise))
+        .into_iter()
+        .fold(keep.room + GIVE, f64::min);
+    (room - GIVE).max(keep.margin)
 }
 
 /// The direction in which a point is farthest beyond both ends of a segment.

@@ -33,6 +33,8 @@ const POINTS: usize = 2 * HEIGHTS - 1;
 /// Clearance to keep [m], and the price of its square where it is less.
 const MARGIN: f64 = 1.2;
 const MARGIN_PRICE: f64 = 10.0;
+/// Clearance that an aircraft which turns little should have where there is room for it [m].
+pub const ROOM: f64 = 2.0;
 /// Price of a point of which nothing is known, falling to nothing at [`SIGHT`] [m] ahead.
 const UNKNOWN_PRICE: f64 = 5.0;
 /// Distance ahead up to which it matters that nothing is known [m].
@@ -72,6 +74,8 @@ pub struct LatticeTask {
     pub band: f64,
     /// Greatest curvature of a path [1/m].
     pub curvature: f64,
+    /// Price of a squared lack of [`ROOM`] [1/m^2].
+    pub room_price: f64,
 }
 
 /// The search and its tables.
@@ -102,6 +106,7 @@ impl Lattice {
                 altitude: 0.0,
                 band: 0.0,
                 curvature: 0.0,
+                room_price: 0.0,
             },
             spacing: SPACING,
             slope_step: 0.0,
@@ -223,8 +228,10 @@ impl Lattice {
                 let z = task.z + 0.5 * RISE * (point as f64 - f64::from(2 * MIDDLE));
                 let from_altitude = z - task.altitude;
                 let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
-                let lack = (MARGIN - field.distance(task.x + ahead, z)).max(0.0) + outside;
-                let mut cost = MARGIN_PRICE * lack * lack;
+                let distance = field.distance(task.x + ahead, z);
+                let lack = (MARGIN - distance).max(0.0) + outside;
+                let crowded = (ROOM - distance).max(0.0);
+                let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
                 if ahead < SIGHT && field.is_unknown(task.x + ahead, z) {
                     cost += UNKNOWN_PRICE * (1.0 - ahead / SIGHT);
                 }

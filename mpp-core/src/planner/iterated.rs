@@ -29,6 +29,11 @@ const PLANNED_SHARE: f64 = 0.9;
 /// What programs keep beyond the margin [m], so that their roll-outs still keep it.
 const ROUNDING: f64 = 0.05;
 
+/// How many margins programs keep at most, where a candidate has the room.
+const MOST_MARGINS: f64 = 2.0;
+/// Price of a squared lack of [`crate::plan::ROOM`] [1/m^2] for an aircraft that cannot turn at all.
+const ROOM_PRICE: f64 = 2.0;
+
 /// Beams of a scan that one slice takes in.
 const BEAMS_PER_SLICE: usize = 16;
 
@@ -127,6 +132,7 @@ impl Planner {
             altitude,
             band: iteration.band,
             curvature: self.curvature(&limits),
+            room_price: self.room_price(),
         });
         self.phase = Phase::Lattice;
     }
@@ -134,11 +140,27 @@ impl Planner {
     /// What rounds and attitude go by, within what the actuators can do.
     fn limits(&self) -> Option<(Iteration, AttitudeLimits)> {
         let (mut iteration, mut attitude) = (self.settings.iteration?, self.settings.attitude?);
-        let most = PLANNED_SHARE * self.actuators.angle_of_attack(&self.airframe);
-        attitude.angle_of_attack = attitude.angle_of_attack.min(most);
+        attitude.angle_of_attack = attitude.angle_of_attack.min(self.balanced());
         let most = self.actuators.thrust_max.unwrap_or(f64::INFINITY);
         iteration.thrust_max = iteration.thrust_max.min(most);
         Some((iteration, attitude))
+    }
+
+    /// Angle of attack about trim that the elevator balances for plans [rad].
+    fn balanced(&self) -> f64 {
+        PLANNED_SHARE * self.actuators.angle_of_attack(&self.airframe)
+    }
+
+    /// What it balances of the angle of attack that plans may use, at most all of it [-].
+    fn agility(&self) -> f64 {
+        let allowed = self.settings.attitude.map_or(0.0, |it| it.angle_of_attack);
+        (self.balanced() / allowed).min(1.0)
+    }
+
+    /// Price of a squared lack of room [1/m^2]. What gusts take, an agile aircraft wins back at once; one
+    /// that turns little has to have some room in hand.
+    pub(super) fn room_price(&self) -> f64 {
+        ROOM_PRICE * (1.0 - self.agility())
     }
 
     /// Curvature [1/m] that the angle of attack allows in level flight at cruise.
@@ -187,6 +209,12 @@ impl Planner {
             self.phase = Phase::Done;
             return;
         };
+        let keep = Keep {
+            margin: iteration.margin + ROUNDING,
+            room: iteration.margin * (1.0 / self.agility()).min(MOST_MARGINS),
+            floor: self.settings.altitude - iteration.band,
+            ceiling: self.settings.altitude + iteration.band,
+        };
         let work = &mut self.iterated;
         if work.improvements == work.candidates.len() {
             work.order = order(&work.candidates);
@@ -195,11 +223,6 @@ impl Planner {
         let Some(candidate) = turn.and_then(|index| work.candidates.get(index)) else {
             self.phase = Phase::Done;
             return;
-        };
-        let keep = Keep {
-            margin: iteration.margin + ROUNDING,
-            floor: self.settings.altitude - iteration.band,
-            ceiling: self.settings.altitude + iteration.band,
         };
         let cruise = self.trim.state.airspeed;
         self.corridor

@@ -4,7 +4,7 @@
 use super::Planner;
 use super::candidate::Candidate;
 use crate::config::{KNOTS, STAGES};
-use crate::plan::SIGHT;
+use crate::plan::{ROOM, SIGHT};
 use crate::settings::Iteration;
 
 /// Points of a stage at which the clearance of a roll-out is looked at.
@@ -31,6 +31,7 @@ impl Planner {
         let field = &self.iterated.field;
         let lattice = &self.iterated.lattice;
         let via = lattice.via();
+        let room_price = self.room_price();
         let (mut lack, mut price) = (0.0_f64, 0.0);
         for (stage, pair) in flown.knots.windows(2).enumerate() {
             let [from, to] = pair else { continue };
@@ -45,9 +46,12 @@ impl Planner {
                 let (x, z) = (from.x + run * share, from.z + rise * share);
                 let weight = if x > via { FAR_SHARE } else { 1.0 };
                 let outside = ((z - self.settings.altitude).abs() - iteration.band).max(0.0);
-                let missing = (iteration.margin - field.distance(x, z)).max(0.0) + outside;
+                let distance = field.distance(x, z);
+                let missing = (iteration.margin - distance).max(0.0) + outside;
+                let crowded = (ROOM - distance).max(0.0);
                 lack = lack.max(missing);
                 price += weight * LACK_PRICE * discount * missing * missing;
+                price += weight * room_price * discount * crowded * crowded;
                 let ahead = x - self.state.x;
                 if ahead < SIGHT && field.is_unknown(x, z) {
                     price += weight * UNKNOWN_PRICE * (1.0 - ahead / SIGHT);
