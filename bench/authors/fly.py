@@ -85,6 +85,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.change and (options.as_published or options.paths != [0]):
         parser.error("--change is for the compiled baseline: --paths 0, no --as-published")
+    start(options)  # What is missing is said here, not by every process.
     seeds = range(options.seed, options.seed + options.trials)
     cells = [(p, o, s) for s in seeds for p in options.paths for o in options.obstacles]
     with ProcessPoolExecutor(options.jobs, initializer=start, initargs=(options,)) as pool:
