@@ -53,10 +53,6 @@ class Commands:
         commands.states[0] = state
         return commands
 
-    def arrays(self) -> tuple[np.ndarray, ...]:
-        """In the order of their functions' arguments and results."""
-        return self.thrust, self.elevator, self.x, self.z, self.states
-
 
 Planner = Callable[[Any, np.ndarray, Commands, int], Commands]
 """Makes commands of drone, grid, the commands so far and the tick."""
@@ -87,7 +83,8 @@ def paths_planner(paths: int) -> Planner:
 
     def plan(drone: Any, grid: np.ndarray, commands: Commands, tick: int) -> Commands:
         level, elevator = level_flight(drone)
-        before = drone, grid, *commands.arrays()[:4], level, commands.states
+        so_far = commands.thrust, commands.elevator, commands.x, commands.z
+        before = drone, grid, *so_far, level, commands.states
         after = THRUST, elevator, TICKS, tick
         if paths == 0:
             return Commands(*mpp.TrajGenRRT(*before, *after))

@@ -39,6 +39,16 @@ fn knots(draw: &mut Draw) -> Knots {
     })
 }
 
+/// Fields with a trajectory each, and what else to draw.
+fn scenes() -> impl Iterator<Item = (Draw, ClearanceField, Knots)> {
+    (0..60).map(|seed| {
+        let mut draw = Draw::new(seed);
+        let field = field(&random_map(&mut draw, 100.0, 1));
+        let knots = knots(&mut draw);
+        (draw, field, knots)
+    })
+}
+
 /// By how much a place keeps the faces of a stage [m]; negative where it does not.
 fn slack(corridor: &Corridor, knots: &Knots, stage: usize, (x, z): (f64, f64)) -> f64 {
     let level = knots[0].x + CRUISE * STAGE_PERIOD * stage as f64;
@@ -75,10 +85,7 @@ fn about(field: &ClearanceField, from: &PathState, to: &PathState) -> Vec<(f64, 
 #[test]
 fn a_segment_whose_ends_keep_the_faces_keeps_the_margin_all_along() {
     let (mut near, mut kept) = (0, 0);
-    for seed in 0..60 {
-        let mut draw = Draw::new(seed);
-        let field = field(&random_map(&mut draw, 100.0, 1));
-        let knots = knots(&mut draw);
+    for (mut draw, field, knots) in scenes() {
         let corridor = separated(&field, &knots, &KEEP);
         for stage in 0..KNOTS - 1 {
             let (from, to) = (&knots[stage], &knots[stage + 1]);
@@ -116,10 +123,7 @@ fn a_segment_whose_ends_keep_the_faces_keeps_the_margin_all_along() {
 fn faces_keep_the_room_that_the_trajectory_has() {
     const ROOM: f64 = 1.6;
     let (mut roomy, mut tight) = (0, 0);
-    for seed in 0..60 {
-        let mut draw = Draw::new(seed);
-        let field = field(&random_map(&mut draw, 100.0, 1));
-        let knots = knots(&mut draw);
+    for (_, field, knots) in scenes() {
         let margin = separated(&field, &knots, &KEEP);
         let room = separated(&field, &knots, &Keep { room: ROOM, ..KEEP });
         let kept = |pair: &[PathState]| {
@@ -152,10 +156,7 @@ fn faces_keep_the_room_that_the_trajectory_has() {
 #[test]
 fn a_trajectory_well_away_from_everything_keeps_its_own_faces() {
     let mut clear = 0;
-    for seed in 0..60 {
-        let mut draw = Draw::new(seed);
-        let field = field(&random_map(&mut draw, 100.0, 1));
-        let knots = knots(&mut draw);
+    for (_, field, knots) in scenes() {
         let corridor = separated(&field, &knots, &KEEP);
         for stage in 0..KNOTS {
             let neighbours = stage.saturating_sub(1)..(stage + 2).min(KNOTS);
@@ -176,7 +177,7 @@ fn a_trajectory_well_away_from_everything_keeps_its_own_faces() {
                 clear += 1;
                 let at = (knots[stage].x, knots[stage].z);
                 let slack = slack(&corridor, &knots, stage, at);
-                assert!(slack >= 0.0, "{slack} at stage {stage} of seed {seed}");
+                assert!(slack >= 0.0, "{slack} at stage {stage} of {knots:?}");
             }
         }
     }
