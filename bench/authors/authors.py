@@ -1,7 +1,7 @@
-"""The authors' code, loaded from a checkout of it and flown as their notebook flies it.
+"""The authors' code. It is loaded from a checkout and flown as their notebook flies it.
 
-Two things are done once where they do them often, to the same numbers: the lidar scans and the grid is
-filled only where a plan uses them, and the direction search of the raytrace is compiled (`search.py`).
+Two things are done once where the authors do them often, to the same numbers. The lidar scans and the grid
+is filled only where a plan uses them, and the direction search of the raytrace is compiled (`search.py`).
 """
 
 import contextlib
@@ -19,23 +19,23 @@ from typing import Any
 import numpy as np
 
 THRUST = 4.3
-"""What they call the thrust of level flight [N]."""
+"""The thrust that the authors take for level flight [N]."""
 TICKS = 2000
 """Length of a flight [ticks of 10 ms]."""
 REPLAN = 100
-"""From one plan to the next [ticks]."""
+"""Time from one plan to the next [ticks]."""
 
 mpp: Any = None
-"""Their module `ConvexMotionPlanning`."""
+"""The authors' module `ConvexMotionPlanning`."""
 
 
 class NoPath(Exception):
-    """The search found no way at all."""
+    """The search found no path."""
 
 
 @dataclass
 class Commands:
-    """What they fly, for every tick of a flight."""
+    """The authors' commands for every tick of a flight."""
 
     thrust: np.ndarray
     elevator: np.ndarray
@@ -46,7 +46,7 @@ class Commands:
 
     @classmethod
     def of(cls, thrust: float, elevator: float, state: list[float]) -> "Commands":
-        """The same thrust and elevator throughout; as theirs, a state for the first tick only."""
+        """Constant thrust and elevator. As in the authors' code, only the first tick has a state."""
         commands = cls(*(np.zeros(TICKS) for _ in range(4)), np.zeros((TICKS, 4)))
         commands.thrust += thrust
         commands.elevator += elevator
@@ -55,12 +55,12 @@ class Commands:
 
 
 Planner = Callable[[Any, np.ndarray, Commands, int], Commands]
-"""Makes commands of drone, grid, the commands so far and the tick."""
+"""A function of drone, grid, the commands so far and the tick. It returns new commands."""
 
 
 def load(checkout: Path, rrtplanner: Path) -> None:
-    """Makes their modules importable. The file of `rrtplanner` is loaded alone: its package asks for
-    a noise generator, theirs for a solver (Mosek), and neither is used."""
+    """Makes the authors' modules importable. The file of `rrtplanner` is loaded alone. Its package asks for
+    a noise generator, and the authors' package asks for a solver (Mosek); neither is used."""
     global mpp
     warnings.filterwarnings("ignore")
     path = rrtplanner / "rrtplanner" / "rrt.py"
@@ -79,7 +79,7 @@ def load(checkout: Path, rrtplanner: Path) -> None:
 
 
 def paths_planner(paths: int) -> Planner:
-    """Their MPP with so many paths, or their baseline (0)."""
+    """The authors' MPP with this number of paths, or their baseline (0)."""
 
     def plan(drone: Any, grid: np.ndarray, commands: Commands, tick: int) -> Commands:
         level, elevator = level_flight(drone)
@@ -94,13 +94,13 @@ def paths_planner(paths: int) -> Planner:
 
 
 def level_flight(drone: Any) -> tuple[list[float], float]:
-    """Their state of level flight, and its elevator."""
+    """The authors' state of level flight, and its elevator."""
     state = drone.coherentCommand(THRUST, 0.0)
     return state, drone.elevatorFromAlpha(state[1] - state[3])
 
 
 def fly(seed: int, obstacles: int, plan: Planner) -> dict[str, Any]:
-    """One flight of 20 s; any exception of the planner ends it, as in their notebook."""
+    """One flight of 20 s. As in the authors' notebook, any exception of the planner ends it."""
     from configurations import defaultConfig
     from Drone import Drone
 
@@ -126,7 +126,7 @@ def fly(seed: int, obstacles: int, plan: Planner) -> dict[str, Any]:
             elif replans:
                 try:
                     commands = plan(drone, grid, commands, tick)
-                except Exception:  # noqa: BLE001 (their rule)
+                except Exception:  # noqa: BLE001 (the authors' rule)
                     ended = "exception"
             if ended:
                 break
@@ -134,7 +134,7 @@ def fly(seed: int, obstacles: int, plan: Planner) -> dict[str, Any]:
 
 
 def cause(drone: Any) -> str:
-    """Which of their limits ended a flight. Those on speed and pitch rate are not in the paper."""
+    """The limit of the authors that ended a flight. The paper has no limits on speed and pitch rate."""
     x, z, speed, pitch, rate, slope = drone.plant.state
     centre_x, centre_z, radius = drone.objects
     plant = drone.plant

@@ -1,4 +1,4 @@
-"""Their baseline, in which what ours does otherwise can be exchanged, one thing at a time."""
+"""The authors' baseline. Each of its differences from ours can be exchanged separately."""
 
 import math
 from functools import lru_cache
@@ -24,7 +24,7 @@ PATHS = 25
 
 
 def planner(changes: set[str]) -> authors.Planner:
-    """The baseline with these changes; without any it flies as `TrajGenRRT` does."""
+    """The baseline with these changes. Without changes it flies as `TrajGenRRT` does."""
 
     def plan(drone: Any, grid: np.ndarray, _: Commands, tick: int) -> Commands:
         path = shortest_of_many(drone, grid) if "paths" in changes else search.straight_ahead(drone, grid)
@@ -51,12 +51,12 @@ def planner(changes: set[str]) -> authors.Planner:
 
 @lru_cache(maxsize=1)
 def steady_flight(drone: Any, changes: frozenset[str]) -> Any:
-    """A function from slope to (airspeed, pitch, pitch rate, slope, thrust, elevator)."""
+    """Returns a function from slope to (airspeed, pitch, pitch rate, slope, thrust, elevator)."""
     cruise = authors.level_flight(drone)[0][0]
     weight = drone.m * drone.g
 
     def forces(attack: float, slope: float, speed: float, thrust: float) -> tuple[float, float]:
-        """Along and across the path, none in steady flight [N]."""
+        """Forces along and across the path; both are 0 in steady flight [N]."""
         lift = drone.Cl_0 + drone.Cl_alpha * attack
         drag = drone.Cd_0 + drone.K * lift**2
         pressure = 0.5 * drone.rhoNom * speed**2 * drone.S
@@ -75,7 +75,7 @@ def steady_flight(drone: Any, changes: frozenset[str]) -> Any:
             pitch, speed = zero.x[0] + slope, zero.x[1]
         else:
             speed, pitch, _, _ = drone.coherentCommand(THRUST, slope)
-        # Theirs takes the pitch for the angle of attack.
+        # The authors' code takes the pitch for the angle of attack.
         elevator = drone.elevatorFromAlpha(pitch - slope if "reference" in changes else pitch)
         return speed, pitch, 0.0, slope, thrust, elevator
 
@@ -83,7 +83,7 @@ def steady_flight(drone: Any, changes: frozenset[str]) -> Any:
 
 
 def shortest_of_many(drone: Any, grid: np.ndarray) -> np.ndarray:
-    """The shortest of 25 paths of their RRT*-AR: segments by ends by (row, column)."""
+    """The shortest of 25 paths of the authors' RRT*-AR: segments by ends by (row, column)."""
     cells, column = search.window(drone, grid)
     middle, goal = search.HALF_HEIGHT, column + search.AHEAD
     goals = [[goal, height] for height in (middle, middle / 2, middle / 2, middle * 1.5)]

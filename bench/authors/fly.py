@@ -1,6 +1,6 @@
-"""Flies the authors' own code: success over obstacles, beside what the paper publishes.
+"""Flies the authors' own code: success over obstacles, beside the results that the paper publishes.
 
-Rows are a flight each, the table follows; README.md says how to set it up.
+Each row is a flight, and the table follows. README.md tells how to set it up.
 """
 
 import argparse
@@ -27,11 +27,11 @@ PUBLISHED = {
     1: {0: 100, 5: 91, 10: 67, 15: 51, 20: 35},
     0: {0: 100, 5: 67, 10: 28, 15: 25, 20: 18},
 }
-"""Successes of 100 flights by paths and obstacles (their figure 8)."""
+"""Successes of 100 flights by paths and obstacles (the authors' figure 8)."""
 
 
 def start(options: argparse.Namespace) -> None:
-    """What every process does first."""
+    """Prepares each process."""
     authors.load(options.mpp, options.rrtplanner)
     if not options.as_published:
         authors.mpp.singleRay = search.ray
@@ -48,7 +48,7 @@ def fly(options: argparse.Namespace, cell: tuple[int, int, int]) -> dict[str, An
 
 
 def report(rows: list[dict[str, Any]], compares: bool) -> None:
-    """A line a cell: successes, Wilson interval, published rate, what ended the others."""
+    """Prints a line for each cell: successes, Wilson interval, published rate, ends of the others."""
     for paths, obstacles in sorted({(row["paths"], row["obstacles"]) for row in rows}):
         cell = [row for row in rows if (row["paths"], row["obstacles"]) == (paths, obstacles)]
         good, count = sum(row["ended"] is None for row in cell), len(cell)
@@ -64,28 +64,28 @@ def report(rows: list[dict[str, Any]], compares: bool) -> None:
 
 
 def numbers(text: str) -> list[int]:
-    """A list with commas."""
+    """Reads a list with commas."""
     return [int(number) for number in text.split(",")]
 
 
 def main() -> None:
     """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--mpp", type=Path, default=Path("out/authors/mpp"), help="their code")
+    parser.add_argument("--mpp", type=Path, default=Path("out/authors/mpp"), help="the authors' code")
     parser.add_argument("--rrtplanner", type=Path, default=Path("out/authors/rrtplanner"))
-    parser.add_argument("--paths", type=numbers, default=[0], help="25,5,1; 0 is their baseline")
+    parser.add_argument("--paths", type=numbers, default=[0], help="25,5,1; 0 is the authors' baseline")
     parser.add_argument("--obstacles", type=numbers, default=[0, 5, 10, 15, 20])
     parser.add_argument("--trials", type=int, default=300)
-    parser.add_argument("--seed", type=int, default=0, help="of the first flight of a cell")
+    parser.add_argument("--seed", type=int, default=0, help="seed of the first flight of a cell")
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--as-published", action="store_true", help="nothing compiled: slow")
+    parser.add_argument("--as-published", action="store_true", help="compile nothing, which is slow")
     changes = "; ".join(f"{name}: {what}" for name, what in baseline.CHANGES.items())
     parser.add_argument("--change", action="append", choices=baseline.CHANGES, default=[], help=changes)
-    parser.add_argument("--out", type=Path, help="a row a flight, as JSON lines")
+    parser.add_argument("--out", type=Path, help="file for the rows, one flight per row, as JSON lines")
     options = parser.parse_args()
     if options.change and (options.as_published or options.paths != [0]):
         parser.error("--change is for the compiled baseline: --paths 0, no --as-published")
-    start(options)  # What is missing is said here, not by every process.
+    start(options)  # A missing file is reported here, not by every process.
     seeds = range(options.seed, options.seed + options.trials)
     cells = [(p, o, s) for s in seeds for p in options.paths for o in options.obstacles]
     with ProcessPoolExecutor(options.jobs, initializer=start, initargs=(options,)) as pool:

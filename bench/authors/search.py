@@ -1,4 +1,4 @@
-"""Their searches, compiled: the same draws give the same paths and hits to the last digit."""
+"""The authors' searches, compiled. The same draws give the same paths and hits to the last digit."""
 
 import math
 from typing import Any
@@ -17,16 +17,16 @@ AHEAD = 54
 
 
 def window(drone: Any, grid: np.ndarray) -> tuple[np.ndarray, int]:
-    """The part of the grid that is searched, and the aircraft's column; its row is the middle one."""
+    """The part of the grid that is searched, and the aircraft's column. Its row is the middle one."""
     column, row = drone.ogOrigin
     return np.ascontiguousarray(grid[row - HALF_HEIGHT : row + HALF_HEIGHT, :COLUMNS]), column
 
 
 def straight_ahead(drone: Any, grid: np.ndarray) -> np.ndarray:
-    """The path of their baseline: segments by ends by (row, column).
+    """The path of the authors' baseline: segments by ends by (row, column).
 
-    As `rrtplanner` 0.1.2: nodes are cells, each taken once; a new node looks for its best parent; what its
-    documentation calls the rewiring of the tree compares a cost with itself plus a length, and never happens.
+    This is the method of `rrtplanner` 0.1.2. Nodes are cells, each taken once, and a new node looks for its
+    best parent. The documented rewiring compares a cost with itself plus a length, so it never happens.
     """
     cells, column = window(drone, grid)
     free = np.argwhere(cells == 0)
@@ -78,7 +78,7 @@ def _search(cells, draws, start, goal):  # type: ignore[no-untyped-def]
 
 @nb.njit
 def _is_clear(cells, start, end):  # type: ignore[no-untyped-def]
-    """Bresenham's line."""
+    """Checks the cells of Bresenham's line."""
     row, column = start[0], start[1]
     rows, columns = abs(end[0] - row), abs(end[1] - column)
     down = 1 if row < end[0] else -1
@@ -98,7 +98,7 @@ def _is_clear(cells, start, end):  # type: ignore[no-untyped-def]
 
 
 def ray(origin: Any, direction: np.ndarray, grid: np.ndarray, limit: float = 10) -> np.ndarray:
-    """Their `singleRay`, which changes zeros of the direction it is given."""
+    """The authors' `singleRay`, which changes zeros of the given direction."""
     direction[direction == 0] = 10**-8
     return _ray(np.array(origin, dtype=float), direction, grid, limit)
 

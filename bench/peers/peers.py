@@ -1,6 +1,6 @@
-"""Public QP solvers beside ours on the same exported programs: one table.
+"""Compares public QP solvers with ours on the same exported programs, in one table.
 
-Every solver works on one thread, cold, and on the form that suits it; README.md says how to run.
+Every solver works on one thread, cold, and on the form that suits it. README.md tells how to run it.
 """
 
 import os
@@ -34,7 +34,7 @@ HEADER = (
 )
 MEDIAN = HEADER.index("median us")
 FEASIBLE = 1e-11
-"""Row error up to which a solution is feasible enough to be the best."""
+"""Row error up to which a solution may be the best one."""
 EXPLANATION = """\
 Times are the best of several cold runs of each program, on one thread; clock `native`: the
 solver's own, `python`: around the call. Verdict errors include missing ones (in brackets); ties
@@ -53,18 +53,18 @@ class Tally:
     failure: str = ""
 
     def ask(self, program: Program) -> None:
-        """Runs the solver several times and keeps the fastest; any exception ends its part."""
+        """Runs the solver several times and keeps the fastest run. Any exception ends this solver's part."""
         if self.failure:
             return
         try:
             runs = [self.peer.solve(program) for _ in range(self.peer.runs)]
-        except Exception as error:  # a solver may raise anything: the table has to say so
+        except Exception as error:  # a solver may raise anything, and the table must show it
             self.failure = f"{type(error).__name__} at {program.name}: {error}"
             return
         self.answers.append(min(runs, key=lambda answer: answer.seconds))
 
     def row(self, programs: Sequence[Program], best: Sequence[float | None]) -> list[str]:
-        """Its line of the table."""
+        """The solver's line of the table."""
         start = [self.peer.name, release(self.peer.package), self.peer.form]
         if self.failure:
             return failed(start, self.failure)
@@ -101,7 +101,7 @@ def percentile(ordered: Sequence[float], percent: int) -> float:
 
 
 def best_cost(program: Program, answers: Sequence[Answer]) -> float | None:
-    """The least cost of answers that are feasible; else the recorded one, if any."""
+    """The least cost of feasible answers, or else the recorded cost, if there is one."""
     judged = [program.judge(a.controls) for a in answers if a.controls is not None]
     costs = [cost for cost, excess in judged if excess <= FEASIBLE]
     return min(costs, default=program.record["cost"])
@@ -110,7 +110,7 @@ def best_cost(program: Program, answers: Sequence[Answer]) -> float | None:
 def ask_ours(
     programs: Sequence[Program], best: Sequence[float | None], harness: Path | None
 ) -> list[str]:
-    """The line of our own solver, which the harness runs and judges by what we know."""
+    """The line of our own solver. The harness runs it and judges it by the best known costs."""
     start = ["mpp", "this tree", "own"]
     with tempfile.NamedTemporaryFile("w", suffix=".jsonl", encoding="utf-8") as file:
         for program, cost in zip(programs, best, strict=True):
@@ -136,7 +136,7 @@ def ask_ours(
 
 
 def failed(start: Sequence[str], reason: str) -> list[str]:
-    """The line of a solver that could not run: the reason instead of what is timed."""
+    """The line of a solver that could not run, with the reason in place of the times."""
     short = " ".join(reason.replace("|", "/").split())[:80]
     print(f"{start[0]}: {reason}", file=sys.stderr)
     return [*start, "-", f"failed: {short}", *["-"] * (len(HEADER) - 5)]
@@ -163,19 +163,19 @@ def processor() -> str:
 
 
 def arguments() -> argparse.Namespace:
-    """The command line."""
+    """Reads the command line."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     names = ", ".join(["mpp", *(peer.name for peer in PEERS)])
-    parser.add_argument("--instances", type=Path, required=True, help="an export of `bench qp`")
-    parser.add_argument("--limit", type=int, help="take this many programs from its start")
-    parser.add_argument("--harness", type=Path, help="built harness (default: cargo run)")
-    parser.add_argument("--markdown", type=Path, help="write the report to this file, too")
+    parser.add_argument("--instances", type=Path, required=True, help="file that `bench qp --export` wrote")
+    parser.add_argument("--limit", type=int, help="use this number of programs from the file's start")
+    parser.add_argument("--harness", type=Path, help="program of the harness (default: cargo run)")
+    parser.add_argument("--markdown", type=Path, help="also write the report to this file")
     parser.add_argument("--only", metavar="NAME,...", help=f"solvers to run: {names}")
     return parser.parse_args()
 
 
 def main() -> None:
-    """Runs everything and prints the table."""
+    """Runs all solvers and prints the table."""
     args = arguments()
     only = set(args.only.split(",")) if args.only else {"mpp", *(peer.name for peer in PEERS)}
     tallies = [Tally(peer) for peer in PEERS if peer.name in only]

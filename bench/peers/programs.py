@@ -1,4 +1,4 @@
-"""Programs as `bench qp --export` writes them, in the forms that solvers take, and their truth."""
+"""Programs as `bench qp --export` writes them, in the forms that solvers take, and their margins."""
 
 import json
 from collections.abc import Iterator
@@ -24,7 +24,7 @@ TIE = 1e-7
 
 @dataclass(frozen=True)
 class Full:
-    """Nothing eliminated: min v'Pv/2 + q'v, A v = b, G v <= h, v = (x_0, u_0, x_1, ..., x_18)."""
+    """Full form: min v'Pv/2 + q'v, A v = b, G v <= h, v = (x_0, u_0, x_1, ..., x_18)."""
 
     P: sparse.csc_matrix
     q: Array
@@ -42,7 +42,7 @@ class Full:
 
 @dataclass(frozen=True)
 class Condensed:
-    """States eliminated: min u'Hu/2 + f'u, G u <= h, u = (u_0, ..., u_17); all dense."""
+    """Form without states: min u'Hu/2 + f'u, G u <= h, u = (u_0, ..., u_17); all dense."""
 
     H: Array
     f: Array
@@ -59,12 +59,12 @@ class Program:
     """One program."""
 
     def __init__(self, line: str) -> None:
-        """Reads a line of an export."""
+        """Reads a program from a line of an export."""
         self.record: dict[str, Any] = json.loads(line)
         record = self.record
         self.name: str = record["name"]
         self.soft = record["penalty"] is not None
-        self.a, self.b = np.array(record["a"]), np.array(record["b"])
+        self.a, self.b, self.offset = (_stages(record[name]) for name in ("a", "b", "offset"))
         self.control_weight = np.tile(record["control_weight"], STAGES)
         self.terminal_weight: float = record["terminal_weight"]
         self.initial, self.target = np.array(record["initial"]), np.array(record["target"])
@@ -87,11 +87,10 @@ class Program:
         dynamics[:STATES, x[0]] = np.eye(STATES)
         for stage in range(STAGES):
             rows = slice((stage + 1) * STATES, (stage + 2) * STATES)
-            dynamics[rows, x[stage]] = self.a
-            dynamics[rows, places[stage, STATES:]] = self.b
+            dynamics[rows, x[stage]] = self.a[stage]
+            dynamics[rows, places[stage, STATES:]] = self.b[stage]
             dynamics[rows, x[stage + 1]] = -np.eye(STATES)
-        right = np.zeros(KNOTS * STATES)
-        right[:STATES] = self.initial
+        right = np.concatenate([self.initial, -self.offset.ravel()])
         inequalities = np.zeros((len(self.bounds), count))
         inequalities[:, x.ravel()] = self.state_rows
         inequalities[:, u] = self.control_rows
@@ -114,23 +113,23 @@ class Program:
 
     @cached_property
     def _response(self) -> tuple[Array, Array]:
-        """All states without control, and what they gain from each control."""
+        """All states without control, and their changes by each control."""
         free, forced = [self.initial], [np.zeros((STATES, STAGES * CONTROLS))]
         for stage in range(STAGES):
-            free.append(self.a @ free[-1])
-            gain = self.a @ forced[-1]
-            gain[:, stage * CONTROLS : (stage + 1) * CONTROLS] += self.b
+            free.append(self.a[stage] @ free[-1] + self.offset[stage])
+            gain = self.a[stage] @ forced[-1]
+            gain[:, stage * CONTROLS : (stage + 1) * CONTROLS] += self.b[stage]
             forced.append(gain)
         return np.concatenate(free), np.concatenate(forced)
 
     @cached_property
     def feasible(self) -> bool | None:
-        """Whether the rows can hold together; none for a tie."""
+        """Whether the rows can hold together; `None` for a tie."""
         return None if abs(self.margin) < TIE else self.margin < 0.0
 
     @cached_property
     def margin(self) -> float:
-        """The least t by which all rows must be relaxed to hold: as recorded, or by HiGHS."""
+        """The least t by which all rows must be relaxed to hold: the recorded one, or else that of HiGHS."""
         if self.record["margin"] is not None:
             return float(self.record["margin"])
         form = self.full
@@ -143,7 +142,7 @@ class Program:
         return float(result.fun)
 
     def judge(self, controls: Array) -> tuple[float, float]:
-        """Cost of controls, and the worst violation of a row where the dynamics then lead."""
+        """Cost of controls, and the worst violation of a row when the dynamics follow these controls."""
         free, forced = self._response
         states = free + forced @ controls
         miss = states[-STATES:] - self.target
@@ -153,13 +152,19 @@ class Program:
 
 
 def read_programs(path: Path, limit: int | None) -> list[Program]:
-    """The first programs of an export, all without a limit."""
+    """Reads the first programs of an export, or all of them without a limit."""
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
     return [Program(line) for line in lines[:limit]]
 
 
+def _stages(given: list[Any]) -> Array:
+    """Returns one array for each stage. A single array holds for all stages."""
+    stages = np.array(given)
+    return np.broadcast_to(stages, (STAGES, *stages.shape[1:]))
+
+
 def _rows(record: dict[str, Any]) -> Iterator[tuple[Array, Array, float | None]]:
-    """Inequality rows: factors of states [19][6] and of controls [18][2], bound (none: no row)."""
+    """Inequality rows: factors of states [19][6] and of controls [18][2], bound (`None`: no row)."""
 
     def row() -> tuple[Array, Array]:
         return np.zeros((KNOTS, STATES)), np.zeros((STAGES, CONTROLS))

@@ -1,6 +1,6 @@
-"""The public solvers: each solves one program once, cold, and says how long that took.
+"""The public solvers. Each solves one program once, cold, and returns its time.
 
-Packages are imported where they are used, so that a missing one only costs its own line.
+Packages are imported where they are used, so that a missing package only costs its own line.
 """
 
 from collections.abc import Callable
@@ -17,13 +17,13 @@ from programs import Array, Condensed, Full, Program
 
 @dataclass(frozen=True)
 class Answer:
-    """What a solver made of a program."""
+    """A solver's answer to a program."""
 
     seconds: float
     feasible: bool | None
-    """Its verdict; none if it has none."""
+    """The solver's verdict; `None` if it has no verdict."""
     controls: Array | None
-    """All controls in order, if it calls the program feasible."""
+    """All controls in order, if the solver calls the program feasible."""
 
 
 @dataclass(frozen=True)
@@ -34,21 +34,21 @@ class Peer:
     package: str
     form: str
     clock: str
-    """`native`: the solver's own; `python`: around the call."""
+    """Clock of the times: `native` is the solver's own, `python` is around the call."""
     timed: str
-    """What the time contains."""
+    """Content of the time."""
     runs: int
     solve: Callable[[Program], Answer]
 
 
 def answer(seconds: float, solved: bool, infeasible: bool, controls: Array) -> Answer:
-    """An answer from what solvers report: solved, infeasible or neither."""
+    """Makes an answer from a solver's report: solved, infeasible or neither."""
     verdict = solved if solved or infeasible else None
     return Answer(seconds, verdict, np.array(controls, dtype=float) if solved else None)
 
 
 def clarabel(program: Program) -> Answer:
-    """Clarabel; its own time would contain the set-up."""
+    """Clarabel. Its own time would contain the set-up."""
     import clarabel as package
 
     form = program.full
@@ -96,22 +96,22 @@ def daqp(program: Program) -> Answer:
 
 
 class DaqpModel:
-    """DAQP with a workspace that is set up once and then gets each program's vectors."""
+    """DAQP with a workspace that is set up once. It then gets each program's vectors."""
 
     def __init__(self, with_update: bool) -> None:
-        """`with_update`: time the update too, which DAQP itself does not."""
+        """`with_update`: the time includes the update, which DAQP itself does not time."""
         self.with_update = with_update
         self.form: Condensed | None = None
 
     def __call__(self, program: Program) -> Answer:
-        """Solves a program, from no active rows."""
+        """Solves a program, starting without active rows."""
         import daqp as package
 
         form, old = program.condensed, self.form
         fits = old is not None and np.array_equal(old.H, form.H) and np.array_equal(old.G, form.G)
         if not fits:
             self.form, self.model = form, package.Model()
-            # Bounds that surely hold: DAQP refuses to set up with a row of zeros that does not.
+            # These bounds surely hold: DAQP refuses to set up with a row of zeros that does not hold.
             self.model.setup(form.H, form.f, form.G, np.ones(len(form.h)))
         inactive = np.zeros(len(form.h), dtype=np.int32)
         begin = perf_counter_ns()
@@ -124,7 +124,7 @@ class DaqpModel:
 
 
 def osqp(condensed: bool, program: Program) -> Answer:
-    """OSQP; its usual 4000 iterations would leave many programs unsolved."""
+    """OSQP. Its usual 4000 iterations would leave many programs unsolved."""
     import osqp as package
 
     if condensed:
@@ -171,7 +171,7 @@ def piqp(backend: str, program: Program) -> Answer:
 
 
 def proxqp(program: Program) -> Answer:
-    """ProxQP; by its usual `eps_primal_inf` it would call some feasible programs infeasible."""
+    """ProxQP. With its usual `eps_primal_inf` it would call some feasible programs infeasible."""
     from proxsuite import proxqp as package
 
     form = program.condensed
@@ -190,7 +190,7 @@ def proxqp(program: Program) -> Answer:
 
 
 def quadprog(program: Program) -> Answer:
-    """quadprog, the Goldfarb-Idnani method, with the Hessian factored before."""
+    """quadprog, the Goldfarb-Idnani method. The Hessian is factored before."""
     import quadprog as package
 
     form = program.condensed

@@ -1,32 +1,34 @@
-//! Registers of the board, an MPS2 with the image AN500.
+//! Registers of the board. The board is an MPS2 with the image AN500.
 
 use cortex_m::Peripherals;
 use cortex_m::peripheral::scb::SystemHandler;
 use cortex_m::peripheral::syst::SystClkSource;
 
-/// Of the processor's clock and of the timers [Hz].
+/// Frequency of the processor and of the timers \[Hz\].
 const CLOCK: u32 = 25_000_000;
-/// Counts in 10 ms.
+/// Number of counts in 10 ms.
 pub const TICK: u32 = CLOCK / 100;
 
-/// CMSDK timer 0, which counts down freely.
+/// Address of the CMSDK timer 0, which counts down freely.
 const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
-/// CMSDK watchdog.
+/// Address of the CMSDK watchdog.
 const WATCHDOG: *mut u32 = 0x4000_8000 as *mut u32;
-/// Counts that the watchdog waits: 50 ms, then an interrupt, and after 50 ms more the reset.
+/// Number of counts in half of the watchdog's time. After 50 ms it raises an interrupt, and after 50 ms
+/// more it resets the core.
 const PATIENCE: u32 = 5 * TICK;
 const UNLOCK: u32 = 0x1ACC_E551;
 
-/// Priorities: UART (the reset value, 0) above the step above the restart.
+/// Sets the priorities: the UART (at the reset value, 0) is above the step, and the step is above the
+/// restart.
 pub fn set_priorities(peripherals: &mut Peripherals) {
-    // SAFETY: nothing relies on masking by priority.
+    // SAFETY: no code relies on masking by priority.
     unsafe {
         peripherals.SCB.set_priority(SystemHandler::SysTick, 1 << 5);
         peripherals.SCB.set_priority(SystemHandler::PendSV, 7 << 5);
     }
 }
 
-/// Lets SysTick fire at 100 Hz.
+/// Starts SysTick at 100 Hz.
 pub fn start_ticking(peripherals: &mut Peripherals) {
     let systick = &mut peripherals.SYST;
     systick.set_clock_source(SystClkSource::Core);
@@ -36,17 +38,17 @@ pub fn start_ticking(peripherals: &mut Peripherals) {
     systick.enable_counter();
 }
 
-/// Whether SysTick's counter has come round since the last call.
+/// Whether the counter of SysTick has wrapped around since the last call.
 #[must_use]
 pub fn tick_passed() -> bool {
     const CONTROL: *const u32 = 0xE000_E010 as *const u32;
-    // SAFETY: reading it clears the flag, which nobody else reads.
+    // SAFETY: reading the register clears the flag, and no other code reads this flag.
     unsafe { CONTROL.read_volatile() & (1 << 16) != 0 }
 }
 
 /// Starts the free-running timer.
 pub fn start_timer() {
-    // SAFETY: the timer is used here only: reload and value, then enable.
+    // SAFETY: only this module uses the timer. The code writes reload and value, then enables it.
     unsafe {
         TIMER.add(2).write_volatile(u32::MAX);
         TIMER.add(1).write_volatile(u32::MAX);
@@ -61,9 +63,10 @@ pub fn now() -> u32 {
     u32::MAX.wrapping_sub(unsafe { TIMER.add(1).read_volatile() })
 }
 
-/// Starts the watchdog: whoever does not feed it for 100 ms is reset.
+/// Starts the watchdog. It resets the core if the core does not feed it for 100 ms.
 pub fn start_watchdog() {
-    // SAFETY: the watchdog is used here only: unlock, load, interrupt and reset.
+    // SAFETY: only this module uses the watchdog. The code unlocks it, loads its time, and enables
+    // interrupt and reset.
     unsafe {
         WATCHDOG.add(0xC00 / 4).write_volatile(UNLOCK);
         WATCHDOG.write_volatile(PATIENCE);
@@ -73,17 +76,18 @@ pub fn start_watchdog() {
 
 /// Feeds the watchdog.
 pub fn feed_watchdog() {
-    // SAFETY: clears the interrupt and reloads.
+    // SAFETY: the write only clears the interrupt and reloads the time.
     unsafe { WATCHDOG.add(3).write_volatile(1) };
 }
 
-/// Sleeps until an interrupt, unless one came since `ready` was last looked at.
+/// Sleeps until an interrupt, unless `ready` returns true. An interrupt between the call of `ready` and
+/// the sleep also ends the sleep.
 pub fn sleep_unless(ready: impl FnOnce() -> bool) {
     cortex_m::interrupt::disable();
     if !ready() {
-        // Wakes although the interrupt is masked.
+        // A pending interrupt ends the sleep although interrupts are masked.
         cortex_m::asm::wfi();
     }
-    // SAFETY: they were enabled before.
+    // SAFETY: interrupts were enabled before.
     unsafe { cortex_m::interrupt::enable() };
 }

@@ -1,42 +1,44 @@
-//! Faults that tests of the emulated image switch on, by changing these words in the image file.
-//! As built they do nothing.
+//! Faults for tests of the emulated image. A test switches a fault on by a change of its word in the
+//! image file. Without such a change the faults have no effect.
 
 use crate::uart;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// No tick.
+/// Value for a fault that is switched off.
 const NEVER: u32 = u32::MAX;
 
-/// The planner hangs in the first slice after this tick was stepped, once a boot.
+/// Tick after whose step the planner hangs, in its next slice. It hangs once in each boot.
 #[unsafe(no_mangle)]
 static FAULT_PLANNER_HANGS_AFTER: u32 = NEVER;
 
-/// The step hangs after this tick, before it answers, until the watchdog resets the core; once.
+/// Tick in whose step the core hangs, before its answer is sent, until the watchdog resets the core. It
+/// hangs once.
 #[unsafe(no_mangle)]
 static FAULT_STEP_HANGS_AFTER: u32 = NEVER;
 
-/// If set, planners wait with their set-up, and so the step with the bytes of the link, until some of
-/// those are lost.
+/// If this word is changed, the planner delays its set-up until bytes of the link are lost. They get lost,
+/// because the step takes no bytes while it waits for the set-up.
 #[unsafe(no_mangle)]
 static FAULT_SET_UP_AWAITS_LOSS: u32 = NEVER;
 
-/// Instructions by which the first slice of each cycle is longer.
+/// Number of additional instructions in the first slice of each cycle.
 #[unsafe(no_mangle)]
 static FAULT_SLICE_LONGER_BY: u32 = 0;
 
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
-/// Whether the step has hung: this memory survives the reset.
+/// Whether the step has hung. This memory survives the reset.
 #[unsafe(link_section = ".uninit.faults")]
 static STEP_HUNG: AtomicU32 = AtomicU32::new(0);
 const YES: u32 = 0x5EED_F00D;
 
 fn read(word: &'static u32) -> u32 {
-    // SAFETY: a reference. Volatile, because the image may have been changed.
+    // SAFETY: a reference is valid to read. The read is volatile, because a test may have changed the
+    // image.
     unsafe { core::ptr::read_volatile(word) }
 }
 
-/// Hangs the planner if this tick is the one.
+/// Hangs the planner if its fault is due at this tick.
 pub fn planner(clock: u32) {
     let after = read(&FAULT_PLANNER_HANGS_AFTER);
     if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
@@ -44,20 +46,20 @@ pub fn planner(clock: u32) {
     }
 }
 
-/// Goes on with a slice if it is to be longer.
+/// Makes a slice longer if the fault is switched on.
 pub fn slice() {
-    // One instruction a cycle, as it is emulated.
+    // The emulator takes one cycle for each instruction.
     cortex_m::asm::delay(read(&FAULT_SLICE_LONGER_BY));
 }
 
-/// Waits for lost bytes if it is to; `alive` is called meanwhile.
+/// Waits for lost bytes if the fault is switched on. It calls `alive` meanwhile.
 pub fn set_up(alive: impl Fn()) {
     while read(&FAULT_SET_UP_AWAITS_LOSS) != NEVER && uart::lost() == 0 {
         alive();
     }
 }
 
-/// Hangs the step if this tick is the one.
+/// Hangs the step if its fault is due at this tick.
 pub fn step(clock: u32) {
     let after = read(&FAULT_STEP_HANGS_AFTER);
     if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {

@@ -1,5 +1,5 @@
-//! The link as two files of the emulator's host, by semihosting: `to-core` and `to-harness` in its
-//! working directory, usually FIFOs.
+//! The link over two files of the emulator's host, by semihosting. The files `to-core` and `to-harness` are
+//! in the working directory of the emulator, and are usually FIFOs.
 
 use crate::owned::Owned;
 use cortex_m_semihosting::{nr, syscall};
@@ -8,7 +8,7 @@ const FAILED: usize = usize::MAX;
 
 static HOST: Owned<Host> = Owned::uninit();
 
-/// Both files and what was read and not yet used, or written and not yet sent.
+/// Both files, with the bytes that were read but not yet used, and those that wait to be sent.
 pub struct Host {
     to_core: usize,
     to_harness: usize,
@@ -22,7 +22,7 @@ pub struct Host {
 /// Opens both files.
 ///
 /// # Safety
-/// Called once, before any interrupt is enabled.
+/// The caller calls this function once, before it enables any interrupt.
 pub unsafe fn open() {
     let (to_core, to_harness) = (
         open_file(c"to-core", nr::open::R_BINARY),
@@ -44,14 +44,14 @@ pub unsafe fn open() {
 /// The link.
 ///
 /// # Safety
-/// Only from the step's interrupt, or before it is enabled.
+/// Only the step's interrupt may call this function, or code that runs before it is enabled.
 pub unsafe fn get() -> &'static mut Host {
-    // SAFETY: written by `open`; one user at a time, as the caller promises.
+    // SAFETY: `open` has written the value. There is one user at a time, as the caller promises.
     unsafe { HOST.get() }
 }
 
 impl Host {
-    /// Whether bytes are there without reading.
+    /// Whether there are unused bytes from the last read.
     #[must_use]
     pub fn has_bytes(&self) -> bool {
         self.used < self.filled
@@ -67,17 +67,17 @@ impl Host {
         byte
     }
 
-    /// Waits for bytes; false when the harness has closed its end.
+    /// Waits for bytes. Returns false if the harness has closed its end.
     pub fn read(&mut self) -> bool {
         let size = self.input.len();
-        // SAFETY: the buffer is as long as said. The answer is how much of it was not used.
+        // SAFETY: the buffer has the given length. The result is the number of bytes that were not read.
         let unused = unsafe { syscall!(READ, self.to_core, self.input.as_mut_ptr(), size) };
         self.used = 0;
         self.filled = size.saturating_sub(unused);
         self.filled > 0
     }
 
-    /// Puts bytes in the buffer, after sending it if it is full.
+    /// Puts bytes into the buffer, and sends the buffer whenever it is full.
     pub fn send(&mut self, bytes: &[u8]) {
         for byte in bytes {
             if self.waiting >= self.output.len() {
@@ -99,7 +99,7 @@ impl Host {
     }
 }
 
-/// Writes a file of words, little endian.
+/// Writes words to a file in little-endian order.
 pub fn write_file(name: &core::ffi::CStr, words: &[u32]) {
     let file = open_file(name, nr::open::W_TRUNC_BINARY);
     for word in words {
@@ -107,11 +107,12 @@ pub fn write_file(name: &core::ffi::CStr, words: &[u32]) {
     }
 }
 
-/// Writes until all is written, or no more is taken: the reader is gone, and reading says so.
+/// Writes until the host has taken all bytes, or takes no more. In the latter case the reader is gone, and
+/// the next read reports the end of the link.
 fn write(file: usize, bytes: Option<&[u8]>) {
     let mut rest = bytes.filter(|_| file != FAILED).unwrap_or(&[]);
     while !rest.is_empty() {
-        // SAFETY: the buffer is as long as said. The answer is how much of it was not taken.
+        // SAFETY: the buffer has the given length. The result is the number of bytes not written.
         let left = unsafe { syscall!(WRITE, file, rest.as_ptr(), rest.len()) };
         let taken = rest.len().checked_sub(left).filter(|taken| *taken > 0);
         rest = taken.and_then(|taken| rest.get(taken..)).unwrap_or(&[]);
@@ -119,7 +120,7 @@ fn write(file: usize, bytes: Option<&[u8]>) {
 }
 
 fn open_file(name: &core::ffi::CStr, mode: usize) -> usize {
-    // SAFETY: the name ends with a zero, which does not count.
+    // SAFETY: the name ends with a zero, which the length does not include.
     unsafe { syscall!(OPEN, name.as_ptr(), mode, name.count_bytes()) }
 }
 
@@ -128,7 +129,7 @@ fn open_file(name: &core::ffi::CStr, mode: usize) -> usize {
 pub fn command_line_ends_with(word: &[u8]) -> bool {
     let mut line = [0_u8; 64];
     let mut block = [line.as_mut_ptr() as usize, line.len()];
-    // SAFETY: the block names a buffer and its length; the answer is 0 if it was filled.
+    // SAFETY: the block contains the address and length of a buffer. The result is 0 on success.
     let failed =
         unsafe { cortex_m_semihosting::syscall1(nr::GET_CMDLINE, block.as_mut_ptr() as usize) };
     let text = line.split(|byte| *byte == 0).next();

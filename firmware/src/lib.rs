@@ -8,12 +8,12 @@
 //! thread     the planner, slice by slice; sleeps          the plan task
 //! ```
 //!
-//! The tasks share nothing but mailboxes of one producer and one consumer and atomic counters, so
-//! nothing masks the step out, but for the look round of a thread that is about to sleep. A plan goes
-//! to the step as a value; the step takes it over at a tick boundary.
+//! The tasks share only atomic counters, and mailboxes with one producer and one consumer. Therefore no
+//! task masks the interrupt of the step, except for a short check before the thread sleeps. A plan goes to
+//! the step as a value, and the step takes it over at a tick boundary.
 //!
-//! Two images: `uart`, which flies over a serial line with timer, watchdog and restart of a stuck
-//! planner; `fifo`, which flies over semihosting, for campaigns and for measuring.
+//! There are two images. `uart` flies over a serial line, with timer, watchdog and restart of a stuck
+//! planner. `fifo` flies over semihosting, for campaigns and measurements.
 #![no_std]
 
 pub mod board;

@@ -1,17 +1,17 @@
-//! One letter from one priority to another. (`heapless`'s queue divides by its length, which it has
-//! forgotten by then: a path to a panic.)
+//! A mailbox for one letter from one priority to another. The queue of `heapless` is not used here: it
+//! divides by its length, which the compiler does not know there, and this is a path to a panic.
 
 use core::cell::UnsafeCell;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Single producer, single consumer; no one ever waits.
+/// A mailbox with a single producer and a single consumer. Neither of them ever waits.
 pub struct Mailbox<T> {
     full: AtomicBool,
     letter: UnsafeCell<Option<T>>,
 }
 
-// SAFETY: the producer has the letter to itself while the box is not full, the consumer while it is;
-// `full` hands it over. Both are one priority each, as `post` and `take` demand.
+// SAFETY: only the producer uses the letter while the box is not full, and only the consumer while it is
+// full; `full` hands the letter over. Each of them is one priority, as `post` and `take` demand.
 unsafe impl<T: Send> Sync for Mailbox<T> {}
 
 impl<T> Mailbox<T> {
@@ -28,10 +28,10 @@ impl<T> Mailbox<T> {
         self.full.load(Ordering::Acquire)
     }
 
-    /// Posts a letter; drops it if the box is full, so look first.
+    /// Posts a letter. The function drops the letter if the box is full, so the caller must check first.
     ///
     /// # Safety
-    /// Only from the producer's priority.
+    /// Only the producer's priority may call this function.
     pub unsafe fn post(&self, letter: T) {
         if !self.is_full() {
             // SAFETY: the box is not full, so the letter is the producer's.
@@ -43,7 +43,7 @@ impl<T> Mailbox<T> {
     /// Takes the letter that waits.
     ///
     /// # Safety
-    /// Only from the consumer's priority.
+    /// Only the consumer's priority may call this function.
     pub unsafe fn take(&self) -> Option<T> {
         if !self.is_full() {
             return None;

@@ -1,41 +1,41 @@
-//! Marks in the instruction stream, which the emulator's counter sees: `dbg` hints, which do
-//! nothing on any processor.
+//! Marks in the instruction stream for the emulator's instruction counter. The marks are `dbg` hints,
+//! which have no effect on a processor.
 
 use core::arch::asm;
 use mpp_core::planner::Phase;
 
-/// What a counted region was.
+/// The kind of a counted region.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
     /// A frame that made no step: hello, configuration, scan.
     Frame,
     /// A sensor frame and all of its answer: decoding, take-over, estimate, control, reports.
     Step,
-    /// An order taken by the planner; a cycle starts.
+    /// An order that the planner takes: a set-up, or the start of a cycle.
     Order,
     /// A slice that built the map.
     Map,
     /// A slice of the path search.
     Tree,
-    /// A slice that traced a corridor.
+    /// A slice that traced a corridor or set the faces about a candidate.
     Corridor,
     /// A slice of a program.
     Program,
-    /// An answer given by the planner; a cycle ends.
+    /// An answer of the planner: to a set-up, or at the end of a cycle.
     Answer,
     /// An interrupt of the UART.
     Uart,
-    /// A slice that joined a scan to the map's memory.
+    /// A slice that took beams into the map with memory, or built its clearance field.
     Remember,
     /// A slice of the search over the lattice.
     Lattice,
     /// A slice that linearised about a candidate.
     Linearise,
-    /// A slice of a candidate's round.
+    /// A slice of the solver for a candidate, with the roll-out at the end.
     Improve,
     /// A byte inside a frame.
     Byte,
-    /// The planner's look round for work.
+    /// A check by the planner for work, when there is no work to do.
     Idle,
 }
 
@@ -43,30 +43,39 @@ impl Region {
     /// The region that the next slice of the planner belongs to.
     #[must_use]
     pub fn of(phase: Phase) -> Self {
+        use mpp_core::planner::flight::Phase as Flight;
+        #[cfg(feature = "paper")]
+        use mpp_core::planner::paper::Phase as Paper;
         match phase {
-            Phase::Map => Self::Map,
-            Phase::Tree => Self::Tree,
-            Phase::Corridor => Self::Corridor,
-            Phase::Remember => Self::Remember,
-            Phase::Lattice => Self::Lattice,
-            Phase::Linearise => Self::Linearise,
-            Phase::Improve => Self::Improve,
-            Phase::Idle | Phase::Program | Phase::Done => Self::Program,
+            Phase::Flight(Flight::Map) => Self::Remember,
+            Phase::Flight(Flight::Lattice) => Self::Lattice,
+            Phase::Flight(Flight::Tree) => Self::Tree,
+            Phase::Flight(Flight::Faces) => Self::Corridor,
+            Phase::Flight(Flight::Linearise) => Self::Linearise,
+            Phase::Flight(Flight::Improve | Flight::Idle | Flight::Done) => Self::Improve,
+            #[cfg(feature = "paper")]
+            Phase::Paper(Paper::Map) => Self::Map,
+            #[cfg(feature = "paper")]
+            Phase::Paper(Paper::Tree) => Self::Tree,
+            #[cfg(feature = "paper")]
+            Phase::Paper(Paper::Corridor) => Self::Corridor,
+            #[cfg(feature = "paper")]
+            Phase::Paper(Paper::Program | Paper::Idle | Paper::Done) => Self::Program,
         }
     }
 }
 
-/// A region begins. Regions nest; an inner one does not count for the outer.
+/// Marks the beginning of a region. Regions nest: an inner region does not count for the outer one.
 #[inline(always)]
 pub fn begin() {
-    // SAFETY: a hint.
+    // SAFETY: a hint has no effect.
     unsafe { asm!("dbg #0") }
 }
 
-/// The innermost region ends.
+/// Marks the end of the innermost region.
 #[inline(always)]
 pub fn end(region: Region) {
-    // SAFETY: hints.
+    // SAFETY: hints have no effect.
     unsafe {
         match region {
             Region::Frame => asm!("dbg #1"),

@@ -3,11 +3,11 @@
 use core::cell::UnsafeCell;
 use core::mem::MaybeUninit;
 
-/// A value in a static, used by one priority only.
+/// A value in a static that only one priority uses.
 pub struct Owned<T>(UnsafeCell<MaybeUninit<T>>);
 
-// SAFETY: whoever calls `get` promises that one priority alone uses the value, which may be another
-// than that which wrote it.
+// SAFETY: the caller of `get` promises that only one priority uses the value. Another priority may have
+// written it.
 unsafe impl<T: Send> Sync for Owned<T> {}
 
 impl<T> Owned<T> {
@@ -19,16 +19,16 @@ impl<T> Owned<T> {
     /// No reference to the value is alive.
     #[inline(always)]
     pub unsafe fn write(&'static self, value: T) {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller promises it.
         unsafe { (*self.0.get()).write(value) };
     }
 
-    /// Writes bytes of zero, in place: a large value never passes over the stack.
+    /// Writes bytes of zero in place, so that a large value never lies on the stack.
     ///
     /// # Safety
     /// No reference to the value is alive, and bytes of zero are a valid `T`: see [`zeros`].
     pub unsafe fn write_zeros(&'static self) {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller promises it.
         unsafe { (*self.0.get()).as_mut_ptr().write_bytes(0, 1) };
     }
 
@@ -36,17 +36,17 @@ impl<T> Owned<T> {
     /// The value was written, and no other reference to it is alive.
     #[expect(clippy::mut_from_ref, reason = "the caller is the only user")]
     pub unsafe fn get(&'static self) -> &'static mut T {
-        // SAFETY: as the caller promises.
+        // SAFETY: the caller promises it.
         unsafe { (*self.0.get()).assume_init_mut() }
     }
 }
 
-/// A `T` of zeros. As a constant it is the proof that such a `T` is valid: the compiler looks at every
-/// constant, and refuses one whose bytes are none of the values of its type.
+/// A `T` of zeros. A constant with this value proves that such a `T` is valid: the compiler checks every
+/// constant, and refuses a constant whose bytes are not a value of its type.
 ///
 /// # Safety
-/// In a constant only.
+/// Only a constant may call this function.
 pub const unsafe fn zeros<T>() -> T {
-    // SAFETY: checked by the compiler, as said above.
+    // SAFETY: the compiler checks the value, as described above.
     unsafe { MaybeUninit::zeroed().assume_init() }
 }

@@ -1,4 +1,4 @@
-//! An image links only if nothing in it can panic.
+//! The panic handler, which makes the link of an image fail if any code in it can panic.
 
 use core::panic::PanicInfo;
 
@@ -8,6 +8,6 @@ unsafe extern "C" {
 
 #[panic_handler]
 fn panic(_: &PanicInfo) -> ! {
-    // SAFETY: never runs: an image with this call does not link.
+    // SAFETY: the call never runs, because an image with this call does not link.
     unsafe { a_panic_path_is_still_reachable() }
 }

@@ -1,19 +1,20 @@
-//! What the image itself measures, written to the file `report` at the end of a flight.
+//! The measurements of the image itself. It writes them to the file `report` at the end of a flight.
 
 use crate::board::TICK;
 use crate::host;
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m_semihosting::debug;
 
-/// Counts of the free-running timer at the last tick.
+/// Time of the last tick \[counts of the free-running timer\].
 static LAST: AtomicU32 = AtomicU32::new(0);
 static TICKS: AtomicU32 = AtomicU32::new(0);
 static MISSED: AtomicU32 = AtomicU32::new(0);
-/// Longest and shortest time between two ticks [counts].
+/// Longest time between two ticks \[counts\].
 static LONGEST: AtomicU32 = AtomicU32::new(0);
+/// Shortest time between two ticks \[counts\].
 static SHORTEST: AtomicU32 = AtomicU32::new(u32::MAX);
 
-/// Notes a tick of the timer at a time [counts].
+/// Records a tick of the timer at the time `now` \[counts\].
 pub fn tick(now: u32) {
     let since = now.wrapping_sub(LAST.swap(now, Ordering::Relaxed));
     if TICKS.fetch_add(1, Ordering::Relaxed) > 0 {
@@ -43,7 +44,7 @@ pub fn finish(restarts: u32) -> ! {
     }
 }
 
-/// Bytes of the stack that no longer hold the paint of the start-up code.
+/// Number of bytes of the stack that no longer hold the pattern that the start-up code wrote.
 fn stack_used() -> u32 {
     const PAINT: u32 = 0xCCCC_CCCC;
     unsafe extern "C" {
@@ -51,7 +52,7 @@ fn stack_used() -> u32 {
         static _stack_end: u32;
     }
     let (top, mut word) = (&raw const _stack_start, &raw const _stack_end);
-    // SAFETY: all of it is memory, and what is below the stack pointer is not in use.
+    // SAFETY: the whole range is memory, and no code uses the part below the stack pointer.
     while word < top && unsafe { word.read_volatile() } == PAINT {
         word = word.wrapping_add(1);
     }

@@ -2,18 +2,18 @@
 
 use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
-/// Places in the ring; a power of two. A harness in lockstep has a scan and a sensor frame under
-/// way, 600 bytes; an answer is shorter.
+/// Number of places in the ring; a power of two. A harness in lockstep sends a scan and a sensor frame at
+/// a time, which are 600 bytes. An answer is shorter.
 const PLACES: usize = 1024;
-/// Half of them: a ring that fills comes by here.
+/// Half of the places. A ring that fills up passes this length.
 pub const HALF: usize = PLACES / 2;
 
-/// Single producer, single consumer; no one ever waits.
+/// A ring with a single producer and a single consumer. Neither of them ever waits.
 pub struct Ring {
     bytes: [AtomicU8; PLACES],
-    /// Bytes ever put in, modulo the word.
+    /// Number of all bytes put in so far, modulo the word size.
     head: AtomicUsize,
-    /// Bytes ever taken out, modulo the word.
+    /// Number of all bytes taken out so far, modulo the word size.
     tail: AtomicUsize,
 }
 
@@ -28,7 +28,7 @@ impl Ring {
         }
     }
 
-    /// Puts a byte in; false if there is no room. Only for the producer.
+    /// Puts in a byte. Returns false if there is no room. Only the producer may call this function.
     pub fn push(&self, byte: u8) -> bool {
         let head = self.head.load(Ordering::Relaxed);
         if head.wrapping_sub(self.tail.load(Ordering::Acquire)) == PLACES {
@@ -39,14 +39,14 @@ impl Ring {
         true
     }
 
-    /// Places taken, as far as the caller's priority sees.
+    /// Number of bytes in the ring, as the caller's priority sees it.
     pub fn len(&self) -> usize {
         let (head, tail) = (&self.head, &self.tail);
         head.load(Ordering::Relaxed)
             .wrapping_sub(tail.load(Ordering::Relaxed))
     }
 
-    /// Takes the oldest byte out. Only for the consumer.
+    /// Takes out the oldest byte. Only the consumer may call this function.
     pub fn pop(&self) -> Option<u8> {
         let tail = self.tail.load(Ordering::Relaxed);
         if tail == self.head.load(Ordering::Acquire) {

@@ -1,44 +1,44 @@
-//! The two tasks, their mail, and what each does when it gets the processor.
+//! The two tasks, their mailboxes, and the work of each task when it gets the processor.
 
 use crate::mailbox::Mailbox;
 use crate::owned::{self, Owned};
 use crate::{faults, mark, restart};
 use core::sync::atomic::{AtomicU32, Ordering};
-use flight_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
 use mark::Region;
+use mpp_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
 
-/// Produced by the step, consumed by the planner.
+/// Orders from the step to the planner.
 static ORDERS: Mailbox<Order> = Mailbox::new();
-/// Produced by the planner, consumed by the step.
+/// Answers from the planner to the step.
 static ANSWERS: Mailbox<Answer> = Mailbox::new();
-/// The last tick that was stepped.
+/// The planner's clock, from [`StepTask::clock`].
 static CLOCK: AtomicU32 = AtomicU32::new(0);
-/// Counts the planner's doings: as long as it changes, the planner lives.
+/// Counter of the planner's activity. As long as it changes, the planner is alive.
 static PULSE: AtomicU32 = AtomicU32::new(0);
 
 static STEP: Owned<StepSide> = Owned::uninit();
 #[unsafe(link_section = ".axisram")]
 static PLAN: Owned<PlanTask> = Owned::uninit();
-// SAFETY: in a constant, which the compiler checks.
+// SAFETY: this is a constant, and the compiler checks it.
 const _: PlanTask = unsafe { owned::zeros() };
 
-/// All that the step's interrupt owns.
+/// The data that the step's interrupt owns.
 pub struct StepSide {
     task: StepTask,
     pulse: u32,
     silent_for: u32,
-    /// Times that the planner was restarted.
+    /// Number of restarts of the planner.
     pub restarts: u32,
 }
 
-/// Calls of [`StepSide::watch_planner`], one in 10 ms, after which a planner without a pulse is
-/// taken for stuck. Its longest slice takes a tenth of that.
+/// Number of calls of [`StepSide::watch_planner`], one in each 10 ms, after which a planner without a pulse
+/// counts as stuck. The longest slice of the planner takes a tenth of this time.
 const SILENCE_LIMIT: u32 = 10;
 
 /// Prepares the step's side.
 ///
 /// # Safety
-/// Called once, before any interrupt is enabled.
+/// The caller calls this function once, before it enables any interrupt.
 pub unsafe fn set_up(pace: Pace) {
     // SAFETY: nothing else runs yet.
     unsafe {
@@ -51,17 +51,17 @@ pub unsafe fn set_up(pace: Pace) {
     }
 }
 
-/// What the step's interrupt owns.
+/// The data that the step's interrupt owns.
 ///
 /// # Safety
-/// Only from the step's interrupt, or before it is enabled.
+/// Only the step's interrupt may call this function, or code that runs before it is enabled.
 pub unsafe fn step_side() -> &'static mut StepSide {
-    // SAFETY: written by `set_up`; one user at a time, as the caller promises.
+    // SAFETY: `set_up` has written the value. There is one user at a time, as the caller promises.
     unsafe { STEP.get() }
 }
 
 impl StepSide {
-    /// Says hello unasked.
+    /// Sends a hello without being asked.
     pub fn announce(&mut self, send: impl FnMut(&[u8])) {
         self.task.announce(send);
     }
@@ -72,7 +72,7 @@ impl StepSide {
         self.task.waits()
     }
 
-    /// The last tick that was stepped, if any was.
+    /// The tick of the last step, if there was one.
     #[must_use]
     pub fn last_tick(&self) -> Option<u32> {
         self.task.last_tick()
@@ -104,7 +104,7 @@ impl StepSide {
         self.task.bytes_lost(count, send);
     }
 
-    /// To be called every 10 ms: restarts the planner if it is stuck.
+    /// Restarts the planner if it is stuck. The step calls this function every 10 ms.
     pub fn watch_planner(&mut self, send: impl FnMut(&[u8])) {
         let pulse = PULSE.load(Ordering::Relaxed);
         if pulse != self.pulse {
@@ -116,7 +116,7 @@ impl StepSide {
         if self.silent_for >= SILENCE_LIMIT {
             self.silent_for = 0;
             self.restarts = self.restarts.saturating_add(1);
-            // SAFETY: the step is the consumer. Answers of before are nobody's.
+            // SAFETY: the step is the consumer. It drops an answer from before the restart.
             drop(unsafe { ANSWERS.take() });
             self.task.planner_lost(send);
             self.post();
@@ -124,7 +124,7 @@ impl StepSide {
         }
     }
 
-    /// Sends the planner its orders and the time.
+    /// Sends the orders and the time to the planner.
     fn post(&mut self) {
         if !ORDERS.is_full()
             && let Some(order) = self.task.order()
@@ -160,17 +160,17 @@ fn pulse() {
 /// The planner's thread. `idle` is called when there is nothing to do.
 ///
 /// # Safety
-/// Only as the thread, which never runs twice at a time: from `main`, or anew after
-/// [`restart::planner`] has dropped it.
+/// Only the thread may call this function, and the thread never runs twice at a time: it starts from
+/// `main`, or anew after [`restart::planner`] has dropped it.
 pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
-    // SAFETY: the thread is the only user, and this the only thread. Zeros are a valid task, as the
-    // constant beside `PLAN` proves; `PlanTask::new()` would pass over the stack, which is smaller.
+    // SAFETY: the thread is the only user, and there is only one thread. Zeros are a valid task, as the
+    // constant beside `PLAN` proves. `PlanTask::new()` would lie on the stack, which is smaller.
     let task = unsafe {
         PLAN.write_zeros();
         PLAN.get()
     };
-    // Valid is not idle: until its first order, `SetUp`, which leaves nothing as it was, the task
-    // does nothing. What was ordered of a planner before this one is not for this one.
+    // A task of zeros is valid, but not ready. It must do nothing until its first `SetUp`, which sets
+    // all of its state. The loop also ignores orders for a planner before a restart.
     let mut set_up = false;
     let mut first_slice = false;
     loop {

@@ -1,4 +1,4 @@
-//! CMSDK UART 0 by interrupts, with a fixed ring each way.
+//! CMSDK UART 0 by interrupts, with a ring of fixed size in each direction.
 
 use crate::mark::{self, Region};
 use crate::ring::{HALF, Ring};
@@ -13,16 +13,16 @@ const INTERRUPT: usize = 3;
 const BAUD_DIVIDER: usize = 4;
 const TX_FULL: u32 = 1;
 const RX_FULL: u32 = 2;
-/// Transmitter, receiver and the interrupts of both.
+/// Control bits that enable transmitter, receiver and the interrupts of both.
 const ENABLE: u32 = 0b1111;
 
-/// The frame's last byte.
+/// The last byte of a frame.
 const DELIMITER: u8 = 0;
 
 #[derive(Clone, Copy)]
 struct Line(u16);
 
-// SAFETY: the number of an interrupt of this board.
+// SAFETY: the number belongs to an interrupt of this board.
 unsafe impl cortex_m::interrupt::InterruptNumber for Line {
     fn number(self) -> u16 {
         self.0
@@ -34,20 +34,20 @@ const TX: Line = Line(1);
 
 static RECEIVED: Ring = Ring::new();
 static TO_SEND: Ring = Ring::new();
-/// Bytes that found a ring full.
+/// Number of bytes lost because a ring was full.
 static LOST: AtomicU32 = AtomicU32::new(0);
 
 fn read(register: usize) -> u32 {
-    // SAFETY: a register of the UART.
+    // SAFETY: the address is a register of the UART.
     unsafe { UART.add(register).read_volatile() }
 }
 
 fn write(register: usize, value: u32) {
-    // SAFETY: a register of the UART.
+    // SAFETY: the address is a register of the UART.
     unsafe { UART.add(register).write_volatile(value) };
 }
 
-/// Starts the UART and its interrupts, and sends what is in the ring already.
+/// Starts the UART and its interrupts, and sends the bytes that are already in the ring.
 pub fn start() {
     write(BAUD_DIVIDER, 16);
     write(CONTROL, ENABLE);
@@ -59,13 +59,13 @@ pub fn start() {
     kick();
 }
 
-/// The next byte that came. Only for the step.
+/// Takes the next received byte. Only the step may call this function.
 #[must_use]
 pub fn receive() -> Option<u8> {
     RECEIVED.pop()
 }
 
-/// Puts bytes in the ring; [`kick`] sends them. Only for the step.
+/// Puts bytes into the ring; [`kick`] sends them. Only the step may call this function.
 pub fn send(bytes: &[u8]) {
     for byte in bytes {
         if !TO_SEND.push(*byte) {
@@ -74,7 +74,7 @@ pub fn send(bytes: &[u8]) {
     }
 }
 
-/// Whether a short report can be sent. Only for the step.
+/// Whether the ring has room for a short report. Only the step may call this function.
 #[must_use]
 pub fn has_room() -> bool {
     TO_SEND.len() <= HALF
@@ -85,7 +85,7 @@ pub fn kick() {
     NVIC::pend(TX);
 }
 
-/// Bytes that were lost in either direction since the start.
+/// Number of bytes lost in both directions since the start.
 #[must_use]
 pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)
@@ -95,8 +95,8 @@ fn count_lost() {
     LOST.fetch_add(1, Ordering::Relaxed);
 }
 
-/// An interrupt of the UART; others are nothing to us. (The watchdog warns by one before it
-/// resets.)
+/// Handles an interrupt of the UART, and ignores other interrupts. The watchdog raises one as a warning
+/// before it resets the core.
 pub fn interrupt(number: i16) {
     if number != RX.0 as i16 && number != TX.0 as i16 {
         return;
@@ -108,7 +108,7 @@ pub fn interrupt(number: i16) {
         if !RECEIVED.push(byte) {
             count_lost();
         }
-        // What has no end must be looked at in time, too.
+        // The step must also take bytes in time if no delimiter comes.
         if byte == DELIMITER || RECEIVED.len() == HALF {
             SCB::set_pendst();
         }

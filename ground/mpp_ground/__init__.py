@@ -1,1 +1,1 @@
-"""Ground station of the MPP vehicle."""
+"""A ground station for the MPP vehicle."""

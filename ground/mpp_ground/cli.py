@@ -7,7 +7,7 @@ from pathlib import Path
 from . import monitor, paramfile, plot, record
 from .link import GroundError, Vehicle, mavlink
 
-# ArduPlane's numbers, which ground stations use for fixed wings.
+# These are ArduPlane's numbers, which ground stations use for fixed wings.
 MODES = {"AUTO": 10, "CRUISE": 7}
 FORCE = 21196
 
@@ -16,44 +16,44 @@ def parser():
     top = argparse.ArgumentParser(prog="mpp-ground", description=__doc__)
     top.add_argument("--connect", default="udpin:127.0.0.1:14550", metavar="ADDRESS",
                      help="pymavlink address [%(default)s]")
-    top.add_argument("--system", type=int, help="system id [the first one heard]")
+    top.add_argument("--system", type=int, help="system id [the first one that is heard]")
     top.add_argument("--key", metavar="FILE", help="file with the signing passphrase in its first line")
     commands = top.add_subparsers(dest="command", required=True)
 
-    sub = commands.add_parser("monitor", help="live table")
+    sub = commands.add_parser("monitor", help="show a live table")
     sub.add_argument("--seconds", type=float, help="end after this time")
     sub.add_argument("--once", action="store_true", help="print one table and end")
 
     sub = commands.add_parser("params", help="read and write parameters")
     actions = sub.add_subparsers(dest="action", required=True)
-    actions.add_parser("list", help="print all as NAME,VALUE")
-    one = actions.add_parser("get", help="print one")
+    actions.add_parser("list", help="print all parameters as NAME,VALUE")
+    one = actions.add_parser("get", help="print one parameter")
     one.add_argument("name")
-    one = actions.add_parser("set", help="write one")
+    one = actions.add_parser("set", help="write one parameter")
     one.add_argument("name")
     one.add_argument("value", type=float)
     for action, what in (("save", "write all to a file"), ("load", "set all from a file")):
         actions.add_parser(action, help=what).add_argument("file", type=Path)
 
-    sub = commands.add_parser("command", help="tell the vehicle something")
+    sub = commands.add_parser("command", help="send a command to the vehicle")
     actions = sub.add_subparsers(dest="action", required=True)
     actions.add_parser("arm")
     one = actions.add_parser("disarm")
-    one.add_argument("--force", action="store_true", help="in flight, too: the motor stops")
+    one.add_argument("--force", action="store_true", help="also disarm in flight: the motor stops")
     actions.add_parser("mode").add_argument("mode", choices=sorted(MODES), type=str.upper)
     actions.add_parser("terminate", help="end the flight")
-    one = actions.add_parser("interval", help="set a message's rate")
+    one = actions.add_parser("interval", help="set the rate of a message")
     one.add_argument("message")
-    one.add_argument("hertz", type=float, help="0: never")
+    one.add_argument("hertz", type=float, help="rate in Hz; 0 means never")
     actions.add_parser("request", help="print a message once").add_argument("message")
 
-    sub = commands.add_parser("record", help="write a .tlog")
+    sub = commands.add_parser("record", help="record a .tlog")
     sub.add_argument("file", type=Path)
     sub.add_argument("--seconds", type=float, help="end after this time")
 
-    sub = commands.add_parser("plot", help="picture of a .tlog")
+    sub = commands.add_parser("plot", help="draw a picture of a .tlog")
     sub.add_argument("tlog", type=Path)
-    sub.add_argument("--out", type=Path, required=True, help="PNG, SVG or PDF")
+    sub.add_argument("--out", type=Path, required=True, help="picture file: PNG, SVG or PDF")
     return top
 
 
@@ -128,7 +128,7 @@ def run_command(vehicle, args):
 
 
 def number(message):
-    """A message's id by its name."""
+    """The id of the message with this name."""
     try:
         return getattr(mavlink, f"MAVLINK_MSG_ID_{message.upper()}")
     except AttributeError:

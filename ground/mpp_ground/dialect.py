@@ -1,7 +1,7 @@
-"""The private messages, for pymavlink.
+"""Our private messages, for pymavlink.
 
-pymavlink learns them from `mpp.xml` by its own generator, beside the complete common dialect that
-it ships. That takes a few seconds, so the module is kept in the user's cache.
+pymavlink's own generator makes them from `mpp.xml`, together with the complete common dialect that
+pymavlink ships. This takes a few seconds, so the module is kept in the user's cache.
 """
 
 import contextlib
@@ -14,7 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-# Before pymavlink is imported: it would start with MAVLink 1, which has no signatures.
+# This must happen before the import of pymavlink, which would start with MAVLink 1 and without signatures.
 os.environ.setdefault("MAVLINK20", "1")
 
 import pymavlink
@@ -25,7 +25,7 @@ NAME = "mpp"
 
 
 def load():
-    """Makes pymavlink speak the dialect; returns its module."""
+    """Makes pymavlink speak the dialect. Returns the dialect's module."""
     if mavutil.current_dialect != NAME:
         path = generated()
         full_name = f"pymavlink.dialects.v20.{NAME}"
@@ -39,7 +39,7 @@ def load():
 
 
 def generated():
-    """The generated module's file; made if this pymavlink has not made it yet."""
+    """The file of the generated module. It is made if this pymavlink has not made it yet."""
     version = f"{pymavlink.__version__}:{sys.version_info[:2]}".encode()
     key = hashlib.sha256(XML.read_bytes() + version).hexdigest()[:16]
     path = cache() / f"mpp_dialect_{key}.py"
@@ -71,7 +71,7 @@ def generate(path):
         with contextlib.redirect_stdout(io.StringIO()):
             mavgen.mavgen(options, [str(scratch / "mpp.xml")])
         path.parent.mkdir(parents=True, exist_ok=True)
-        # Two stations may start at once: the file appears whole.
+        # Two stations may start at once, so the complete file appears in one step.
         temporary = path.with_suffix(f".{os.getpid()}")
         shutil.copy(scratch / "mpp_dialect.py", temporary)
         temporary.replace(path)

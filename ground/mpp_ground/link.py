@@ -1,4 +1,4 @@
-"""A connection to one vehicle: commands and parameters that are answered or fail by name."""
+"""A connection to one vehicle. Commands and parameters get an answer, or they fail with an error."""
 
 import hashlib
 import threading
@@ -18,7 +18,7 @@ RESULTS = {
 
 
 class GroundError(Exception):
-    """What the vehicle refused, or did not answer."""
+    """The vehicle refused a request or did not answer it."""
 
 
 class Vehicle:
@@ -37,7 +37,7 @@ class Vehicle:
             threading.Thread(target=self.keep_beating, daemon=True).start()
 
     def find(self, system):
-        """Waits for a vehicle's heartbeat; the sender of the first one, unless a system is asked for."""
+        """Waits for a vehicle's heartbeat: from the system that is asked for, or else from the first one."""
         deadline = time.monotonic() + self.patience
         while time.monotonic() < deadline:
             message = self.master.recv_match(type="HEARTBEAT", blocking=True, timeout=0.5)
@@ -60,7 +60,7 @@ class Vehicle:
         self.master.close()
 
     def receive(self, types=None, timeout=1.0):
-        """The next message of the vehicle, of one of these types; None if none comes in time."""
+        """The next message of the vehicle of one of these types; None if no such message comes in time."""
         deadline = time.monotonic() + timeout
         while (left := deadline - time.monotonic()) > 0:
             message = self.master.recv_match(type=types, blocking=True, timeout=left)
@@ -69,7 +69,7 @@ class Vehicle:
         return None
 
     def ask(self, send, types, accept, what):
-        """Sends once a second until an answer comes that `accept` takes: datagrams get lost."""
+        """Sends once a second, because datagrams get lost, until an answer comes that `accept` takes."""
         end = time.monotonic() + self.patience
         while (now := time.monotonic()) < end:
             send()
@@ -81,7 +81,7 @@ class Vehicle:
         raise GroundError(f"no answer to {what}")
 
     def command(self, command, *parameters):
-        """Sends a command; returns the acknowledgement's result by name."""
+        """Sends a command. Returns the name of the acknowledgement's result."""
         values = [float(value) for value in parameters] + [0.0] * (7 - len(parameters))
         mav = self.master.mav
         ack = self.ask(
@@ -93,13 +93,13 @@ class Vehicle:
         return RESULTS.get(ack.result, str(ack.result))
 
     def demand(self, command, *parameters):
-        """A command that has to be accepted."""
+        """Sends a command that must be accepted."""
         result = self.command(command, *parameters)
         if result != "ACCEPTED":
             raise GroundError(f"command {command}: {result}")
 
     def request(self, name):
-        """A message that is sent on request."""
+        """Requests a message and returns it."""
         number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
         self.demand(mavlink.MAV_CMD_REQUEST_MESSAGE, number)
         message = self.receive(name, 2.0) or self.master.messages.get(name)
@@ -136,7 +136,7 @@ class Vehicle:
         ).param_value
 
     def write(self, name, value):
-        """Sets a parameter; raises if the value in force is another."""
+        """Sets a parameter. Raises an error if the value in force is different."""
         mav = self.master.mav
         real32 = mavlink.MAV_PARAM_TYPE_REAL32
         answer = self.ask(
@@ -150,7 +150,7 @@ class Vehicle:
         return answer.param_value
 
     def why(self, name):
-        """What the vehicle says about a refused write, if it says anything."""
+        """The vehicle's text about a refused write, if there is one."""
         end = time.monotonic() + 1.0
         while (text := self.receive("STATUSTEXT", end - time.monotonic())) is not None:
             if text.text.startswith(name):

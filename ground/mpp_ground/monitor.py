@@ -1,4 +1,4 @@
-"""A live table of what the vehicle tells."""
+"""A live table of the vehicle's messages."""
 
 import math
 import time
@@ -10,7 +10,7 @@ OUTCOMES = ["adopted", "least violating", "kept previous", "trim hold"]
 
 
 def monitor(vehicle, out, seconds=None, once=False):
-    """Prints a table each second; on a terminal over the last one."""
+    """Prints a table each second. On a terminal each table replaces the last one."""
     end = math.inf if seconds is None else time.monotonic() + seconds
     latest, counts, texts = {}, {}, []
     begin = shown = time.monotonic()

@@ -1,4 +1,4 @@
-"""Parameter files: NAME,VALUE in each line, `#` begins a comment."""
+"""Parameter files: each line is NAME,VALUE, and `#` begins a comment."""
 
 from .link import GroundError
 
@@ -9,7 +9,7 @@ def text(parameters):
 
 
 def values(content):
-    """Names and values; blanks instead of the comma are taken, too."""
+    """Reads names and values. Blanks may stand in place of the comma."""
     found = []
     for number, line in enumerate(content.splitlines(), 1):
         words = line.split("#")[0].replace(",", " ").split()

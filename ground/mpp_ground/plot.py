@@ -22,7 +22,7 @@ def read(path):
 
 
 def returns(found):
-    """Where the lidar's returns lie in the world, by the pose nearest in time."""
+    """Positions of the lidar's returns in the world, by the pose nearest in time."""
     poses = sorted(
         (attitude.time_boot_ms, attitude.pitch) for attitude in found["ATTITUDE"]
     )

@@ -1,11 +1,11 @@
-"""Recording of everything that comes from the vehicle."""
+"""Recording of all messages that come from the vehicle."""
 
 import math
 import time
 
 
 def record(vehicle, path, seconds=None):
-    """Writes frames with their times of arrival until the time is over; returns their number."""
+    """Writes frames with their times of arrival until the time is over. Returns the number of frames."""
     end = math.inf if seconds is None else time.monotonic() + seconds
     count = 0
     with open(path, "wb") as file:

@@ -1,7 +1,7 @@
-"""Vehicles to test against: the simulation, held at its start until it is armed.
+"""Vehicles for the tests: the simulation, held at its start until it is armed.
 
-It flies at the pace of real time, the tests at theirs: nothing here depends on how long anything
-takes. Whatever is awaited is awaited for a minute; what is measured is measured in the flight's time.
+The simulation flies at the pace of real time, and the tests run at their own: nothing here depends on how
+long anything takes. Every wait may last a minute, and all measured times are those of the flight.
 """
 
 import os
@@ -14,9 +14,9 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BINARY = Path(os.environ.get("SIL_HARNESS", ROOT / "target" / "release" / "sil-harness"))
-# Nothing takes so long, on however slow a machine.
+# Nothing takes longer than this, even on a slow machine.
 LIMIT = 60.0
-# A flight that lasts until it is ended, and that nothing stands in the way of.
+# A flight that lasts until it is ended, without obstacles.
 LASTING = ("--hold", "--speed", "1", "--duration", "3600", "--obstacles", "0")
 
 
@@ -27,7 +27,7 @@ def free_port():
 
 
 def until(condition, what):
-    """Waits until the condition holds; gives what it gave then."""
+    """Waits until the condition holds. Returns the condition's value then."""
     deadline = time.monotonic() + LIMIT
     while not (result := condition()):
         assert time.monotonic() < deadline, f"waited {LIMIT:g} s for {what}"
@@ -36,14 +36,14 @@ def until(condition, what):
 
 
 def parameters(preset="flight"):
-    """What the parameters of a flight are, by the program's own list."""
+    """The parameters of a flight, from the program's own list."""
     command = [BINARY, "params", "--preset", preset]
     lines = subprocess.run(command, capture_output=True, check=True, text=True).stdout.splitlines()
     return {name: float(value) for name, value in (line.split(",") for line in lines)}
 
 
 class Simulation:
-    """A running flight; `address` is where it sends to, and to `others`."""
+    """A running flight. It sends to `address` and to `others`."""
 
     def __init__(self, out, *arguments, port=None, others=()):
         self.port = port or free_port()
@@ -57,7 +57,7 @@ class Simulation:
         )
 
     def result(self):
-        """Exit code and what was printed, when the flight has ended by itself."""
+        """The exit code and the output of a flight that has ended by itself."""
         out, err = self.process.communicate(timeout=LIMIT)
         return self.process.returncode, out, err
 

@@ -1,4 +1,4 @@
-"""The package against a flight in real time."""
+"""Tests the package with a flight in real time."""
 
 import json
 import os
@@ -51,7 +51,7 @@ def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate):
     log = json.loads(open(result["log"]).read())
     orders = [(order["name"], order["value"]) for order in log["orders"] if order["order"] == "parameter"]
     assert orders == [("LQR_R_ELEVATOR", 0.6), ("MPP_PATHS", 12.0)]
-    again = simulate("--orders", result["log"], "--duration", "3600", "--preset", "paper")
+    again = simulate("--orders", result["log"], "--speed", "max")
     _, out, _ = again.result()
     assert json.loads(out)["log_hash"] == result["log_hash"]
 
@@ -83,13 +83,13 @@ def test_what_is_heard_is_what_is_logged(simulate):
             "ATTITUDE": [Pose(scan, log)],
         })
         for x, z in hits:
-            # On the edge of an obstacle of the log, but for the lidar's noise.
+            # The return is on the edge of an obstacle of the log, except for the lidar's noise.
             edge = min(abs(((x - o["x"]) ** 2 + (z - o["z"]) ** 2) ** 0.5 - o["radius"]) for o in log["header"]["field"])
             assert edge < 1.5, (scan.tick, x, z)
 
 
 class Pose:
-    """Where the log says that the aircraft was at a scan."""
+    """The aircraft's position at a scan, from the log."""
 
     def __init__(self, scan, log):
         ticks = log["ticks"]
@@ -103,7 +103,7 @@ def test_an_interval_is_kept(simulate):
     vehicle = Vehicle(simulation.address, patience=LIMIT)
     for milliseconds in (20, 200):
         vehicle.demand(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAVLINK_MSG_ID_ATTITUDE, 1e3 * milliseconds)
-        # What was sent before comes first.
+        # Messages that were sent before come first.
         times = [vehicle.receive("ATTITUDE", LIMIT).time_boot_ms for _ in range(40)]
         assert statistics.median(b - a for a, b in zip(times[10:], times[11:])) == milliseconds
     vehicle.close()
@@ -178,7 +178,7 @@ def test_a_recording_has_the_same_bytes_and_others_read_it(tmp_path):
         [sys.executable, Path(sys.executable).with_name("mavlogdump.py"), "--show-source", tlog],
         capture_output=True, check=True, text=True, env={**os.environ, "TZ": "UTC"},
     ).stdout.splitlines()
-    # 5 s, and a word at the end.
+    # The flight takes 5 s, and a text comes at its end.
     count = {kind: sum(f" {kind} " in line for line in dump) for kind in ("ATTITUDE", "HEARTBEAT", "STATUSTEXT")}
     assert count == {"ATTITUDE": 50, "HEARTBEAT": 6, "STATUSTEXT": 1}
     assert not any("BAD_DATA" in line for line in dump)

@@ -1,17 +1,16 @@
-//! What can go wrong with a frame.
+//! The errors of encoding and decoding a frame.
 
-use crate::frame::PROTOCOL_VERSION;
+use crate::version::PROTOCOL_VERSION;
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
-/// Why a message could not be encoded.
+/// The reason why a message could not be encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum EncodeError {
-    /// The message is longer than a frame can hold. The sizes are tied at compile time, so this
-    /// is a fault of this crate; nothing was sent.
+    /// The message is longer than a frame can hold. The sizes are checked at compile time, so this is a
+    /// fault of this crate. Nothing was sent.
     TooLong {
-        /// Which message, one of [`id`](crate::id).
+        /// The message, one of [`id`](crate::id).
         id: u8,
     },
 }
@@ -19,79 +18,97 @@ pub enum EncodeError {
 impl fmt::Display for EncodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::TooLong { id } => write!(f, "message {id} does not fit into a frame"),
+            Self::TooLong { id } => write!(
+                f,
+                "message {id} does not fit into a frame: report it as a fault of hil-protocol"
+            ),
         }
     }
 }
 
 impl core::error::Error for EncodeError {}
 
-/// Why the bytes between two delimiters are not a message, in the order of the checks.
+/// The reason why the bytes between two delimiters are not a message, in the order of the checks.
 ///
-/// Whatever it was, the frame is dropped, nothing of it is used, and the decoder is in step again
-/// at the next frame. The core also reports it with
-/// [`RejectionCause::Frame`](crate::RejectionCause::Frame); the order of the variants is therefore
-/// what goes over the wire: append only.
+/// In each case the decoder drops the whole frame, and is in step again at the next frame. The core also
+/// reports the error with [`RejectionCause::Frame`](crate::RejectionCause::Frame). The position of a
+/// variant therefore goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum DecodeError {
-    /// More than [`MAX_FRAME`](crate::MAX_FRAME) bytes without a delimiter: lost delimiters,
-    /// noise, or a peer with longer messages. Reported once, at the end delimiter; go on.
+    /// The frame with its delimiter is longer than [`MAX_FRAME`](crate::MAX_FRAME) bytes. The cause is a lost
+    /// delimiter, noise, or a peer with longer messages. The decoder reports it once, at the delimiter at
+    /// the end. The receiver goes on.
     TooLong,
-    /// Not a COBS sequence: cut short or damaged. Go on.
+    /// The bytes are not a COBS sequence, because they were cut or damaged. The receiver goes on.
     Cobs,
-    /// Too short for header and CRC: a piece of a frame, as at the opening of a line. Go on.
+    /// The frame is too short for header and CRC. It is a part of a frame, for example after the opening of
+    /// a line. The receiver goes on.
     TooShort,
-    /// Does not begin with [`MAGIC`](crate::MAGIC): something else speaks on this line. Go on; if
-    /// every frame is like that, the line is the wrong one.
+    /// The frame does not begin with [`MAGIC`](crate::MAGIC): another protocol uses this line. The receiver
+    /// goes on. If every frame gives this error, it is the wrong line.
     Magic,
-    /// The checksum differs: damaged on the way. Go on; the link repeats nothing by itself, so a
-    /// side that waits for an answer needs its own time limit.
+    /// The checksum differs, because the frame was damaged on its way. The receiver goes on. The link does
+    /// not repeat frames by itself, so a side that waits for an answer needs its own time limit.
     Crc,
-    /// An intact frame of another link version. Stop the session and show this error: no message
-    /// of this peer can be understood.
+    /// The frame is intact, but has another link version. The receiver must stop the session and show this
+    /// error, because it can understand no message of this peer.
     Version {
         /// The version that the peer speaks.
         peer: u8,
     },
-    /// An intact frame with an id that this version does not have: a fault in the peer. Go on
-    /// without it.
+    /// The frame is intact, but this version does not have its id. This is a fault in the peer. The
+    /// receiver goes on without the frame.
     UnknownId {
-        /// The id.
+        /// The unknown id.
         id: u8,
     },
-    /// An intact frame whose payload is not that message: a fault in the peer, for the same
-    /// version has the same payloads. Go on without it.
+    /// The frame is intact, but its payload does not belong to its id. This is a fault in the peer, because
+    /// the same version has the same payloads. The receiver goes on without the frame.
     Payload {
-        /// Which message it claims to be.
+        /// The message that the id stands for.
         id: u8,
     },
-    /// An intact frame with bytes left after the message: a fault in the peer, as above.
+    /// The frame is intact, but bytes follow the message in its payload. This is a fault in the peer. The
+    /// receiver goes on without the frame.
     TrailingBytes {
-        /// Which message it claims to be.
+        /// The message that the id stands for.
         id: u8,
     },
 }
 
 impl fmt::Display for DecodeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::TooLong => write!(f, "frame is longer than any message"),
-            Self::Cobs => write!(f, "frame is not a COBS sequence"),
-            Self::TooShort => write!(f, "frame is too short for header and checksum"),
-            Self::Magic => write!(f, "frame does not begin with the magic \"MP\""),
-            Self::Crc => write!(f, "frame is damaged: its checksum differs"),
-            Self::Version { peer } => write!(
-                f,
-                "peer speaks link protocol {peer}, this side speaks {PROTOCOL_VERSION}: \
-                 update the older side"
-            ),
-            Self::UnknownId { id } => {
-                write!(f, "link protocol {PROTOCOL_VERSION} has no message {id}")
+        f.write_str(match self {
+            Self::TooLong => "the frame is longer than any message: check that the peer is this core",
+            Self::Cobs => "the frame is not a COBS sequence: check the line, for it is damaged",
+            Self::TooShort => {
+                "the frame is too short for header and checksum: check the line, unless it has just \
+                 been opened"
             }
-            Self::Payload { id } => write!(f, "payload is not that of message {id}"),
-            Self::TrailingBytes { id } => write!(f, "message {id} is followed by more bytes"),
-        }
+            Self::Magic => {
+                "the frame does not begin with \"MP\": check that the line leads to a core"
+            }
+            Self::Crc => "the frame is damaged, for its checksum differs: check the line",
+            Self::Version { peer } => {
+                return write!(
+                    f,
+                    "peer speaks link protocol {peer}, this side speaks {PROTOCOL_VERSION}: \
+                     update the older side"
+                );
+            }
+            Self::UnknownId { id } => {
+                return write!(
+                    f,
+                    "link protocol {PROTOCOL_VERSION} has no message {id}: correct the peer"
+                );
+            }
+            Self::Payload { id } => {
+                return write!(f, "the payload is not that of message {id}: correct the peer");
+            }
+            Self::TrailingBytes { id } => {
+                return write!(f, "bytes follow message {id} in its frame: correct the peer");
+            }
+        })
     }
 }
 

@@ -1,12 +1,10 @@
-//! Messages to bytes and back.
+//! Conversion of messages to bytes and back.
 
 use crate::error::{DecodeError, EncodeError};
 use crate::message::{MAX_PAYLOAD, Message};
+use crate::version::PROTOCOL_VERSION;
 use cobs::CobsEncoder;
 use crc::{CRC_32_ISO_HDLC, Crc};
-
-/// The version of the link that this crate speaks.
-pub const PROTOCOL_VERSION: u8 = 2;
 
 /// The first two bytes of a frame before COBS: "MP".
 pub const MAGIC: [u8; 2] = *b"MP";
@@ -18,14 +16,14 @@ const DELIMITER: u8 = 0;
 /// Size of the longest frame on the wire, its delimiter included \[bytes\].
 pub const MAX_FRAME: usize = cobs::max_encoding_length(HEADER + MAX_PAYLOAD + CHECKSUM) + 1;
 
-/// A table of 256 words: 1 kB of flash.
+/// CRC with a table of 256 words, which takes 1 kB of flash.
 static CRC: Crc<u32> = Crc::<u32>::new(&CRC_32_ISO_HDLC);
 
 /// Writes `message` into `buffer` as one frame and returns its bytes, the delimiter included.
 ///
 /// # Errors
 ///
-/// [`EncodeError::TooLong`] if the message does not fit; const assertions make that impossible.
+/// [`EncodeError::TooLong`] if the message does not fit. Const assertions make this impossible.
 pub fn encode<'a>(
     message: &Message,
     buffer: &'a mut [u8; MAX_FRAME],
@@ -51,14 +49,14 @@ pub fn encode<'a>(
 
 /// Finds the messages in a stream of bytes.
 ///
-/// It needs no beginning: after any garbage it is in step again at the next delimiter.
+/// It can start anywhere in the stream: after any noise it is in step again at the next delimiter.
 #[derive(Clone, Debug)]
 pub struct Decoder {
-    /// What came since the last delimiter.
+    /// The bytes since the last delimiter.
     frame: [u8; MAX_FRAME - 1],
-    /// How much of `frame` is used.
+    /// Number of bytes in `frame`.
     length: usize,
-    /// More came than `frame` holds.
+    /// Whether more bytes came than `frame` can hold.
     overlong: bool,
 }
 
@@ -75,8 +73,8 @@ impl Decoder {
 
     /// Takes in the next byte of the stream.
     ///
-    /// Gives something at delimiters only: the message that it ends, or why the bytes before it
-    /// are none. Gives nothing between two delimiters in a row.
+    /// Returns a result only at a delimiter: the message before the delimiter, or the reason why the bytes
+    /// before it are not a message. A delimiter that directly follows another one gives no result.
     ///
     /// # Errors
     ///
@@ -115,7 +113,8 @@ impl Default for Decoder {
 
 /// The message in a frame without its delimiter.
 fn decode(frame: &[u8]) -> Result<Message, DecodeError> {
-    // Not in place: there, the compiler cannot prove that cobs never indexes past the end.
+    // The function does not decode in place. There the compiler cannot prove that cobs never indexes
+    // past the end.
     let mut scratch = [0; MAX_FRAME];
     let decoded = cobs::decode(frame, &mut scratch).map_err(|_| DecodeError::Cobs)?;
     let plain = scratch
@@ -131,8 +130,8 @@ fn decode(frame: &[u8]) -> Result<Message, DecodeError> {
     if [m, p] != MAGIC {
         return Err(DecodeError::Magic);
     }
-    // Before the version, so that noise is never taken for an old peer; header and CRC are the
-    // same in every version.
+    // This check comes before that of the version, so that noise does not look like an old peer. Header
+    // and CRC are the same in every version.
     if CRC.checksum(checked) != u32::from_le_bytes(*checksum) {
         return Err(DecodeError::Crc);
     }

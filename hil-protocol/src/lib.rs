@@ -1,8 +1,8 @@
-//! The link between the flight core and the hardware-in-the-loop harness, and the one between the
+//! The link between the flight core and the hardware-in-the-loop harness, and the link between the
 //! vehicle and its ground stations.
 //!
-//! The crate knows frames, versions, checksums and messages. It never knows what a value means to
-//! the planner, reads no clock, does no input or output, allocates nothing and has no panic.
+//! The crate knows frames, versions, checksums and messages. It does not know the meaning of a value to
+//! the planner. It reads no clock, does no input or output, allocates nothing and has no panic.
 //!
 //! # A frame
 //!
@@ -24,9 +24,9 @@
 //!   message's struct: integers wider than a byte are varints, floats are little endian, an enum
 //!   is the position of its variant. [`Message`] itself is never encoded; the id stands for it.
 //! * The CRC is CRC-32/ISO-HDLC (the one of Ethernet and zlib).
-//! * The zero byte ends a frame and occurs nowhere else, so whatever noise went before, a
-//!   receiver is in step again at the next one. A sender that opens a line of unknown state
-//!   writes one 0x00 first: successive zeros are not an error.
+//! * The zero byte ends a frame and occurs nowhere else. After any noise a receiver is therefore in step
+//!   again at the next zero byte. A sender that opens a line of unknown state writes one 0x00 first:
+//!   successive zeros are not an error.
 //!
 //! # A session
 //!
@@ -48,27 +48,29 @@
 //!    | <--------------- ActuatorCommand -------- |  /
 //! ```
 //!
-//! The [`ActuatorCommand`] ends the tick: a harness in lockstep sends nothing more until it came.
+//! The [`ActuatorCommand`] ends the tick: a harness in lockstep sends nothing more until it has received
+//! this message.
 //!
-//! A core that starts says [`Hello`] unasked. Whatever the harness waits for at that moment, it configures
-//! that core, tells it every value that the one before had taken, and asks again.
+//! A core that starts sends a [`Hello`] without being asked. The harness then configures this core, sends
+//! it every parameter value that the core before the restart had accepted, and repeats the request whose
+//! answer it still waits for.
 //!
 //! # Versions
 //!
-//! Postcard has no evolution: a peer that knows one field more reads nonsense. Therefore
+//! Postcard messages cannot grow: a peer that knows one field more reads wrong values. Therefore
 //!
-//! * every change of what can go over the wire raises [`PROTOCOL_VERSION`], and both sides must
-//!   speak the same one: [`DecodeError::Version`] names the other's;
+//! * every change of the messages raises [`PROTOCOL_VERSION`], and both sides must have the same version:
+//!   [`DecodeError::Version`] names that of the other side;
 //! * header and CRC stay as they are in every version, so that this error can be told from noise;
 //! * ids and variants are only ever appended, never moved or used again, so that a number means
 //!   the same in every recording. `tests/frozen_bytes.rs` holds the bytes of all of them.
 //!
-//! A version is open until a release speaks it; until then changes gather in its row.
+//! A version is open until a release uses it. Until then its row in the table collects the changes.
 //!
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`Configure::actuators`], [`ConfigureVerdict::Actuators`] |
+//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`RejectionCause::ScanAngle`]; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on |
 //!
 //! # Use
 //!
@@ -85,7 +87,7 @@
 //! # Ok::<(), hil_protocol::EncodeError>(())
 //! ```
 //!
-//! The link to ground stations is MAVLink 2 and stands apart, in [`mavlink`].
+//! The link to ground stations is MAVLink 2. It is separate, in [`mavlink`].
 
 #![no_std]
 #![forbid(unsafe_code)]
@@ -94,9 +96,10 @@ mod error;
 mod frame;
 pub mod mavlink;
 mod message;
+mod version;
 
 pub use error::{DecodeError, EncodeError};
-pub use frame::{Decoder, MAGIC, MAX_FRAME, PROTOCOL_VERSION, encode};
+pub use frame::{Decoder, MAGIC, MAX_FRAME, encode};
 pub use message::flight::{
     ActuatorCommand, ControlMode, LidarScan, MAX_BEAMS, SensorFrame, StepReport,
 };
@@ -104,7 +107,9 @@ pub use message::report::{
     MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
 };
 pub use message::session::{
-    ActuatorLimits, AirframeId, Configure, ConfigureReply, ConfigureVerdict, Hello, ParameterReply,
-    ParameterVerdict, Preset, Role, SetParameter,
+    ActuatorLimits, AirframeId, Configure, ConfigureReply, Hello, ParameterReply, Preset, Role,
+    SetParameter,
 };
+pub use message::verdict::{ConfigureVerdict, ParameterVerdict};
 pub use message::{MAX_PAYLOAD, Message, id};
+pub use version::PROTOCOL_VERSION;

@@ -1,8 +1,8 @@
 //! The MAVLink 2 link to ground stations: frames, signatures and messages.
 //!
-//! The messages are generated at build time from `dialect/mpp.xml`, which is ours and includes the
-//! part of the common dialect that is used. Nobody here reads a socket or knows what a message
-//! means; whoever does owns a [`Framer`] for what comes in and a [`Sender`] for what goes out.
+//! The build generates the messages from our dialect `dialect/mpp.xml`, which includes the used part of
+//! the common dialect. This module reads no socket and does not know the meaning of a message. The user
+//! of the module owns a [`Framer`] for received bytes and a [`Sender`] for messages to send.
 //!
 //! ```
 //! use hil_protocol::mavlink::{Framer, Sender, messages::HEARTBEAT_DATA};
@@ -17,8 +17,8 @@
 //! assert_eq!(mode, Some(10));
 //! ```
 //!
-//! The generated code checks the size of its buffers, which hold the longest payload there is:
-//! these checks stay in an image that uses it, but never fail.
+//! The generated code checks the size of its buffers. The buffers hold the longest payload, so these
+//! checks never fail, but they stay in an image that uses the code.
 
 mod frame;
 mod framer;
@@ -32,7 +32,7 @@ pub use mavlink_core::types::CharArray;
 pub use sender::{Datagram, Sender};
 pub use signing::{Key, Refusal, Signer, Verifier};
 
-/// The messages, one struct each, named as the dialect names them.
+/// The messages: one struct for each message, with the name from the dialect.
 pub use generated::mpp as messages;
 
 #[allow(missing_docs, clippy::all, clippy::pedantic, clippy::panic)]
@@ -40,7 +40,7 @@ mod generated {
     include!(concat!(env!("OUT_DIR"), "/mod.rs"));
 }
 
-/// A text as a field of `N` characters, cut before a character that does not fit.
+/// A text as a field of `N` bytes, cut before the first character that does not fit.
 #[must_use]
 pub fn text<const N: usize>(text: &str) -> CharArray<N> {
     text.get(..text.floor_char_boundary(N))

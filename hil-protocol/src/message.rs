@@ -1,8 +1,10 @@
-//! The messages: one struct each, gathered in [`Message`].
+//! The messages: one struct for each message, and the enum [`Message`] of all of them.
 
 pub(crate) mod flight;
 pub(crate) mod report;
 pub(crate) mod session;
+mod size;
+pub(crate) mod verdict;
 
 use crate::error::{DecodeError, EncodeError};
 use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
@@ -38,34 +40,34 @@ pub mod id {
     pub const PLAN_TRAJECTORY: u8 = 12;
 }
 
-/// Everything that can go over the link.
+/// A message of any kind.
 #[expect(
     clippy::large_enum_variant,
     reason = "there is no heap to put the scan on"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
-    /// Who speaks; the first message in both directions.
+    /// Both directions: the first message, which identifies the sender.
     Hello(Hello),
-    /// Harness to core: what to fly with.
+    /// Harness to core: the configuration of a flight.
     Configure(Configure),
-    /// Core to harness: whether it will.
+    /// Core to harness: the verdict on a configuration.
     ConfigureReply(ConfigureReply),
     /// Harness to core: the measurements of one tick.
     SensorFrame(SensorFrame),
     /// Harness to core: one sweep of the lidar.
     LidarScan(LidarScan),
-    /// Core to harness: the actuators of one tick.
+    /// Core to harness: the actuator command of one tick.
     ActuatorCommand(ActuatorCommand),
     /// Core to harness: estimate and reference of one tick.
     StepReport(StepReport),
-    /// Core to harness: how one planning cycle ended.
+    /// Core to harness: the result of one planning cycle.
     PlanReport(PlanReport),
-    /// Core to harness: an input that was not used, and why.
+    /// Core to harness: an input that the core did not use, and the cause.
     Rejection(Rejection),
-    /// Harness to core: another value for a parameter.
+    /// Harness to core: a new value for a parameter.
     SetParameter(SetParameter),
-    /// Core to harness: whether it is in force.
+    /// Core to harness: the verdict on a new value.
     ParameterReply(ParameterReply),
     /// Core to harness: the trajectory that a planning cycle chose.
     PlanTrajectory(PlanTrajectory),
@@ -136,7 +138,7 @@ impl Message {
     }
 }
 
-/// One struct from exactly these bytes.
+/// Reads one struct from exactly these bytes.
 fn body<T: DeserializeOwned>(id: u8, payload: &[u8]) -> Result<T, DecodeError> {
     match postcard::take_from_bytes(payload) {
         Ok((value, [])) => Ok(value),
@@ -161,19 +163,3 @@ const _: () = {
     assert!(ParameterReply::MAX_SIZE <= MAX_PAYLOAD);
     assert!(PlanTrajectory::MAX_SIZE <= MAX_PAYLOAD);
 };
-
-/// The most bytes that postcard needs for one value of a type.
-pub(crate) mod size {
-    /// `bool`, and the variant of an enum with at most 128 of them.
-    pub(crate) const BYTE: usize = 1;
-    /// `u16`, and the length of a list below 2^14: seven bits to the byte.
-    pub(crate) const U16: usize = 3;
-    /// `u32`.
-    pub(crate) const U32: usize = 5;
-    /// `u64`.
-    pub(crate) const U64: usize = 10;
-    /// `f32`.
-    pub(crate) const F32: usize = 4;
-    /// `f64`.
-    pub(crate) const F64: usize = 8;
-}

@@ -1,4 +1,4 @@
-//! The decoder on everything that a line can do to a frame.
+//! Tests the decoder on everything that a line can do to a frame.
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
@@ -19,7 +19,7 @@ fn scan() -> Message {
     })
 }
 
-/// Bytes of a noisy line; as many delimiters as in real traffic.
+/// Bytes of a noisy line, with as many delimiters as in real traffic.
 fn noise() -> impl Strategy<Value = Vec<u8>> {
     vec(prop_oneof![20 => any::<u8>(), 1 => Just(0)], 0..1500)
 }
@@ -32,7 +32,7 @@ proptest! {
         prop_assert_eq!(received.len(), 1);
         let received = received[0].as_ref().unwrap();
         prop_assert_eq!(received.id(), message.id());
-        // Bytes, because a NaN does not equal itself.
+        // The frames are compared as bytes, because a NaN does not equal itself.
         prop_assert_eq!(frame(received), sent);
     }
 
@@ -159,7 +159,8 @@ fn an_overlong_frame_is_one_error_at_its_end() {
             .collect();
         assert_eq!(rest, [Ok(scan())]);
     }
-    // Without its delimiter the longest frame is one byte shorter: this is long, but no frame.
+    // Without its delimiter the longest frame is one byte shorter. These bytes are long, but they
+    // are no frame.
     let longest = [vec![1; MAX_FRAME - 1], vec![0]].concat();
     assert_eq!(found(&longest), [Err(DecodeError::Magic)]);
 }
@@ -215,7 +216,8 @@ fn a_damaged_version_is_damage_not_another_version() {
 
 #[test]
 fn a_list_longer_than_its_room_is_a_payload_fault() {
-    // Tick, two angles, and a count of 129; a frame with all their bytes would be too long.
+    // The payload holds a tick, two angles, and a count of 129. A frame with all their bytes would
+    // be too long.
     let payload = [&[0; 9], [0x81, 0x01].as_slice(), &[0; 4 * 128]].concat();
     let received = found(&oracle::frame(
         b"MP",

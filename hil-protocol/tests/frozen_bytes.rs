@@ -1,15 +1,16 @@
-//! The bytes of every message and of every variant, as they were when they first went over a wire.
+//! Tests the bytes of every message and of every variant, as they were when they first went over a
+//! wire.
 //!
-//! A failure here means that a peer of the same version would read something else. Once a version is
-//! released no line may change: raise `PROTOCOL_VERSION` (the third byte of all frames) and write all
-//! lines anew. Until then what changes goes into the table of versions in the crate's documentation,
-//! and here the lines of the message that changed.
+//! A failure here means that a peer of the same version would read something else. After the
+//! release of a version no line may change: raise `PROTOCOL_VERSION` (the third byte of all frames)
+//! and write all lines anew. Before the release, changes go into the table of versions in the
+//! crate's documentation, and the lines of the changed message are changed here.
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
 use hil_protocol::*;
 
-/// Each line is one frame; its bytes in hexadecimal.
+/// Checks lines that each hold one frame, with its bytes in hexadecimal.
 fn check(frozen: &[(Message, &str)]) {
     for (message, expected) in frozen {
         let mut buffer = [0; MAX_FRAME];
@@ -23,7 +24,7 @@ fn check(frozen: &[(Message, &str)]) {
     }
 }
 
-/// A frame of version 1, intact by its checksum, is told from noise, and its version named.
+/// A frame of version 1 with a good checksum is told from noise, and its version is named.
 #[test]
 fn the_version_before_is_refused_by_its_number() {
     let hello_1 = "054d500101010c01c8904e8001125f9d741d00";
@@ -114,6 +115,27 @@ fn configure_reply_and_every_verdict() {
         (reply(RangeMax), "0a4d50020308d86b3e8b00"),
         (reply(AlreadyConfigured), "0a4d500203094e5b39fc00"),
         (reply(Actuators), "0a4d5002030af40a306500"),
+        (reply(PresetNotBuilt), "0a4d5002030b623a371200"),
+        (reply(PathsZero), "0a4d5002030cc1af538c00"),
+        (reply(ThrustTooLow), "0a4d5002030d579f54fb00"),
+        (reply(CruiseAirspeed), "0a4d5002030eedce5d6200"),
+        (reply(AirframeNotFinite), "0a4d5002030f7bfe5a1500"),
+        (reply(NotCarried), "0a4d500203108ef3529800"),
+        (reply(NoElevator), "0a4d5002031118c355ef00"),
+        (reply(RegulatorNotFinite), "0a4d50020312a2925c7600"),
+        (reply(RegulatorSingular), "0a4d5002031334a25b0100"),
+        (reply(RegulatorNotConverged), "0a4d5002031497373f9f00"),
+        (reply(RegulatorNotStabilising), "0a4d50020315010738e800"),
+        (reply(PlanModel), "0a4d50020316bb56317100"),
+        (reply(PlanWeights), "0a4d500203172d66360600"),
+        (reply(Penalty), "0a4d50020318bc7b899600"),
+        (reply(Margin), "0a4d500203192a4b8ee100"),
+        (reply(Band), "0a4d5002031a901a877800"),
+        (reply(PlanThrust), "0a4d5002031b062a800f00"),
+        (reply(WindTimeConstant), "0a4d5002031ca5bfe49100"),
+        (reply(AngleOfAttackLimit), "0a4d5002031d338fe3e600"),
+        (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
+        (reply(OtherPreset), "0a4d5002031f1feeed0800"),
     ]);
 }
 
@@ -275,6 +297,7 @@ fn rejection_and_every_cause() {
             "0f4d500209ac020af0a2048dec1a7800",
         ),
         (rejection(PlannerRestarted), "0c4d500209ac020bd4c070c600"),
+        (rejection(ScanAngle), "0c4d500209ac020c7755145800"),
     ]);
 }
 
@@ -334,6 +357,9 @@ fn parameter_reply_and_every_verdict() {
             parameter_reply(SetUp(ConfigureVerdict::NotTrimmable)),
             "0c4d50020b070606670389a300",
         ),
+        (parameter_reply(NotInPreset), "0b4d50020b0707d4536e4d00"),
+        (parameter_reply(PathsInFlight), "0b4d50020b0708454ed1dd00"),
+        (parameter_reply(CruiseFixed), "0b4d50020b0709d37ed6aa00"),
     ]);
 }
 

@@ -1,4 +1,4 @@
-//! The longest payload of each message is as long as its `MAX_SIZE` says, and fits.
+//! Tests that the longest payload of each message is as long as its `MAX_SIZE` says, and fits.
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
@@ -9,7 +9,7 @@ fn payload(value: &impl Serialize) -> usize {
     postcard::to_slice(value, &mut [0; 1024]).unwrap().len()
 }
 
-/// Not a zero among its bytes.
+/// A value without a zero among its bytes.
 const FLOAT: f64 = f64::from_bits(0x4142_4344_4546_4748);
 
 fn longest_scan() -> LidarScan {

@@ -1,25 +1,25 @@
-//! Every compile-time size and rate, tied together by the assertions at the end.
+//! All compile-time sizes and rates. The assertions at the end check that they fit together.
 
-/// Period of the flight loop [s].
+/// Period of the flight loop \[s\].
 pub const TICK_PERIOD: f64 = 0.01;
 
 /// Stages of the planning horizon (paper, section III-D: 4.5 s at 0.25 s).
 pub const STAGES: usize = 18;
-/// Stage boundaries, the start included.
+/// Number of stage boundaries, the start included.
 pub const KNOTS: usize = STAGES + 1;
-/// Length of a stage [s].
+/// Length of a stage \[s\].
 pub const STAGE_PERIOD: f64 = 0.25;
 
-/// Rays, and so half-planes, around each collocation point (paper, section III-B).
+/// Number of rays around each collocation point; each ray gives one half-plane (paper, section III-B).
 pub const DIRECTIONS: usize = 8;
-/// Length at which a ray gives up [m].
+/// Greatest length of a ray \[m\].
 pub const RAY_LIMIT: f64 = 20.0;
 
 /// Rows (height) of the occupancy grid; a cell is 1 m x 1 m.
 pub const GRID_ROWS: usize = 75;
 /// Columns (downrange) of the occupancy grid.
 pub const GRID_COLS: usize = 150;
-/// Row of the aircraft, which is at the low corner of its cell.
+/// Row of the aircraft. The aircraft is at the low corner of its cell.
 pub const ORIGIN_ROW: usize = 37;
 /// Column of the aircraft.
 pub const ORIGIN_COL: usize = 25;
@@ -33,17 +33,17 @@ pub const SEARCH_COLS: usize = 85;
 
 /// Nodes of one RRT*-AR tree ("a low number of samples", paper, section III-A).
 pub const TREE_NODES: usize = 150;
-/// Samples that one tree may draw, rejected ones included; 177 were the most seen in recorded
-/// runs, the rest is for fields so dense that most samples are rejected.
+/// Number of samples that one tree may draw, rejected samples included. Recorded runs needed at most 177.
+/// The reserve is for fields so dense that the tree rejects most samples.
 pub const TREE_SAMPLES: usize = 4 * TREE_NODES;
 /// Runs of RRT*-AR in one planning cycle.
 pub const TREE_RUNS: usize = 100;
-/// Most candidate paths of one cycle.
+/// Greatest number of candidate paths in one cycle.
 pub const MAX_PATHS: usize = 50;
-/// Points of a path: the tree's depth and the goal.
+/// Greatest number of points in a path: one for each node of the tree, and the goal.
 pub const PATH_POINTS: usize = TREE_NODES + 1;
 
-/// Most beams of a lidar scan.
+/// Greatest number of beams in a lidar scan.
 pub const MAX_BEAMS: usize = 128;
 
 const _: () = {
@@ -51,6 +51,6 @@ const _: () = {
     assert!(SEARCH_COLS <= GRID_COLS);
     assert!(ORIGIN_ROW >= SEARCH_ROW && ORIGIN_ROW < SEARCH_ROW + SEARCH_ROWS);
     assert!(TREE_NODES < u16::MAX as usize);
-    // A collocation point lies on a tick, so that a plan can be taken over on one.
+    // Each collocation point lies on a tick, so that the flight loop can take over a plan there.
     assert!((STAGE_PERIOD / TICK_PERIOD) as usize == 25);
 };

@@ -1,4 +1,5 @@
-//! Raytracing around the collocation points: eight half-planes a stage (paper, section III-B).
+//! Raytracing around the collocation points. It gives eight half-planes for each stage boundary (paper,
+//! section III-B).
 
 mod segments;
 
@@ -8,14 +9,14 @@ use crate::config::{
     STAGES,
 };
 use crate::map::{CellWalk, GridPoint, MAX_WALK, OccupancyGrid};
-use crate::plan::CollocationPoints;
+use crate::paths::CollocationPoints;
 pub use segments::Keep;
 
 /// Ray directions `(row, col)`, counter-clockwise from up to forward, down and back.
 ///
-/// The digits are those of the recorded reference (cosines and sines of multiples of 45 degrees
-/// in floating point, the first zero replaced by 1e-8): a ray that runs along a cell boundary ends
-/// in another cell with other digits.
+/// The digits are those of the recorded reference: cosines and sines of multiples of 45 degrees in
+/// floating point, with the first zero replaced by 1e-8. Other digits would let a ray that runs along a
+/// cell boundary end in another cell.
 #[expect(
     clippy::approx_constant,
     reason = "the recorded digits, not the nearest ones"
@@ -31,12 +32,12 @@ pub const DIRECTION_VECTORS: [[f64; 2]; DIRECTIONS] = [
     [0.7071067811865474, -0.7071067811865477],
 ];
 
-/// Distance kept from what a ray hit [m], growing over the horizon.
+/// Distance kept from the cell that a ray hit \[m\]. It grows linearly over the horizon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Padding {
-    /// At the first stage boundary.
+    /// Distance at the first stage boundary.
     pub near: f64,
-    /// At the last.
+    /// Distance at the last stage boundary.
     pub far: f64,
 }
 
@@ -52,11 +53,11 @@ impl Padding {
     }
 }
 
-/// Half-planes `g_i . p_k <= bounds[k][i]` [m] on the position `p_k = (z, x)` of each stage
-/// boundary relative to straight and level flight, `g_i` being [`DIRECTION_VECTORS`].
+/// Half-planes `g_i . p_k <= bounds[k][i]` \[m\] on the position `p_k = (z, x)` at each stage boundary. The
+/// position is relative to straight and level flight; the vectors `g_i` are [`DIRECTION_VECTORS`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Corridor {
-    /// Right-hand sides [m], `KNOTS` x `DIRECTIONS`.
+    /// Right-hand sides \[m\], `KNOTS` x `DIRECTIONS`.
     pub bounds: [[f64; DIRECTIONS]; KNOTS],
 }
 
@@ -84,6 +85,7 @@ impl Corridor {
             let level_col = point.col - ORIGIN_COL as f64 - cruise * STAGE_PERIOD * stage as f64;
             for (direction, bound) in DIRECTION_VECTORS.iter().zip(bounds) {
                 let reach = match rules {
+                    #[cfg(feature = "paper")]
                     Rules::Authors => {
                         let hit = authors_ray(grid, *point, direction);
                         direction[0] * (hit.row - point.row) + direction[1] * (hit.col - point.col)
@@ -103,7 +105,7 @@ impl Default for Corridor {
     }
 }
 
-/// Distance [m] from a point along a unit vector to the near side of the first occupied cell, at
+/// Distance \[m\] from a point along a unit vector to the near side of the first occupied cell. It is at
 /// most [`RAY_LIMIT`].
 #[must_use]
 pub fn cast_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]) -> f64 {
@@ -114,18 +116,18 @@ pub fn cast_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]) -
         .map_or(RAY_LIMIT, |(_, _, entered)| entered)
 }
 
-/// Rows of the window that the authors' rays see, from [`SEARCH_ROW`] up.
+/// Number of rows in the window that the authors' rays see. The lowest row is [`SEARCH_ROW`].
 const WINDOW_ROWS: i32 = 48;
-/// Columns of that window.
+/// Number of columns in the window that the authors' rays see.
 const WINDOW_COLS: i32 = 80;
 const _: () = assert!(WINDOW_COLS as usize <= GRID_COLS);
 
-/// The authors' ray, to compare with their code: where it ends, in grid coordinates.
+/// End point of a ray in the authors' code, in grid coordinates. It serves comparison with that code.
 ///
-/// It steps from line to line of either axis and tests the cell that it stands in, so that towards
-/// negative directions the cell just crossed is tested and the far side of an obstacle is returned;
-/// below the window's low edges it reads the cells of the opposite edges; and it returns the low
-/// corner of the last cell.
+/// The ray steps from grid line to grid line of either axis and tests the cell at its position. In a
+/// negative direction it therefore tests the cell that it has just crossed, and returns the far side of
+/// an obstacle. Below the low edges of the window it reads the cells at the opposite edges. It returns
+/// the low corner of the last cell.
 #[must_use]
 pub fn authors_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]) -> GridPoint {
     let mut at = [origin.row - SEARCH_ROW as f64, origin.col];
@@ -142,7 +144,7 @@ pub fn authors_ray(grid: &OccupancyGrid, origin: GridPoint, direction: &[f64; 2]
             } else {
                 libm::floor(at[axis] + 1.0)
             };
-            // Not a division: its last digit would move rays along cell boundaries.
+            // A product, not a division: the last digit of a division would move rays along cell boundaries.
             ratio[axis] = (line - at[axis]) * inverse[axis];
         }
         let length = ratio[0].min(ratio[1]);

@@ -1,60 +1,60 @@
-//! The 100 Hz step: estimate, reference, control; and the hand-over of trajectories.
+//! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
 use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
 use crate::estimate::{
-    Conditions, ConditionsEstimator, Ekf, Innovation, Verdict as MeasurementVerdict,
+    Changes, Conditions, ConditionsEstimator, Ekf, Innovation, Measurement,
+    Verdict as MeasurementVerdict,
 };
 use crate::health::Health;
 use crate::planner::{SetupError, Verdict, check_vehicle};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
+use crate::tuning::sensors::LONGEST_PREDICTION;
+use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, linearize};
 
-/// Least motion ahead over ground by which a course is reckoned [m/s].
-const LEAST_ADVANCE: f64 = 1.0;
-/// Most by which a reference is turned back to its path [rad].
-const MOST_TURN: f64 = 0.15;
-
-/// What flies the vehicle.
+/// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
-    /// Level trim: there is no trajectory, or it has ended.
+    /// The regulator holds level trim, because there is no trajectory or the trajectory has ended.
     TrimHold,
-    /// A trajectory.
+    /// The regulator tracks a trajectory.
     Tracking,
 }
 
-/// What became of a finished planning cycle.
+/// The consequence of a finished planning cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Adoption {
-    /// A feasible trajectory is flown from now on.
+    /// The flight loop flies a new, feasible trajectory from now on.
     Feasible,
-    /// The least-violating trajectory is flown from now on.
+    /// The flight loop flies a new trajectory from now on, although it violates some rows or its margin.
     LeastViolating,
-    /// The last trajectory is flown on.
+    /// The flight loop continues the last trajectory.
     Kept,
-    /// Level trim is held.
+    /// The flight loop holds level trim.
     TrimHold,
 }
 
 /// The outcome of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepOutput {
-    /// What the actuators are told.
+    /// The command to the actuators.
     pub control: Control,
-    /// What is tracked.
+    /// The reference that the regulator tracks.
     pub reference: Reference,
-    /// By what.
+    /// The source of the reference: a trajectory, or level trim.
     pub mode: Mode,
-    /// The verdicts on the measurement.
+    /// The filter's verdicts on the measurement.
     pub innovation: Innovation,
-    /// Whether the position was finite and used.
+    /// Whether the position was finite and new. The step uses no other.
     pub position_used: bool,
+    /// Whether the position was finite.
+    pub position_finite: bool,
 }
 
-/// Everything that runs at 100 Hz.
+/// The state and the parts of the 100 Hz loop.
 #[derive(Clone, Debug)]
 pub struct FlightLoop {
     ekf: Ekf,
@@ -66,11 +66,15 @@ pub struct FlightLoop {
     cross_track: f64,
     airspeed_hold: f64,
     trajectory: Option<Trajectory>,
+    /// The position as far as it is known, and as it was delivered last \[m\].
     position: (f64, f64),
-    /// When the last step was, and what it commanded.
+    delivered: Option<(f64, f64)>,
+    /// Time \[s\] of the last step, and its command.
     last: Option<(f64, Control)>,
-    /// What the actuators gave before the last command.
+    /// The controls that the actuators gave up to the last step, by the model of the actuators.
     given: Control,
+    airspeed_changes: Changes,
+    pitch_changes: Changes,
     health: Health,
 }
 
@@ -78,7 +82,7 @@ impl FlightLoop {
     /// A loop that starts from level trim at the origin.
     ///
     /// # Errors
-    /// [`SetupError`] when trim or gain do not exist.
+    /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
         let airframe = &settings.airframe;
         let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
@@ -100,38 +104,26 @@ impl FlightLoop {
             airspeed_hold: settings.airspeed_hold,
             trajectory: None,
             position: (0.0, settings.planner.altitude),
+            delivered: None,
             last: None,
             given: trim.control,
+            airspeed_changes: Changes::new(),
+            pitch_changes: Changes::new(),
             health: Health::default(),
         })
     }
 
-    /// One step at a time [s]: predicts under the last control over the time since, corrects by
-    /// the measurement, and tracks the reference.
+    /// Makes one step at a time \[s\]. It predicts the motion since the last step under the last control,
+    /// corrects the estimate by the measurement, and tracks the reference.
     pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
+        let mut elapsed = 0.0;
         if let Some((before, control)) = self.last {
-            let period = time - before;
-            // A time that is none, or goes back, moves no actuator.
-            self.given = self.limits.given(control, self.given, period.max(0.0));
-            if self.ekf.predict(self.given, period).is_err() {
-                Health::count(&mut self.health.predictions_diverged);
-            }
+            elapsed = self.predict(time - before, control);
         }
-        let innovation = self.ekf.update(&frame.measurement);
+        let innovation = self.measure(&frame.measurement);
         self.count_verdict(innovation.airspeed);
         self.count_verdict(innovation.pitch);
-        let position_used = frame.x.is_finite() && frame.z.is_finite();
-        if position_used {
-            self.position = (frame.x, frame.z);
-            let air = self.ekf.estimate();
-            if !self.conditions.update(time, self.position, air, self.given) {
-                Health::count(&mut self.health.winds_refused);
-            }
-            let airframe = self.conditions().airframe(&self.airframe);
-            self.ekf.set_airframe(&airframe);
-        } else {
-            Health::count(&mut self.health.positions_not_finite);
-        }
+        let position_used = self.locate(time, elapsed, (frame.x, frame.z));
 
         let tracked = self
             .trajectory
@@ -156,11 +148,88 @@ impl FlightLoop {
             mode,
             innovation,
             position_used,
+            position_finite: frame.x.is_finite() && frame.z.is_finite(),
         }
     }
 
-    /// Takes over what a planning cycle has to offer. What happens without a feasible trajectory
-    /// stands here and nowhere else.
+    /// Moves the estimate on by the time since the last step \[s\], in pieces of about a tick. A time that
+    /// goes back counts as none. Of a long time only the last part is believed: the clock has jumped, or the
+    /// aircraft was not controlled meanwhile.
+    /// Gives the time that it believes \[s\].
+    fn predict(&mut self, elapsed: f64, control: Control) -> f64 {
+        let believed = (0.0..=LONGEST_PREDICTION).contains(&elapsed);
+        if !believed {
+            Health::count(&mut self.health.time_jumps);
+        }
+        // A time that is not a number is in no range and not greater than any.
+        let period = if believed {
+            elapsed
+        } else if elapsed > 0.0 {
+            LONGEST_PREDICTION
+        } else {
+            0.0
+        };
+        let pieces = libm::round(period / TICK_PERIOD).max(1.0);
+        for _ in 0..pieces as u32 {
+            let piece = period / pieces;
+            self.given = self.limits.given(control, self.given, piece);
+            if self.ekf.predict(self.given, piece).is_err() {
+                Health::count(&mut self.health.predictions_diverged);
+            }
+        }
+        period
+    }
+
+    /// Takes a position `(x, z)` \[m\] if it is new. A position that repeats the one before to the last bit is
+    /// held by its source: an aircraft never stands still. Without a new one the last one moves on with the
+    /// estimated motion over ground.
+    fn locate(&mut self, time: f64, elapsed: f64, delivered: (f64, f64)) -> bool {
+        let finite = delivered.0.is_finite() && delivered.1.is_finite();
+        let bits = |(x, z): (f64, f64)| (x.to_bits(), z.to_bits());
+        let held = self
+            .delivered
+            .is_some_and(|last| bits(last) == bits(delivered));
+        if !finite {
+            Health::count(&mut self.health.positions_not_finite);
+        } else if held {
+            Health::count(&mut self.health.positions_held);
+        }
+        if !finite || held {
+            let air = self.ekf.estimate();
+            let (ahead, up) = self.conditions.conditions().wind.ground_velocity(air);
+            self.position.0 += ahead * elapsed;
+            self.position.1 += up * elapsed;
+            return false;
+        }
+        self.delivered = Some(delivered);
+        self.position = delivered;
+        let air = self.ekf.estimate();
+        if !self.conditions.update(time, self.position, air, self.given) {
+            Health::count(&mut self.health.winds_refused);
+        }
+        let airframe = self.conditions().airframe(&self.airframe);
+        self.ekf.set_airframe(&airframe);
+        true
+    }
+
+    /// Corrects the estimate by what was measured, without values that the sensors only repeat.
+    fn measure(&mut self, measured: &Measurement) -> Innovation {
+        let fresh = Measurement {
+            airspeed: self.airspeed_changes.take(measured.airspeed),
+            pitch: self.pitch_changes.take(measured.pitch),
+        };
+        let mut innovation = self.ekf.update(&fresh);
+        if self.airspeed_changes.frozen() {
+            innovation.airspeed = MeasurementVerdict::Frozen;
+        }
+        if self.pitch_changes.frozen() {
+            innovation.pitch = MeasurementVerdict::Frozen;
+        }
+        innovation
+    }
+
+    /// Takes over the result of a planning cycle. This function alone decides what the vehicle flies without
+    /// a feasible trajectory.
     pub fn adopt(&mut self, time: f64, verdict: Verdict, offered: &Trajectory) -> Adoption {
         let valid = self
             .trajectory
@@ -172,8 +241,8 @@ impl FlightLoop {
                 Health::count(&mut self.health.plans_feasible);
                 Adoption::Feasible
             }
-            // The last trajectory was made for a map that did not show what is in the way now: the
-            // least-violating one knows it.
+            // The planner made the last trajectory for an older map, without the obstacles that are in the
+            // way now. The least-violating trajectory takes these obstacles into account.
             (Verdict::LeastViolating, _) => {
                 self.trajectory = Some(offered.clone());
                 Health::count(&mut self.health.plans_least_violating);
@@ -197,7 +266,7 @@ impl FlightLoop {
         self.ekf.estimate()
     }
 
-    /// The state that a plan starts from: position as delivered, motion as estimated.
+    /// The first state of a plan: the delivered position and the estimated motion.
     #[must_use]
     pub fn state(&self) -> VehicleState {
         VehicleState {
@@ -207,29 +276,30 @@ impl FlightLoop {
         }
     }
 
-    /// What a plan reckons with besides the state.
+    /// The estimated wind and lift that a plan uses besides the state.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         self.conditions.conditions()
     }
 
-    /// The trajectory being flown, if any.
+    /// The last trajectory that the loop took over, if any.
     #[must_use]
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.trajectory.as_ref()
     }
 
-    /// What went wrong so far.
+    /// The counters of all events so far.
     #[must_use]
     pub fn health(&self) -> &Health {
         &self.health
     }
 
-    /// The command within the actuators' limits.
+    /// Limits a command to the range of the actuators, and counts each limitation.
     fn limit(&mut self, wanted: Control) -> Control {
         if !(wanted.thrust.is_finite() && wanted.elevator.is_finite()) {
             Health::count(&mut self.health.commands_not_finite);
-            return self.trim.control;
+            let trim = self.trim.control;
+            return self.limits.within(trim, trim, self.given, TICK_PERIOD);
         }
         let trim = self.trim.control;
         let control = self.limits.within(wanted, trim, self.given, TICK_PERIOD);
@@ -242,7 +312,7 @@ impl FlightLoop {
         control
     }
 
-    /// The reference's motion, turned back to its path.
+    /// The motion of the reference, turned towards the path of the reference.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
         let (x, z) = self.position;
         let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
@@ -271,6 +341,7 @@ impl FlightLoop {
         match verdict {
             MeasurementVerdict::Accepted => {}
             MeasurementVerdict::Gated => Health::count(&mut self.health.measurements_gated),
+            MeasurementVerdict::Frozen => Health::count(&mut self.health.measurements_frozen),
             MeasurementVerdict::NotFinite => {
                 Health::count(&mut self.health.measurements_not_finite);
             }

@@ -1,32 +1,38 @@
-//! Counters of everything that was rejected, replaced or given up. They only ever grow; the ground
-//! reads what changed.
+//! Counters of rejected inputs, limited commands and results of planning cycles. The counters only grow,
+//! so a ground station reads their changes.
 
-/// One counter a cause; a full counter stays at its maximum.
+/// One counter for each cause. A full counter stays at its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Health {
     /// Measured values that were not finite.
     pub measurements_not_finite: u32,
+    /// Measured values that the sensor only repeated.
+    pub measurements_frozen: u32,
     /// Measured values beyond the innovation gate.
     pub measurements_gated: u32,
-    /// Predictions that were not finite; the last estimate was kept.
+    /// Steps that came before the previous step, or later after it than the loop believes.
+    pub time_jumps: u32,
+    /// Predictions that were not finite. The filter kept its last estimate.
     pub predictions_diverged: u32,
-    /// Positions that were not finite; the last one was kept.
+    /// Positions that were not finite. The step moved the last position on.
     pub positions_not_finite: u32,
-    /// Positions that stood for more wind than is believed; the wind's estimate was kept.
+    /// Positions that repeated the one before. The loop moved the last one on.
+    pub positions_held: u32,
+    /// Positions that implied more wind than the estimator believes. It kept its last estimate of the wind.
     pub winds_refused: u32,
-    /// Commands that were not finite; trim was commanded.
+    /// Commands that were not finite. The step commanded trim instead.
     pub commands_not_finite: u32,
-    /// Thrust commands beyond what the motor gives, taken back to it.
+    /// Thrust commands outside the range of the motor. The step limited them to that range.
     pub thrust_limited: u32,
-    /// Elevator commands beyond its range or its rate, taken back to them.
+    /// Elevator commands beyond the elevator's range or rate. The step limited them to range and rate.
     pub elevator_limited: u32,
     /// Cycles that gave a feasible trajectory.
     pub plans_feasible: u32,
-    /// Cycles without one that flew on along the last trajectory.
+    /// Cycles that gave no trajectory, after which the vehicle continued the last trajectory.
     pub plans_kept: u32,
-    /// Cycles without one that took the least-violating trajectory.
+    /// Cycles whose best trajectory was not feasible. The vehicle flew this least-violating trajectory.
     pub plans_least_violating: u32,
-    /// Cycles that had nothing to offer and no trajectory to keep.
+    /// Cycles that gave no trajectory, while there was also no last trajectory to continue.
     pub plans_trim_hold: u32,
 }
 

@@ -1,15 +1,15 @@
-//! The inverse of a small matrix. Plain loops: nalgebra's decompositions keep range checks that
-//! the compiler cannot always prove away, and so paths to a panic.
+//! The inverse of a small matrix. It uses plain loops: nalgebra's decompositions keep range checks that
+//! the compiler cannot always remove, and each such check is a path to a panic.
 
 use nalgebra::SMatrix;
 
-/// The inverse by Householder's QR decomposition (Golub, Van Loan: "Matrix Computations", 5.2);
-/// none of a singular matrix.
+/// The inverse by Householder's QR decomposition (Golub, Van Loan: "Matrix Computations", 5.2), or `None`
+/// for a singular matrix.
 ///
-/// Reflection by reflection the matrix turns into `R`, upper triangular with a positive diagonal,
-/// and the identity into `Q'`; then `R X = Q'` by back substitution.
+/// The reflections turn the matrix into `R`, which is upper triangular with a positive diagonal, and the
+/// identity into `Q'`. Back substitution then solves `R X = Q'`.
 pub(crate) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMatrix<f64, N, N>> {
-    // Arrays of columns.
+    // Both matrices are arrays of columns.
     let mut r: [[f64; N]; N] = (*matrix).into();
     let mut x: [[f64; N]; N] = SMatrix::<f64, N, N>::identity().into();
     let mut diagonal = [0.0; N];
@@ -34,20 +34,20 @@ pub(crate) fn inverse<const N: usize>(matrix: &SMatrix<f64, N, N>) -> Option<SMa
     Some(x.into())
 }
 
-/// Replaces a column by the unit axis `v` of the reflection `sign (I - 2 v v')` that takes it to
-/// `(norm, 0, ..)`. Gives `(norm, sign)`; none if the column is zero.
+/// Replaces a column by the unit axis `v` of the reflection `sign (I - 2 v v')` that maps the column to
+/// `(norm, 0, ..)`. Returns `(norm, sign)`, or `None` if the column is zero.
 fn reflection_axis(column: &mut [f64]) -> Option<(f64, f64)> {
     let norm_squared = dot(column, column);
     let norm = libm::sqrt(norm_squared);
     let first = column.first_mut()?;
-    // Away from zero, so that nothing cancels.
+    // The first entry moves away from zero, so that no digits cancel.
     let away = if *first >= 0.0 { 1.0 } else { -1.0 };
     let length_squared = 2.0 * (norm_squared + first.abs() * norm);
     *first += away * norm;
     if length_squared == 0.0 {
         return None;
     }
-    // Twice, because the first length is rounded.
+    // The axis is normalised twice, because the first length has a rounding error.
     unscale(column, libm::sqrt(length_squared));
     let length = libm::sqrt(dot(column, column));
     unscale(column, length);

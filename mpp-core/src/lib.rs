@@ -1,25 +1,25 @@
 //! Model Predictive Planning: the flight core.
 //!
-//! Plans trajectories for low-agility, fixed-wing aircraft through dense obstacles, and flies them.
-//! After Wallace, Streetman, Lessard, "Model Predictive Planning: Trajectory Planning in
-//! Obstruction-Dense Environments for Low-Agility Aircraft"; "the paper" throughout.
+//! The crate plans trajectories for low-agility, fixed-wing aircraft through dense obstacles, and flies
+//! them. It follows Wallace, Streetman, Lessard, "Model Predictive Planning: Trajectory Planning in
+//! Obstruction-Dense Environments for Low-Agility Aircraft". The documentation calls it "the paper".
 //!
 //! ```text
 //! 100 Hz  SensorFrame -> Ekf -> AirState -> Lqr -> Control                       flight
 //!                                | snapshot   ^ Trajectory::sample(t)
 //!                                v            |
-//! replan  LidarScan -> OccupancyGrid -> Path -> CollocationPoints -> Corridor -> Solution   planner
-//!         sense        map              plan    plan                 corridor    qp
+//! replan  LidarScan -> MemoryMap -> LatticePath, Path -> Corridor -> Solution -> roll-out   planner::flight
+//!         sense        map          paths                corridor    qp
 //! ```
 //!
-//! * No heap, no clock, no I/O, no panic: time is an argument, storage is the caller's, a seed gives
-//!   the same bytes on every machine. Large values have a `const fn new()` and live in a `static` or a
-//!   box.
-//! * Every loop has a bound; [`config`] holds all sizes and rates.
-//! * An `Err` is a broken contract or unusable input; the normal ends of a method are statuses.
-//!   What the vehicle does about either stands at the variant, and [`health`] counts it.
-//! * Units are SI and angles radians; world `x` downrange, `z` up; pitch and flight path positive
-//!   nose-up. `docs/notation.md` maps the paper's letters to names.
+//! * The crate has no heap, no clock, no I/O and no panic. Time is an argument, the caller owns the
+//!   storage, and a seed gives the same bytes on every machine. Large values have a `const fn new()` and
+//!   live in a `static` or a box.
+//! * Every loop has a bound. [`config`] holds all sizes and rates.
+//! * An `Err` means a broken contract or an unusable input. The normal results of a method are statuses.
+//!   The documentation of each variant says how the vehicle reacts, and [`health`] counts the events.
+//! * Units are SI, and angles are in radians. In the world `x` points downrange and `z` up. Pitch and
+//!   flight path angle are positive nose-up. `docs/notation.md` maps the paper's letters to names.
 //!
 //! # Example
 //!
@@ -36,7 +36,7 @@
 //! let mut planner = Box::new(Planner::new());
 //! planner.set_up(&settings)?;
 //!
-//! // A scan without returns, taken as the flight starts.
+//! // A scan without returns, taken at the start of the flight.
 //! let scan = LidarScan::new();
 //! planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
 //! let frame = SensorFrame {
@@ -45,7 +45,7 @@
 //!     z: 50.0,
 //! };
 //! let first = flight.step(0.0, &frame);
-//! // The step may run between any two slices.
+//! // The flight step may run between any two slices.
 //! while planner.advance() {}
 //! let verdict = planner.finish();
 //! flight.adopt(0.01, verdict, planner.best());
@@ -65,20 +65,34 @@ pub mod flight;
 pub mod health;
 mod inverse;
 pub mod map;
-pub mod plan;
+pub mod paths;
 pub mod planner;
 pub mod qp;
 pub mod sense;
 pub mod settings;
 pub mod trajectory;
+pub mod tuning;
 pub mod vehicle;
 
-/// Whose rules the map, the path search and the raytracing follow.
+/// The rules of the grid, the tree and the raytracing: the authors' or the corrected ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rules {
-    /// As the authors' code, faults included, to compare with it: edges of the tree are not
-    /// checked, costs go stale when nodes are rewired, rays see a window that wraps around.
+    /// The rules of the authors' code with its faults, for comparison. The tree does not check its edges,
+    /// it does not update costs when it rewires nodes, and rays see a window that wraps around.
+    #[cfg(feature = "paper")]
     Authors,
-    /// As the paper's text means it.
+    /// The rules that the paper's text means.
     Corrected,
+}
+
+impl Rules {
+    /// Whether these are the authors' rules. They exist only with the feature `paper`.
+    #[must_use]
+    pub const fn are_authors(self) -> bool {
+        match self {
+            #[cfg(feature = "paper")]
+            Self::Authors => true,
+            Self::Corrected => false,
+        }
+    }
 }

@@ -1,27 +1,28 @@
-//! What the sensors deliver: the inputs of the flight loop and of the map.
+//! The data of the sensors: the inputs of the flight loop and of the map.
 
 use crate::config::MAX_BEAMS;
 use crate::estimate::Measurement;
+use core::fmt;
 
 /// One reading of the 100 Hz sensors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorFrame {
     /// Airspeed and pitch.
     pub measurement: Measurement,
-    /// Downrange position from the navigation source [m].
+    /// Downrange position from the navigation source \[m\].
     pub x: f64,
-    /// Height from the navigation source [m].
+    /// Height from the navigation source \[m\].
     pub z: f64,
 }
 
 /// One sweep of the lidar in the vertical plane.
 #[derive(Clone, Debug)]
 pub struct LidarScan {
-    /// Angle of the first beam against the body axis [rad], nose-up positive.
+    /// Angle of the first beam against the body axis \[rad\], nose-up positive.
     pub angle_min: f64,
-    /// Angle from a beam to the next [rad].
+    /// Angle from one beam to the next \[rad\].
     pub angle_increment: f64,
-    /// Range of each beam [m]; 0 where nothing came back.
+    /// Range of each beam \[m\]; 0 for a beam without a return.
     pub ranges: heapless::Vec<f32, MAX_BEAMS>,
 }
 
@@ -36,10 +37,16 @@ impl LidarScan {
         }
     }
 
-    /// Checks a scan against the lidar that was declared: number of beams and sight [m].
+    /// Angle of a beam against the body axis \[rad\], nose-up positive.
+    #[must_use]
+    pub fn beam_angle(&self, beam: usize) -> f64 {
+        self.angle_min + self.angle_increment * beam as f64
+    }
+
+    /// Checks a scan against the declared lidar: its number of beams and its range \[m\].
     ///
     /// # Errors
-    /// [`ScanError`]: the scan is not to be used, the last map and plan stay.
+    /// [`ScanError`]: the caller must not use the scan. The last map and plan stay in force.
     pub fn check(&self, beams: usize, range_max: f64) -> Result<(), ScanError> {
         if self.ranges.len() != beams {
             return Err(ScanError::Length {
@@ -70,13 +77,12 @@ impl Default for LidarScan {
 
 /// A scan that cannot be used. The vehicle flies on with the last plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum ScanError {
-    /// Another number of beams than declared.
+    /// The number of beams differs from the declared one.
     Length {
-        /// Beams declared.
+        /// Declared number of beams.
         expected: usize,
-        /// Beams found.
+        /// Number of beams in the scan.
         found: usize,
     },
     /// An angle is not a finite number.
@@ -92,3 +98,31 @@ pub enum ScanError {
         beam: usize,
     },
 }
+
+impl fmt::Display for ScanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Length { expected, found } => write!(
+                f,
+                "the scan has {found} beams instead of {expected}: declare the lidar as it is"
+            ),
+            Self::AngleNotFinite => {
+                write!(
+                    f,
+                    "an angle of the scan is not a finite number: check the lidar"
+                )
+            }
+            Self::NotFinite { beam } => write!(
+                f,
+                "the range of beam {beam} is not a finite number: give 0 where nothing came back"
+            ),
+            Self::OutOfRange { beam } => write!(
+                f,
+                "the range of beam {beam} is negative or beyond the sight: give 0 where nothing \
+                 came back"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for ScanError {}

@@ -1,45 +1,46 @@
-//! The trajectory that the controller tracks: stage boundaries, interpolated.
+//! The trajectory that the regulator tracks: references at the stage boundaries, and interpolation
+//! between them.
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
-use crate::plan::CollocationPoints;
+use crate::paths::CollocationPoints;
 use crate::qp::Solution;
 use crate::vehicle::{
     AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState, Wind,
 };
 
-/// What the vehicle should do at one moment.
+/// The desired state and controls of the vehicle at one time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Reference {
-    /// Where it should be and how it should move.
+    /// Desired position and motion.
     pub state: VehicleState,
-    /// Controls that fly it by the plan's own model.
+    /// Controls that give this motion by the plan's own model.
     pub feedforward: Control,
 }
 
-/// A plan over the horizon, from its start on.
+/// A plan over the whole horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    /// When it starts [s].
+    /// Start time \[s\].
     pub start: f64,
-    /// References at the stage boundaries. The last one's controls are those of the last stage.
+    /// References at the stage boundaries. The last reference has the controls of the last stage.
     pub knots: [Reference; KNOTS],
-    /// What lies in between.
+    /// Kind of interpolation between the references.
     between: Between,
 }
 
-/// What lies between the knots of a trajectory.
+/// Kind of interpolation between the references of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Between {
-    /// Straight lines (the paper).
+    /// Linear interpolation (the paper).
     Lines,
-    /// The motion of the point mass in a steady wind, thrust and rate of the angle of attack
-    /// constant over a stage.
+    /// Motion of the point mass in a steady wind. Thrust and rate of the angle of attack are constant over
+    /// a stage.
     Flown(Airframe, Wind),
 }
 
 impl Trajectory {
-    /// A place for a trajectory.
+    /// A trajectory of zeros, to be filled.
     #[must_use]
     pub const fn new() -> Self {
         let nothing = Reference {
@@ -65,12 +66,12 @@ impl Trajectory {
         }
     }
 
-    /// Ends the trajectory before it begins: it has no reference at any time.
+    /// Empties the trajectory: it then has no reference at any time.
     pub fn clear(&mut self) {
         self.start = f64::INFINITY;
     }
 
-    /// Takes over a flown-out motion, knots and the controls of the stages in between.
+    /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages.
     pub fn fly_out(
         &mut self,
         knots: &[PathState; KNOTS],
@@ -87,8 +88,8 @@ impl Trajectory {
         }
     }
 
-    /// Places a solution, deviations from level flight at trim that starts at `(x, z)` [m], in the
-    /// world.
+    /// Places a solution in the world. Its states are deviations from level flight at trim that starts at
+    /// `(x, z)` \[m\].
     pub fn place(&mut self, solution: &Solution, trim: &Trim, start: f64, x: f64, z: f64) {
         self.start = start;
         self.between = Between::Lines;
@@ -112,8 +113,8 @@ impl Trajectory {
         }
     }
 
-    /// Follows collocation points at cruise speed in steady climbs and descents: the paper's
-    /// baseline, a path that is tracked without refinement. It starts at the aircraft's `state`.
+    /// Follows collocation points at cruise speed in steady climbs and descents. This is the paper's
+    /// baseline, which tracks a path without refinement. It starts at the aircraft's `state`.
     pub fn follow(
         &mut self,
         points: &CollocationPoints,
@@ -130,7 +131,7 @@ impl Trajectory {
             if let Some(next) = points.get(stage + 1) {
                 slope = libm::atan2(next.row - point.row, next.col - point.col);
             }
-            // Where no steady flight is found, trim's controls are as good as any.
+            // If there is no steady flight at this slope, the controls of the trim serve instead.
             let steady = Trim::at_speed(airframe, trim.state.airspeed, slope).unwrap_or(*trim);
             knot.state = VehicleState {
                 x: state.x + point.col - GridPoint::AIRCRAFT.col,
@@ -142,18 +143,17 @@ impl Trajectory {
                 },
             };
             knot.feedforward = steady.control;
-            // A steep descent would need drag, which the propeller does not give.
+            // A steep descent would need a negative thrust, which the propeller does not give.
             knot.feedforward.thrust = knot.feedforward.thrust.max(0.0);
         }
     }
 
-    /// The reference at a time [s]: linear between stage boundaries, or as it was
-    /// flown out. None before the start and past
-    /// the last stage.
+    /// The reference at a time \[s\], interpolated between stage boundaries. It is `None` before the start
+    /// and after the last stage.
     #[must_use]
     pub fn sample(&self, time: f64) -> Option<Reference> {
         let stages = (time - self.start) / STAGE_PERIOD;
-        // A tick that falls on a boundary may miss it by rounding.
+        // Rounding may move a tick on the first or last boundary slightly outside.
         if !(-1e-6..=STAGES as f64 + 1e-6).contains(&stages) {
             return None;
         }

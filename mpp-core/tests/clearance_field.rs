@@ -1,10 +1,11 @@
-//! The distance field and the surface of random maps against the definition.
+//! Tests the distance field and the surface of random maps against the definition.
 
 mod common {
     pub(crate) mod cells;
     pub(crate) mod completed;
     pub(crate) mod draw;
     pub(crate) mod memory;
+    pub(crate) mod pose;
 }
 
 use common::cells::{CELL, COLS, ROWS, centre, occupied};

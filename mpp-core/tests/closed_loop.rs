@@ -1,4 +1,4 @@
-//! Flights of the nonlinear aircraft: planner and flight loop together.
+//! Tests flights of the nonlinear aircraft with planner and flight loop together.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -17,7 +17,7 @@ use mpp_core::planner::Planner;
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, VehicleState, vehicle_rate};
 
-/// What a flight came to.
+/// The result of a flight.
 struct Flown {
     end: VehicleState,
     least_clearance: f64,
@@ -64,7 +64,8 @@ fn fly(settings: &Settings, start_z: f64, discs: &[Disc], seconds: i32) -> Flown
 
 #[test]
 fn an_aircraft_that_is_off_returns_to_its_altitude() {
-    // What is left of the way back after 15 s: a terminal weight of 10 instead of 100 is in no hurry.
+    // The rest of the way back after 15 s. With a terminal weight of 10 instead of 100 the plan
+    // returns slowly.
     for (settings, most_left) in [(Settings::paper(), 0.25), (Settings::flight(), 0.7)] {
         for start in [44.0, 55.0] {
             let flown = fly(&settings, start, &[], 15);

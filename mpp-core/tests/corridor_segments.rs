@@ -1,8 +1,10 @@
-//! Faces between segments and cells: a segment whose ends keep them keeps its distance all along.
+//! Tests faces between segments and cells. A segment whose ends keep the faces keeps its distance
+//! all along.
 
 mod common {
     pub(crate) mod draw;
     pub(crate) mod memory;
+    pub(crate) mod pose;
 }
 
 use common::draw::Draw;
@@ -19,12 +21,12 @@ const KEEP: Keep = Keep {
     floor: 39.7,
     ceiling: 60.3,
 };
-/// What counts as being about a segment [m].
+/// Distance within which a cell counts as near a segment \[m\].
 const REACH: f64 = 4.0;
 
 type Knots = [PathState; KNOTS];
 
-/// A trajectory that wanders about `(100, 50)` and on, at about cruise.
+/// A trajectory that wanders from about `(100, 50)` onwards at about cruise.
 fn knots(draw: &mut Draw) -> Knots {
     let mut at = PathState {
         x: 100.0,
@@ -39,7 +41,7 @@ fn knots(draw: &mut Draw) -> Knots {
     })
 }
 
-/// Fields with a trajectory each, and what else to draw.
+/// Fields with a trajectory each, and a generator for further numbers.
 fn scenes() -> impl Iterator<Item = (Draw, ClearanceField, Knots)> {
     (0..60).map(|seed| {
         let mut draw = Draw::new(seed);
@@ -49,7 +51,7 @@ fn scenes() -> impl Iterator<Item = (Draw, ClearanceField, Knots)> {
     })
 }
 
-/// By how much a place keeps the faces of a stage [m]; negative where it does not.
+/// The slack of a place in the faces of a stage \[m\]; negative where the place breaks a face.
 fn slack(corridor: &Corridor, knots: &Knots, stage: usize, (x, z): (f64, f64)) -> f64 {
     let level = knots[0].x + CRUISE * STAGE_PERIOD * stage as f64;
     let slacks = DIRECTION_VECTORS.iter().zip(&corridor.bounds[stage]);
@@ -64,7 +66,7 @@ fn separated(field: &ClearanceField, knots: &Knots, keep: &Keep) -> Corridor {
     corridor
 }
 
-/// Distance from a point to the nearest cell about a segment.
+/// Distance from a point to the nearest cell.
 fn distance(cells: &[(f64, f64)], x: f64, z: f64) -> f64 {
     cells
         .iter()
@@ -72,7 +74,7 @@ fn distance(cells: &[(f64, f64)], x: f64, z: f64) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// The surface about a segment.
+/// The surface cells near a segment.
 fn about(field: &ClearanceField, from: &PathState, to: &PathState) -> Vec<(f64, f64)> {
     let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
     let mut cells = Vec::new();
@@ -118,7 +120,8 @@ fn a_segment_whose_ends_keep_the_faces_keeps_the_margin_all_along() {
     assert!(kept > 1_000 && near > 1_000, "{kept} {near}");
 }
 
-/// Of the room that a trajectory has its faces give way by 0.2 m, and in a gap they ask for the margin alone.
+/// Faces give way by 0.2 m of the room that a trajectory has. In a gap they ask for the margin
+/// alone.
 #[test]
 fn faces_keep_the_room_that_the_trajectory_has() {
     const ROOM: f64 = 1.6;
@@ -172,7 +175,8 @@ fn a_trajectory_well_away_from_everything_keeps_its_own_faces() {
                     })
                     .fold(f64::INFINITY, f64::min)
             });
-            // The best of eight directions loses at most cos(22.5 deg), the slope of a segment more.
+            // The best of eight directions loses at most cos(22.5 deg). The slope of a segment
+            // costs more.
             if room.fold(f64::INFINITY, f64::min) > 2.0 * KEEP.margin {
                 clear += 1;
                 let at = (knots[stage].x, knots[stage].z);
@@ -203,7 +207,7 @@ fn floor_and_ceiling_bound_the_height_of_every_stage_and_nothing_else_does() {
     }
 }
 
-/// A corridor is that of its last trajectory.
+/// A corridor belongs to its last trajectory only.
 #[test]
 fn faces_of_a_former_trajectory_are_gone() {
     let mut draw = Draw::new(2);

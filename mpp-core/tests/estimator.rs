@@ -1,4 +1,4 @@
-//! The filter against a simulated aircraft, and against its own textbook form.
+//! Tests the filter against a simulated aircraft, and against its own textbook form.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -13,7 +13,7 @@ use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 const AIRFRAME: Airframe = Airframe::REFERENCE;
 const PERIOD: f64 = 0.01;
 
-/// Noise as a calm flight has it: the paper's values are so large that the truth would tumble.
+/// Noise of a calm flight. The paper's values are so large that the true aircraft would tumble.
 const CALM: EkfTuning = EkfTuning {
     process_noise: [4e-4, 1e-6, 4e-4, 1e-6],
     airspeed_variance: 0.25,
@@ -27,7 +27,7 @@ fn trim() -> Trim {
     Trim::of_authors(&AIRFRAME)
 }
 
-/// Standard normal (Box, Muller).
+/// A standard normal random number (Box, Muller).
 fn normal(draw: &mut Draw) -> f64 {
     let radius = libm::sqrt(-2.0 * libm::log(1.0 - draw.unit()));
     radius * libm::cos(draw.between(0.0, core::f64::consts::TAU))
@@ -37,7 +37,7 @@ fn normals(draw: &mut Draw, variances: [f64; 4]) -> Vector4<f64> {
     Vector4::from(variances.map(|variance| libm::sqrt(variance) * normal(draw)))
 }
 
-/// A nonlinear aircraft with noise, and the sensors that look at it.
+/// A nonlinear aircraft with noise, and its sensors.
 struct Aircraft {
     state: AirState,
     draw: Draw,

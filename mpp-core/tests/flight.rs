@@ -1,4 +1,4 @@
-//! The 100 Hz loop: hand-over of trajectories, and faults that it survives.
+//! Tests the 100 Hz loop: the hand-over of trajectories, and the faults that it survives.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -13,11 +13,21 @@ use mpp_core::estimate::Verdict as MeasurementVerdict;
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
 use mpp_core::health::Health;
 use mpp_core::planner::{SetupError, Verdict};
+use mpp_core::sense::SensorFrame;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::Airframe;
+use mpp_core::vehicle::{Airframe, VehicleState};
 
 fn flight_loop() -> FlightLoop {
     FlightLoop::new(&Settings::flight()).unwrap()
+}
+
+/// Exact sensors, but for the last digits: values that repeat to the last bit count as missing.
+fn lively(state: &VehicleState, tick: u32) -> SensorFrame {
+    let mut frame = frame(state);
+    let last_digits = 1e-9 * f64::from(tick % 2);
+    frame.measurement.airspeed += last_digits;
+    frame.measurement.pitch += last_digits;
+    frame
 }
 
 #[test]
@@ -26,9 +36,9 @@ fn without_a_trajectory_trim_is_held() {
     let mut state = flight.state();
     for tick in 0..100 {
         state.x += state.air.airspeed * TICK_PERIOD;
-        let out = flight.step(f64::from(tick) * TICK_PERIOD, &frame(&state));
+        let out = flight.step(f64::from(tick) * TICK_PERIOD, &lively(&state, tick));
         assert_eq!(out.mode, Mode::TrimHold);
-        assert!((out.control.thrust - out.reference.feedforward.thrust).abs() < 1e-12);
+        assert!((out.control.thrust - out.reference.feedforward.thrust).abs() < 1e-6);
         assert!((out.control.elevator - out.reference.feedforward.elevator).abs() < 1e-3);
     }
     assert_eq!(*flight.health(), Health::default());
@@ -140,7 +150,9 @@ fn frames_that_are_not_finite_are_counted_and_survived() {
         ..Health::default()
     };
     assert_eq!(*flight.health(), expected);
-    assert_eq!((flight.state().x, flight.state().z), (state.x, state.z));
+    // Without positions the last one moves on with the estimated motion: 49 ticks of level flight.
+    assert!((flight.state().x - state.x - 0.49 * state.air.airspeed).abs() < 0.01);
+    assert!((flight.state().z - state.z).abs() < 0.01);
 
     let mut moved = frame(&state);
     moved.x = 7.0;
@@ -165,12 +177,119 @@ fn time_that_is_none_is_counted_and_survived() {
     let state = flight.state();
     flight.step(0.0, &frame(&state));
     flight.step(f64::NAN, &frame(&state));
-    assert_eq!(flight.health().predictions_diverged, 1);
+    assert_eq!(flight.health().time_jumps, 1);
     assert!(flight.estimate().is_finite());
-    // The step after it has no time since the last one either; the next one has.
+    // The step after it has no time since the last one either. The next step has.
     flight.step(0.02, &frame(&state));
     flight.step(0.03, &frame(&state));
-    assert_eq!(flight.health().predictions_diverged, 2);
+    assert_eq!(flight.health().time_jumps, 2);
+    assert_eq!(flight.health().predictions_diverged, 0);
+}
+
+/// A clock that jumps ahead by any time, or back, leaves an estimate that the sensors correct within a second.
+#[test]
+fn a_clock_that_jumps_is_counted_and_survived() {
+    for jump in [0.6, 10.0, 1e4, 1e9, -1.0, -1e9] {
+        let mut flight = flight_loop();
+        let state = flight.state();
+        let mut time = 0.0;
+        for tick in 0..200 {
+            if tick == 100 {
+                time += jump;
+            }
+            time += TICK_PERIOD;
+            let out = flight.step(time, &lively(&state, tick));
+            assert!(out.control.elevator.is_finite());
+        }
+        assert_eq!(flight.health().time_jumps, 1, "{jump}");
+        let off = flight.estimate().to_vector() - state.air.to_vector();
+        assert!(off.amax() < 0.05, "{off} after {jump} s");
+    }
+}
+
+/// A source that holds its position between two fixes delivers nothing new: neither wind nor lift come of it,
+/// and the position moves on with the aircraft.
+#[test]
+fn held_positions_are_bridged() {
+    let mut flight = flight_loop();
+    let mut state = flight.state();
+    let mut delivered = state;
+    for tick in 0..300 {
+        state.x += state.air.airspeed * TICK_PERIOD;
+        if tick % 10 == 0 {
+            delivered = state;
+        }
+        let mut frame = lively(&state, tick);
+        (frame.x, frame.z) = (delivered.x, delivered.z);
+        let used = flight
+            .step(f64::from(tick) * TICK_PERIOD, &frame)
+            .position_used;
+        assert_eq!(used, tick % 10 == 0);
+        assert!((flight.state().x - state.x).abs() < 0.05, "tick {tick}");
+    }
+    assert_eq!(flight.health().positions_held, 270);
+    assert_eq!(flight.health().winds_refused, 0);
+    let wind = flight.conditions().wind;
+    assert!(wind.x.abs() < 0.1 && wind.z.abs() < 0.1, "{wind:?}");
+}
+
+/// A sensor that repeats one value to the last bit has none: the estimate goes on by the other one.
+#[test]
+fn frozen_values_are_not_used() {
+    for frozen in 0..2 {
+        let mut flight = flight_loop();
+        let state = flight.state();
+        let mut first_flag = None;
+        for tick in 0..100 {
+            let mut frame = lively(&state, tick);
+            if frozen == 0 {
+                frame.measurement.airspeed = state.air.airspeed + 2.0;
+            } else {
+                frame.measurement.pitch = state.air.pitch + 0.03;
+            }
+            let verdicts = flight
+                .step(f64::from(tick) * TICK_PERIOD, &frame)
+                .innovation;
+            let verdict = [verdicts.airspeed, verdicts.pitch][frozen];
+            if verdict == MeasurementVerdict::Frozen {
+                first_flag.get_or_insert(tick);
+            }
+        }
+        assert_eq!(first_flag, Some(5));
+        assert_eq!(flight.health().measurements_frozen, 95);
+    }
+}
+
+/// Without a finite command the elevator goes to trim, no faster than its rate.
+#[test]
+fn the_fall_back_keeps_the_elevators_rate() {
+    let mut settings = Settings::flight();
+    settings.actuators.elevator_rate = Some(20.0);
+    let mut flight = FlightLoop::new(&settings).unwrap();
+    let trim = settings.cruise.trim(&settings.airframe).unwrap();
+    let mut plan = trajectory(0.0);
+    for knot in &mut plan.knots {
+        knot.feedforward.elevator = trim.control.elevator + 100.0;
+    }
+    flight.adopt(0.0, Verdict::Feasible, &plan);
+    let state = flight.state();
+    let mut last = trim.control.elevator;
+    for tick in 0..60 {
+        if tick == 30 {
+            for knot in &mut plan.knots {
+                knot.feedforward.elevator = f64::NAN;
+            }
+            flight.adopt(0.3, Verdict::Feasible, &plan);
+        }
+        let time = f64::from(tick) * TICK_PERIOD;
+        let elevator = flight.step(time, &lively(&state, tick)).control.elevator;
+        assert!(
+            (elevator - last).abs() <= 20.0 * TICK_PERIOD + 1e-9,
+            "tick {tick}"
+        );
+        last = elevator;
+    }
+    assert!(flight.health().commands_not_finite >= 30);
 }
 
 #[test]

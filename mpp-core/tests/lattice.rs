@@ -1,23 +1,28 @@
-//! Paths of the lattice: what every path keeps to, how they pass obstacles, and that none is cheaper.
+//! Tests the paths of the lattice: the rules of every path, how paths pass obstacles, and that no
+//! path is cheaper.
 
 mod common {
     pub(crate) mod draw;
     pub(crate) mod memory;
+    pub(crate) mod pose;
 }
 
 use common::draw::Draw;
 use common::memory::{field, random_map};
+use common::pose::pose;
 use mpp_core::map::{ClearanceField, MemoryMap};
-use mpp_core::plan::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, SIGHT, STATIONS};
+use mpp_core::paths::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::sense::LidarScan;
+use mpp_core::tuning::UNKNOWN_AHEAD;
 use std::collections::BTreeMap;
 
-/// Distance between heights [m], half the number of heights on either side, slopes either way.
+/// Distance between heights \[m\], half the number of heights on either side, and slopes in each
+/// direction.
 const RISE: f64 = 0.25;
 const HEIGHTS: i32 = 48;
 const SLOPES: i32 = 4;
 
-/// Turns within a radius of 18 m, which is full agility.
+/// A task with turns within a radius of 18 m, which is full agility.
 const TASK: LatticeTask = LatticeTask {
     x: 100.0,
     z: 50.0,
@@ -42,21 +47,21 @@ fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) 
     (lattice.spacing(), paths.to_vec())
 }
 
-/// The field of points that beams from `(100, 50)` hit twice, free space about.
+/// The field of points that beams from `(100, 50)` hit twice, with free space about.
 fn discs(discs: &[(f64, f64)]) -> ClearanceField {
     let mut map = MemoryMap::new();
     map.roll(100.0, 50.0);
     let mut fan = LidarScan::new();
     (fan.angle_min, fan.angle_increment) = (-0.9, 0.018);
     fan.ranges = [0.0; 100].into_iter().collect();
-    map.insert(&fan, 45.0, 100.0, 50.0, 0.0);
+    map.insert(&fan, 45.0, &pose(100.0, 50.0, 0.0));
     for _ in 0..2 {
         for (x, z) in discs {
             let mut scan = LidarScan::new();
             scan.angle_min = libm::atan2(z - 50.0, x - 100.0);
             let range = libm::hypot(x - 100.0, z - 50.0) as f32;
             assert!(scan.ranges.push(range).is_ok());
-            map.insert(&scan, 45.0, 100.0, 50.0, 0.0);
+            map.insert(&scan, 45.0, &pose(100.0, 50.0, 0.0));
         }
     }
     field(&map)
@@ -81,7 +86,7 @@ struct Costs<'a> {
 }
 
 impl Costs<'_> {
-    /// Of one edge, from a station's height and slope to the next slope, in sixteenths.
+    /// Cost of one edge, from a station's height and slope to the next slope, in sixteenths.
     fn edge(&self, station: usize, height: i32, slope: i32, next: i32) -> u32 {
         let mut cost = if slope == next { 0 } else { 16 };
         cost += (0.8 * f64::from(next * next)) as u32;
@@ -96,8 +101,8 @@ impl Costs<'_> {
             let lack = (1.2 - distance).max(0.0) + outside;
             let crowded = (2.0 - distance).max(0.0);
             let mut price = 10.0 * lack * lack + self.task.room_price * crowded * crowded;
-            if ahead < SIGHT && self.field.is_unknown(x, z) {
-                price += 5.0 * (1.0 - ahead / SIGHT);
+            if ahead < UNKNOWN_AHEAD && self.field.is_unknown(x, z) {
+                price += 5.0 * (1.0 - ahead / UNKNOWN_AHEAD);
             }
             price += if quarter == 4 { 0.01 * off * off } else { 0.0 };
             cost += (16.0 * price) as u32;
@@ -115,7 +120,7 @@ impl Costs<'_> {
         edges.sum()
     }
 
-    /// The least of any path: station by station, from the aircraft to the end.
+    /// The least cost of any path: station by station, from the aircraft to the end.
     fn least(&self, first: i32) -> u32 {
         let mut reached = BTreeMap::from([((0, first), 0_u32)]);
         for station in 0..STATIONS - 1 {
@@ -224,7 +229,7 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
             let slope = 2.0 * RISE / spacing * f64::from(slopes[via]);
             let onward = lattice.onward(path[via], slope);
             assert!((onward - rest).abs() < 1e-3, "seed {seed}: {onward}");
-            // Half a step aside it is between what it is at either end.
+            // Half a step aside the cost lies between the costs at either end.
             let aside = lattice.onward(path[via] + RISE, slope);
             let between = lattice.onward(path[via] + 0.5 * RISE, slope);
             assert!((between - 0.5 * (onward + aside)).abs() < 1e-3);

@@ -1,4 +1,4 @@
-//! What the flight loop makes of an aircraft that lifts more or less than it was told.
+//! Tests the flight loop with an aircraft that lifts more or less than the core was told.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -20,7 +20,8 @@ use proptest::prelude::*;
 
 const KNOWN: Airframe = Airframe::REFERENCE;
 
-/// Shows the heights of an aircraft at level trim that has this much more lift: `z = a t^2 / 2`.
+/// Shows the estimator the heights of an aircraft at level trim that has this much more lift:
+/// `z = a t^2 / 2`.
 fn climb(estimator: &mut LiftEstimator, lift: f64, ticks: std::ops::Range<u32>) {
     let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
     let pressure_area = 0.5 * KNOWN.air_density * 144.0 * KNOWN.wing_area;
@@ -44,7 +45,8 @@ proptest! {
         prop_assert!((late - 1.0).abs() < 0.02, "after 40 s {late}");
     }
 
-    /// A leap, a gap, a clock that stands still or goes back, and what is no number teach nothing.
+    /// A leap, a gap, a clock that stands still or goes back, and a value that is no number teach
+    /// nothing.
     #[test]
     fn a_wrong_height_is_no_lift(
         height in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), 60.0..1e9],
@@ -65,7 +67,7 @@ proptest! {
         prop_assert!(unchanged(&estimator));
     }
 
-    /// However wrong the heights are, no plan is asked to reckon with a wing of another kind.
+    /// However wrong the heights are, no plan has to use a lift offset beyond the limit.
     #[test]
     fn the_offset_stays_within_what_is_believed(heights in prop::collection::vec(40.0..60.0, 1..300)) {
         let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
@@ -94,8 +96,8 @@ fn no_level_flight_exists_where_the_wing_does_not_carry() {
     assert!(Trim::at_angle_of_attack(&KNOWN, f64::NAN).is_err());
 }
 
-/// With a tenth in mass, lift slope and pitch stiffness at their worst, an elevator of trim +-2 holds
-/// level flight at 12 m/s only at its stop, if at all.
+/// With errors of a tenth in mass, lift slope and pitch stiffness at their worst, an elevator of
+/// trim +-2 holds level flight at 12 m/s only at its stop, if at all.
 #[test]
 fn a_wrong_airframe_cruises_with_the_elevator_near_its_trim() {
     for factor in [1.0, -1.0] {
@@ -119,13 +121,14 @@ fn a_wrong_airframe_cruises_with_the_elevator_near_its_trim() {
         let (mean, end) = cruise(&settings, &truth);
         let off = (mean - trim.control.elevator).abs();
         assert!(off < 0.5 * (needed - trim.control.elevator).abs(), "{mean}");
-        // A low terminal weight is in no hurry to be back at the altitude.
+        // With a low terminal weight the plan returns to the altitude slowly.
         assert!((end.z - 50.0).abs() < 2.5, "{end:?}");
         assert!(factor * (end.air.airspeed - 12.0) > 0.5, "{end:?}");
     }
 }
 
-/// Flies an aircraft through nothing for 20 s; the mean elevator of the last 5 s, and the end.
+/// Flies an aircraft without obstacles for 20 s. Returns the mean elevator of the last 5 s, and the
+/// state at the end.
 fn cruise(settings: &Settings, truth: &Airframe) -> (f64, VehicleState) {
     let mut planner = Box::new(Planner::new());
     planner.set_up(settings).unwrap();
@@ -160,7 +163,7 @@ fn cruise(settings: &Settings, truth: &Airframe) -> (f64, VehicleState) {
     (sum, state)
 }
 
-/// An airspeed below the trajectory's is answered by thrust, and no other preset does so.
+/// Thrust answers an airspeed below the trajectory's. No other preset does so.
 #[test]
 fn thrust_holds_the_airspeed_of_the_trajectory() {
     for (settings, more) in [(Settings::flight(), true), (Settings::paper(), false)] {

@@ -1,4 +1,4 @@
-//! The occupancy grid against brute force, and the checks of a scan.
+//! Tests the occupancy grid against brute force, and the checks of a scan.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -17,7 +17,7 @@ const ROWS: i32 = GRID_ROWS as i32;
 
 const COLS: i32 = GRID_COLS as i32;
 
-/// Every occupied cell, looked for far beyond the edges too.
+/// Finds every occupied cell, also far beyond the edges.
 fn occupied_cells(grid: &OccupancyGrid) -> Vec<(i32, i32)> {
     (-70..ROWS + 70)
         .flat_map(|row| (-70..COLS + 70).map(move |col| (row, col)))
@@ -25,7 +25,7 @@ fn occupied_cells(grid: &OccupancyGrid) -> Vec<(i32, i32)> {
         .collect()
 }
 
-/// Those cells of the grid that are within one cell of any of `marked`.
+/// The cells of the grid within one cell of any of `marked`.
 fn padded(marked: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let near = |row: i32, col: i32| {
         marked
@@ -40,7 +40,7 @@ fn padded(marked: &[(i32, i32)]) -> Vec<(i32, i32)> {
 
 #[test]
 fn a_mark_marks_its_cell_alone_and_can_be_taken_back() {
-    // The edges, and the columns on both sides of the words' boundaries.
+    // These are the edges, and the columns on both sides of the words' boundaries.
     for row in [0, 1, 37, ROWS - 1] {
         for col in [0, 1, 62, 63, 64, 65, 126, 127, 128, 129, COLS - 2, COLS - 1] {
             let mut grid = OccupancyGrid::new();
@@ -107,7 +107,7 @@ fn random_scan(draw: &mut Draw, beams: usize) -> LidarScan {
     scan
 }
 
-/// Where a beam ended, in cells, by plain trigonometry.
+/// The cell where a beam ended, by plain trigonometry.
 fn hit(scan: &LidarScan, beam: usize, pitch: f64) -> Option<(i32, i32)> {
     let range = f64::from(scan.ranges[beam]);
     let angle = pitch + scan.angle_min + scan.angle_increment * beam as f64;

@@ -1,18 +1,20 @@
-//! What the map with memory keeps, unlearns and forgets.
+//! Tests what the map with memory keeps, unlearns and forgets.
 
 mod common {
     pub(crate) mod cells;
     pub(crate) mod draw;
     pub(crate) mod memory;
+    pub(crate) mod pose;
 }
 
 use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::draw::Draw;
 use common::memory::{field, noise, random_map};
+use common::pose::pose;
 use mpp_core::map::MemoryMap;
 use mpp_core::sense::LidarScan;
 
-/// One beam along the body axis; range 0 is a beam that did not return.
+/// One beam along the body axis. Range 0 means a beam that did not return.
 fn beam(range: f32) -> LidarScan {
     let mut scan = LidarScan::new();
     assert!(scan.ranges.push(range).is_ok());
@@ -26,7 +28,7 @@ fn started() -> MemoryMap {
     map
 }
 
-/// All of it that can be seen.
+/// All rows of the map that a reader can see.
 fn rows(map: &MemoryMap) -> Vec<(u128, u128)> {
     (0..ROWS).map(|row| map.row(row)).collect()
 }
@@ -46,7 +48,7 @@ fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
 fn a_hit_is_marked_where_the_beam_ended_and_completed_behind() {
     for (pitch, range) in [(0.0, 20.1), (0.4, 15.3), (-0.5, 25.7), (0.1, 0.4)] {
         let mut map = started();
-        map.insert(&beam(range), 45.0, 100.2, 50.2, pitch);
+        map.insert(&beam(range), 45.0, &pose(100.2, 50.2, pitch));
         let known = field(&map);
         let (up, ahead) = libm::sincos(pitch);
         let at = |along: f64| (100.2 + along * ahead, 50.2 + along * up);
@@ -60,7 +62,7 @@ fn a_hit_is_marked_where_the_beam_ended_and_completed_behind() {
             let beside = (z - 50.2) * ahead - (x - 100.2) * up;
             assert!((-CELL..CELL).contains(&off) && beside.abs() < CELL);
         }
-        // Known free up to a metre and 3 % before it, unknown elsewhere.
+        // The way is known as free up to a metre and 3 % before the hit. It is unknown elsewhere.
         let (x, z) = at(0.5 * (range - 1.6));
         assert!(range < 2.0 || !known.is_unknown(x, z) && !known.is_occupied(x, z));
         let (x, z) = at(range + 2.5);
@@ -71,14 +73,14 @@ fn a_hit_is_marked_where_the_beam_ended_and_completed_behind() {
 #[test]
 fn a_hit_stays_when_it_is_out_of_sight() {
     let mut map = started();
-    map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+    map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
     let before = centres(&map);
     assert!(!before.is_empty());
     for step in 1..100 {
         let x = 100.0 + 0.25 * f64::from(step);
         map.roll(x, 50.0);
-        // The aircraft looks up, past it.
-        map.insert(&beam(0.0), 45.0, x, 51.0, 0.6);
+        // The aircraft looks up, past the obstacle.
+        map.insert(&beam(0.0), 45.0, &pose(x, 51.0, 0.6));
     }
     assert_eq!(centres(&map), before);
 }
@@ -88,22 +90,23 @@ fn passing_beams_clear_a_false_hit_and_the_more_often_it_was_seen_the_later() {
     let passes_to_clear = |hits: usize, passing: f32| {
         let mut map = started();
         for _ in 0..hits {
-            map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+            map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
         }
         assert!(field(&map).is_occupied(120.3, 50.2));
         (1..40).find(|_| {
-            map.insert(&beam(passing), 45.0, 100.2, 50.2, 0.0);
+            map.insert(&beam(passing), 45.0, &pose(100.2, 50.2, 0.0));
             !field(&map).is_occupied(120.3, 50.2)
         })
     };
     let (once, often) = (passes_to_clear(1, 35.0), passes_to_clear(10, 35.0));
     assert!(once.is_some() && once < often, "{once:?} {often:?}");
-    // Evidence is bounded: what was seen a hundred times is unlearned as fast as what was ten times.
+    // Evidence is bounded: a cell seen a hundred times is unlearned as fast as a cell seen ten
+    // times.
     assert_eq!(often, passes_to_clear(100, 35.0));
-    // A beam that never returned may have been lost: it says less.
+    // A beam that never returned may have been lost, so it says less.
     let unanswered = passes_to_clear(1, 0.0);
     assert!(once < unanswered && unanswered.is_some(), "{unanswered:?}");
-    // A hit right behind does not clear: its range may be wrong by that much.
+    // A hit right behind the cell does not clear it, because the range may be wrong by that much.
     assert_eq!(passes_to_clear(1, 20.9), None);
 }
 
@@ -111,10 +114,10 @@ fn passing_beams_clear_a_false_hit_and_the_more_often_it_was_seen_the_later() {
 fn one_hit_on_what_was_free_long_is_believed() {
     let mut map = started();
     for _ in 0..100 {
-        map.insert(&beam(35.0), 45.0, 100.2, 50.2, 0.0);
+        map.insert(&beam(35.0), 45.0, &pose(100.2, 50.2, 0.0));
     }
     let hits = (1..10).find(|_| {
-        map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+        map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
         field(&map).is_occupied(120.3, 50.2)
     });
     assert!(hits.is_some_and(|hits| hits <= 3), "{hits:?}");
@@ -124,7 +127,7 @@ fn one_hit_on_what_was_free_long_is_believed() {
 fn unanswered_beams_speak_for_eight_ninths_of_the_sight() {
     for (sight, seen) in [(45.0, 40.0), (18.0, 16.0)] {
         let mut map = started();
-        map.insert(&beam(0.0), sight, 100.2, 50.2, 0.0);
+        map.insert(&beam(0.0), sight, &pose(100.2, 50.2, 0.0));
         let known = field(&map);
         assert!(centres(&map).is_empty());
         for step in 1..2 * seen as i32 {
@@ -136,14 +139,14 @@ fn unanswered_beams_speak_for_eight_ninths_of_the_sight() {
     }
 }
 
-/// Two beams that pass take back what a hit said; the cell is then free, not unknown again.
+/// Two beams that pass take back the evidence of a hit. The cell is then free, not unknown again.
 #[test]
 fn what_was_seen_is_never_unknown_again() {
     let mut map = started();
     let at = (120.3, 50.2);
-    map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+    map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
     for _ in 0..4 {
-        map.insert(&beam(35.0), 45.0, 100.2, 50.2, 0.0);
+        map.insert(&beam(35.0), 45.0, &pose(100.2, 50.2, 0.0));
         assert!(!field(&map).is_unknown(at.0, at.1));
     }
     assert!(!field(&map).is_occupied(at.0, at.1));
@@ -168,7 +171,7 @@ fn the_window_rolls_along_and_loses_only_what_it_left() {
             let fresh = if columns == 0 { 0 } else { fresh.unwrap_or(0) };
             assert_eq!(map.row(row), (kept(*occupied), kept(*unknown) | fresh));
         }
-        // A little back, and nothing is lost.
+        // The window moves back a little, and nothing is lost.
         let there = rows(&map);
         map.roll(x + ahead - 3.0, 50.0);
         assert_eq!(rows(&map), there);
@@ -186,7 +189,7 @@ fn an_aircraft_behind_its_window_gets_a_new_one() {
             (map.first_x()..map.first_x() + 10.0).contains(&100.0),
             "{wrong}"
         );
-        map.insert(&beam(20.1), 45.0, 100.2, 50.2, 0.0);
+        map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
         assert!(field(&map).is_occupied(120.3, 50.2));
     }
 }
@@ -224,21 +227,21 @@ fn no_number_is_too_wild() {
         for second in wild {
             let mut map = MemoryMap::new();
             map.roll(first, 50.0);
-            map.insert(&noise(&mut draw), 45.0, second, first, 0.0);
+            map.insert(&noise(&mut draw), 45.0, &pose(second, first, 0.0));
             map.roll(second, 50.0);
-            map.insert(&noise(&mut draw), 45.0, second, 50.0, second);
+            map.insert(&noise(&mut draw), 45.0, &pose(second, 50.0, second));
             assert!(field(&map).distance(second, 50.0).is_nan() || rows(&map).len() == ROWS);
         }
     }
 }
 
-/// What is known takes the place of what was seen, in the whole window and wherever it has rolled.
+/// Knowledge replaces observations in the whole window, wherever it has rolled.
 #[test]
 fn what_is_known_leaves_nothing_unknown() {
     for x in [0.0, 37.3, 1000.1] {
         let mut map = MemoryMap::new();
         map.roll(x, 50.0);
-        map.insert(&beam(5.0), 45.0, x, 50.0, 0.0);
+        map.insert(&beam(5.0), 45.0, &pose(x, 50.0, 0.0));
         let wall = |at: f64, z: f64| at > x + 20.0 && z < 45.0;
         map.know(wall);
         assert!(rows(&map).iter().all(|(_, unknown)| *unknown == 0));
@@ -247,4 +250,34 @@ fn what_is_known_leaves_nothing_unknown() {
             assert_eq!(known.is_occupied(at, z), wall(at, z), "{at}, {z}");
         }
     }
+}
+
+/// Near by several beams of a scan share a cell. Those that pass do not speak against the one that ended
+/// there: a pole fills a part of its cell. A later scan without the hit does.
+#[test]
+fn beams_of_the_same_scan_do_not_unlearn_a_hit() {
+    let mut map = MemoryMap::new();
+    map.roll(100.2, 50.0);
+    // The middle beam ends in a cell that the four others pass, within 0.01 rad of it.
+    let fan = |middle: f32| {
+        let mut scan = LidarScan::new();
+        (scan.angle_min, scan.angle_increment) = (-0.01, 0.005);
+        for range in [0.0, 0.0, middle, 30.0, 30.0] {
+            assert!(scan.ranges.push(range).is_ok());
+        }
+        scan
+    };
+    let known = |map: &MemoryMap| {
+        let row = ((50.2 - map.floor()) / CELL) as i32;
+        let col = ((110.3 - map.first_x()) / CELL) as i32;
+        occupied(map, row, col)
+    };
+    for _ in 0..3 {
+        map.insert(&fan(10.1), 45.0, &pose(100.2, 50.2, 0.0));
+        assert!(known(&map), "the pole stays");
+    }
+    for _ in 0..2 {
+        map.insert(&fan(0.0), 45.0, &pose(100.2, 50.2, 0.0));
+    }
+    assert!(!known(&map), "what is gone is unlearned");
 }

@@ -1,4 +1,4 @@
-//! RRT*-AR trees and their paths over random fields: structure, freedom, bounds.
+//! Tests RRT*-AR trees and their paths over random fields: structure, freedom, bounds.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
@@ -11,7 +11,7 @@ use mpp_core::config::{
     PATH_POINTS, SEARCH_COLS, SEARCH_ROW, SEARCH_ROWS, TREE_NODES, TREE_SAMPLES,
 };
 use mpp_core::map::{GridPoint, OccupancyGrid};
-use mpp_core::plan::{Extension, GOALS, Path, Search};
+use mpp_core::paths::{Extension, GOALS, Path, Search};
 
 /// A grid with this many random obstacles ahead, padded.
 fn field(draw: &mut Draw, obstacles: usize) -> OccupancyGrid {
@@ -25,16 +25,16 @@ fn field(draw: &mut Draw, obstacles: usize) -> OccupancyGrid {
     grid
 }
 
-/// Longest edge: a new node's step is 2.5 m, rewiring reaches half as far again.
+/// Longest edge: a new node's step is 2.5 m, and rewiring reaches half as far again.
 const LONGEST_EDGE: f64 = 3.75;
 
 /// A node reaches a goal within this squared distance [m^2].
 const GOAL_RADIUS_SQUARED: f64 = 2.5;
 
-/// Rounding of lengths that are summed in another order [m].
+/// Rounding of lengths that are summed in another order \[m\].
 const ROUNDING: f64 = 1e-9;
 
-/// Grows a tree to its end; how many samples it took.
+/// Grows a tree to its end. Returns the number of samples.
 fn grow(search: &mut Search, grid: &OccupancyGrid, draw: &mut Draw, rules: Rules) -> usize {
     search.restart(rules);
     (0..=10 * TREE_SAMPLES)
@@ -166,7 +166,7 @@ fn paths_lead_from_the_aircraft_over_the_tree_to_a_goal() {
 
 #[test]
 fn nodes_at_a_goal_have_no_children_when_they_were_added() {
-    // Reached goals are ends: only rewiring may lead a path over one.
+    // Goals that are reached are ends: only rewiring may lead a path over one.
     for_each_tree(Rules::Authors, |search, _| {
         let nodes = search.tree().nodes();
         for (index, node) in nodes.iter().enumerate() {
@@ -267,7 +267,7 @@ fn a_wall_across_the_box_has_no_path() {
                 .all(|node| node.point.col < 50.0)
         );
     }
-    // A gate in it lets some through, and all of them through the gate.
+    // A gate in the wall lets some paths through, and all of them use the gate.
     grid.unmark(36, 50);
     grid.unmark(37, 50);
     grid.unmark(38, 50);

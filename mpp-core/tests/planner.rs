@@ -1,13 +1,20 @@
-//! What the planner plans: around obstacles, back to its altitude, and what it says when it cannot.
+//! Tests the planner: plans around obstacles, plans back to the altitude, and the report when there
+//! is no plan.
 
 mod common {
     pub(crate) mod clearance;
     pub(crate) mod planning;
+    pub(crate) mod presets;
+    pub(crate) mod scattered;
+    pub(crate) mod with_planner;
     pub(crate) mod world;
 }
 
 use common::clearance::clearance;
-use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
+use common::planning::{level, plan, planner};
+use common::presets::presets;
+use common::scattered::{FEASIBLE, SCATTERED};
+use common::with_planner::with_planner;
 use common::world::{Disc, SIGHT, scan};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::planner::{Planner, Verdict};
@@ -79,8 +86,8 @@ fn plans_return_to_the_altitude() {
 
 #[test]
 fn hard_rows_that_cannot_hold_give_nothing_and_soft_ones_the_least_violation() {
-    // Less than the padding away from the first collocation point, on which no path has a say, and
-    // a wall too high to climb behind it.
+    // The discs are nearer to the first collocation point than the padding. No path has a say on
+    // this point, and the wall behind it is too high to climb.
     let near: Vec<Disc> = (0..30).map(|i| (112.0, 36.0 + f64::from(i), 1.0)).collect();
     let mut hard = planner(&Settings::paper());
     let state = level(&hard);

@@ -1,11 +1,17 @@
-//! The planner as an anytime machine: bounded, repeatable, and never worse for more slices.
+//! Tests the planner as an anytime machine: bounded, repeatable, and never worse with more slices.
 
 mod common {
     pub(crate) mod planning;
+    pub(crate) mod presets;
+    pub(crate) mod scattered;
+    pub(crate) mod with_planner;
     pub(crate) mod world;
 }
 
-use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
+use common::planning::{level, plan, planner};
+use common::presets::presets;
+use common::scattered::{FEASIBLE, SCATTERED};
+use common::with_planner::with_planner;
 use common::world::{Disc, scan};
 use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
 use mpp_core::estimate::{Conditions, Measurement};
@@ -16,8 +22,8 @@ use mpp_core::sense::SensorFrame;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 
-/// One map, the trees of a cycle at 10 samples a slice, and each path's corridor and program at 8
-/// steps a slice.
+/// One slice for the map, the trees of a cycle at 10 samples a slice, and each path's corridor and
+/// program at 8 steps a slice.
 const MOST_SLICES: usize =
     1 + TREE_RUNS * (TREE_SAMPLES / 10 + 1) + MAX_PATHS * (MAX_ITERATIONS / 8 + 3);
 
@@ -69,7 +75,7 @@ fn an_interrupted_cycle_says_so_and_stops() {
     assert_eq!(planner.summary().slices, 1);
 }
 
-/// Two cycles of a planner, with whatever happens between slices.
+/// Plans two cycles, and calls `between` between slices.
 fn two_cycles(planner: &mut Planner, mut between: impl FnMut()) -> Vec<(Trajectory, PlanSummary)> {
     let state = level(planner);
     let mut plans = Vec::new();
@@ -163,7 +169,7 @@ fn a_planner_set_up_again_plans_like_a_new_one() {
         used.set_up(&second).unwrap();
         let mut new = planner(&second);
         assert_eq!(two_cycles(&mut used, || {}), two_cycles(&mut new, || {}));
-        // From a motion that meets the attitude limits of the flight preset.
+        // The start is a motion that meets the attitude limits of the flight preset.
         let mut diving = level(&new);
         diving.air.flight_path = -0.62;
         diving.air.pitch = -0.3;

@@ -1,17 +1,22 @@
-//! The plan of a cycle is the best of its candidates' optima, each solved here to the end.
+//! Tests that the plan of a cycle is the best of its candidates' optima. Each optimum is solved
+//! here to the end.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
     pub(crate) mod planning;
+    pub(crate) mod scattered;
+    pub(crate) mod with_planner;
     pub(crate) mod world;
 }
 
-use common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
+use common::planning::{level, plan, planner};
+use common::scattered::{FEASIBLE, SCATTERED};
+use common::with_planner::with_planner;
 use common::world::{Disc, scan};
 use mpp_core::config::TREE_SAMPLES;
 use mpp_core::corridor::Corridor;
 use mpp_core::estimate::Conditions;
-use mpp_core::plan::{CollocationPoints, Extension, Path, Search, resample};
+use mpp_core::paths::{CollocationPoints, Extension, Path, Search, resample};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel, Status};
 use mpp_core::settings::{PlannerSettings, Settings};
@@ -19,21 +24,16 @@ use mpp_core::vehicle::{VehicleState, linearize};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// The presets with the paper's cycle; the last has soft rows.
-fn paper_cycles() -> [Settings; 3] {
-    presets().map(|settings| {
-        let planner = PlannerSettings {
-            iteration: None,
-            ..settings.planner
-        };
-        with_planner(settings, planner)
-    })
+/// The presets of the paper's method.
+fn paper_cycles() -> [Settings; 2] {
+    [Settings::reference(), Settings::paper()]
 }
 
-/// So close that every path comes nearer to them than it should.
+/// Discs so close that every path comes nearer to them than it should.
 const CLOSE: [Disc; 3] = [(107.0, 50.5, 1.5), (118.0, 46.0, 2.0), (119.0, 55.0, 2.0)];
 
-/// Off the altitude [m], climbing [rad], faster than trim [m/s]; the last needs less than no thrust.
+/// Starts off the altitude \[m\], climbing \[rad\], faster than trim [m/s]. The last one needs less
+/// than no thrust.
 const STARTS: [(f64, f64, f64); 6] = [
     (0.0, 0.0, 0.0),
     (2.0, 0.1, 0.5),
@@ -43,50 +43,48 @@ const STARTS: [(f64, f64, f64); 6] = [
     (4.0, -0.2, 5.0),
 ];
 
-/// The planner's model, set up apart from it.
+/// The planner's model, set up independently of the planner.
 fn condensed(settings: &Settings, planner: &Planner) -> Box<Condensed> {
-    let (airframe, trim, p) = (&settings.airframe, planner.trim(), &settings.planner);
-    let linear = linearize(airframe, &trim.state, trim.control, p.jacobian);
-    let model = StageModel::new(airframe, trim, &linear, p.steady_state, p.initial).unwrap();
+    let (airframe, trim) = (&settings.airframe, planner.trim());
+    let own = settings.planner.paper().unwrap();
+    let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
+    let model = StageModel::new(trim, &linear, own.initial).unwrap();
     let mut shared = Box::new(Condensed::new());
-    shared.condense(&model, &p.weights).unwrap();
+    shared.condense(&model, &settings.planner.weights).unwrap();
     shared
 }
 
-/// The program of the candidate that a planner has at hand.
+/// The program of the planner's present candidate.
 fn program(
     settings: &Settings,
     planner: &Planner,
     shared: &Condensed,
     state: &VehicleState,
 ) -> Problem {
-    let (trim, p) = (planner.trim(), &settings.planner);
+    let (trim, own) = (planner.trim(), settings.planner.paper().unwrap());
+    let paper = planner.paper().unwrap();
     let mut corridor = Corridor::new();
     let cruise = trim.state.airspeed;
     corridor.trace(
-        planner.grid(),
-        planner.points(),
+        paper.grid(),
+        paper.points(),
         cruise,
-        &p.padding,
-        p.rules,
+        &own.padding,
+        own.rules,
     );
     let mut bounds = Bounds::none();
     bounds.set_corridor(&corridor);
     bounds.set_thrust(trim.control.thrust);
-    if let Some(limits) = p.attitude {
-        let upper = [limits.angle_of_attack, limits.flight_path];
-        bounds.set_attitude(upper, upper.map(|limit| -limit));
-    }
     Problem {
         initial: shared.initial_state(trim, &state.air),
-        target: [0.0, p.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
+        target: [0.0, settings.planner.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
         bounds,
-        penalty: p.penalty,
+        penalty: None,
         cost_limit: f64::INFINITY,
     }
 }
 
-/// Rank of the best candidate of a cycle, and how many candidates were looked at.
+/// Rank of the best candidate of a cycle, and the number of candidates.
 fn best_of_all(
     settings: &Settings,
     planner: &mut Planner,
@@ -119,7 +117,7 @@ fn best_of_all(
 
 #[test]
 fn the_plan_is_the_best_of_all_candidates() {
-    let mut least_violating = 0;
+    let mut found = 0;
     for preset in paper_cycles() {
         let settings = with_planner(
             preset,
@@ -148,26 +146,28 @@ fn the_plan_is_the_best_of_all_candidates() {
                     (cost - best.1).abs() <= 1e-9 * best.1.max(1.0),
                     "{summary:?}: {best:?}"
                 );
-                least_violating += usize::from(violation > FEASIBLE);
+                found += 1;
             }
         }
     }
-    assert!(least_violating >= 3, "{least_violating}");
+    assert!(found >= 10, "{found}");
 }
 
 /// The first candidates of a seed, tree after tree and node after node.
 fn candidates(settings: &Settings, planner: &Planner, count: usize) -> Vec<CollocationPoints> {
+    let rules = settings.planner.paper().unwrap().rules;
+    let grid = planner.paper().unwrap().grid();
     let mut random = Pcg64Mcg::seed_from_u64(settings.planner.seed);
     let mut unit = || (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
     let (mut search, mut path) = (Search::new(), Path::new());
     let mut found = Vec::new();
     while found.len() < count {
-        search.restart(settings.planner.rules);
-        let grown = |_: &usize| search.extend(planner.grid(), &mut unit) == Extension::Complete;
+        search.restart(rules);
+        let grown = |_: &usize| search.extend(grid, &mut unit) == Extension::Complete;
         (0..=TREE_SAMPLES).find(grown).unwrap();
         let mut next = 0;
         while let Some(after) = search.next_path(next, &mut path) {
-            found.push(resample(&path, settings.planner.rules));
+            found.push(resample(&path, rules));
             next = after;
         }
     }
@@ -184,10 +184,10 @@ fn every_path_of_every_tree_is_a_candidate_in_turn() {
         let mut seen = Vec::new();
         while planner.advance() {
             if planner.summary().candidates > seen.len() {
-                seen.push(*planner.points());
+                seen.push(*planner.paper().unwrap().points());
             }
         }
-        seen.push(*planner.points());
+        seen.push(*planner.paper().unwrap().points());
         assert_eq!(seen.len(), settings.planner.paths);
         assert_eq!(seen, candidates(&settings, &planner, seen.len()));
     }

@@ -1,18 +1,23 @@
-//! Settings that the planner refuses.
+//! Tests settings that the planner refuses.
 
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::qp::{Penalty, Weights};
-use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::Airframe;
+use mpp_core::settings::{FlightSettings, Method, PlannerSettings, Settings};
+use mpp_core::vehicle::{Airframe, TrimError};
 
 #[test]
 fn settings_that_cannot_be_flown_are_refused_with_their_cause() {
     let flight = Settings::flight();
     let p = flight.planner;
-    let priced = |linear, quadratic| PlannerSettings {
-        penalty: Some(Penalty { linear, quadratic }),
+    let own = *p.flight().unwrap();
+    let with_own = |own: FlightSettings| PlannerSettings {
+        method: Method::Flight(own),
         ..p
+    };
+    let priced = |linear, quadratic| {
+        let penalty = Penalty { linear, quadratic };
+        with_own(FlightSettings { penalty, ..own })
     };
     let weighted = |control, terminal| PlannerSettings {
         weights: Weights { control, terminal },
@@ -27,18 +32,28 @@ fn settings_that_cannot_be_flown_are_refused_with_their_cause() {
         ..p
     };
     assert_eq!(refused(many), SetupError::TooManyPaths);
+    let none = PlannerSettings { paths: 0, ..p };
+    assert_eq!(refused(none), SetupError::NoPaths);
     let lost = PlannerSettings {
         altitude: f64::NAN,
         ..p
     };
+    assert_eq!(refused(lost), SetupError::Altitude);
+    let blind = with_own(FlightSettings { sight: 0.0, ..own });
+    assert_eq!(refused(blind), SetupError::Sight);
+    let late = Settings {
+        wind: Some(0.0),
+        ..flight
+    };
+    let mut planner = Box::new(Planner::new());
+    assert_eq!(planner.set_up(&late), Err(SetupError::WindTimeConstant));
     for broken in [
-        lost,
         priced(0.0, 1.0),
         priced(1.0, 0.0),
         priced(f64::NAN, 1.0),
         priced(1.0, -1.0),
     ] {
-        assert_eq!(refused(broken), SetupError::Number);
+        assert_eq!(refused(broken), SetupError::Penalty);
     }
     for broken in [
         weighted([0.0, 0.0], 0.0),
@@ -54,7 +69,6 @@ fn settings_that_cannot_be_flown_are_refused_with_their_cause() {
         },
         ..flight
     };
-    let mut planner = Box::new(Planner::new());
     assert!(matches!(planner.set_up(&floppy), Err(SetupError::Model(_))));
     let heavy = Settings {
         airframe: Airframe {
@@ -63,5 +77,6 @@ fn settings_that_cannot_be_flown_are_refused_with_their_cause() {
         },
         ..flight
     };
-    assert!(matches!(planner.set_up(&heavy), Err(SetupError::Trim(_))));
+    let error = SetupError::Trim(TrimError::Airframe);
+    assert_eq!(planner.set_up(&heavy), Err(error));
 }

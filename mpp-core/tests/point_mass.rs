@@ -1,4 +1,5 @@
-//! The point mass against the equations of motion, differences, and its own limit of small steps.
+//! Tests the point mass against the equations of motion, differences, and its own limit of small
+//! steps.
 
 mod common {
     pub(crate) mod airframes;
@@ -93,7 +94,7 @@ fn differences(
 proptest! {
     #![proptest_config(seeded())]
 
-    /// The balanced reference moves as the whole vehicle does, and its rotation is in balance.
+    /// The balanced reference moves as the whole vehicle does, and its moments are in balance.
     #[test]
     fn the_reference_is_a_motion_of_the_vehicle_with_moments_in_balance(
         airframe in named(), at in states(), control in controls(),
@@ -113,7 +114,7 @@ proptest! {
         ] {
             prop_assert!((point_mass - vehicle).abs() < 1e-11, "{point_mass} {vehicle}");
         }
-        // Angular acceleration 0, against what the elevator alone would give: hundreds.
+        // The angular acceleration is 0. The elevator alone would give hundreds.
         prop_assert!(moved.air.pitch_rate.abs() < 1e-9, "{}", moved.air.pitch_rate);
         let mut more = feedforward;
         more.elevator += 0.1;
@@ -132,7 +133,7 @@ proptest! {
         prop_assert!((b - expected_b).amax() < 1e-7 * scale, "{b} {expected_b}");
     }
 
-    /// A second-order method: its error over one stage is of the third order in the length.
+    /// The method is of second order: its error over one stage is of the third order in the length.
     #[test]
     fn the_sensitivity_is_of_second_order(
         airframe in named(), at in states(), control in controls(),
@@ -145,7 +146,7 @@ proptest! {
         };
         let (coarse, fine) = (error(0.05), error(0.025));
         prop_assert!(fine[0] < 0.2 * coarse[0], "{coarse:?} -> {fine:?}");
-        // Of the first order it would be 1e-3 and more.
+        // With a method of the first order it would be 1e-3 and more.
         prop_assert!(fine[1] < 1e-4, "{fine:?}");
     }
 
@@ -156,7 +157,7 @@ proptest! {
         let after = |steps: u8| vector(&at.after(&airframe, &control, 0.25, steps));
         let exact = after(200);
         let error = |steps: u8| (after(steps) - exact).amax();
-        // What plans are made with.
+        // Plans are made with this.
         prop_assert!(error(2) < 1e-3, "{}", error(2));
         prop_assert!(error(8) < error(4) / 10.0 + 1e-12, "{} {}", error(4), error(8));
     }

@@ -1,4 +1,4 @@
-//! Rays, segments and corridors against marching in tiny steps.
+//! Tests rays, segments and corridors against marching in tiny steps.
 
 mod common {
     pub(crate) mod draw;
@@ -12,10 +12,10 @@ use mpp_core::config::{KNOTS, ORIGIN_COL, ORIGIN_ROW, RAY_LIMIT, STAGE_PERIOD, S
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS, Padding, cast_ray};
 use mpp_core::map::{GridPoint, OccupancyGrid};
 
-/// Step of the marching that rays are compared with [m].
+/// Step of the marching with which rays are compared \[m\].
 const MARCH: f64 = 1e-3;
 
-/// The first occupied cell by tiny steps: how far away, or the limit.
+/// Finds the first occupied cell by tiny steps. Returns its distance, or the limit.
 fn march(grid: &OccupancyGrid, from: GridPoint, direction: [f64; 2], limit: f64) -> f64 {
     (0..)
         .map(|step| f64::from(step) * MARCH)
@@ -29,7 +29,7 @@ fn march(grid: &OccupancyGrid, from: GridPoint, direction: [f64; 2], limit: f64)
         .unwrap_or(limit)
 }
 
-/// Whether a ray that marching misses only clips a corner: it enters an occupied cell, and for no
+/// Whether a ray that marching misses only clips a corner: it enters an occupied cell, but for no
 /// more than a few steps.
 fn clips_a_corner(
     grid: &OccupancyGrid,
@@ -73,7 +73,7 @@ fn rays_end_where_marching_ends() {
 
 #[test]
 fn rays_along_the_eight_directions_stop_at_the_near_side() {
-    // A wall around the aircraft's cell, 5 cells away on every side.
+    // A wall surrounds the aircraft's cell, 5 cells away on every side.
     let mut grid = OccupancyGrid::new();
     let (row, col) = (ORIGIN_ROW as i32, ORIGIN_COL as i32);
     for off in -6..=6 {
@@ -123,7 +123,8 @@ fn segments_are_free_exactly_when_dense_samples_are() {
                 );
                 free += 1;
             } else {
-                // Some cell on the way is occupied: finer samples find what dense ones may miss.
+                // Some cell on the way is occupied: finer samples find cells that coarse samples
+                // may miss.
                 let nearly = (0..=100_000).any(|part| {
                     let share = f64::from(part) / 1e5;
                     grid.occupied_at(from.towards(&to, share))
@@ -170,7 +171,7 @@ fn corridors_are_the_rays_less_the_padding_from_level_flight() {
             let share = stage as f64 / STAGES as f64;
             for (direction, bound) in DIRECTION_VECTORS.iter().zip(&corridor.bounds[stage]) {
                 let reach = cast_ray(&grid, *point, direction);
-                // Whoever flies to the ray's end less the padding is just on the half-plane.
+                // A flight to the ray's end minus the padding is just on the half-plane.
                 let kept = reach - padding.near - (padding.far - padding.near) * share;
                 let level = cruise * STAGE_PERIOD * stage as f64;
                 let up = point.row + kept * direction[0] - ORIGIN_ROW as f64;

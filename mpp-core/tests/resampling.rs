@@ -1,4 +1,4 @@
-//! Paths as collocation points: equally spaced, ends exact, degenerate paths.
+//! Tests paths as collocation points: equally spaced, ends exact, degenerate paths.
 
 mod common {
     pub(crate) mod draw;
@@ -8,9 +8,9 @@ use common::draw::Draw;
 use mpp_core::Rules;
 use mpp_core::config::KNOTS;
 use mpp_core::map::GridPoint;
-use mpp_core::plan::{path_length, resample};
+use mpp_core::paths::{path_length, resample};
 
-/// Rounding of lengths that are summed in another order [m].
+/// Rounding of lengths that are summed in another order \[m\].
 const ROUNDING: f64 = 1e-9;
 
 fn polyline(draw: &mut Draw, corners: usize) -> Vec<GridPoint> {
@@ -27,7 +27,7 @@ fn polyline(draw: &mut Draw, corners: usize) -> Vec<GridPoint> {
     path
 }
 
-/// How far along a polyline a point of it lies; none when it is not on it.
+/// Distance along a polyline at which a point of it lies; `None` if the point is not on it.
 fn arc_length(path: &[GridPoint], point: GridPoint, from: f64) -> Option<f64> {
     let mut passed = 0.0;
     for pair in path.windows(2) {

@@ -1,4 +1,4 @@
-//! Placing a trajectory in the world, and sampling it: knots, lines in between, ends.
+//! Tests how a trajectory is placed in the world and sampled: knots, lines in between, ends.
 
 mod common {
     pub(crate) mod trajectories;

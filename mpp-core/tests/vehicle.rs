@@ -1,4 +1,5 @@
-//! Equations of motion against physics, Jacobians against differences, trim against both.
+//! Tests the equations of motion against physics, Jacobians against differences, and trim against
+//! both.
 
 mod common {
     pub(crate) mod airframes;
@@ -14,11 +15,11 @@ use mpp_core::vehicle::{
 use nalgebra::{Matrix4, Matrix4x2, Vector4};
 use proptest::prelude::*;
 
-/// Half a step of the central differences: their error is its square times third derivatives.
+/// Half a step of the central differences. Their error is its square times third derivatives.
 const STEP: f64 = 1e-4;
 /// Error of differences, relative to the largest entry of their row.
 const DIFFERENCE: f64 = 1e-6;
-/// Error of sums of a few rounded terms, relative to the largest.
+/// Error of sums of a few rounded terms, relative to the largest term.
 const ROUNDING: f64 = 1e-12;
 
 fn states() -> impl Strategy<Value = AirState> {
@@ -34,7 +35,7 @@ fn controls() -> impl Strategy<Value = Control> {
     (0.0..20.0, -10.0..20.0).prop_map(|(thrust, elevator)| Control { thrust, elevator })
 }
 
-/// Both named airframes with every parameter up to 30 % off.
+/// Both named airframes with every parameter up to 30 % wrong.
 fn airframes() -> impl Strategy<Value = Airframe> {
     (named(), prop::array::uniform13(0.7..1.3)).prop_map(|(base, f)| Airframe {
         mass: base.mass * f[0],
@@ -147,8 +148,8 @@ proptest! {
     fn forces_across_the_path_bend_it(
         airframe in airframes(), state in states(), control in controls(),
     ) {
-        // The acceleration in world coordinates, projected upwards: lift, weight, thrust and drag
-        // as vectors.
+        // This is the acceleration in world coordinates, projected upwards: lift, weight, thrust
+        // and drag as vectors.
         let v = state.airspeed;
         let pressure_area = 0.5 * airframe.air_density * v * v * airframe.wing_area;
         let lift_coefficient = airframe.lift_zero + airframe.lift_alpha * state.angle_of_attack();
@@ -179,7 +180,7 @@ proptest! {
 
 #[test]
 fn the_elevator_of_level_trim_is_the_known_number() {
-    // 3.85 in the authors' code and in every flight recorded from it.
+    // The elevator is 3.85 in the authors' code and in every flight recorded from it.
     let trim = Trim::of_authors(&Airframe::REFERENCE);
     assert!((trim.control.elevator - 3.854_277_848_009_655).abs() < 1e-9);
     let rate = air_rate(&Airframe::REFERENCE, &trim.state, trim.control).to_vector();
@@ -229,9 +230,28 @@ fn nonsense_has_no_trim() {
 }
 
 #[test]
-fn an_airspeed_below_zero_has_no_trim() {
-    assert_eq!(
-        Trim::at_speed(&Airframe::PAPER, -12.0, 0.0),
-        Err(TrimError::NonFinite)
-    );
+fn a_failed_trim_names_its_cause() {
+    let paper = Airframe::PAPER;
+    for airspeed in [-12.0, 0.0, f64::NAN, f64::INFINITY] {
+        let failed = Trim::at_speed(&paper, airspeed, 0.0);
+        assert_eq!(failed, Err(TrimError::Airspeed));
+    }
+    let failed = Trim::at_speed(&paper, 12.0, f64::NAN);
+    assert_eq!(failed, Err(TrimError::Angle));
+    let heavy = Airframe {
+        mass: f64::NAN,
+        ..paper
+    };
+    let failed = Trim::at_speed(&heavy, 12.0, 0.0);
+    assert_eq!(failed, Err(TrimError::Airframe));
+    let loose = Airframe {
+        moment_elevator: 0.0,
+        ..paper
+    };
+    let failed = Trim::at_speed(&loose, 12.0, 0.0);
+    assert_eq!(failed, Err(TrimError::NoElevator));
+    let failed = Trim::at_angle_of_attack(&paper, -0.5);
+    assert_eq!(failed, Err(TrimError::NotCarried));
+    let failed = Trim::at_speed(&paper, 1.0, 0.0);
+    assert_eq!(failed, Err(TrimError::NotConverged));
 }

@@ -1,59 +1,41 @@
-//! Software in the loop for the MPP flight core: everything around the aircraft's computer.
+//! The harness: simulated flights of [`mpp_sim`], with files, sockets, threads and a clock.
+//!
+//! These are the modules in the order in which data flows through them:
 //!
 //! ```text
-//!             +------------------------- control -------------------------+
-//!             v                                                           |
-//! world --> plant --+--> sensors --(airspeed, pitch; 100 Hz)--+           |
-//!   |               |                                         +--> link --+--> core
-//!   +---------------+--> lidar ----(ranges; each replan)------+
-//!   |               |
-//!   +---------------+--> outcome --> log --> figure
+//!   scenarios, logs --> files ----+
+//!                                 |
+//!   core elsewhere <--> link -----+
+//!                                 |
+//!   ground stations <-> ground ---+--> cli <--> people
+//!                                 |
+//!   browsers <--------> live -----+
+//!                                 |
+//!   row files <---> campaign -----+
 //! ```
 //!
-//! * [`world`]: the obstacle field of the paper, from a seed.
-//! * [`plant`]: the true aircraft; integrates the core's own equations of motion.
-//! * [`aircraft`]: the plant behind its actuators, in moving air; [`faults`]: what may go wrong.
-//! * [`sensors`], [`lidar`]: what the aircraft measures, with noise from seeded streams.
-//! * [`outcome`]: the success rule of the paper, and a strict one.
-//! * [`inquest`]: why a flight failed.
-//! * [`log`]: one flight as JSON, and its hash: the same seed gives the same bytes everywhere.
-//! * [`figure`]: one flight as a picture, like Figure 7 of the paper.
-//! * [`picture`]: one flight as a page for a browser, recorded or live.
-//! * [`scenario`]: what is flown, as a TOML file; [`scene`]: the challenge scenes; [`run`]: one flight in lockstep; [`link`]: where the core is.
-//! * [`oracle`]: the core as it would fly if it knew everything.
-//! * [`cycles`]: the planning cycles of a flight, to plan them again.
-//! * [`campaign`]: many flights over a grid, with intervals.
-//! * [`ground`]: what people see of a flight and tell it; MAVLink 2.
-//! * [`check_reference`]: core and plant against data recorded from the authors' code.
-//! * [`bench`]: our parts beside others.
+//! * [`files`]: reads and writes scenarios, logs, programs and recorded data.
+//! * [`link`]: a core in another process, over TCP or FIFOs, and its server.
+//! * [`ground`]: a MAVLink 2 vehicle for ground stations.
+//! * [`pace`]: the speed of a flight relative to real time.
+//! * [`live`]: a live page of a flight.
+//! * [`campaign`]: many flights on all cores, and their row files.
 //! * [`cli`]: the command line.
-//! * [`random`]: the only source of random numbers.
 //!
-//! Frames and units: `x` downrange [m], `z` up [m], angles [rad] positive nose-up, speeds [m/s],
-//! time [s]. Every transcendental goes through `libm`, every random number through a seeded
-//! generator; only the command line reads a clock, to pace a flight for human eyes and to date
-//! signatures.
+//! [`mpp_sim`] flies the flights, and [`mpp_analysis`] evaluates them. The harness reads a clock
+//! only to pace a flight for human eyes, to date signatures, to limit its waiting times, and to
+//! measure how long the core works in a campaign.
 
-pub mod aircraft;
-pub mod bench;
-pub mod campaign;
-pub mod check_reference;
-pub mod cli;
-pub mod cycles;
-pub mod faults;
-pub mod figure;
-pub mod ground;
-pub mod inquest;
-pub mod lidar;
+pub mod files;
+
 pub mod link;
-pub mod log;
-pub mod oracle;
-pub mod outcome;
-pub mod picture;
-pub mod plant;
-pub mod random;
-pub mod run;
-pub mod scenario;
-pub mod scene;
-pub mod sensors;
-pub mod world;
+
+pub mod ground;
+
+pub mod pace;
+
+pub mod live;
+
+pub mod campaign;
+
+pub mod cli;

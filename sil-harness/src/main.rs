@@ -1,4 +1,4 @@
-//! The command line; everything it does stands in the library.
+//! The command line. The library does all of its work.
 
 use std::process::ExitCode;
 

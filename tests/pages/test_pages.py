@@ -276,8 +276,9 @@ def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, 
 def test_the_server_refuses_what_it_does_not_know(live):
     _, url, _ = live
 
-    def status(path, method="GET"):
-        request = urllib.request.Request(url + path, method=method)
+    def status(path, method="GET", **headers):
+        headers = {name.replace("_", "-"): value for name, value in headers.items()}
+        request = urllib.request.Request(url + path, method=method, headers=headers)
         try:
             return urllib.request.urlopen(request, timeout=LIMIT / 1000).status
         except urllib.error.HTTPError as error:
@@ -285,5 +286,10 @@ def test_the_server_refuses_what_it_does_not_know(live):
 
     assert status("") == 200
     assert status("passwd") == 404
-    assert status("control?speed=-1", "POST") == 400
-    assert status("control?pause=0", "POST") == 204
+    assert status("", Host="evil.example") == 403
+    assert status("", Origin="http://evil.example") == 403
+    assert status("control?pause=1", "POST") == 403
+    page = urllib.request.urlopen(url, timeout=LIMIT / 1000).read().decode()
+    token = re.search(r'TOKEN = "([0-9a-f]{32})"', page)[1]
+    assert status("control?speed=-1", "POST", X_Token=token) == 400
+    assert status("control?pause=0", "POST", X_Token=token) == 204

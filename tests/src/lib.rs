@@ -1,4 +1,7 @@
-//! Cross-crate tests; they stand in `tests/`. The library only compiles the README's example.
+//! Cross-crate tests, which stand in `tests/`. The library holds the golden flights, and compiles
+//! the README's example.
+
+pub mod golden;
 
 #[doc = include_str!("../../README.md")]
 #[cfg(doctest)]

@@ -1,15 +1,13 @@
-//! Flights of preset `flight` in moving air, with limited actuators and in an aircraft that it does not
-//! quite know, judged by their physical outcome.
+//! Tests flights of preset `flight` in moving air, with limited actuators and with an inexact
+//! airframe model. The tests judge the physical outcome.
 
-use sil_harness::faults::{
-    ActuatorLimits, Faults, GustConfig, LidarFaultConfig, ModelError, Signs,
-};
-use sil_harness::link::PipeLink;
-use sil_harness::log::FlightLog;
-use sil_harness::run::fly;
-use sil_harness::scenario::{Preset, Scenario};
+use mpp_sim::faults::{ActuatorLimits, Faults, GustConfig, LidarFaultConfig, ModelError, Signs};
+use mpp_sim::flight::fly;
+use mpp_sim::log::FlightLog;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 
-/// Six flights past 40 obstacles, replanned at 4 Hz, all of which survive inside the band.
+/// Six flights past 40 obstacles, replanned at 4 Hz. All must survive inside the band.
 fn flown(faults: Faults) -> Vec<FlightLog> {
     let flights = flights(faults, 6);
     let strict = flights.iter().filter(|log| log.summary.strict).count();
@@ -73,8 +71,8 @@ fn gusts_of_a_metre_a_second_are_flown_through() {
     }
 }
 
-/// An aircraft that is a tenth heavier or lighter, and stiffer or not, is still estimated: no reading
-/// of a healthy sensor is taken for a fault.
+/// The estimator still works for an aircraft that is a tenth heavier or lighter, and stiffer or
+/// not. It takes no reading of a healthy sensor for a fault.
 #[test]
 fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
     let faults = Faults {
@@ -94,8 +92,8 @@ fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
     }
 }
 
-/// Limited actuators, gusts, a wrong airframe and a faulty lidar at once. A core that takes the airframe to
-/// be as told loses more than a quarter of such flights (decision 12).
+/// Tests limited actuators, gusts, a wrong airframe and a faulty lidar at once. A core that takes
+/// the airframe to be as told loses more than a quarter of such flights (decision 12).
 #[test]
 fn everything_at_once_is_flown_through_by_most() {
     let faults = Faults {

@@ -1,10 +1,10 @@
-//! Whole flights, judged by their physical outcome.
+//! Tests whole flights by their physical outcome.
 
-use sil_harness::link::PipeLink;
-use sil_harness::log::FlightLog;
-use sil_harness::outcome::Outcome;
-use sil_harness::run::fly;
-use sil_harness::scenario::{Preset, Scenario};
+use mpp_sim::flight::fly;
+use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 
 #[expect(
     clippy::unwrap_used,
@@ -14,7 +14,8 @@ fn flown(scenario: &Scenario) -> FlightLog {
     fly(scenario, &mut PipeLink::new(), |_| {}).unwrap()
 }
 
-/// Flights of seeds 0 to `count - 1` that reach the end; printed for the record.
+/// The number of flights of seeds 0 to `count - 1` that reach the end. It is also printed for the
+/// record.
 fn survivors(count: u64, scenario: impl Fn(u64) -> Scenario) -> usize {
     let survived = (0..count)
         .filter(|seed| flown(&scenario(*seed)).summary.outcome == Outcome::Survived)
@@ -40,8 +41,8 @@ fn every_preset_flies_the_empty_field() {
     }
 }
 
-/// The authors' code survives 88.8 % [85.3, 91.5] of such flights; 38 of 50 or fewer would have a
-/// chance below 1 % at that rate, as would 50 of 50.
+/// The authors' code survives 88.8 % [85.3, 91.5] of such flights. At that rate, 38 of 50 or fewer
+/// would have a chance below 1 %, and 50 of 50 too.
 #[test]
 fn the_reference_preset_survives_as_often_as_the_authors_code() {
     let survived = survivors(50, |seed| Scenario::new(Preset::Reference, seed));
@@ -54,21 +55,21 @@ fn the_flight_preset_survives_twenty_obstacles() {
     assert!(survived >= 49, "{survived}");
 }
 
-/// Refinement is what the planner is for: the same paths, merely tracked, do far worse.
+/// Refinement is the purpose of the planner: flights that only track the same paths do far worse.
 #[test]
 fn tracking_paths_without_refinement_is_worse() {
     let baseline = |seed| Scenario {
         paths: 0,
-        ..Scenario::new(Preset::Flight, seed)
+        ..Scenario::new(Preset::Paper, seed)
     };
     let survived = survivors(30, baseline);
-    assert!((5..=24).contains(&survived), "{survived}");
+    assert!((3..=24).contains(&survived), "{survived}");
 }
 
 #[test]
 fn the_paper_airframe_flies_too() {
     let heavy_tail = |seed| Scenario {
-        airframe: sil_harness::scenario::AirframeName::Paper,
+        airframe: mpp_sim::scenario::AirframeName::Paper,
         ..Scenario::new(Preset::Flight, seed)
     };
     assert!(survivors(20, heavy_tail) >= 19);
@@ -84,7 +85,7 @@ fn a_flight_keeps_its_distance_and_its_attitude() {
             .min_clearance
             .is_some_and(|clearance| clearance > 0.5)
     );
-    // 12 m/s for 20 s.
+    // The aircraft flies 20 s at 12 m/s.
     assert!(
         (200.0..280.0).contains(&log.summary.x_end),
         "{}",
@@ -102,7 +103,7 @@ fn a_seed_gives_the_same_bytes_again_and_another_seed_does_not() {
     assert_ne!(hash(7), hash(8));
 }
 
-/// However the planner's slices are spread over the ticks of its latency, the flight is the same.
+/// The flight is the same however the planner's slices are spread over the ticks of its latency.
 #[test]
 fn interleaving_does_not_change_the_flight() {
     let latent = Scenario {
@@ -123,7 +124,7 @@ fn interleaving_does_not_change_the_flight() {
     );
 }
 
-/// A planner that is starved of slices offers what it has at its deadline.
+/// A planner with too few slices gives its best plan at its deadline.
 #[test]
 fn a_starved_planner_gives_its_best_so_far() {
     let starved = flown(&Scenario {

@@ -1,6 +1,6 @@
-//! The recorded reference data that comes with the repository.
+//! Tests the recorded reference data in the repository.
 
-use sil_harness::check_reference::check_directory;
+use sil_harness::files::check_directory;
 use std::path::Path;
 
 fn directory() -> &'static Path {
@@ -31,7 +31,7 @@ fn core_and_plant_agree_with_the_recorded_data() {
     }
 }
 
-/// Every kind of file notices a recorded number that is changed.
+/// Every kind of file notices a changed number.
 #[test]
 fn a_changed_number_is_noticed() {
     let changes = [

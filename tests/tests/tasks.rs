@@ -1,17 +1,18 @@
-//! Step and planner as two tasks: whatever the order in which they run, what is flown is the same;
-//! and a planner that is late or lost does not hold the step.
+//! Tests step and planner as two tasks. Whatever the order in which they run, the flight is the
+//! same. A planner that is late or lost does not hold the step.
 
-use flight_node::parameters::PARAMETERS;
-use flight_node::{Answer, FlightNode, Order, Pace, PlanTask, Progress, StepTask};
 use hil_protocol::{
     Decoder, MAX_FRAME, Message, PlanOutcome, RejectionCause, SetParameter, encode,
 };
+use mpp_node::parameters::PARAMETERS;
+use mpp_node::{Answer, FlightNode, Order, Pace, PlanTask, Progress, StepTask};
+use mpp_sim::flight::fly;
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 use proptest::prelude::*;
-use sil_harness::link::{Link, LinkError, PipeLink};
-use sil_harness::run::fly;
-use sil_harness::scenario::{Preset, Scenario};
 
-/// A link that keeps what the harness sends.
+/// A link that keeps the harness's messages.
 struct Recorder {
     pipe: PipeLink,
     sent: Vec<u8>,
@@ -29,7 +30,7 @@ impl Link for Recorder {
     }
 }
 
-/// What a harness sends in a flight whose plans take 30 ticks.
+/// The bytes that a harness sends in a flight whose plans take 30 ticks.
 fn flight(seconds: u32) -> Vec<u8> {
     let scenario = Scenario {
         latency_ticks: 30,
@@ -45,7 +46,7 @@ fn flight(seconds: u32) -> Vec<u8> {
     recorder.sent
 }
 
-/// What a core in one thread answers.
+/// The answers of a core in one thread.
 fn lockstep(input: &[u8]) -> Vec<u8> {
     let mut node = Box::new(FlightNode::new());
     let mut sent = Vec::new();
@@ -53,7 +54,7 @@ fn lockstep(input: &[u8]) -> Vec<u8> {
     sent
 }
 
-/// Two tasks with a mailbox each way, as a flight computer has them.
+/// Two tasks with a mailbox in each direction, as on a flight computer.
 struct Tasks {
     step: StepTask,
     plan: Box<PlanTask>,
@@ -79,7 +80,7 @@ impl Tasks {
         }
     }
 
-    /// The step's interrupt: the answer that is there, then at most `count` bytes.
+    /// Runs the step's interrupt: it takes the answer if there is one, then at most `count` bytes.
     fn step(&mut self, bytes: &mut &[u8], count: usize) {
         let sent = &mut self.sent;
         if let Some(answer) = self.answers.take() {
@@ -99,7 +100,7 @@ impl Tasks {
         }
     }
 
-    /// The planner's thread, for at most `count` slices.
+    /// Runs the planner's thread for at most `count` slices.
     fn plan(&mut self, count: usize) {
         for _ in 0..count {
             if let Some(order) = self.orders.take() {
@@ -131,7 +132,7 @@ proptest! {
         let expected = lockstep(&input);
         let mut tasks = Tasks::new(Pace::Lockstep);
         let mut bytes = &input[..];
-        // A turn of both afterwards, so that the end is reached whatever was drawn.
+        // A turn of both tasks follows, so that the end is reached whatever was drawn.
         for (step, plan) in turns.iter().chain([&(1, 1)]).cycle().take(100_000) {
             tasks.step(&mut bytes, *step);
             tasks.plan(*plan);
@@ -141,7 +142,8 @@ proptest! {
     }
 }
 
-/// Flies by the clock: each tick's frames at once, then as many slices as `slices(tick)` gives.
+/// Flies by the clock: each tick's frames come at once, then as many slices run as `slices(tick)`
+/// gives.
 fn fly_by_the_clock(input: &[u8], slices: impl Fn(usize) -> usize) -> Vec<Message> {
     let mut tasks = Tasks::new(Pace::RealTime);
     let mut ticks = 0;
@@ -176,7 +178,7 @@ fn in_time_the_real_pace_flies_as_in_lockstep() {
 #[test]
 fn a_late_planner_ends_with_its_best_and_holds_no_step() {
     let input = flight(3);
-    // One slice a tick is far from what a cycle takes.
+    // One slice per tick is far less than a cycle takes.
     let messages = fly_by_the_clock(&input, |tick| if tick == 0 { 10 } else { 1 });
     assert_eq!(commands(&messages), 300);
     let plans = messages.iter().filter_map(|message| match message {
@@ -220,7 +222,7 @@ fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
                 .planner_lost(|frame| sent.extend_from_slice(frame));
             tasks.post();
         }
-        // Before that the planner hangs.
+        // The planner hangs until it is lost.
         if lost || tasks.step.waits() {
             tasks.plan(200);
         }
@@ -252,7 +254,7 @@ fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
         tasks.step(&mut bytes, 1);
         tasks.plan(200);
     }
-    // The planner is lost and set up again; meanwhile a new session begins.
+    // The planner is lost and set up again. Meanwhile a new session begins.
     *tasks.plan = PlanTask::new();
     tasks.answers = None;
     tasks.step.planner_lost(|_| {});
@@ -274,7 +276,7 @@ fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
     assert_eq!(commands(&tasks.messages()), 11 + 100);
 }
 
-/// The same with a message after the sensor frame of a tick.
+/// The same input with a message after the sensor frame of a tick.
 fn with_message_after(input: &[u8], tick: u32, message: &Message) -> Vec<u8> {
     let mut decoder = Decoder::new();
     let mut buffer = [0; MAX_FRAME];
@@ -293,7 +295,7 @@ fn with_message_after(input: &[u8], tick: u32, message: &Message) -> Vec<u8> {
 
 #[test]
 fn another_latency_is_for_the_cycles_to_come() {
-    let name = |parameter: &flight_node::parameters::Parameter| parameter.name == "MPP_LATENCY_S";
+    let name = |parameter: &mpp_node::parameters::Parameter| parameter.name == "MPP_LATENCY_S";
     let parameter = PARAMETERS.iter().position(name).unwrap() as u8;
     let input = flight(3);
     for (seconds, ticks) in [(0.1, 10), (0.5, 50)] {

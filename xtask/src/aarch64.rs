@@ -1,22 +1,23 @@
-//! `aarch64`: the host's own tests and flights, built for 64-bit ARM, in the user-mode emulator.
+//! `aarch64`: runs the host's own tests and flights, built for 64-bit ARM, in the user-mode
+//! emulator.
 
 use crate::flight::Harness;
+use crate::folders::work;
 use crate::toolchain::{Toolchain, install, output, succeed};
-use crate::work;
 use anyhow::{Context, Result, ensure};
 use std::path::PathBuf;
 use std::process::Command;
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
-/// Where the emulator finds the C library.
+/// The folder in which the emulator finds the C library.
 const SYSROOT: &str = "/usr/aarch64-linux-gnu";
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct Aarch64Args {
-    /// How many seeds to fly, from 1
+    /// Number of seeds to fly, from 1 on
     #[arg(long, default_value_t = 1)]
     flights: u64,
-    /// Fly only: leave out the tests of mpp-core and hil-protocol
+    /// Fly only, and leave out the tests of mpp-core and hil-protocol
     #[arg(long)]
     no_tests: bool,
 }
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     ])?;
     let toolchain = Toolchain::find(TARGET)?;
     if !args.no_tests {
-        // Not --release: linking each test with the whole of it optimised takes an hour.
+        // This is not --release: to link each test with the whole of it optimised takes an hour.
         succeed(cargo(&toolchain, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
     }
     succeed(cargo(&toolchain, "build")?.args(["--release", "-p", "sil-harness"]))?;
@@ -55,7 +56,7 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     Ok(())
 }
 
-/// A script that runs a program in the emulator.
+/// Writes a script that runs a program in the emulator.
 fn write_wrapper(path: &PathBuf, program: &std::path::Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let text = format!(
@@ -89,8 +90,8 @@ fn cargo(toolchain: &Toolchain, subcommand: &str) -> Result<Command> {
     Ok(command)
 }
 
-/// Debian's standard library for this target, unpacked aside: the package manager knows nothing of
-/// it, and its own state is left alone.
+/// Unpacks Debian's standard library for this target into a folder aside. The package manager knows
+/// nothing of it, and the package manager's own state is left alone.
 fn standard_library() -> Result<PathBuf> {
     let folder = work("aarch64-std")?;
     let library = folder.join("root/usr/lib/rustlib").join(TARGET).join("lib");
@@ -113,7 +114,7 @@ fn standard_library() -> Result<PathBuf> {
         }
         succeed(command.current_dir(&folder).args(["-qq"]).args(arguments))
     };
-    // The same version as the compiler's.
+    // The version is the same as the compiler's.
     let version = output(Command::new("dpkg-query").args(["-W", "-f", "${Version}", "rustc-web"]))?;
     apt(&["update"])?;
     apt(&["download", &format!("libstd-rust-web-dev={version}")])?;

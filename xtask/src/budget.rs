@@ -1,22 +1,23 @@
-//! `budget`: what a flight computer has to give, measured and checked.
+//! `budget`: measures and checks what the firmware needs from a flight computer.
 
 use crate::counts::{Counts, median, plugin};
 use crate::firmware::{self, Image};
 use crate::flight::Harness;
+use crate::folders::work;
+use crate::limits::{self, budget};
 use crate::qemu::{Emulator, Report, Run};
-use crate::{readme, root, stack, work};
-use anyhow::{Context, Result, bail, ensure};
+use crate::{readme, stack};
+use anyhow::{Result, bail, ensure};
 use object::{Object, ObjectSection};
-use toml_edit::DocumentMut;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct BudgetArgs {
-    /// Write the figures to docs/budgets.toml, with some air, and the table to the README
+    /// Write the figures to docs/budgets.toml with a small margin, and the table to the README
     #[arg(long)]
     save: bool,
 }
 
-/// A figure and where it stands in docs/budgets.toml, under `firmware`.
+/// A figure and its place in docs/budgets.toml, under `firmware`.
 pub(crate) struct Figure {
     pub(crate) table: &'static str,
     pub(crate) name: &'static str,
@@ -26,14 +27,13 @@ pub(crate) struct Figure {
 pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
     let figures = measure()?;
     println!("{}", firmware::versions()?);
-    let path = root().join("docs/budgets.toml");
-    let mut document: DocumentMut = std::fs::read_to_string(&path)?.parse()?;
+    let mut document = limits::read()?;
     if args.save {
         for figure in &figures {
             let budget = i64::try_from(with_air(figure.value))?;
             document["firmware"][figure.table][figure.name] = toml_edit::value(budget);
         }
-        std::fs::write(&path, document.to_string())?;
+        limits::write(&document)?;
         readme::write(&document)?;
     }
     let mut over = 0;
@@ -56,27 +56,8 @@ pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
     readme::check(&document)
 }
 
-/// A budget of the firmware.
-pub(crate) fn budget(document: &DocumentMut, table: &str, name: &str) -> Result<u64> {
-    document
-        .get("firmware")
-        .and_then(|firmware| firmware.get(table)?.get(name)?.as_integer())
-        .and_then(|budget| u64::try_from(budget).ok())
-        .with_context(|| format!("docs/budgets.toml has no firmware.{table}.{name}"))
-}
-
-/// The greatest budget of a slice [instructions].
-pub(crate) fn longest_slice(document: &DocumentMut) -> Result<u64> {
-    ["slice_worst_flight", "slice_worst_reference"]
-        .iter()
-        .filter_map(|table| document.get("firmware")?.get(table)?.as_table())
-        .flat_map(|table| table.iter())
-        .filter_map(|(_, budget)| u64::try_from(budget.as_integer()?).ok())
-        .max()
-        .context("docs/budgets.toml has no budgets of slices")
-}
-
-/// A budget for a figure: at least 2 % more, for another compiler, and rounded up to three digits.
+/// The budget for a figure. It is at least 2 % more, for another compiler, and rounded up to three
+/// digits.
 fn with_air(value: u64) -> u64 {
     let value = value + value / 50;
     let unit = 10_u64.pow(value.max(100).ilog10() - 2);
@@ -89,11 +70,11 @@ fn measure() -> Result<Vec<Figure>> {
     let mut add = |table, name, value| figures.push(Figure { table, name, value });
 
     let (flash, static_ram) = sizes()?;
-    let flight = fly("--preset flight --obstacles 20")?;
-    let reference = fly("--preset reference --obstacles 20")?;
-    let dense = fly("--preset flight --obstacles 40")?;
+    let flight = fly(Image::Fifo, "--preset flight --obstacles 20")?;
+    let reference = fly(Image::Comparison, "--preset reference --obstacles 20")?;
+    let dense = fly(Image::Fifo, "--preset flight --obstacles 40")?;
     let bound = stack::bound(&Image::Uart.path()?)?;
-    let painted = [&flight, &reference, &dense].map(|flown| u64::from(flown.report.stack));
+    let painted = [&flight, &dense].map(|flown| u64::from(flown.report.stack));
     let painted = painted.into_iter().max().unwrap_or_default();
     ensure!(
         painted <= bound,
@@ -106,7 +87,7 @@ fn measure() -> Result<Vec<Figure>> {
     add("bytes", "stack_bound", bound);
     add("bytes", "ram", static_ram + bound);
     add("step", "mean", flight.counts.step_mean());
-    let worst = [&flight, &reference, &dense].map(|flown| flown.counts.step_worst());
+    let worst = [&flight, &dense].map(|flown| flown.counts.step_worst());
     add("step", "worst", worst.into_iter().max().unwrap_or_default());
     for (name, value) in flight.counts.stages_mean() {
         add("stage_mean_flight", name, value);
@@ -135,7 +116,7 @@ fn measure() -> Result<Vec<Figure>> {
     Ok(figures)
 }
 
-/// Flash and static RAM of the image that flies [bytes].
+/// Flash and static RAM of the image that flies \[bytes\].
 fn sizes() -> Result<(u64, u64)> {
     let bytes = std::fs::read(Image::Uart.path()?)?;
     let file = object::File::parse(&*bytes)?;
@@ -154,13 +135,13 @@ struct Flown {
     report: Report,
 }
 
-/// Flies seed 1 over FIFOs, which is repeatable to the instruction, and counts.
-fn fly(scenario: &str) -> Result<Flown> {
+/// Flies seed 1 over FIFOs and counts. Such a flight is repeatable to the instruction.
+fn fly(image: Image, scenario: &str) -> Result<Flown> {
     let folder = work("budget")?;
     let (harness, counter) = (Harness::build(&folder)?, plugin()?);
     let mut emulator = Emulator::fifo(
         &Run {
-            image: &Image::Fifo.path()?,
+            image: &image.path()?,
             folder: &folder,
             shift: 0,
             counter: Some(&counter),

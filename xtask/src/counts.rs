@@ -1,12 +1,12 @@
-//! Instructions by region, from the counting plugin.
+//! Numbers of instructions in each region, from the counting plugin.
 
+use crate::folders::{root, work};
 use crate::toolchain::succeed;
-use crate::{root, work};
 use anyhow::{Context, Result};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-// The kinds of firmware/src/mark.rs.
+// These are the kinds of firmware/src/mark.rs.
 const STEP: u64 = 2;
 const ORDER: u64 = 3;
 const MAP: u64 = 4;
@@ -52,7 +52,7 @@ pub(crate) struct Counts {
 }
 
 impl Counts {
-    /// Reads what the plugin wrote to a folder.
+    /// Reads the file that the plugin wrote to a folder.
     pub(crate) fn read(folder: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(folder.join("counts"))?;
         let (mut regions, mut total) = (Vec::new(), None);
@@ -81,18 +81,18 @@ impl Counts {
         self.of(kind).max().unwrap_or_default()
     }
 
-    /// Mean of the 100 Hz step.
+    /// Mean count of the 100 Hz step.
     pub(crate) fn step_mean(&self) -> u64 {
         let steps = self.of(STEP).count().max(1) as u64;
         self.of(STEP).sum::<u64>() / steps
     }
 
-    /// Worst 100 Hz step.
+    /// Count of the worst 100 Hz step.
     pub(crate) fn step_worst(&self) -> u64 {
         self.worst(STEP)
     }
 
-    /// Worst slice of each stage that ran, with its name.
+    /// The count of the worst slice of each stage that ran, with the stage's name.
     pub(crate) fn slices_worst(&self) -> impl Iterator<Item = (&'static str, u64)> {
         STAGES
             .iter()
@@ -100,7 +100,7 @@ impl Counts {
             .filter(|(_, count)| *count > 0)
     }
 
-    /// Means of what each stage that ran takes of a cycle, with its name.
+    /// The mean count of each stage that ran, per cycle, with the stage's name.
     pub(crate) fn stages_mean(&self) -> impl Iterator<Item = (&'static str, u64)> {
         let cycles = self.cycles().len().max(1) as u64;
         STAGES
@@ -109,7 +109,7 @@ impl Counts {
             .filter(|(_, count)| *count > 0)
     }
 
-    /// Whole cycles, from order to answer, sorted.
+    /// Counts of whole cycles, from order to answer, sorted.
     pub(crate) fn cycles(&self) -> Vec<u64> {
         let mut cycles = Vec::new();
         let mut open = None;
@@ -121,7 +121,7 @@ impl Counts {
                     planned = true;
                     open = open.map(|sum| sum + count);
                 }
-                // An order without slices was a set-up.
+                // An order without slices is a set-up.
                 ANSWER if planned => cycles.extend(open.take().map(|sum| sum + count)),
                 _ => {}
             }

@@ -1,9 +1,10 @@
-//! `faults`: what the firmware does when something hangs, and whether its clock holds.
+//! `faults`: tests that the firmware survives when something hangs, and that its clock holds.
 
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome, PATIENCE};
+use crate::folders::work;
+use crate::limits;
 use crate::qemu::{Emulator, Report, Run};
-use crate::{budget, root, work};
 use anyhow::{Context, Result, bail, ensure};
 use hil_protocol::{
     AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Preset, RejectionCause, Role, encode,
@@ -14,14 +15,14 @@ use std::path::{Path, PathBuf};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FaultsArgs {
-    /// Length of the flight by the timer [s]
+    /// Length of the flights by the timer, in seconds
     #[arg(long, default_value_t = 60)]
     duration: u32,
 }
 
-/// Counts of the board's timer in 10 ms.
+/// Counts of the board's timer in a tick of 10 ms.
 const TICK: u32 = 250_000;
-/// A tick after which something hangs: a cycle is under way.
+/// A tick after which something hangs. A cycle is under way then.
 const HANG: u32 = 410;
 
 pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
@@ -52,7 +53,7 @@ fn spread(duration: u32) -> Vec<String> {
 }
 
 impl Bench {
-    /// 500 million instructions a second: about those of an STM32H743 at 480 MHz.
+    /// Runs 500 million instructions a second, which is about the rate of an STM32H743 at 480 MHz.
     fn run<'a>(&'a self, image: &'a Path) -> Run<'a> {
         Run {
             image,
@@ -68,15 +69,14 @@ impl Bench {
         Ok((outcome, emulator.report()?))
     }
 
-    /// The step comes every 10 ms wherever the planner is, and flies as on the host.
+    /// The step comes every 10 ms, whatever the planner does, and the flight is that of the host.
     fn timer_holds(&self, duration: u32) -> Result<()> {
         self.fly_without_jitter("by the timer", &Image::Fifo.path()?, duration)
     }
 
-    /// The same where one slice of each cycle is longer by the budget of the longest.
+    /// Repeats this test with one slice of each cycle longer by the budget of the longest slice.
     fn longest_slice_holds_no_step(&self, duration: u32) -> Result<()> {
-        let text = std::fs::read_to_string(root().join("docs/budgets.toml"))?;
-        let longest = u32::try_from(budget::longest_slice(&text.parse()?)?)?;
+        let longest = u32::try_from(limits::longest_slice(&limits::read()?)?)?;
         let image = self.folder.join("long-slices");
         firmware::patched(Image::Fifo, "FAULT_SLICE_LONGER_BY", longest, &image)?;
         let name = format!("a slice of each cycle longer by {longest} instructions");
@@ -114,7 +114,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The planner hangs for good: it is dropped and restarted, no step is missed, and later cycles
+    /// The planner hangs for ever. It is dropped and restarted, no step is missed, and later cycles
     /// are planned again.
     fn stuck_planner_is_restarted(&self) -> Result<()> {
         let image = self.folder.join("planner-hangs");
@@ -148,8 +148,8 @@ impl Bench {
         Ok(())
     }
 
-    /// The step hangs for good: the watchdog resets the core, which says hello, is configured anew
-    /// and flies on.
+    /// The step hangs for ever. The watchdog resets the core. The core says hello, is configured
+    /// anew and flies on.
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
         firmware::patched(Image::Uart, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
@@ -178,8 +178,8 @@ impl Bench {
         Ok(())
     }
 
-    /// More bytes than fit come while the core cannot take any: it counts and reports those that
-    /// are lost, and is ready for the next session.
+    /// More bytes come than fit, while the core cannot take any. The core counts and reports the
+    /// lost bytes, and is ready for the next session.
     fn flood_is_counted(&self) -> Result<()> {
         let image = self.folder.join("set-up-awaits-loss");
         firmware::patched(Image::Uart, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
@@ -187,7 +187,7 @@ impl Bench {
         let address = emulator.link().trim_start_matches("tcp:").to_owned();
         let mut stream = TcpStream::connect(address)?;
         stream.set_read_timeout(Some(PATIENCE))?;
-        // The configuration occupies the planner, and the step waits for it: until bytes are lost.
+        // The configuration occupies the planner, and the step waits for it until bytes are lost.
         send(&mut stream, &Message::Configure(CONFIGURE))?;
         stream.write_all(&[0x55; 20_000])?;
         stream.write_all(&[0])?;
@@ -200,7 +200,7 @@ impl Bench {
         })?;
         println!("flood of 20001 bytes: the core reports {lost} lost, and says hello again");
         ensure!((1..=20_001).contains(&lost), "a count that cannot be");
-        // Ends what is left of the flood: its own end may be among the lost bytes.
+        // This byte ends the rest of the flood, because its own end may be among the lost bytes.
         stream.write_all(&[0])?;
         send(&mut stream, &Message::Hello(HELLO))?;
         await_message(&mut stream, |message| {
@@ -242,7 +242,7 @@ fn send(stream: &mut TcpStream, message: &Message) -> Result<()> {
     Ok(())
 }
 
-/// Reads until `wanted` finds what it looks for.
+/// Reads messages until `wanted` returns a value.
 fn await_message<T>(stream: &mut TcpStream, wanted: impl Fn(&Message) -> Option<T>) -> Result<T> {
     let (mut decoder, mut bytes) = (Decoder::new(), [0; 256]);
     loop {

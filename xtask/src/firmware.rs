@@ -1,18 +1,22 @@
 //! Builds the firmware.
 
+use crate::folders::{root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
-use crate::{root, work};
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const THUMB: &str = "thumbv7em-none-eabihf";
 
-/// The images.
+/// The images of the firmware.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Image {
+    /// Flies over a serial line, with the flight planner alone.
     Uart,
+    /// Flies over semihosting, with the flight planner alone.
     Fifo,
+    /// Flies over semihosting, with the paper's method beside the flight planner, to compare them.
+    Comparison,
 }
 
 impl Image {
@@ -20,16 +24,31 @@ impl Image {
         match self {
             Self::Uart => "uart",
             Self::Fifo => "fifo",
+            Self::Comparison => "comparison",
         }
     }
 
-    /// Where the build puts it.
+    /// The firmware's program for this image, and the features with which it is built.
+    fn program(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Self::Uart => ("uart", &[]),
+            Self::Fifo => ("fifo", &[]),
+            Self::Comparison => ("fifo", &["--features", "paper"]),
+        }
+    }
+
+    /// The path to which the build writes the image.
     pub(crate) fn path(self) -> Result<PathBuf> {
-        Ok(work("")?.join(THUMB).join("release").join(self.name()))
+        Ok(release()?.join(self.name()))
     }
 }
 
-/// Builds both images and the libraries for a bare 64-bit ARM.
+/// The folder of cargo's output.
+fn release() -> Result<PathBuf> {
+    Ok(work("")?.join(THUMB).join("release"))
+}
+
+/// Builds all images and the libraries for a bare 64-bit ARM.
 pub(crate) fn build_all() -> Result<()> {
     build()?;
     let toolchain = Toolchain::find("aarch64-unknown-none")?;
@@ -41,45 +60,56 @@ pub(crate) fn build_all() -> Result<()> {
         "-p",
         "hil-protocol",
         "-p",
-        "flight-node",
+        "mpp-node",
     ]))
 }
 
-/// Builds both images. They only link if nothing in them can panic.
+/// Builds all images. An image links only if nothing in it can panic.
 pub(crate) fn build() -> Result<()> {
-    // The workspace's versions of everything. Not --locked: cargo drops what is not used here.
+    // The workspace's versions are used for everything. This is not --locked: cargo drops the
+    // packages that are not used here.
     std::fs::copy(
         root().join("Cargo.lock"),
         root().join("firmware/Cargo.lock"),
     )?;
     let toolchain = Toolchain::find(THUMB)?;
-    for image in [Image::Uart, Image::Fifo] {
+    // The comparison is built first and moved away, because another image comes from the same
+    // program.
+    for image in [Image::Comparison, Image::Uart, Image::Fifo] {
+        let (program, features) = image.program();
         // Stack sizes are not loaded: the image is the same with and without them.
         let stack_sizes = ["-Z", "emit-stack-sizes", "-C", "link-arg=-Tstack_sizes.x"];
         let mut command = toolchain.cargo("rustc", "firmware")?;
         command
             .env("RUSTC_BOOTSTRAP", "1")
-            .args(["--release", "--bin", image.name(), "--"])
+            .args(["--release", "--bin", program])
+            .args(features)
+            .arg("--")
             .args(stack_sizes);
         if !command.status().context("running cargo")?.success() {
             list_panics(&toolchain, image)?;
             bail!("the firmware does not build; if it does not link, see the panics above");
         }
+        if program != image.name() {
+            std::fs::copy(release()?.join(program), image.path()?)?;
+        }
     }
     Ok(())
 }
 
-/// Links an image in spite of its panics, and prints where they are.
+/// Links an image in spite of its panics, and prints the places of the panics.
 fn list_panics(toolchain: &Toolchain, image: Image) -> Result<()> {
     let mut command = toolchain.cargo("rustc", "firmware")?;
     let handler = "link-arg=--defsym=a_panic_path_is_still_reachable=0";
-    succeed(command.args(["--release", "--bin", image.name(), "--", "-C", handler]))?;
+    let (program, features) = image.program();
+    command.args(["--release", "--bin", program]).args(features);
+    succeed(command.args(["--", "-C", handler]))?;
     install(&[("/usr/bin/arm-none-eabi-objdump", "binutils-arm-none-eabi")])?;
     eprintln!("calls to panics, once their handler is defined:");
-    succeed(Command::new(root().join("firmware/panic-sites")).arg(image.path()?))
+    succeed(Command::new(root().join("firmware/panic-sites")).arg(release()?.join(program)))
 }
 
-/// Copies an image with a word changed: `symbol` holds `value`.
+/// Copies an image and changes one word, so that `symbol` holds `value`.
 pub(crate) fn patched(image: Image, symbol: &str, value: u32, to: &Path) -> Result<()> {
     use object::{Object, ObjectSection, ObjectSymbol};
     let mut bytes = std::fs::read(image.path()?)?;

@@ -1,7 +1,7 @@
 //! Flies the harness, with its own core or with an emulated one.
 
+use crate::folders::root;
 use crate::qemu::Emulator;
-use crate::root;
 use crate::toolchain::succeed;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
@@ -9,10 +9,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// How long emulator and harness wait for each other: far more than they need.
+/// The time that emulator and harness wait for each other. It is far more than they need.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(60);
 
-/// What a flight came to.
+/// The results of a flight.
 pub(crate) struct Outcome {
     /// The result line.
     pub(crate) line: Value,
@@ -31,12 +31,12 @@ impl Outcome {
         self.line[name].as_u64().unwrap_or_default()
     }
 
-    /// How the flight ended.
+    /// The outcome of the flight.
     pub(crate) fn outcome(&self) -> &str {
         self.line["outcome"].as_str().unwrap_or_default()
     }
 
-    /// Causes of rejection in the log, in order.
+    /// Causes of the rejections in the log, in order.
     pub(crate) fn rejections(&self) -> Vec<&str> {
         let entries = self.log["rejections"].as_array();
         entries.map_or_else(Vec::new, |entries| {
@@ -48,14 +48,14 @@ impl Outcome {
     }
 }
 
-/// The harness, built.
+/// The built harness.
 pub(crate) struct Harness {
     program: PathBuf,
     out: PathBuf,
 }
 
 impl Harness {
-    /// Builds it; logs go to a folder.
+    /// Builds the harness. Its logs go to a folder.
     pub(crate) fn build(out: &Path) -> Result<Self> {
         let mut cargo = Command::new("cargo");
         cargo.current_dir(root());
@@ -87,7 +87,7 @@ impl Harness {
         })
     }
 
-    /// One that is built already.
+    /// A harness that is already built.
     pub(crate) fn with_program(program: PathBuf, out: &Path) -> Self {
         Self {
             program,
@@ -107,19 +107,19 @@ impl Harness {
         command
     }
 
-    /// A flight with the harness's own core.
+    /// Flies with the harness's own core.
     pub(crate) fn fly(&self, arguments: &[String]) -> Result<Outcome> {
         finish(self.command(arguments, &self.out.join("host")).spawn()?)
     }
 
-    /// A flight with an emulated core.
+    /// Flies with an emulated core.
     pub(crate) fn fly_emulated(
         &self,
         arguments: &[String],
         emulator: &mut Emulator,
     ) -> Result<Outcome> {
         let mut command = self.command(arguments, &self.out.join("target"));
-        // An emulator on a busy machine takes its time.
+        // An emulator on a busy machine is slow.
         let patience = PATIENCE.as_secs().to_string();
         command.args(["--link", emulator.link(), "--patience", &patience]);
         let mut harness = command.spawn()?;
@@ -143,7 +143,7 @@ impl Harness {
 fn finish(harness: Child) -> Result<Outcome> {
     let output = harness.wait_with_output()?;
     let text = String::from_utf8(output.stdout)?;
-    // 3 and 4 are flights too: collision, extreme state.
+    // Codes 3 and 4 (collision, extreme state) are results of flights too.
     if !matches!(output.status.code(), Some(0 | 3 | 4)) {
         bail!(
             "the flight failed:\n{}",

@@ -1,7 +1,8 @@
-//! Everything about the ARM images that is not plain cargo: build, fly, measure, check.
+//! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
+//! for browsers, and the golden flights.
 //!
-//! Works with rustup's targets if they are installed, else with Debian's compiler and library
-//! sources, which it installs as root.
+//! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
+//! and library sources, which they install as root.
 
 mod aarch64;
 mod budget;
@@ -9,19 +10,23 @@ mod counts;
 mod faults;
 mod firmware;
 mod flight;
+mod folders;
+mod golden;
+mod limits;
 mod pil;
 mod qemu;
 mod readme;
 mod stack;
 mod toolchain;
+mod wasm;
 
-use anyhow::Result;
 use clap::{Parser, Subcommand};
-use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(Debug, Parser)]
-#[command(about = "The flight core on ARM: build, fly, measure, check")]
+#[command(
+    about = "The flight core on ARM and for browsers: build, fly, measure, check; and the golden flights"
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -31,14 +36,19 @@ struct Cli {
 enum Command {
     /// Build the firmware and the bare-metal libraries; linking proves that nothing can panic
     Build,
-    /// Processor in the loop: fly the firmware in the emulator, compare log hashes with the host
+    /// Processor in the loop: fly the firmware in the emulator and compare the log hashes with the
+    /// host
     Pil(pil::PilArgs),
     /// Run tests and a flight of the 64-bit ARM build in the emulator
     Aarch64(aarch64::Aarch64Args),
     /// Measure flash, RAM, stack and instructions; check them against docs/budgets.toml
     Budget(budget::BudgetArgs),
-    /// Hang the planner, hang the step, let the timer run: the aircraft flies on
+    /// Let the planner or the step hang, let the timer run, and check that the aircraft flies on
     Faults(faults::FaultsArgs),
+    /// Build the simulation for browsers, which uses no file, socket, thread or clock
+    Wasm,
+    /// Fly the golden flights on the host and print their table; --save makes it the expected one
+    Golden(golden::GoldenArgs),
 }
 
 fn main() -> ExitCode {
@@ -48,6 +58,8 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
+        Command::Wasm => wasm::build(),
+        Command::Golden(args) => golden::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -56,20 +68,4 @@ fn main() -> ExitCode {
             ExitCode::FAILURE
         }
     }
-}
-
-/// The top of the repository.
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-/// A folder for what a command makes.
-fn work(name: &str) -> Result<PathBuf> {
-    let path = root()
-        .canonicalize()?
-        .join("target")
-        .join("cross")
-        .join(name);
-    std::fs::create_dir_all(&path)?;
-    Ok(path)
 }

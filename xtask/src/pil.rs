@@ -1,10 +1,10 @@
-//! `pil`: flights with the firmware in the emulator, compared with the host's.
+//! `pil`: flies the firmware in the emulator and compares the flights with the host's.
 
 use crate::counts::{Counts, median, plugin};
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome};
+use crate::folders::work;
 use crate::qemu::{Emulator, Run};
-use crate::work;
 use anyhow::{Result, bail};
 use serde_json::json;
 
@@ -21,22 +21,22 @@ pub(crate) struct PilArgs {
     /// Seed of the first flight
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// How many seeds to fly
+    /// Number of seeds to fly
     #[arg(long, default_value_t = 1)]
     flights: u64,
-    /// Obstacles of the field
+    /// Number of obstacles in the field
     #[arg(long, default_value_t = 20)]
     obstacles: u16,
-    /// Parameters and rules
+    /// Preset, which is a set of parameters and rules
     #[arg(long, default_value = "flight")]
     preset: String,
-    /// Length of each flight [s]
+    /// Length of each flight, in seconds
     #[arg(long, default_value_t = 20)]
     duration: u32,
-    /// How bytes get to the emulated core
+    /// Transport of the bytes to the emulated core
     #[arg(long, value_enum, default_value_t = Transport::Uart)]
     transport: Transport,
-    /// Print one JSON object a flight
+    /// Print one JSON object per flight
     #[arg(long)]
     json: bool,
 }

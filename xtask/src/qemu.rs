@@ -7,28 +7,29 @@ use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStderr, Command, Stdio};
 
-/// How an image is run.
+/// The parameters of an emulator's run.
 pub(crate) struct Run<'a> {
     pub(crate) image: &'a Path,
-    /// For FIFOs, report and counts.
+    /// Folder for FIFOs, report and counts.
     pub(crate) folder: &'a Path,
-    /// Virtual time of an instruction: `1 << shift` ns. 1 makes 500 million instructions a second.
+    /// Sets the virtual time of an instruction to `1 << shift` ns. 1 means 500 million instructions
+    /// a second.
     pub(crate) shift: u32,
     /// The counting plugin.
     pub(crate) counter: Option<&'a Path>,
 }
 
-/// A running emulator; ends with this value.
+/// A running emulator. It ends when this value is dropped.
 pub(crate) struct Emulator {
     child: Child,
     link: String,
     folder: PathBuf,
 }
 
-/// What an image reports of itself at the end of a flight over FIFOs.
+/// The report of an image about itself, at the end of a flight over FIFOs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Report {
-    /// Bytes of stack.
+    /// Bytes of stack that were used.
     pub(crate) stack: u32,
     /// Ticks of the timer.
     pub(crate) ticks: u32,
@@ -36,14 +37,14 @@ pub(crate) struct Report {
     pub(crate) missed: u32,
     /// Longest time between two ticks [counts of 40 ns].
     pub(crate) longest: u32,
-    /// Shortest.
+    /// Shortest time between two ticks [counts of 40 ns].
     pub(crate) shortest: u32,
-    /// Times that the planner was restarted.
+    /// Number of restarts of the planner.
     pub(crate) restarts: u32,
 }
 
 impl Emulator {
-    /// Runs the image `uart`; the line is a loopback TCP socket.
+    /// Runs the image `uart`. The serial line is a loopback TCP socket.
     pub(crate) fn uart(run: &Run<'_>) -> Result<Self> {
         let port = TcpListener::bind("127.0.0.1:0")?.local_addr()?.port();
         let mut command = machine(run)?;
@@ -85,24 +86,24 @@ impl Emulator {
         })
     }
 
-    /// The harness's `--link`.
+    /// The value for the harness's `--link`.
     pub(crate) fn link(&self) -> &str {
         &self.link
     }
 
-    /// Whether the emulator is gone.
+    /// Whether the emulator has ended.
     pub(crate) fn has_ended(&mut self) -> Result<bool> {
         Ok(self.child.try_wait()?.is_some())
     }
 
-    /// Ends the emulator in order, so that counts are written. The image `fifo` ends by itself.
+    /// Ends the emulator in order, so that it writes the counts. The image `fifo` ends by itself.
     pub(crate) fn end(mut self) -> Result<()> {
         self.wait()
     }
 
     fn wait(&mut self) -> Result<()> {
         if self.link.starts_with("tcp") {
-            // The shell's own `kill`: a bare machine has no other.
+            // This is the shell's own `kill`: a bare machine has no other.
             let kill = format!("kill -TERM {}", self.child.id());
             succeed(Command::new("sh").args(["-c", &kill]))?;
         }
@@ -135,7 +136,7 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // It may have ended by itself.
+        // The emulator may have ended by itself.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -155,20 +156,21 @@ fn machine(run: &Run<'_>) -> Result<Command> {
         .stdin(Stdio::null());
     if let Some(counter) = run.counter {
         let out = run.folder.join("counts");
-        // Bytes, idling and interrupts of the UART are summed up only.
+        // Regions of bytes, idling and interrupts of the UART only count in the total.
         let plugin = format!("{},out={},skip=9:10:11", counter.display(), out.display());
         command.arg("-plugin").arg(plugin);
     }
     Ok(command)
 }
 
-/// The emulator says when it listens; connecting to find out would take the only connection.
+/// Waits until the emulator says that it listens. A trial connection would take the only
+/// connection.
 fn wait_for_socket(stderr: Option<ChildStderr>) -> Result<()> {
     let mut lines = BufReader::new(stderr.context("no stderr")?);
     let mut said = String::new();
     while lines.read_line(&mut said)? > 0 {
         if said.contains("waiting for connection") {
-            // What it says later is of no interest, but must have somewhere to go.
+            // The emulator's later output is not needed, but the pipe must be emptied.
             std::thread::spawn(move || std::io::copy(&mut lines, &mut std::io::sink()));
             return Ok(());
         }

@@ -1,14 +1,14 @@
 //! The README's table of budgets.
 
-use crate::budget::budget;
-use crate::root;
+use crate::folders::root;
+use crate::limits::budget;
 use anyhow::{Context, Result, ensure};
 use toml_edit::DocumentMut;
 
 const BEGIN: &str = "<!-- budgets: written by `cargo xtask budget --save` -->\n";
 const END: &str = "<!-- end of budgets -->\n";
 
-/// Rows: label, table, name.
+/// Rows of the table: label, table, name.
 const ROWS: [(&str, &str, &str); 10] = [
     ("flash", "bytes", "flash"),
     ("static RAM", "bytes", "static_ram"),
@@ -54,7 +54,7 @@ fn table(document: &DocumentMut) -> Result<String> {
     Ok(text)
 }
 
-/// With commas between thousands.
+/// Formats a number with commas between thousands.
 fn grouped(value: u64) -> String {
     let digits = value.to_string();
     let mut text = String::new();
@@ -78,7 +78,7 @@ fn parts(text: &str) -> Result<(&str, &str, &str)> {
     Ok((before, within, after))
 }
 
-/// Writes the table.
+/// Writes the table to the README.
 pub(crate) fn write(document: &DocumentMut) -> Result<()> {
     let path = root().join("README.md");
     let text = std::fs::read_to_string(&path)?;
@@ -88,7 +88,7 @@ pub(crate) fn write(document: &DocumentMut) -> Result<()> {
     Ok(())
 }
 
-/// Checks that the table says what docs/budgets.toml says.
+/// Checks that the README's table shows the budgets of docs/budgets.toml.
 pub(crate) fn check(document: &DocumentMut) -> Result<()> {
     let text = std::fs::read_to_string(root().join("README.md"))?;
     let (_, within, _) = parts(&text)?;

@@ -1,8 +1,8 @@
 //! A bound of the stack, from the compiler's frame sizes and the calls in the image.
 //!
-//! The bound is that of the deepest path of the thread, plus that of each interrupt that can come on
-//! top of it, plus the frames that the processor stacks. Recursion and indirect calls have no bound
-//! and are errors.
+//! The bound is the sum of three parts: the deepest path of the thread, the deepest path of each
+//! interrupt that can come on top of it, and the frames that the processor stacks. Recursion and
+//! indirect calls have no bound and are errors.
 
 use crate::toolchain::{install, output};
 use anyhow::{Context, Result, bail};
@@ -13,7 +13,8 @@ use std::process::Command;
 
 /// The thread, and the handlers that interrupt it and each other.
 const ROOTS: [&str; 4] = ["Reset", "PendSV", "SysTick", "DefaultHandler"];
-/// What the processor stacks for a handler: 26 words with the FPU's, and 4 bytes to align.
+/// Bytes that the processor stacks for a handler: 26 words with those of the FPU, and 4 bytes to
+/// align.
 const EXCEPTION_FRAME: u64 = 26 * 4 + 4;
 
 /// Functions of an image by address.
@@ -24,7 +25,7 @@ struct Program {
     calls: BTreeMap<u64, BTreeSet<u64>>,
 }
 
-/// The bound of an image [bytes].
+/// The bound of an image \[bytes\].
 pub(crate) fn bound(image: &Path) -> Result<u64> {
     let bytes = std::fs::read(image)?;
     let file = object::File::parse(&*bytes)?;
@@ -54,7 +55,7 @@ pub(crate) fn bound(image: &Path) -> Result<u64> {
     Ok(sum + EXCEPTION_FRAME * (ROOTS.len() as u64 - 1))
 }
 
-/// The compiler's table: an address of four bytes, then the size in groups of seven bits.
+/// Reads the compiler's table: an address of four bytes, then the size in groups of seven bits.
 fn frame_sizes(mut table: &[u8]) -> BTreeMap<u64, u64> {
     let mut frames = BTreeMap::new();
     while let Some((address, rest)) = table.split_first_chunk::<4>() {
@@ -74,8 +75,8 @@ fn frame_sizes(mut table: &[u8]) -> BTreeMap<u64, u64> {
 }
 
 impl Program {
-    /// Calls, jumps out of a function, and the frames of functions that are not in the table
-    /// (assembly, the compiler's own library).
+    /// Reads calls and jumps out of a function. Also reads the frames of functions that are not in
+    /// the table (assembly, the compiler's own library).
     fn read_calls(&mut self, listing: &str) -> Result<()> {
         let known: BTreeSet<u64> = self.frames.keys().copied().collect();
         let mut inside = None;
@@ -149,7 +150,7 @@ impl Program {
         self.names.get(&function).map_or("?", String::as_str)
     }
 
-    /// The deepest path from a function [bytes].
+    /// The size of the deepest path from a function \[bytes\].
     fn depth(
         &self,
         function: u64,
@@ -224,7 +225,7 @@ mod tests {
 
     #[test]
     fn the_deepest_path_counts() {
-        // `top` is not in the table: its push of two registers is read from the listing.
+        // `top` is not in the table, so its push of two registers is read from the listing.
         assert!(depth(LISTING).is_ok_and(|depth| depth == 8 + 16 + 24));
     }
 

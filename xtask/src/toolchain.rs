@@ -1,6 +1,6 @@
-//! Finds, or installs, what builds and runs ARM code.
+//! Finds or installs the tools that build and run code for other machines.
 
-use crate::{root, work};
+use crate::folders::{root, work};
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -8,7 +8,8 @@ use std::process::{Command, Stdio};
 /// A cargo that builds for a target.
 pub(crate) struct Toolchain {
     target: &'static str,
-    /// Debian's, which takes the core library from source; else the installed rustup target.
+    /// Whether it is Debian's, which builds the libraries from source. Otherwise it is the
+    /// installed rustup target.
     debian: bool,
 }
 
@@ -36,6 +37,15 @@ impl Toolchain {
         self.debian
     }
 
+    /// The libraries to build from source. Bare metal has only the core library.
+    fn libraries(&self) -> &'static str {
+        if self.target.starts_with("wasm32") {
+            "-Zbuild-std=std,panic_abort"
+        } else {
+            "-Zbuild-std=core"
+        }
+    }
+
     /// `cargo SUBCOMMAND` for the target, in a folder of the repository.
     pub(crate) fn cargo(&self, subcommand: &str, folder: &str) -> Result<Command> {
         let mut command = Command::new(if self.debian {
@@ -48,22 +58,22 @@ impl Toolchain {
             .arg(subcommand)
             .args(["--quiet", "--target", self.target])
             .env("CARGO_TARGET_DIR", work("")?)
-            // Would replace those of .cargo/config.toml.
+            // These variables would replace the flags of .cargo/config.toml.
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS");
         if self.debian {
-            // Away from rustup's proxies, and with a registry that no other version works on.
+            // This avoids rustup's proxies, and uses a registry that no other version works on.
             command
                 .env("PATH", "/usr/bin:/bin")
                 .env("CARGO_HOME", work("cargo-home")?)
-                // The core library from source is not stable.
+                // A build of the libraries from source is not stable.
                 .env("RUSTC_BOOTSTRAP", "1");
             if !self.target.contains("linux") {
-                // The targets' own linker, rust-lld, is not packaged; this one is the same.
+                // The targets' own linker, rust-lld, is not packaged. This one is the same.
                 let variable = self.target.to_uppercase().replace('-', "_");
                 command
                     .env(format!("CARGO_TARGET_{variable}_LINKER"), "ld.lld")
-                    .arg("-Zbuild-std=core");
+                    .arg(self.libraries());
             }
         }
         Ok(command)
@@ -78,12 +88,12 @@ fn has_rustup_target(target: &str) -> bool {
             .join("lib/rustlib")
             .join(target)
             .join("lib");
-        // Debian's own sysroot has only what is built there.
+        // Debian's own sysroot has only targets that are built there.
         sysroot != "/usr" && lib.is_dir()
     })
 }
 
-/// Installs the packages of files that are missing: pairs of file and Debian package.
+/// Installs the packages of missing files. `needs` holds pairs of file and Debian package.
 pub(crate) fn install(needs: &[(&str, &str)]) -> Result<()> {
     let missing: Vec<&str> = needs
         .iter()
@@ -108,7 +118,7 @@ pub(crate) fn install(needs: &[(&str, &str)]) -> Result<()> {
         .with_context(|| format!("packages are missing; on Debian 12: {how}"))
 }
 
-/// Runs a command to its end, which must be good.
+/// Runs a command to its end. Fails if the command fails.
 pub(crate) fn succeed(command: &mut Command) -> Result<()> {
     let status = command
         .status()
@@ -119,7 +129,7 @@ pub(crate) fn succeed(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// What a command prints.
+/// Runs a command and returns its output.
 pub(crate) fn output(command: &mut Command) -> Result<String> {
     let output = command
         .output()

@@ -1,9 +1,9 @@
-//! Flies over two FIFOs by semihosting: in lockstep for campaigns and measurements, or, if the
-//! command line says `timer`, at 100 Hz by the timer.
+//! The image that flies over two FIFOs by semihosting. It runs in lockstep for campaigns and measurements,
+//! or at 100 Hz by the timer if the command line ends with `timer`.
 //!
-//! In lockstep the thread asks for the step whenever the planner waits, so the order of everything
-//! is fixed. By the timer the step comes every 10 ms, wherever the planner is; time stands still
-//! while the emulator waits for the harness, as if sensors answered at once.
+//! In lockstep the thread requests the step whenever the planner waits, so the order of all work is fixed.
+//! With the timer the step comes every 10 ms at any point of the planner's work. The time stands still
+//! while the emulator waits for the harness, as if the sensors answered at once.
 #![no_std]
 #![no_main]
 
@@ -12,7 +12,7 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::host::{self, Host};
 use firmware::{board, report, tasks};
-use flight_node::Pace;
+use mpp_node::Pace;
 
 static TIMED: AtomicBool = AtomicBool::new(false);
 
@@ -26,7 +26,7 @@ fn main() -> ! {
         Pace::Lockstep
     };
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
-        // SAFETY: interrupts come later.
+        // SAFETY: no interrupt is enabled yet.
         unsafe {
             tasks::set_up(pace);
             host::open();
@@ -46,10 +46,10 @@ fn main() -> ! {
 
 #[unsafe(no_mangle)]
 extern "C" fn planner_thread() -> ! {
-    // SAFETY: called by `main` and, after the thread was dropped, by the restart.
+    // SAFETY: only `main` calls this function, and the restart after it has dropped the thread.
     unsafe {
         if TIMED.load(Ordering::Relaxed) {
-            // Does not sleep: the emulator's time is exact only while instructions run.
+            // The thread does not sleep, because the emulator's time is exact only while instructions run.
             tasks::plan(|| {}, || {})
         } else {
             tasks::plan(SCB::set_pendst, SCB::set_pendst)
@@ -57,7 +57,7 @@ extern "C" fn planner_thread() -> ! {
     }
 }
 
-/// The step.
+/// The interrupt of the step.
 #[exception]
 fn SysTick() {
     // SAFETY: this is the step's interrupt.
@@ -69,7 +69,7 @@ fn SysTick() {
     let before = side.last_tick();
     side.collect(|bytes| host.send(bytes));
     host.flush();
-    // By the timer: one tick of the flight, however many reads it takes.
+    // With the timer the loop reads until it has made one tick of the flight. In lockstep it reads once.
     while !side.waits() && side.last_tick() == before {
         if !take_bytes(host) {
             report::finish(side.restarts);
@@ -90,7 +90,7 @@ fn SysTick() {
     }
 }
 
-/// Makes sure there are bytes; false at the end of the flight.
+/// Makes sure that there are bytes to take. Returns false at the end of the flight.
 fn take_bytes(host: &mut Host) -> bool {
     host.has_bytes() || host.read()
 }

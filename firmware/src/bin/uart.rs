@@ -1,4 +1,4 @@
-//! Flies over UART 0, by interrupts.
+//! The image that flies over UART 0, by interrupts.
 #![no_std]
 #![no_main]
 
@@ -7,18 +7,18 @@ use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::tasks::{self, StepSide};
 use firmware::{board, uart};
-use flight_node::Pace;
+use mpp_node::Pace;
 
-/// Most bytes taken in one run of the step.
+/// Greatest number of bytes that one run of the step takes.
 const BYTES_PER_RUN: usize = 2048;
 
-/// Bytes lost that were reported.
+/// Number of lost bytes that the step has reported.
 static REPORTED: AtomicU32 = AtomicU32::new(0);
 
 #[entry]
 fn main() -> ! {
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
-        // SAFETY: interrupts come later.
+        // SAFETY: no interrupt is enabled yet.
         unsafe {
             tasks::set_up(Pace::Lockstep);
             tasks::step_side().announce(uart::send);
@@ -33,11 +33,12 @@ fn main() -> ! {
 
 #[unsafe(no_mangle)]
 extern "C" fn planner_thread() -> ! {
-    // SAFETY: called by `main` and, after the thread was dropped, by the restart.
+    // SAFETY: only `main` calls this function, and the restart after it has dropped the thread.
     unsafe { tasks::plan(SCB::set_pendst, || board::sleep_unless(tasks::has_order)) }
 }
 
-/// The step: every 10 ms, after the last byte of a frame, and after an answer of the planner.
+/// The interrupt of the step. It comes every 10 ms, after the last byte of a frame, and after an answer of
+/// the planner.
 #[exception]
 fn SysTick() {
     // SAFETY: this is the step's interrupt.
@@ -54,7 +55,7 @@ fn SysTick() {
 fn run_link(side: &mut StepSide) {
     let lost = uart::lost();
     let unreported = lost.wrapping_sub(REPORTED.load(Ordering::Relaxed));
-    // A report that is lost itself would take its count with it.
+    // The step reports only if there is room, because the count would be lost with a lost report.
     if unreported > 0 && uart::has_room() {
         REPORTED.store(lost, Ordering::Relaxed);
         side.bytes_lost(unreported, uart::send);

@@ -1,4 +1,4 @@
-"""MAVProxy, driven as from a keyboard; what happened is read from its own log."""
+"""Drives MAVProxy as from a keyboard. MAVProxy's own log shows what happened."""
 
 import re
 import shutil
@@ -21,7 +21,7 @@ def tool(name):
 
 
 class Proxy:
-    """A running MAVProxy: lines go in, and what it says is kept."""
+    """A running MAVProxy. It takes lines, and its output is kept."""
 
     def __init__(self, port, directory):
         self.log = directory / "mav.tlog"
@@ -29,7 +29,7 @@ class Proxy:
             sys.executable, "-u", tool("mavproxy.py"), f"--master=udp:127.0.0.1:{port}", f"--logfile={self.log}",
             f"--state-basedir={directory}", "--default-modules=log,link,arm,mode,param,misc,cmdlong,wp",
         ]
-        # It keeps its settings there.
+        # MAVProxy keeps its settings there.
         environment = {"HOME": str(directory), "PATH": str(TOOLS) + ":/usr/bin:/bin"}
         self.process = subprocess.Popen(
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
@@ -45,7 +45,7 @@ class Proxy:
             self.said += text
 
     def hears(self, text):
-        """Waits until it has said this since the last line was typed."""
+        """Waits until MAVProxy has printed this text since the last line was typed."""
         until(lambda: text in self.said[self.typed:], f"MAVProxy to say {text!r}")
 
     def type(self, line):
@@ -100,7 +100,7 @@ def test_mavproxy_reads_tunes_arms_and_records(proxy):
     proxy.hears("Mode CRUISE")
     proxy.type("param save saved.parm")
     proxy.hears(f"Saved {len(parameters())} parameters to saved.parm")
-    # What it has not written when it ends is lost.
+    # Output that MAVProxy has not written when it ends is lost.
     until(lambda: "custom_mode : 7" in proxy.logged("HEARTBEAT"), "CRUISE in MAVProxy's log")
     proxy.end()
 

@@ -1,4 +1,4 @@
-"""mavsdk for Python: what a program on a companion computer would do."""
+"""mavsdk for Python, used as in a program on a companion computer."""
 
 import statistics
 
@@ -39,7 +39,7 @@ def test_mavsdk_finds_tunes_arms_and_watches(simulate):
         telemetry.set_rate_attitude_euler(50.0)
         before = len(seen)
         until(lambda: len(seen) >= before + 150, "150 attitudes")
-        # By the vehicle's clock; a datagram may be lost or late.
+        # The time is that of the vehicle's clock. A datagram may be lost or late.
         times = [time for time, _ in seen[before + 50:]]
         assert statistics.median(b - a for a, b in zip(times, times[1:])) == 20_000
         assert all(-60 < pitch < 60 for _, pitch in seen)

@@ -1,4 +1,4 @@
-"""pymavlink as anybody uses it, and its parser beside our framer."""
+"""pymavlink as anybody uses it, and its parser compared with our framer."""
 
 import os
 import random
@@ -77,7 +77,7 @@ def test_it_is_a_fixed_wing_that_is_read_tuned_and_armed(vehicle):
 
 def test_an_interval_change_is_measured(vehicle):
     def interval():
-        """Milliseconds between attitudes, by the vehicle's clock; a datagram may be lost."""
+        """Milliseconds between attitudes by the vehicle's clock. A datagram may be lost."""
         times = [awaited(vehicle, "ATTITUDE").time_boot_ms for _ in range(40)]
         return statistics.median(b - a for a, b in zip(times[5:], times[6:]))
 
@@ -105,7 +105,7 @@ def test_tens_of_vehicles_are_told_apart(simulate):
 
 
 def known(generator, mav):
-    """A frame of a message that the vehicle's dialect has."""
+    """Makes a frame of a message that the vehicle's dialect has."""
     mav.srcSystem, mav.srcComponent = generator.randrange(256), generator.randrange(256)
     messages = [
         lambda: mavlink.MAVLink_heartbeat_message(1, 0, 0, generator.getrandbits(32), 4, 3),
@@ -123,7 +123,7 @@ def known(generator, mav):
 
 
 def unknown(generator):
-    """A frame of a message that the vehicle's dialect does not have, full of false beginnings."""
+    """Makes a frame of a message that is not in the vehicle's dialect. It is full of false beginnings."""
     length = generator.randrange(256)
     number = generator.randrange(55_000, 65_000).to_bytes(3, "little")
     body = bytes(generator.choice([0xFD, 0xFE, 0, 1, generator.randrange(256)]) for _ in range(length))
@@ -133,7 +133,7 @@ def unknown(generator):
 
 
 def stream(seed):
-    """A noisy stream, and the frames in it."""
+    """Makes a noisy stream. Returns it with the frames in it."""
     generator = random.Random(seed)
     mav = mavlink.MAVLink(None)
     out, planted = b"", []
@@ -174,7 +174,7 @@ def test_the_framer_finds_all_that_was_sent_and_more_than_pymavlink():
 
 
 def test_both_dialects_have_the_same_checksums():
-    """What the vehicle sends is read, private messages too: none arrives as bad data."""
+    """pymavlink reads all that the vehicle sends, private messages too: nothing arrives as bad data."""
     mav = mavlink.MAVLink(None)
     frame = mavlink.MAVLink_mpp_trajectory_message(0, 1, 0.25, 19, [1.0] * 19, [2.0] * 19, [0.1] * 19).pack(mav)
     out = subprocess.run([FRAMES], input=bytes(frame), capture_output=True, check=True).stdout

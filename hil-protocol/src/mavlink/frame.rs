@@ -1,46 +1,46 @@
-//! One frame: where its parts are, and whether it is intact.
+//! One frame: the places of its parts, and the check whether it is intact.
 
 use super::messages::MavMessage;
 use mavlink_core::{MavlinkVersion, Message, MessageData, calculate_crc};
 
-/// The longest frame there is: MAVLink 2, full payload, signed \[bytes\].
+/// Size of the longest frame: MAVLink 2 with full payload and signature \[bytes\].
 pub const MAX_FRAME: usize = V2_HEADER + 255 + CHECKSUM + SIGNATURE;
 
 /// First byte of a MAVLink 1 frame.
 const STX_V1: u8 = 0xFE;
 /// First byte of a MAVLink 2 frame.
 pub(super) const STX_V2: u8 = 0xFD;
-/// The only incompatibility flag that is understood: a signature follows.
+/// The only incompatibility flag that this module understands: a signature follows.
 pub(super) const SIGNED: u8 = 1;
 
-/// STX, length, sequence, system, component, id.
+/// Size of the header: STX, length, sequence, system, component, id.
 const V1_HEADER: usize = 6;
-/// STX, length, two flags, sequence, system, component, id in three bytes.
+/// Size of the header: STX, length, two flags, sequence, system, component, id in three bytes.
 pub(super) const V2_HEADER: usize = 10;
 pub(super) const CHECKSUM: usize = 2;
-/// Link id, time in six bytes, and the truncated hash.
+/// Size of the signature: link id, time in six bytes, and the truncated hash.
 pub(super) const SIGNATURE: usize = 13;
 
 /// An intact frame, MAVLink 1 or 2, of a message that the dialect has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame<'a> {
-    /// Sender's system.
+    /// System of the sender.
     pub system: u8,
-    /// Sender's component.
+    /// Component of the sender.
     pub component: u8,
     /// Number of the frame in the sender's stream.
     pub sequence: u8,
-    /// Which message.
+    /// Id of the message.
     pub id: u32,
-    /// The message, perhaps without the zeros at its end.
+    /// Bytes of the message, perhaps without the zeros at its end.
     pub payload: &'a [u8],
-    /// The whole frame.
+    /// Bytes of the whole frame.
     pub bytes: &'a [u8],
     version: MavlinkVersion,
 }
 
 impl Frame<'_> {
-    /// The message, if it is of this kind.
+    /// The message, if the frame contains one of type `M`.
     #[must_use]
     pub fn decode<M: MessageData>(&self) -> Option<M> {
         if self.id != M::ID {
@@ -49,29 +49,29 @@ impl Frame<'_> {
         M::deser(self.version, self.payload).ok()
     }
 
-    /// Whether a signature ends the frame; nobody has looked at it.
+    /// Whether a signature ends the frame. The function does not check the signature.
     #[must_use]
     pub fn is_signed(&self) -> bool {
         self.version == MavlinkVersion::V2 && self.bytes.get(2) == Some(&SIGNED)
     }
 }
 
-/// What the bytes from some position on are.
+/// Classification of the bytes from some position on.
 pub(super) enum Claim<'a> {
-    /// Not a frame.
+    /// The bytes are not a frame.
     No,
-    /// Perhaps a frame: the rest has not come yet.
+    /// The bytes may be the beginning of a frame whose rest has not come yet.
     Incomplete,
-    /// By its header a frame of this many bytes, but its checksum is wrong.
+    /// By the header this is a frame of this many bytes, but its checksum is wrong.
     Damaged(usize),
-    /// A frame of this many bytes, of a message that the dialect does not have: its checksum is
-    /// right for some message, which it is by chance once in 256 times.
+    /// A frame of this many bytes with a message that the dialect does not have. Its checksum is right for
+    /// some message. A random checksum is right for some message once in 256 times.
     Unknown(usize),
-    /// A frame.
+    /// An intact frame of a message that the dialect has.
     Intact(Frame<'a>),
 }
 
-/// Judges the frame that would begin with the first of these bytes.
+/// Classifies the frame that would begin with the first of these bytes.
 pub(super) fn claim(bytes: &[u8]) -> Claim<'_> {
     match bytes {
         [STX_V2, _, flags, ..] if *flags & !SIGNED != 0 => Claim::No,
@@ -152,10 +152,11 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
     })
 }
 
-/// Whether there is a message whose checksum over these bytes this is.
+/// Whether `sum` is the checksum of these bytes for some message.
 ///
-/// A checksum ends with one byte that only who knows the message has. Its effect is what the CRC's
-/// table holds for it, and of that the high byte is another for each of the 256.
+/// A checksum also covers one additional byte, which depends on the message and is not in the frame. Its
+/// effect on the checksum is an entry of the CRC's table. The high byte of this entry differs for each of
+/// the 256 values, so the function computes the entry from the high byte and compares.
 fn is_some_messages(checked: &[u8], sum: u16) -> bool {
     let effect = calculate_crc(checked, 0) ^ sum;
     let high = effect >> 8;
@@ -163,7 +164,7 @@ fn is_some_messages(checked: &[u8], sum: u16) -> bool {
     effect == mixed << 8 ^ mixed << 3 ^ mixed >> 4
 }
 
-/// What a message's checksum is seeded with; none if the dialect does not have the message.
+/// The additional byte in the checksum of a message; `None` if the dialect does not have the message.
 fn extra_crc(id: u32) -> Option<u8> {
     MavMessage::all_ids()
         .contains(&id)

@@ -2,15 +2,15 @@
 
 use super::frame::{Claim, Frame, MAX_FRAME, claim};
 
-/// An unknown frame, and what follows it.
+/// Size of the buffer: it holds an unknown frame and the frame that follows it.
 const ROOM: usize = 2 * MAX_FRAME;
 
-/// What a stream held besides frames. Full counters stay full.
+/// Counts of the frames and of other bytes in a stream. A full counter stays at its maximum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Frames given out.
+    /// Frames that the framer gave out.
     pub frames: u32,
-    /// Frames of messages that the dialect does not have, passed over.
+    /// Skipped frames of messages that the dialect does not have.
     pub unknown: u32,
     /// Beginnings of frames whose checksum was wrong.
     pub damaged: u32,
@@ -20,32 +20,36 @@ pub struct Counters {
 
 /// Finds the intact frames of known messages in a stream of bytes.
 ///
-/// It goes from length to length: what lies inside a frame is never taken for another. A frame
-/// whose checksum is wrong is gone through byte by byte, so that nothing is lost with it.
+/// The framer goes from frame to frame by their lengths, so that bytes inside a frame never count as
+/// another frame. If the checksum of a frame is wrong, the framer searches its bytes one by one, so that
+/// it loses no frame inside.
 ///
-/// A frame of an unknown message is passed over if its checksum is right for some message and a
-/// frame, or the stream's end, follows it at once. One whose end was lost looks like that once in
-/// 256 times, and then only if a frame begins where it says that its own end is. If both hold, the
-/// frames in between stay unseen: the same bytes could be an unknown message that carries them,
-/// and no receiver without its definition can tell. It is better to miss an order than to obey one
-/// that somebody carries past.
+/// The framer skips a frame of an unknown message if its checksum is right for some message, and if a
+/// frame or the end of the stream directly follows it. A frame whose end was lost passes the first test
+/// once in 256 times, and the second only if a frame begins at the end that its header states. If it
+/// passes both tests, the framer does not see the frames in between. The same bytes could be an unknown
+/// message that contains these frames as data, and a receiver without the definition of that message
+/// cannot tell the difference. It is safer to miss a command than to obey a command inside other data.
 ///
-/// A frame is given out with its last byte if what goes before it ends where it says, intact,
-/// damaged or unknown. Else noise that looks like the beginning of a frame can hold it up, by no
-/// more than [`MAX_FRAME`] bytes, or twice that if it looks like an unknown frame to its end.
+/// The framer gives out a frame with its last byte if the frame before it has the length that its header
+/// states, be it intact, damaged or unknown. Otherwise noise that looks like the beginning of a frame can
+/// delay the frame by at most [`MAX_FRAME`] bytes, or by twice that if the noise looks like a complete
+/// unknown frame.
 #[derive(Clone, Debug)]
 pub struct Framer {
     bytes: [u8; ROOM],
     length: usize,
-    /// Where a damaged frame says that its end is; the first one that nothing speaks against yet.
+    /// Place of the end that a damaged frame states in its header. It is the first such place at which a
+    /// frame may still begin.
     boundary: Option<usize>,
-    /// Up to here everything is judged as if the stream ended here: an intact frame follows.
+    /// Place of an intact frame behind a damaged one. The framer judges the bytes before it as if the
+    /// stream ended there.
     closed: usize,
     counters: Counters,
 }
 
 impl Framer {
-    /// At the beginning of a stream.
+    /// A framer at the beginning of a stream.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -62,16 +66,16 @@ impl Framer {
         }
     }
 
-    /// What was found so far.
+    /// The counters so far.
     #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.counters
     }
 
-    /// Takes in bytes; `take` gets every frame, as soon as it is certain.
+    /// Takes in bytes. `take` gets each frame as soon as the framer is certain of it.
     pub fn receive(&mut self, bytes: &[u8], mut take: impl FnMut(&Frame<'_>)) {
         for byte in bytes {
-            // There is room: `sift` waits for no more than that.
+            // There is always room, because `sift` never waits for more bytes than the buffer holds.
             if let Some(next) = self.bytes.get_mut(self.length) {
                 *next = *byte;
                 self.length += 1;
@@ -80,21 +84,21 @@ impl Framer {
         }
     }
 
-    /// Takes in a datagram: what was begun before it is at an end, and so is what it leaves
-    /// unfinished.
+    /// Takes in a datagram. A frame does not continue from one datagram into the next, so the stream ends
+    /// before and after the datagram.
     pub fn receive_datagram(&mut self, bytes: &[u8], mut take: impl FnMut(&Frame<'_>)) {
         self.end(&mut take);
         self.receive(bytes, &mut take);
         self.end(&mut take);
     }
 
-    /// Ends the stream: nothing more comes that could complete what was begun.
+    /// Ends the stream: no more bytes come that could complete a frame.
     pub fn end(&mut self, mut take: impl FnMut(&Frame<'_>)) {
         self.sift(true, &mut take);
         (self.boundary, self.closed) = (None, 0);
     }
 
-    /// Goes on from the first byte as far as it can be judged, and drops what was.
+    /// Judges the bytes from the first one on, as far as possible, and drops the judged bytes.
     fn sift(&mut self, ended: bool, take: &mut impl FnMut(&Frame<'_>)) {
         let mut start = 0;
         loop {
@@ -131,12 +135,13 @@ impl Framer {
         }
     }
 
-    /// Whether an intact frame begins where a damaged one, and perhaps others behind it, ends.
+    /// Checks whether an intact frame begins at the end of a damaged frame, or behind further damaged or
+    /// unknown frames that follow it. If so, it sets `closed`.
     fn look_ahead(&mut self, start: usize) {
-        // Each step leads on by the length of a frame.
+        // Each step moves forward by the length of a frame, so the loop ends.
         while let Some(at) = self.boundary {
             let next = match self.bytes.get(at..self.length) {
-                // It was passed, or reached and will be judged as any byte.
+                // The search has passed this place, or has reached it and judges it like any other byte.
                 _ if at <= start => return self.boundary = None,
                 None | Some([]) => return,
                 Some(next) => next,
@@ -161,7 +166,7 @@ impl Default for Framer {
 }
 
 enum Verdict<'a> {
-    /// It takes more bytes to tell.
+    /// The framer needs more bytes to decide.
     Wait,
     Noise,
     Damaged(usize),
@@ -184,9 +189,9 @@ fn verdict(bytes: &[u8], ended: bool) -> Verdict<'_> {
     }
 }
 
-/// Whether what follows an unknown frame speaks for it; none: too early to tell.
+/// Whether the bytes after an unknown frame confirm it; `None` if more bytes are needed.
 fn is_followed(next: Option<&[u8]>, ended: bool) -> Option<bool> {
-    // The end of a stream is as good as a frame.
+    // The end of a stream confirms the frame as well as another frame does.
     let Some(next @ [_, ..]) = next else {
         return ended.then_some(true);
     };

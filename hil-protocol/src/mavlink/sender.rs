@@ -1,10 +1,10 @@
-//! Messages to frames.
+//! Conversion of messages to frames.
 
 use super::frame::{CHECKSUM, MAX_FRAME, SIGNED, STX_V2, V2_HEADER};
 use super::signing::Signer;
 use mavlink_core::{MavlinkVersion, MessageData, calculate_crc};
 
-/// One MAVLink 2 frame, to be sent as it is.
+/// One complete MAVLink 2 frame, ready to be sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Datagram {
     bytes: [u8; MAX_FRAME],
@@ -12,7 +12,7 @@ pub struct Datagram {
 }
 
 impl Datagram {
-    /// The frame.
+    /// The bytes of the frame.
     #[must_use]
     pub fn as_bytes(&self) -> &[u8] {
         self.bytes.get(..self.length).unwrap_or_default()
@@ -27,7 +27,7 @@ impl Datagram {
     }
 }
 
-/// The sender's side of a stream: numbers the frames, so that a receiver can count the lost ones.
+/// The sender's side of a stream. It numbers the frames, so that a receiver can count lost frames.
 #[derive(Clone, Debug)]
 pub struct Sender {
     system: u8,
@@ -36,7 +36,7 @@ pub struct Sender {
 }
 
 impl Sender {
-    /// Of a component, its next frame being number 0.
+    /// The sender of a component. Its next frame has the number 0.
     #[must_use]
     pub const fn new(system: u8, component: u8) -> Self {
         Self {
@@ -51,7 +51,7 @@ impl Sender {
         self.build(message, 0)
     }
 
-    /// The message as the next frame, signed.
+    /// The message as the next frame, with a signature.
     pub fn signed_frame<M: MessageData>(&mut self, message: &M, signer: &mut Signer) -> Datagram {
         let mut datagram = self.build(message, SIGNED);
         let signature = signer.sign(datagram.as_bytes());

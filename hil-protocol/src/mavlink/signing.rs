@@ -1,25 +1,27 @@
-//! Signatures of MAVLink 2: who holds the key may command. They hide nothing.
+//! Signatures of MAVLink 2. A sender that holds the key may send commands. A signature does not hide the
+//! content of a frame.
 
 use super::frame::{Frame, SIGNATURE};
+use core::fmt;
 use sha2::{Digest, Sha256};
 
-/// Senders whose time is remembered.
+/// Number of senders whose last time a verifier stores.
 const STREAMS: usize = 16;
-/// A minute in units of 10 us: how far behind our own time a new sender may be.
+/// Greatest delay of a new sender behind our own time: a minute in units of 10 us.
 const MINUTE: u64 = 6_000_000;
 
-/// The secret that both ends hold.
+/// The secret key that both ends hold.
 #[derive(Clone)]
 pub struct Key(pub [u8; 32]);
 
 impl Key {
-    /// The key of a passphrase: its SHA-256, as other tools make it.
+    /// The key of a passphrase: its SHA-256. Other tools compute the key in the same way.
     #[must_use]
     pub fn of_passphrase(passphrase: &str) -> Self {
         Self(Sha256::digest(passphrase.as_bytes()).into())
     }
 
-    /// First 48 bits of SHA-256 over key, frame, link and time.
+    /// The first 48 bits of the SHA-256 of key, frame, link and time.
     fn hash(&self, frame: &[u8], link_and_time: &[u8]) -> [u8; 6] {
         let digest = Sha256::new()
             .chain_update(self.0)
@@ -31,7 +33,7 @@ impl Key {
     }
 }
 
-/// Signs what is sent.
+/// Signs frames to send.
 #[derive(Clone)]
 pub struct Signer {
     key: Key,
@@ -40,14 +42,14 @@ pub struct Signer {
 }
 
 impl Signer {
-    /// With the time of the next signature [10 us since 2015-01-01]; a receiver refuses what is a
-    /// minute behind its own.
+    /// A signer whose next signature has the time `time` [10 us since 2015-01-01]. A receiver refuses a new
+    /// sender that is more than a minute behind the receiver's own time.
     #[must_use]
     pub const fn new(key: Key, link: u8, time: u64) -> Self {
         Self { key, link, time }
     }
 
-    /// Moves the time on; it never goes back.
+    /// Sets the time, unless the new time is earlier.
     pub fn set_time(&mut self, time: u64) {
         self.time = self.time.max(time);
     }
@@ -56,28 +58,41 @@ impl Signer {
     pub(super) fn sign(&mut self, frame: &[u8]) -> [u8; SIGNATURE] {
         let [a, b, c, d, e, f, ..] = self.time.to_le_bytes();
         let stamp = [self.link, a, b, c, d, e, f];
-        // Each frame a time of its own: a receiver takes none twice.
+        // Each frame has a different time, because a receiver accepts no time twice.
         self.time = self.time.saturating_add(1);
         let [h0, h1, h2, h3, h4, h5] = self.key.hash(frame, &stamp);
         [self.link, a, b, c, d, e, f, h0, h1, h2, h3, h4, h5]
     }
 }
 
-/// Why a signature does not count.
+/// The reason why a signature is not valid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Refusal {
-    /// There is none.
+    /// The frame has no signature.
     Unsigned,
-    /// It was made with another key, or for another frame.
+    /// The signature was made with another key, or for another frame.
     WrongKey,
-    /// It is not newer than the last one of its sender, or a minute old: a repetition.
+    /// The signature is not newer than the last one of its sender, or a new sender is more than a minute
+    /// behind our own time. The frame may be a repetition.
     Old,
-    /// More senders than are remembered.
+    /// There are more senders than the verifier can store.
     TooManySenders,
 }
 
-/// Checks what is received.
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unsigned => "the frame has no signature: give the sender the key",
+            Self::WrongKey => "the signature does not fit key and frame: give the sender this key",
+            Self::Old => "the signature is not newer than the last: set the sender's clock",
+            Self::TooManySenders => "more senders sign than are remembered: use fewer of them",
+        })
+    }
+}
+
+impl core::error::Error for Refusal {}
+
+/// Checks the signatures of received frames.
 #[derive(Clone)]
 pub struct Verifier {
     key: Key,
@@ -94,7 +109,7 @@ struct Stream {
 }
 
 impl Verifier {
-    /// At a time [10 us since 2015-01-01].
+    /// A verifier at a time [10 us since 2015-01-01].
     #[must_use]
     pub const fn new(key: Key, time: u64) -> Self {
         Self {
@@ -104,7 +119,7 @@ impl Verifier {
         }
     }
 
-    /// Moves the time on; it never goes back.
+    /// Sets the time, unless the new time is earlier.
     pub fn set_time(&mut self, time: u64) {
         self.newest = self.newest.max(time);
     }
@@ -115,10 +130,10 @@ impl Verifier {
         self.newest
     }
 
-    /// Whether the frame is signed with the key and is no repetition.
+    /// Checks that the frame is signed with the key and is not a repetition.
     ///
     /// # Errors
-    /// [`Refusal`]: the frame is to be treated as if anybody had sent it.
+    /// [`Refusal`]: the receiver must treat the frame as one from an unknown sender.
     pub fn verify(&mut self, frame: &Frame<'_>) -> Result<(), Refusal> {
         if !frame.is_signed() {
             return Err(Refusal::Unsigned);

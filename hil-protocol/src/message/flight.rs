@@ -1,4 +1,4 @@
-//! The messages of a tick: measurements in, actuators out.
+//! The messages of a tick: measurements to the core, and commands from it.
 
 use super::size;
 use heapless::Vec;
@@ -13,7 +13,7 @@ const _: () = assert!(MAX_BEAMS < 1 << 14);
 /// Harness to core: the measurements of one tick. World frame: x downrange, z up.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
-    /// Number of the tick; the first is the sender's choice, each next one is one more.
+    /// Number of the tick. The sender chooses the first number, and each following number is one more.
     pub tick: u32,
     /// Airspeed \[m/s\].
     pub airspeed: f64,
@@ -40,7 +40,7 @@ pub struct LidarScan {
     pub angle_min: f32,
     /// Angle from each beam to the next, nose-up positive \[rad\].
     pub angle_increment: f32,
-    /// Range of each beam, from `angle_min` on \[m\]; 0 = no return.
+    /// Range of each beam, from `angle_min` on \[m\]; 0 means no return.
     pub ranges: Vec<f32, MAX_BEAMS>,
 }
 
@@ -49,16 +49,16 @@ impl LidarScan {
     pub const MAX_SIZE: usize = size::U32 + 2 * size::F32 + 2 * size::BYTE + MAX_BEAMS * size::F32;
 }
 
-/// Core to harness: the actuators of one tick. It ends the tick.
+/// Core to harness: the actuator command of one tick. It ends the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActuatorCommand {
-    /// The tick of the [`SensorFrame`] that this answers.
+    /// The tick of the [`SensorFrame`] that this message answers.
     pub tick: u32,
     /// Thrust along the body axis \[N\].
     pub thrust: f64,
     /// Elevator, in the unit of the airframe's model \[-\].
     pub elevator: f64,
-    /// What the controller was doing.
+    /// The source of the reference in this tick.
     pub mode: ControlMode,
 }
 
@@ -67,19 +67,19 @@ impl ActuatorCommand {
     pub const MAX_SIZE: usize = size::U32 + 2 * size::F64 + size::BYTE;
 }
 
-/// What the controller holds on to. The order is what goes over the wire: append only.
+/// The source of the controller's reference. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ControlMode {
-    /// Straight and level flight: there is no plan.
+    /// The controller holds straight and level flight, because there is no plan.
     TrimHold = 0,
-    /// The plan.
+    /// The controller tracks the plan.
     Tracking = 1,
 }
 
-/// Core to harness: what the core believed and wanted at one tick.
+/// Core to harness: estimate and reference of one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StepReport {
-    /// The tick of the [`SensorFrame`] that was used.
+    /// The tick of the [`SensorFrame`] that the step used.
     pub tick: u32,
     /// Estimate: airspeed \[m/s\], pitch \[rad\], pitch rate \[rad/s\], flight path angle \[rad\];
     /// angles nose-up positive.
@@ -87,7 +87,7 @@ pub struct StepReport {
     /// Reference: x downrange \[m\], z up \[m\], airspeed \[m/s\], pitch \[rad\],
     /// pitch rate \[rad/s\], flight path angle \[rad\].
     pub reference: [f64; 6],
-    /// Ticks since the scan that the plan in use was made from.
+    /// Ticks since the scan from which the present plan was made; 0 without a plan.
     pub plan_age_ticks: u32,
 }
 

@@ -1,32 +1,34 @@
-//! What the core tells about itself: plans and refused inputs.
+//! The reports of the core: planning cycles, trajectories and rejected inputs.
 
 use super::size;
 use crate::error::DecodeError;
+use core::fmt;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
-/// Core to harness: how one planning cycle ended.
+/// Core to harness: the result of one planning cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanReport {
-    /// The tick of the scan that was planned from.
+    /// The tick of the scan from which the cycle planned.
     pub scan_tick: u32,
     /// The first tick that flies the outcome.
     pub used_from_tick: u32,
-    /// What will be flown.
+    /// The consequence for the flight.
     pub outcome: PlanOutcome,
-    /// Candidates that were refined.
+    /// Number of programs that the cycle solved: one for each candidate, and further rounds of the best.
     pub candidates: u16,
-    /// Candidates of these that keep every constraint.
+    /// Number of these programs that gave a feasible trajectory.
     pub feasible: u16,
-    /// Trees that were grown.
+    /// Number of trees.
     pub tree_runs: u16,
-    /// Slices of planning work that were used.
+    /// Number of slices of planning work.
     pub slices: u32,
-    /// Cost of the trajectory to be flown, as the planner weighs it \[-\].
+    /// Cost of the best trajectory by the planner's weights \[-\]; infinite without a trajectory.
     pub cost: f64,
-    /// How far this trajectory leaves its corridor at the worst stage; 0 = inside \[m\].
+    /// Worst violation of the best trajectory \[m or rad\]; 0 if it violates nothing, and infinite without a
+    /// trajectory.
     pub violation: f64,
-    /// Whether all work was done before the deadline.
+    /// Whether the cycle finished all its work before the deadline.
     pub complete: bool,
 }
 
@@ -35,23 +37,24 @@ impl PlanReport {
     pub const MAX_SIZE: usize = 3 * size::U32 + 2 * size::BYTE + 3 * size::U16 + 2 * size::F64;
 }
 
-/// What will be flown after a planning cycle. The order is what goes over the wire: append only.
+/// The consequence of a planning cycle for the flight. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PlanOutcome {
-    /// The best feasible candidate.
+    /// The vehicle flies the best trajectory of the cycle, which is feasible.
     Adopted = 0,
-    /// No candidate is feasible: the one that violates its corridor least.
+    /// The vehicle flies the best trajectory of the cycle, which is not feasible.
     LeastViolating = 1,
-    /// No candidate is feasible: the rest of the plan before.
+    /// The cycle gave no trajectory. The vehicle flies the rest of the previous plan.
     KeptPrevious = 2,
-    /// Nothing to fly: straight and level.
+    /// There is no trajectory and no previous plan. The vehicle flies straight and level.
     TrimHold = 3,
 }
 
 /// Core to harness: the trajectory that a planning cycle chose, after its [`PlanReport`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanTrajectory {
-    /// The tick of the scan that it was planned from, at which it starts.
+    /// The tick of the scan from which the trajectory was planned. A trajectory of preset `flight` starts when
+    /// the step takes it over ([`PlanReport::used_from_tick`]); those of the other presets start at the scan.
     pub scan_tick: u32,
     /// Time from a knot to the next \[s\].
     pub period: f32,
@@ -67,12 +70,12 @@ impl PlanTrajectory {
     pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 3 * size::F32;
 }
 
-/// Core to harness: an input that was not used, and why.
+/// Core to harness: an input that the core did not use, and the cause.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Rejection {
     /// The core's tick at that moment.
     pub tick: u32,
-    /// Why.
+    /// The cause.
     pub cause: RejectionCause,
 }
 
@@ -81,24 +84,24 @@ impl Rejection {
     pub const MAX_SIZE: usize = size::U32 + size::BYTE + 2 * size::U32;
 }
 
-/// Why an input was not used. The order is what goes over the wire: append only.
+/// The reason why the core did not use an input. [`Display`](fmt::Display) says what is wrong and what to
+/// do. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub enum RejectionCause {
     /// A measurement is infinite or not a number.
     NonFiniteSensor,
     /// A measurement is too far from what the estimator expected.
     InnovationGate {
-        /// The airspeed was.
+        /// Whether the airspeed is too far away.
         airspeed: bool,
-        /// The pitch was.
+        /// Whether the pitch is too far away.
         pitch: bool,
     },
-    /// A scan with another number of beams than was configured.
+    /// The number of beams in a scan differs from the configured one.
     ScanLength {
-        /// As configured.
+        /// Configured number of beams.
         expected: u16,
-        /// In the scan.
+        /// Number of beams in the scan.
         found: u16,
     },
     /// A range is infinite or not a number.
@@ -111,29 +114,99 @@ pub enum RejectionCause {
         /// The first such beam, counted from 0.
         beam: u16,
     },
-    /// Bytes that were no message.
+    /// The received bytes are not a message.
     Frame(DecodeError),
-    /// A tick that is not the one after the last.
+    /// A tick does not follow the last one, or a scan and its sensor frame have different ticks.
     TickOrder {
-        /// The one after the last.
+        /// The expected tick.
         expected: u32,
-        /// The one that came.
+        /// The received tick.
         found: u32,
     },
-    /// A measurement or a scan before an accepted [`Configure`](crate::Configure).
+    /// A measurement or a scan came before an accepted [`Configure`](crate::Configure).
     NotConfigured,
-    /// A message that only the other side sends, or not at this moment.
+    /// The core did not expect this message: only the core sends it, or it does not fit this moment.
     UnexpectedMessage {
-        /// Its number, one of [`id`](crate::id).
+        /// Number of the message, one of [`id`](crate::id).
         id: u8,
     },
-    /// A scan came while the planner still works on the one before.
+    /// A scan came while the planner still worked on the previous one.
     PlannerBusy,
-    /// More bytes came than could be taken in.
+    /// More bytes came than the core could take in.
     BytesLost {
-        /// How many are gone.
+        /// Number of lost bytes.
         count: u32,
     },
-    /// The planner was stuck: it was started anew, and its cycle came to nothing.
+    /// The planner was stuck. The core restarted it, and its cycle gave no trajectory.
     PlannerRestarted,
+    /// An angle of a scan is infinite or not a number.
+    ScanAngle,
 }
+
+impl fmt::Display for RejectionCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NonFiniteSensor => {
+                write!(f, "a measurement is not a finite number: check the sensors")
+            }
+            Self::InnovationGate { airspeed, pitch } => {
+                let which = match (airspeed, pitch) {
+                    (true, true) => "airspeed and pitch are",
+                    (true, false) => "the airspeed is",
+                    (false, true) => "the pitch is",
+                    (false, false) => "a measurement is",
+                };
+                write!(f, "{which} too far from the estimate: check the sensors")
+            }
+            Self::ScanLength { expected, found } => write!(
+                f,
+                "the scan has {found} beams instead of {expected}: send what was configured"
+            ),
+            Self::ScanNotFinite { beam } => write!(
+                f,
+                "the range of beam {beam} is not a finite number: send 0 where nothing came back"
+            ),
+            Self::ScanRange { beam } => write!(
+                f,
+                "the range of beam {beam} is negative or beyond the lidar's reach: send 0 where \
+                 nothing came back"
+            ),
+            Self::Frame(error) => write!(f, "the core received no message: {error}"),
+            Self::TickOrder { expected, found } => {
+                write!(
+                    f,
+                    "tick {found} came instead of tick {expected}: send every tick once"
+                )
+            }
+            Self::NotConfigured => {
+                write!(f, "the core is not configured: send a configuration first")
+            }
+            Self::UnexpectedMessage { id } => {
+                write!(
+                    f,
+                    "message {id} has no place here: follow the order of a session"
+                )
+            }
+            Self::PlannerBusy => write!(
+                f,
+                "the planner still works on the scan before: replan less often, or with less latency"
+            ),
+            Self::BytesLost { count } => write!(
+                f,
+                "{count} bytes came faster than the core takes them in: send more slowly"
+            ),
+            Self::PlannerRestarted => write!(
+                f,
+                "the planner was stuck and started anew: the last plan is flown on, report the fault"
+            ),
+            Self::ScanAngle => {
+                write!(
+                    f,
+                    "an angle of the scan is not a finite number: check the lidar"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for RejectionCause {}

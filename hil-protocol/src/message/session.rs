@@ -1,15 +1,16 @@
-//! The opening of a session: who speaks, and what to fly with.
+//! The opening of a session: the two sides, the configuration, and the parameters.
 
 use super::size;
+use super::verdict::{ConfigureVerdict, ParameterVerdict};
 use serde::{Deserialize, Serialize};
 
 /// The first message in both directions.
 ///
-/// A peer whose link version differs never gets this far: its frame is
-/// [`DecodeError::Version`](crate::DecodeError::Version).
+/// A hello of another link version is never decoded: its frame gives
+/// [`DecodeError::Version`](crate::DecodeError::Version) instead.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Hello {
-    /// Which side the sender is.
+    /// The side of the sender.
     pub role: Role,
     /// Version of the sender's software: major, minor, patch.
     pub software: [u8; 3],
@@ -26,40 +27,40 @@ impl Hello {
     pub const MAX_SIZE: usize = size::BYTE + 3 * size::BYTE + size::U32 + 2 * size::U16;
 }
 
-/// The two ends of the link. The order is what goes over the wire: append only.
+/// The two ends of the link. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Role {
-    /// Plant, sensors and lidar.
+    /// The harness: plant, sensors and lidar.
     Harness = 0,
-    /// Estimator, planner and controller.
+    /// The flight core: estimator, planner and controller.
     Core = 1,
 }
 
-/// Harness to core: what to fly with. Answered by a [`ConfigureReply`].
+/// Harness to core: the configuration of a flight. The answer is a [`ConfigureReply`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Configure {
     /// The planner's set of parameters.
     pub preset: Preset,
     /// The aircraft that the core assumes.
     pub airframe: AirframeId,
-    /// Candidate paths that are refined in a planning cycle; 0 = track the path itself, without
-    /// refinement.
+    /// Number of candidate paths that a planning cycle refines. 0 means that the core tracks a path itself
+    /// without refinement; preset `flight` refuses 0.
     pub paths: u16,
     /// Ticks from the start of one planning cycle to the start of the next.
     pub replan_period_ticks: u32,
     /// Ticks from a scan to the first tick that may use its plan.
     pub latency_ticks: u32,
-    /// Slices of planning work done in each tick.
+    /// Number of slices of planning work in each tick.
     pub slices_per_tick: u32,
     /// Seed of the planner's random numbers.
     pub seed: u64,
-    /// Beams in each scan to come.
+    /// Number of beams in each scan of the session.
     pub beams: u16,
     /// Longest range that the lidar reports \[m\].
     pub range_max: f32,
-    /// World height to return to, positive up \[m\].
+    /// World height to which the vehicle returns, positive up \[m\].
     pub altitude: f64,
-    /// What motor and elevator can do.
+    /// Limits of motor and elevator.
     pub actuators: ActuatorLimits,
 }
 
@@ -74,7 +75,7 @@ impl Configure {
         + ActuatorLimits::MAX_SIZE;
 }
 
-/// Limits of the actuators; `None` is no limit.
+/// Limits of the actuators. `None` means no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ActuatorLimits {
     /// Greatest thrust \[N\].
@@ -92,30 +93,30 @@ impl ActuatorLimits {
     pub const MAX_SIZE: usize = 4 * (size::BYTE + size::F32);
 }
 
-/// A named set of the planner's parameters. The order is what goes over the wire: append only.
+/// A named set of the planner's parameters. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Preset {
-    /// The reference implementation's.
+    /// Parameters of the reference implementation.
     Reference = 0,
-    /// The paper's.
+    /// Parameters of the paper.
     Paper = 1,
-    /// Ours, for flight.
+    /// Our parameters for flight.
     Flight = 2,
 }
 
-/// An aircraft that the core has a model of. The order is what goes over the wire: append only.
+/// An aircraft of which the core has a model. The order goes over the wire: append only.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum AirframeId {
-    /// The paper's.
+    /// The airframe of the paper.
     Paper = 0,
-    /// The reference implementation's.
+    /// The airframe of the reference implementation.
     Reference = 1,
 }
 
 /// Core to harness: the answer to a [`Configure`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ConfigureReply {
-    /// Accepted, or the first thing that was wrong.
+    /// The verdict: accepted, or the first fault.
     pub verdict: ConfigureVerdict,
 }
 
@@ -124,53 +125,15 @@ impl ConfigureReply {
     pub const MAX_SIZE: usize = size::BYTE + size::U16;
 }
 
-/// What the core thinks of a [`Configure`]. After anything but `Accepted` it stays unconfigured.
-///
-/// The order is what goes over the wire: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum ConfigureVerdict {
-    /// The core flies with it from the next tick on.
-    Accepted,
-    /// More candidate paths than there is room for.
-    TooManyPaths {
-        /// The most that it takes.
-        max: u16,
-    },
-    /// The replanning period cannot be kept.
-    ReplanPeriod,
-    /// The latency does not suit the replanning period.
-    Latency,
-    /// No beams, or more than there is room for.
-    Beams {
-        /// The most that it takes.
-        max: u16,
-    },
-    /// A float is infinite or not a number.
-    NonFinite,
-    /// The airframe has no trim state with these parameters.
-    NotTrimmable,
-    /// No planning work in a tick, or more than a tick can hold.
-    SlicesPerTick,
-    /// The lidar's range is not positive.
-    RangeMax,
-    /// A session is running; it goes on as it was.
-    AlreadyConfigured,
-    /// A limit of an actuator is not a positive, finite number, or the thrust does not carry level
-    /// flight.
-    Actuators,
-}
-
-/// Harness to core: another value for one of the core's parameters. Answered by a
-/// [`ParameterReply`].
+/// Harness to core: a new value for one of the core's parameters. The answer is a [`ParameterReply`].
 ///
 /// Between [`ConfigureReply`] and the first [`SensorFrame`](crate::SensorFrame) every parameter can
-/// change; after it, those that the core can change in flight.
+/// change. After that, only some parameters can change.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SetParameter {
-    /// Which one, a number that the core's software gives it.
+    /// Number of the parameter. The core's software defines it.
     pub parameter: u8,
-    /// Its value from now on, in its own unit.
+    /// New value, in the parameter's unit.
     pub value: f64,
 }
 
@@ -182,34 +145,13 @@ impl SetParameter {
 /// Core to harness: the answer to a [`SetParameter`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ParameterReply {
-    /// Which one.
+    /// Number of the parameter.
     pub parameter: u8,
-    /// Accepted, or why not.
+    /// The verdict: accepted, or the cause of the refusal.
     pub verdict: ParameterVerdict,
 }
 
 impl ParameterReply {
     /// Size of the longest payload \[bytes\].
     pub const MAX_SIZE: usize = size::BYTE + size::BYTE + ConfigureReply::MAX_SIZE;
-}
-
-/// What the core thinks of a [`SetParameter`]. After anything but `Accepted` it flies on with the
-/// value that it had. The order is what goes over the wire: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub enum ParameterVerdict {
-    /// In force: at once before the flight, and from the next planning cycle on in flight.
-    Accepted,
-    /// No such parameter, or not with this preset.
-    Unknown,
-    /// Not a number, or outside the parameter's range.
-    Range,
-    /// A whole number is asked for.
-    NotWhole,
-    /// Can only change before the flight.
-    InFlight,
-    /// There is no configuration yet.
-    NotConfigured,
-    /// With this value the core cannot be set up.
-    SetUp(ConfigureVerdict),
 }

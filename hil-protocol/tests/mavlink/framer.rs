@@ -1,4 +1,4 @@
-//! The framer beside an oracle, and beside the reader of `mavlink-core`.
+//! Tests the framer against an oracle, and against the reader of `mavlink-core`.
 
 use crate::oracle::{Shape, Span, crc, shape, unknown};
 use crate::streams::{Maker, Stream};
@@ -6,15 +6,15 @@ use hil_protocol::mavlink::messages::{HEARTBEAT_DATA, MavMessage};
 use hil_protocol::mavlink::{Frame, Framer, MAX_FRAME, Sender};
 use mavlink::{MAVLinkMessageRaw, MavlinkReader};
 
-/// A frame as it came out.
+/// A frame that came out of the framer.
 #[derive(Debug, PartialEq)]
 struct Found {
     bytes: Vec<u8>,
-    /// How many bytes had come by then.
+    /// Number of bytes that had come by then.
     come: usize,
 }
 
-/// What the framer finds in a stream that comes in pieces.
+/// The frames that the framer finds in a stream that comes in pieces.
 fn found(stream: &[u8], piece: usize) -> Vec<Found> {
     let mut framer = Framer::new();
     let mut found = Vec::new();
@@ -31,7 +31,7 @@ fn found(stream: &[u8], piece: usize) -> Vec<Found> {
     found
 }
 
-/// What the stock reader finds.
+/// The frames that the stock reader finds.
 fn stock(stream: &[u8]) -> Vec<Vec<u8>> {
     let mut reader = MavlinkReader::new(stream);
     let mut found = Vec::new();
@@ -64,7 +64,7 @@ fn pieces_of_any_length_hold_the_same_frames_and_each_is_one() {
     }
 }
 
-/// Where the frames that came out stand: intact, one behind the other.
+/// The places of the frames that came out: intact, one behind the other.
 fn places(stream: &[u8], found: &[Found]) -> Vec<Span> {
     let mut from = 0;
     let mut places = Vec::new();
@@ -82,9 +82,9 @@ fn places(stream: &[u8], found: &[Found]) -> Vec<Span> {
     places
 }
 
-/// Nothing is invented but what a checksum of 16 bits lets through by chance, and nothing is lost
-/// but what such a chance covers, or what an unknown frame covers whose checksum is right for one
-/// of the 256 messages that it could be: see the test below.
+/// The framer invents only what a checksum of 16 bits lets through by chance. It loses only what
+/// such a chance covers, or what an unknown frame covers whose checksum is right for one of the 256
+/// messages that it could be: see the test below.
 #[test]
 fn every_planted_frame_comes_out_and_no_other() {
     let (mut all, mut lost, mut chance) = (0, 0, 0);
@@ -96,7 +96,8 @@ fn every_planted_frame_comes_out_and_no_other() {
         chance += by_chance.len();
         for missing in planted.iter().filter(|span| !found.contains(span)) {
             let covers: Vec<_> = by_chance.iter().cloned().chain(unknown(&bytes)).collect();
-            // One that was sent twice and came out once: nobody can say which it was.
+            // A frame was sent twice and came out once. Then it is unknown which of the two came
+            // out.
             let mut twins = planted
                 .iter()
                 .filter(|p| bytes[(*p).clone()] == bytes[missing.clone()]);
@@ -114,9 +115,10 @@ fn every_planted_frame_comes_out_and_no_other() {
     assert!(lost <= 1 && chance <= 5);
 }
 
-/// An unknown message that carries a frame, and an unknown frame that lost its end before that frame
-/// came: they are the same bytes. Whoever gives the frame out invents one in the first case, whoever
-/// does not misses one in the second; without the message's definition there is no third.
+/// An unknown message that carries a frame, and an unknown frame that lost its end before that
+/// frame came, are the same bytes. A framer that gives the frame out invents one in the first case.
+/// A framer that does not give it out misses one in the second case. Without the message's
+/// definition there is no third way.
 #[test]
 fn two_histories_with_the_same_bytes_cannot_both_be_served() {
     let mut sender = Sender::new(255, 190);
@@ -139,7 +141,7 @@ fn two_histories_with_the_same_bytes_cannot_both_be_served() {
     };
     assert!(found(&carrying, 1) == [alone(next.clone())]);
 
-    // What cannot be an unknown message hides nothing: a checksum that no message has.
+    // A checksum that no message has cannot be an unknown message, so it hides nothing.
     let mut broken = carrying.clone();
     while matches!(shape(&broken, 0), Some(Shape::Unknown(_))) {
         broken[50] ^= 1;
@@ -147,14 +149,14 @@ fn two_histories_with_the_same_bytes_cannot_both_be_served() {
     }
     let come = found(&broken, 1).into_iter().map(|found| found.bytes);
     assert!(come.eq([carried.clone(), next]));
-    // Or no frame where it says that its end is.
+    // Here no frame begins where this one says that it ends.
     let mut unfollowed = carrying.clone();
     unfollowed.insert(52, 0);
     assert_eq!(found(&unfollowed, 1).len(), 2);
 }
 
-/// Among frames that end where they say, whatever their messages and checksums, each is given out
-/// with its last byte.
+/// Among frames that end where they say, each is given out with its last byte, whatever their
+/// messages and checksums.
 #[test]
 fn frames_do_not_hold_up_one_another() {
     for seed in 0..2000 {
@@ -186,8 +188,8 @@ fn noise_holds_up_a_frame_by_a_bounded_number_of_bytes() {
     assert!(longest <= 2 * MAX_FRAME, "{longest}");
 }
 
-/// The stock reader looks for frames inside unknown ones, so it may find one of those; of all
-/// others it finds no more.
+/// The stock reader looks for frames inside unknown ones, so it may find one of those. Of all other
+/// frames it finds no more than ours.
 #[test]
 fn the_stock_reader_finds_no_more_planted_frames() {
     let (mut theirs, mut ours, mut only_theirs) = (0, 0, 0);
@@ -246,7 +248,7 @@ fn a_datagram_ends_with_its_last_byte() {
     let heartbeat = sender.frame(&HEARTBEAT_DATA::DEFAULT);
     let mut count = 0;
     let mut framer = Framer::new();
-    // Would wait for 255 bytes on a stream.
+    // On a stream this beginning would wait for 255 bytes.
     framer.receive_datagram(&[0xFD, 0xFF, 0], |_| count += 1);
     framer.receive_datagram(&[&[0xFD, 0xFF, 0], heartbeat.as_bytes()].concat(), |_| {
         count += 1;

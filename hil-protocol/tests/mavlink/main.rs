@@ -1,4 +1,4 @@
-//! The MAVLink side of the link: frames in any noise, messages, signatures.
+//! Tests the MAVLink side of the link: frames in any noise, messages, signatures.
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 

@@ -1,4 +1,4 @@
-//! Messages there and back, and beside the published dialect.
+//! Tests messages there and back, and against the published dialect.
 
 use crate::oracle;
 use hil_protocol::mavlink::messages::{self as ours, MavMessage as Ours};
@@ -67,7 +67,7 @@ fn frames_are_numbered_across_messages_and_wrap() {
     }
 }
 
-/// An id that no list holds reaches us whole.
+/// A command id that is in no list arrives unchanged.
 #[test]
 fn a_command_that_nobody_knows_is_read() {
     let sent = ours::COMMAND_LONG_DATA {
@@ -101,7 +101,7 @@ fn a_text_ends_with_a_whole_character() {
 }
 
 proptest! {
-    /// Our frames, read by the published dialect.
+    /// The published dialect reads our frames.
     #[test]
     fn the_published_dialect_reads_what_we_send(time in any::<u32>(), z in -1e6_f32..1e6, climb in -9_f32..9.0) {
         let sent = ours::LOCAL_POSITION_NED_DATA { time_boot_ms: time, x: 1.0, y: 0.0, z, vx: 12.0, vy: 0.0, vz: climb };

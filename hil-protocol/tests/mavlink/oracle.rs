@@ -1,4 +1,4 @@
-//! What the bytes of a stream are, found slowly, from the whole of it and by the definition.
+//! The frames in a stream, found slowly, from the whole of the stream and by the definition.
 
 use mavlink::Message;
 
@@ -21,8 +21,8 @@ pub(crate) fn crc(bytes: &[u8], seed: u8) -> u16 {
     crc
 }
 
-/// The seed of a message's checksum: of the common dialect as its keepers publish it, and of the
-/// three messages that are ours.
+/// The seed of a message's checksum. It comes from the common dialect as its maintainers publish
+/// it, and from our three messages.
 pub(crate) fn seed(id: u32) -> Option<u8> {
     use hil_protocol::mavlink::messages::MavMessage as Ours;
     use mavlink::dialects::common::MavMessage as Common;
@@ -32,15 +32,16 @@ pub(crate) fn seed(id: u32) -> Option<u8> {
     })
 }
 
-/// What is whole at a place.
+/// The kind of a whole frame at a place.
 pub(crate) enum Shape {
     /// An intact frame of a known message.
     Frame(Span),
-    /// A frame of an unknown message, its checksum right for one of the 256 that it could be.
+    /// A frame of an unknown message whose checksum is right for one of the 256 messages that it
+    /// could be.
     Unknown(Span),
 }
 
-/// What is whole at a place; none if nothing is.
+/// The whole frame at a place; `None` if there is none.
 pub(crate) fn shape(stream: &[u8], at: usize) -> Option<Shape> {
     let rest = &stream[at..];
     let (header, signature) = match rest {
@@ -68,7 +69,7 @@ pub(crate) fn shape(stream: &[u8], at: usize) -> Option<Shape> {
     }
 }
 
-/// Every unknown frame that there could be, also inside of others.
+/// Every unknown frame that is possible, also inside of others.
 pub(crate) fn unknown(stream: &[u8]) -> Vec<Span> {
     let places = 0..stream.len();
     places

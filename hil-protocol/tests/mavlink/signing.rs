@@ -1,4 +1,4 @@
-//! Signatures: what passes, and what does not.
+//! Tests signatures that pass, and signatures that do not.
 
 use hil_protocol::mavlink::messages::{COMMAND_LONG_DATA, HEARTBEAT_DATA};
 use hil_protocol::mavlink::{Framer, Key, Refusal, Sender, Signer, Verifier};
@@ -46,7 +46,7 @@ fn the_signer_never_uses_a_time_twice() {
     let mut signer = Signer::new(key(), 0, NOW);
     let mut sender = Sender::new(1, 1);
     for step in 0..300 {
-        // Time stands still, or goes back, or on.
+        // Time stands still, goes back, or goes on.
         signer.set_time(NOW + step / 7 * 3);
         let frame = sender.signed_frame(&HEARTBEAT_DATA::DEFAULT, &mut signer);
         assert_eq!(verdict(&mut verifier, frame.as_bytes()), Ok(()));
@@ -63,7 +63,7 @@ fn without_a_signature_nothing_passes() {
     );
 }
 
-/// Any bit of the signature, and any key but the right one.
+/// A change of any bit of the signature, or any other key, makes it wrong.
 #[test]
 fn a_changed_bit_or_another_key_is_refused() {
     let frame = signed(NOW, 400);
@@ -77,7 +77,7 @@ fn a_changed_bit_or_another_key_is_refused() {
             Err(Refusal::WrongKey),
             "bit {bit}"
         );
-        // What was refused has not moved the verifier on.
+        // A refused frame has not moved the verifier's time on.
         assert_eq!(verdict(&mut verifier, &frame), Ok(()));
     }
     let mut verifier = Verifier::new(Key::of_passphrase("another"), NOW);

@@ -1,4 +1,4 @@
-//! Streams as lines and attackers make them.
+//! Streams such as noisy lines and attackers make them.
 
 use crate::oracle::{Span, crc, seed};
 use hil_protocol::mavlink::messages::*;
@@ -6,7 +6,7 @@ use hil_protocol::mavlink::{Key, Sender, Signer, text};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// A stream, and the intact frames of known messages that were put into it.
+/// A stream, and the intact frames of known messages in it.
 #[derive(Default)]
 pub(crate) struct Stream {
     pub(crate) bytes: Vec<u8>,
@@ -24,7 +24,7 @@ impl Maker {
         (self.0.next_u32() as usize) % limit
     }
 
-    /// Bytes with far more beginnings of frames than chance would give.
+    /// Bytes with far more beginnings of frames than by chance.
     pub(crate) fn malice(&mut self, length: usize) -> Vec<u8> {
         (0..length)
             .map(|_| match self.below(20) {
@@ -114,7 +114,7 @@ impl Maker {
         }
     }
 
-    /// A frame that ends where it says, but not as it was sent.
+    /// A frame that ends where it says, but that is not as it was sent.
     fn damaged(&mut self) -> Vec<u8> {
         let mut frame = if self.below(2) == 0 {
             self.unknown()
@@ -130,8 +130,8 @@ impl Maker {
         frame
     }
 
-    /// Frames that end where they say, of known and unknown messages; some of them, if that is
-    /// wanted, with a wrong checksum.
+    /// Frames of known and unknown messages that end where they say. With `damaged`, some of them
+    /// have a wrong checksum.
     pub(crate) fn whole(&mut self, pieces: usize, damaged: bool) -> Stream {
         let mut stream = Stream::default();
         for _ in 0..pieces {
@@ -147,7 +147,7 @@ impl Maker {
         stream
     }
 
-    /// Frames whole, twice, cut and damaged, with noise between.
+    /// Frames that are whole, doubled, cut and damaged, with noise between.
     pub(crate) fn mixed(&mut self, pieces: usize) -> Stream {
         let mut stream = Stream::default();
         for _ in 0..pieces {
@@ -159,9 +159,9 @@ impl Maker {
                     stream.plant(&frame);
                 }
                 4 => {
-                    // Cut behind its checksum, a signed frame would take what follows for its
-                    // signature; only the key could tell. And what follows may by chance be the
-                    // byte or two that were cut off.
+                    // A signed frame that is cut behind its checksum would take the following bytes
+                    // for its signature; only the key could tell. The following bytes may also by
+                    // chance be the one or two bytes that were cut off.
                     let most = if frame[2] == 1 { 13 } else { 0 } + 3;
                     let length = self.below(frame.len() - most + 1);
                     stream.bytes.extend(&frame[..length]);

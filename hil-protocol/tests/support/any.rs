@@ -1,4 +1,4 @@
-//! Any message, floats of every bit pattern included.
+//! Any message, including floats of every bit pattern.
 
 use hil_protocol::*;
 use proptest::array::{uniform4, uniform6};
@@ -97,6 +97,27 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::RangeMax,
             ConfigureVerdict::AlreadyConfigured,
             ConfigureVerdict::Actuators,
+            ConfigureVerdict::PresetNotBuilt,
+            ConfigureVerdict::PathsZero,
+            ConfigureVerdict::ThrustTooLow,
+            ConfigureVerdict::CruiseAirspeed,
+            ConfigureVerdict::AirframeNotFinite,
+            ConfigureVerdict::NotCarried,
+            ConfigureVerdict::NoElevator,
+            ConfigureVerdict::RegulatorNotFinite,
+            ConfigureVerdict::RegulatorSingular,
+            ConfigureVerdict::RegulatorNotConverged,
+            ConfigureVerdict::RegulatorNotStabilising,
+            ConfigureVerdict::PlanModel,
+            ConfigureVerdict::PlanWeights,
+            ConfigureVerdict::Penalty,
+            ConfigureVerdict::Margin,
+            ConfigureVerdict::Band,
+            ConfigureVerdict::PlanThrust,
+            ConfigureVerdict::WindTimeConstant,
+            ConfigureVerdict::AngleOfAttackLimit,
+            ConfigureVerdict::FlightPathLimit,
+            ConfigureVerdict::OtherPreset,
         ]),
     ]
 }
@@ -104,7 +125,17 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
 fn parameter_reply() -> impl Strategy<Value = ParameterReply> {
     use ParameterVerdict::*;
     let verdicts = prop_oneof![
-        select(&[Accepted, Unknown, Range, NotWhole, InFlight, NotConfigured]),
+        select(&[
+            Accepted,
+            Unknown,
+            Range,
+            NotWhole,
+            InFlight,
+            NotConfigured,
+            NotInPreset,
+            PathsInFlight,
+            CruiseFixed,
+        ]),
         verdict().prop_map(SetUp),
     ];
     (any::<u8>(), verdicts).prop_map(|(parameter, verdict)| ParameterReply { parameter, verdict })
@@ -212,6 +243,7 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::NotConfigured,
             RejectionCause::PlannerBusy,
             RejectionCause::PlannerRestarted,
+            RejectionCause::ScanAngle,
         ]),
         any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
     ]

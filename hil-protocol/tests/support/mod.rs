@@ -1,4 +1,4 @@
-//! What the tests share: an oracle for frames, and any message.
+//! Code that the tests share: an oracle for frames, and any message.
 
 pub(crate) mod any;
 pub(crate) mod oracle;

@@ -1,6 +1,6 @@
-//! A frame made the slow and obvious way.
+//! A frame made in the slow and simple way.
 
-/// Header, payload and checksum in COBS, with the delimiter.
+/// Makes a frame: header, payload and checksum in COBS, with the delimiter.
 pub(crate) fn frame(magic: &[u8; 2], version: u8, id: u8, payload: &[u8]) -> Vec<u8> {
     let mut plain = [magic, [version, id].as_slice(), payload].concat();
     plain.extend(crc32(&plain).to_le_bytes());
@@ -21,8 +21,8 @@ pub(crate) fn crc32(bytes: &[u8]) -> u32 {
     !crc
 }
 
-/// Each run up to a zero, or of 254 bytes, behind its length plus one; an end without a zero after
-/// a run of 254 needs no more.
+/// Encodes in COBS. Each run up to a zero, or of 254 bytes, stands behind its length plus one. An
+/// end without a zero after a run of 254 needs no more.
 fn cobs(plain: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::new();
     let mut rest = plain;

@@ -11,7 +11,7 @@ pub use riccati::{RiccatiError, solve_riccati};
 pub struct LqrWeights {
     /// Diagonal of `Q`.
     pub state: [f64; 4],
-    /// `R`.
+    /// Weight `R` of the elevator.
     pub elevator: f64,
 }
 
@@ -34,7 +34,7 @@ impl Lqr {
     /// The optimal gain `K = R^-1 B' X` for a linearised aircraft.
     ///
     /// # Errors
-    /// [`RiccatiError`] when no stabilising solution is found: the vehicle does not start.
+    /// [`RiccatiError`] if the solver finds no stabilising solution. The vehicle then does not start.
     pub fn design(linear: &Linearization, weights: &LqrWeights) -> Result<Self, RiccatiError> {
         let elevator: Vector4<f64> = linear.b.column(1).into();
         let q = Matrix4::from_diagonal(&Vector4::from(weights.state));
@@ -45,7 +45,7 @@ impl Lqr {
         })
     }
 
-    /// The elevator that drives `estimate` to `reference`; thrust is passed through.
+    /// The control whose elevator drives `estimate` to `reference`. The thrust is that of `feedforward`.
     #[must_use]
     pub fn track(
         &self,

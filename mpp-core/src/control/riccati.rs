@@ -2,35 +2,69 @@
 //! (Chu, Fan, Lin: "A structure-preserving doubling algorithm for continuous-time algebraic
 //! Riccati equations", 2005).
 
+use core::fmt;
 use nalgebra::Matrix4;
 
-/// Bound of the doublings; convergence is quadratic, about 8 are needed here.
+/// Greatest number of doublings. Convergence is quadratic, and this problem needs about 8.
 const MAX_DOUBLINGS: usize = 40;
 
-/// Residual of the equation relative to its terms in a solution; rounding leaves 1e-13.
+/// Greatest accepted residual of the equation, relative to its terms. Rounding leaves 1e-13.
 const RESIDUAL: f64 = 1e-8;
 
-/// No stabilising solution was found.
+/// The reason why the solver found no stabilising solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum RiccatiError {
-    /// A matrix that must be inverted is singular, or an entry is not finite.
+    /// An entry of the equation is not a finite number.
+    NotFinite,
+    /// A matrix that must be inverted is singular.
     Singular,
-    /// The doublings did not settle: the pair is probably not stabilisable.
+    /// The doublings gave a number that is not finite, or did not settle within `MAX_DOUBLINGS`.
     NotConverged,
+    /// The doublings settled on a matrix that does not solve the equation or is not positive
+    /// semidefinite. The pair is probably not stabilisable.
+    NotStabilising,
 }
+
+impl fmt::Display for RiccatiError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NotFinite => {
+                "the regulator's equation has a number that is not finite: check the airframe, and \
+                 that the weight of the elevator is positive"
+            }
+            Self::Singular => {
+                "the regulator's equation has a matrix without an inverse: check airframe and \
+                 weights of the regulator"
+            }
+            Self::NotConverged => {
+                "the regulator's equation was not solved within its bound: check airframe and \
+                 weights of the regulator"
+            }
+            Self::NotStabilising => {
+                "no gain of the regulator stabilises the aircraft: check that the elevator turns it, \
+                 and the weights of the regulator"
+            }
+        })
+    }
+}
+
+impl core::error::Error for RiccatiError {}
 
 /// Solves `A'X + X A - X G X + Q = 0` for the stabilising `X` (4 x 4, symmetric), with
 /// `G = B R^-1 B'`.
 ///
 /// # Errors
-/// [`RiccatiError`] as its variants say.
+/// [`RiccatiError`]: each variant names one cause.
 pub fn solve_riccati(
     a: &Matrix4<f64>,
     g: &Matrix4<f64>,
     q: &Matrix4<f64>,
 ) -> Result<Matrix4<f64>, RiccatiError> {
-    // The Cayley transform with a shift of the size of A maps the stable plane into the circle.
+    let entries = a.iter().chain(g).chain(q);
+    if !entries.copied().all(f64::is_finite) {
+        return Err(RiccatiError::NotFinite);
+    }
+    // The Cayley transform with a shift of the size of A maps the stable half-plane into the unit circle.
     let shift = a.norm().max(1.0);
     let shifted = a - Matrix4::identity() * shift;
     let shifted_inverse = inverse(&shifted)?;
@@ -47,7 +81,7 @@ pub fn solve_riccati(
         ak = ak * mix * ak;
         hk += step;
         if !hk.iter().all(|value| value.is_finite()) {
-            return Err(RiccatiError::Singular);
+            return Err(RiccatiError::NotConverged);
         }
         if step.norm() <= 1e-15 * hk.norm() {
             return checked(a, g, q, (hk + hk.transpose()) * 0.5);
@@ -60,8 +94,8 @@ fn inverse(matrix: &Matrix4<f64>) -> Result<Matrix4<f64>, RiccatiError> {
     crate::inverse::inverse(matrix).ok_or(RiccatiError::Singular)
 }
 
-/// The doublings of a pair that cannot be stabilised settle too: on numbers that solve nothing, or on
-/// a solution that is no cost, because it is negative somewhere.
+/// Returns `x` if it solves the equation and is positive semidefinite. The doublings also settle for a
+/// pair that is not stabilisable, but then `x` fails one of these two tests.
 fn checked(
     a: &Matrix4<f64>,
     g: &Matrix4<f64>,
@@ -75,6 +109,6 @@ fn checked(
     if residual.norm() <= RESIDUAL * scale && lifted.cholesky().is_some() {
         Ok(x)
     } else {
-        Err(RiccatiError::NotConverged)
+        Err(RiccatiError::NotStabilising)
     }
 }

@@ -1,41 +1,37 @@
-//! Half-planes between the segments of a trajectory and the obstacles about it.
+//! Half-planes between the segments of a trajectory and the obstacles around it.
 //!
-//! Rays from the collocation points see nothing in between; a face that holds at both ends of a
-//! segment holds all along it. Of the eight directions each occupied cell gets the one that keeps it
-//! farthest from the segment.
+//! Rays from the collocation points do not see obstacles between these points. A face is a half-plane
+//! that holds at both ends of a segment, and therefore on the whole segment. Each occupied cell gets that
+//! one of the eight directions that keeps it farthest from the segment.
 
 use super::{Corridor, DIRECTION_VECTORS};
 use crate::config::{DIRECTIONS, KNOTS, STAGE_PERIOD};
 use crate::map::ClearanceField;
+use crate::tuning::faces::{FREE, GIVE, REACH};
 use crate::vehicle::PathState;
 
-/// Obstacles farther than this from a segment [m] do not matter to it.
-const REACH: f64 = 4.0;
-/// Room that a program may use up on its way to a cheaper trajectory [m].
-const GIVE: f64 = 0.2;
-/// Where nothing else is in the way, a trajectory may move by this much [m].
-const FREE: f64 = 60.0;
-
-/// Directions of [`DIRECTION_VECTORS`] that are up and down.
+/// Index of the upward direction in [`DIRECTION_VECTORS`].
 const UP: usize = 0;
+/// Index of the downward direction in [`DIRECTION_VECTORS`].
 const DOWN: usize = 4;
 
-/// What a trajectory keeps to.
+/// Distances and heights that a trajectory must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keep {
-    /// Least distance from the centres of occupied cells [m].
+    /// Least distance from the centres of occupied cells \[m\].
     pub margin: f64,
-    /// Distance that is kept where the trajectory has it [m]; less than the margin asks for nothing more.
+    /// Distance that a trajectory keeps where it already has that much room \[m\]. A value below the margin
+    /// has no effect.
     pub room: f64,
-    /// Least height [m].
+    /// Least height \[m\].
     pub floor: f64,
-    /// Greatest height [m].
+    /// Greatest height \[m\].
     pub ceiling: f64,
 }
 
 impl Corridor {
-    /// Separates each segment of a trajectory from the obstacles about it; `cruise` is the airspeed of
-    /// straight and level flight [m/s], which the half-planes are relative to.
+    /// Separates each segment of a trajectory from the obstacles around it. The half-planes are relative to
+    /// straight and level flight at the airspeed `cruise` [m/s].
     pub fn separate(
         &mut self,
         field: &ClearanceField,
@@ -74,8 +70,7 @@ impl Corridor {
     }
 }
 
-/// The distance that a segment keeps [m]. Of the room that a trajectory has, a program may use up
-/// [`GIVE`].
+/// The distance that a segment keeps \[m\]. A program may use up [`GIVE`] of the room that the segment has.
 fn kept(field: &ClearanceField, from: &PathState, to: &PathState, keep: &Keep) -> f64 {
     if keep.room <= keep.margin {
         return keep.margin;

@@ -1,26 +1,26 @@
-//! What a plan reckons with besides where it starts.
+//! The estimated conditions of a plan: the wind and the lift of the aircraft.
 
 use super::{LiftEstimator, WindEstimator};
 use crate::settings::Settings;
 use crate::vehicle::{AirState, Airframe, Control, Wind};
 
-/// The air, and the aircraft as it flies today.
+/// Estimated wind, and estimated difference of the aircraft from the known airframe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    /// Motion of the air.
+    /// Velocity of the air over ground.
     pub wind: Wind,
-    /// Lift coefficient beyond the known airframe's [-].
+    /// Amount by which the lift coefficient exceeds that of the known airframe [-].
     pub lift: f64,
 }
 
 impl Conditions {
-    /// Still air, and the airframe as known.
+    /// Still air and the known airframe.
     pub const STILL: Self = Self {
         wind: Wind::STILL,
         lift: 0.0,
     };
 
-    /// The airframe with its lift as estimated.
+    /// The known airframe with the estimated lift.
     #[must_use]
     pub fn airframe(&self, known: &Airframe) -> Airframe {
         Airframe {
@@ -34,7 +34,7 @@ impl Conditions {
 #[derive(Clone, Debug)]
 pub struct ConditionsEstimator {
     wind: WindEstimator,
-    /// None takes the airframe to be as known.
+    /// Estimator of the lift. Without it the lift is that of the known airframe.
     lift: Option<LiftEstimator>,
 }
 
@@ -49,7 +49,7 @@ impl ConditionsEstimator {
         }
     }
 
-    /// The conditions now.
+    /// The present estimate.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         Conditions {
@@ -58,8 +58,9 @@ impl ConditionsEstimator {
         }
     }
 
-    /// Takes in a position `(x, z)` [m] at a time [s], the motion through the air then, and what the
-    /// actuators gave until then. False when it stands for more wind than is believed.
+    /// Takes in a position `(x, z)` \[m\] at a time \[s\], the motion through the air at that time, and the
+    /// controls that the actuators gave until then. Returns false if the position implies more wind than the
+    /// estimator believes.
     pub fn update(
         &mut self,
         time: f64,

@@ -1,35 +1,27 @@
-//! How much more lift the wing gives than the airframe that the core knows.
+//! Estimate of the lift that the wing gives beyond that of the known airframe.
 
-use super::wind::LONGEST;
+use crate::tuning::lift::{MEMORY, MOST, MOST_ACCELERATION, TRUST_TIME};
+use crate::tuning::wind::LONGEST_GAP;
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY};
 
-/// How long lift must be seen to be believed as much as the airframe that was told [s]: gusts move the mean
-/// acceleration of a shorter time by more than errors of the airframe do.
-const DOUBT: f64 = 0.7;
-/// Beyond it, what was seen before is slowly forgotten [s].
-const MEMORY: f64 = 6.0;
-/// Greatest offset that is believed [-]: somewhat more than a quarter of the lift of level flight.
-const MOST: f64 = 0.4;
-/// Greatest difference in acceleration that is lift [m/s^2]: beyond it the position is wrong.
-const MOST_ACCELERATION: f64 = 20.0;
-
-/// Offset of the lift coefficient, at the angle of attack that the elevator balances.
+/// Estimator of the offset of the lift coefficient, at the angle of attack that the elevator balances.
 ///
-/// Vertical acceleration over ground, twice differenced from the height, is lift, drag, thrust and
-/// weight. What it is more than the airframe's at the elevator's angle of attack is averaged. Errors of
-/// mass, lift slope and pitch stiffness all come out as this one number; gusts average out.
+/// The estimator differentiates the height twice and gets the vertical acceleration over ground. Lift,
+/// drag, thrust and weight cause this acceleration. The estimator averages the difference from the
+/// acceleration of the known airframe at the elevator's angle of attack. Errors of mass, lift slope and
+/// pitch stiffness all appear in this one number; gusts average out.
 #[derive(Clone, Debug)]
 pub struct LiftEstimator {
     airframe: Airframe,
     offset: f64,
-    /// How long was averaged [s].
+    /// Time over which the offset was averaged \[s\].
     seen: f64,
-    /// Time [s] and height [m] of the last position, and the climb to it [m/s].
+    /// Time \[s\] and height \[m\] of the last position, and the climb rate up to it [m/s].
     last: Option<(f64, f64, Option<f64>)>,
 }
 
 impl LiftEstimator {
-    /// An estimator that takes the airframe to be as told.
+    /// An estimator that starts with the offset 0.
     #[must_use]
     pub const fn new(airframe: &Airframe) -> Self {
         Self {
@@ -40,21 +32,21 @@ impl LiftEstimator {
         }
     }
 
-    /// What is to be added to the airframe's lift coefficient [-].
+    /// Offset to add to the lift coefficient of the known airframe [-].
     #[must_use]
     pub fn offset(&self) -> f64 {
         self.offset
     }
 
-    /// Takes in a height [m] at a time [s], the motion through the air, and what the actuators gave
-    /// until then. What cannot be lift is left out.
+    /// Takes in a height \[m\] at a time \[s\], the motion through the air, and the controls that the
+    /// actuators gave until then. It ignores a difference in acceleration that is too large to be lift.
     pub fn update(&mut self, time: f64, height: f64, air: &AirState, given: Control) {
         let last = self.last.replace((time, height, None));
         let Some((before, from, climb)) = last else {
             return;
         };
         let period = time - before;
-        if !(period > 0.0 && period <= LONGEST) {
+        if !(period > 0.0 && period <= LONGEST_GAP) {
             return;
         }
         let climb_now = (height - from) / period;
@@ -64,17 +56,17 @@ impl LiftEstimator {
         };
         let (expected, per_lift) = self.acceleration(air, given);
         let more = (climb_now - climb) / period - expected;
-        // Not a number is in no range; without speed there is no lift.
+        // The range test also refuses NaN. Without airspeed there is no lift.
         if !(-MOST_ACCELERATION..=MOST_ACCELERATION).contains(&more) || per_lift < 1.0 {
             return;
         }
         self.seen = (self.seen + period).min(MEMORY);
-        let share = period / (DOUBT + self.seen);
+        let share = period / (TRUST_TIME + self.seen);
         let offset = self.offset + share * (more / per_lift - self.offset);
         self.offset = offset.clamp(-MOST, MOST);
     }
 
-    /// Vertical acceleration by the airframe as told, and how it changes with the lift coefficient
+    /// Vertical acceleration of the known airframe, and its derivative with respect to the lift coefficient
     /// [m/s^2].
     fn acceleration(&self, air: &AirState, given: Control) -> (f64, f64) {
         let a = &self.airframe;

@@ -1,28 +1,31 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
+mod changes;
 mod conditions;
 mod lift;
 mod wind;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+pub use changes::Changes;
 pub use conditions::{Conditions, ConditionsEstimator};
+use core::fmt;
 pub use lift::LiftEstimator;
 use nalgebra::{Matrix4, SMatrix, Vector4};
 pub use wind::WindEstimator;
 
-/// Airspeed and pitch as measured; the two errors are independent.
+/// Measured airspeed and pitch. Their errors are independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measurement {
     /// Airspeed [m/s].
     pub airspeed: f64,
-    /// Pitch [rad].
+    /// Pitch \[rad\].
     pub pitch: f64,
 }
 
 /// Tuning of the filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EkfTuning {
-    /// Process noise added at each prediction, diagonal [(m/s)^2, rad^2, (rad/s)^2, rad^2]. Larger
+    /// Diagonal of the process noise that each prediction adds [(m/s)^2, rad^2, (rad/s)^2, rad^2]. Larger
     /// values make the estimate follow the sensors more closely.
     pub process_noise: [f64; 4],
     /// Variance of the airspeed error [(m/s)^2].
@@ -31,16 +34,17 @@ pub struct EkfTuning {
     pub pitch_variance: f64,
     /// Initial variance of every state.
     pub initial_variance: f64,
-    /// An innovation beyond this many standard deviations is rejected [-].
+    /// Greatest accepted innovation, in standard deviations [-].
     pub gate: f64,
     /// Jacobian used for the covariance.
     pub jacobian: JacobianForm,
 }
 
 impl EkfTuning {
-    /// The authors' values; the gate is ours (a healthy sensor meets it once in 5e8 samples).
-    pub const AUTHORS: Self = {
-        // The authors write 0.1/180*pi^2, a squared degree with pi misplaced; it is their tuning.
+    /// The authors' noise with the exact Jacobian. The gate is ours: a healthy sensor exceeds it once in 5e8
+    /// samples.
+    pub const EXACT: Self = {
+        // The authors write 0.1/180*pi^2. They misplaced pi in a squared degree, but this is their tuning.
         let angle = 0.1 / 180.0 * (core::f64::consts::PI * core::f64::consts::PI);
         let pitch_sigma = 0.25 / 180.0 * core::f64::consts::PI;
         Self {
@@ -49,48 +53,64 @@ impl EkfTuning {
             pitch_variance: pitch_sigma * pitch_sigma,
             initial_variance: 0.01,
             gate: 6.0,
-            jacobian: JacobianForm::Authors,
+            jacobian: JacobianForm::Exact,
         }
     };
 
-    /// As the sensors and the equations of motion are: little noise in the process, so that the flight
-    /// path angle, which no sensor sees, follows from the equations. Only the moments are uncertain: a
-    /// tenth of the pitch stiffness turns the reference airframe by up to 0.3 rad/s within a tick.
+    /// The authors' noise with the authors' Jacobian.
+    #[cfg(feature = "paper")]
+    pub const AUTHORS: Self = Self {
+        jacobian: JacobianForm::Authors,
+        ..Self::EXACT
+    };
+
+    /// Tuning after the true accuracy of the sensors and of the equations of motion. The process noise is
+    /// small, so that the flight path angle, which no sensor measures, follows from the equations. Only the
+    /// moments are uncertain: a tenth of the pitch stiffness turns the reference airframe by up to 0.3 rad/s
+    /// within a tick.
     pub const SENSORS: Self = Self {
         process_noise: [1e-4, 1e-6, 1e-1, 1e-6],
         ..Self::EXACT
     };
-
-    /// The same noise with the exact Jacobian.
-    pub const EXACT: Self = Self {
-        jacobian: JacobianForm::Exact,
-        ..Self::AUTHORS
-    };
 }
 
-/// What became of one measured value.
+/// The filter's decision on one measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Used.
+    /// The filter used the value.
     Accepted,
-    /// Beyond the innovation gate: not used; the covariance grows until such values pass again.
+    /// The innovation exceeds the gate, and the filter did not use the value. The covariance grows until
+    /// such values pass again.
     Gated,
-    /// Not a finite number: not used.
+    /// The value is not a finite number, and the filter did not use it.
     NotFinite,
+    /// Repeated by the sensor to the last bit for some ticks: not used.
+    Frozen,
 }
 
-/// The verdicts on one measurement.
+/// The verdicts on the two values of one measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Innovation {
-    /// On the airspeed.
+    /// Verdict on the airspeed.
     pub airspeed: Verdict,
-    /// On the pitch.
+    /// Verdict on the pitch.
     pub pitch: Verdict,
 }
 
-/// The prediction is not finite (for instance at no airspeed): the filter keeps its last estimate.
+/// The prediction is not finite, for instance because the airspeed is zero. The filter keeps its last
+/// estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Diverged;
+
+impl fmt::Display for Diverged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "the estimator's prediction is not finite: check the control and the time since the last",
+        )
+    }
+}
+
+impl core::error::Error for Diverged {}
 
 /// Extended Kalman filter with the state order `(v, theta, theta', gamma)`.
 #[derive(Clone, Debug)]
@@ -102,7 +122,7 @@ pub struct Ekf {
 }
 
 impl Ekf {
-    /// Starts from an estimate.
+    /// A filter that starts from an estimate.
     #[must_use]
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {
         Self {
@@ -119,7 +139,7 @@ impl Ekf {
         &self.estimate
     }
 
-    /// Goes by another airframe from now on.
+    /// Sets the airframe for the predictions from now on.
     pub fn set_airframe(&mut self, airframe: &Airframe) {
         self.airframe = *airframe;
     }
@@ -130,11 +150,11 @@ impl Ekf {
         &self.covariance
     }
 
-    /// Moves the estimate on by `period` [s] (forward Euler) under the control flown since:
+    /// Advances the estimate by `period` \[s\] (forward Euler) under the control flown in that time:
     /// `x <- x + f(x, u) dt`, `P <- F P F' + Q` with `F = I + A dt`.
     ///
     /// # Errors
-    /// [`Diverged`] when the prediction is not finite.
+    /// [`Diverged`] if the prediction is not finite.
     pub fn predict(&mut self, control: Control, period: f64) -> Result<(), Diverged> {
         let linear = linearize(
             &self.airframe,
@@ -155,8 +175,8 @@ impl Ekf {
         Ok(())
     }
 
-    /// Corrects the estimate by a measurement. The errors are independent, so the two values are
-    /// taken one after the other, which equals the joint update and needs no matrix inverse.
+    /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one
+    /// value after the other. The result equals the joint update and needs no matrix inverse.
     pub fn update(&mut self, measurement: &Measurement) -> Innovation {
         Innovation {
             airspeed: self.correct::<0>(measurement.airspeed, self.tuning.airspeed_variance),
@@ -164,8 +184,7 @@ impl Ekf {
         }
     }
 
-    /// Scalar update by a measurement of state `INDEX`, covariance in Joseph's form, which keeps
-    /// it positive.
+    /// Scalar update by a measurement of state `INDEX`. Joseph's form keeps the covariance positive.
     fn correct<const INDEX: usize>(&mut self, measured: f64, variance: f64) -> Verdict {
         if !measured.is_finite() {
             return Verdict::NotFinite;
@@ -190,7 +209,8 @@ impl Ekf {
     }
 }
 
-/// Products are symmetric but for rounding, which would grow over a long flight.
+/// The symmetric part of a matrix. Rounding makes the products slightly asymmetric, and this error would
+/// grow over a long flight.
 fn symmetric(matrix: &Matrix4<f64>) -> Matrix4<f64> {
     (matrix + matrix.transpose()) * 0.5
 }

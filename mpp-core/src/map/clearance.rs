@@ -1,15 +1,16 @@
-//! Distance to what is occupied, for every cell of the map with memory.
+//! Distance to the nearest occupied cell, for every cell of the map with memory.
 
-use super::memory::{CELL, COLS, MemoryMap, ROWS};
+use super::memory::{COLS, MemoryMap, ROWS};
+use crate::tuning::memory::CELL;
 
-/// Distances are known up to this many cells; beyond, they read as this.
+/// Greatest distance that the field knows \[cells\]. Larger distances read as this one.
 const REACH: usize = 6;
-/// Greatest distance that is told [m].
+/// Greatest distance that the field gives \[m\].
 pub const FAR: f64 = CELL * REACH as f64;
-/// Distances are kept in parts of a metre.
+/// The field stores distances in units of `1 / PARTS` m.
 const PARTS: f64 = 64.0;
 
-/// Distance field of one cycle's map.
+/// Distance field of the map of one cycle.
 #[derive(Clone, Debug)]
 pub struct ClearanceField {
     distance: [[u8; COLS]; ROWS],
@@ -59,9 +60,9 @@ impl ClearanceField {
         }
     }
 
-    /// Of an obstacle that another one hides in part, beams touch what sticks out. What is unknown
-    /// within about a metre of an occupied cell counts as occupied too; before a face, where a range may
-    /// be wrong, as well.
+    /// Marks unknown cells within about a metre of an occupied cell as occupied. If one obstacle hides a
+    /// part of another, beams touch only the visible part; this rule completes it. The rule also fills the
+    /// unknown cells before the face of an obstacle, where a range may be wrong.
     fn complete(&mut self) {
         for diagonally in [false, true] {
             let mut below = 0;
@@ -78,8 +79,8 @@ impl ClearanceField {
         }
     }
 
-    /// The cells of a row with an occupied cell at each squared distance [cells]: whole rows are moved
-    /// at a time.
+    /// For each squared distance [cells^2], the cells of a row that have an occupied cell at that distance.
+    /// The function shifts whole rows at a time.
     fn near(&self, row: usize) -> [u128; REACH * REACH + 1] {
         let mut near = [0; REACH * REACH + 1];
         for rise in 0..REACH + 1 {
@@ -103,8 +104,8 @@ impl ClearanceField {
             .unwrap_or(0)
     }
 
-    /// Distance from a point `(x, z)` [m] to the nearest centre of an occupied cell [m], bilinear
-    /// between cell centres and at most [`FAR`]. Beyond the window, that at its edge.
+    /// Distance from a point `(x, z)` \[m\] to the nearest centre of an occupied cell \[m\]. It is bilinear
+    /// between cell centres and at most [`FAR`]. A point outside the window gets the distance at its edge.
     #[must_use]
     pub fn distance(&self, x: f64, z: f64) -> f64 {
         let (col, right) = split((x - self.first_x) / CELL - 0.5, COLS);
@@ -115,7 +116,7 @@ impl ClearanceField {
         (low * (1.0 - up) + high * up) * (1.0 / PARTS)
     }
 
-    /// Whether the cell of a point is in the window and nothing is known of it.
+    /// Whether the cell of a point is in the window and the map knows nothing of it.
     #[must_use]
     pub fn is_unknown(&self, x: f64, z: f64) -> bool {
         self.bit(&self.unknown, x, z)
@@ -138,8 +139,8 @@ impl ClearanceField {
         rows[row as usize % ROWS] >> (col as u32 % u128::BITS) & 1 == 1
     }
 
-    /// The centres of occupied cells with a free neighbour within a box, `x` and `z` from least to
-    /// greatest [m].
+    /// Visits the centres of the occupied cells in a box that have a free neighbour. `x` and `z` are the
+    /// least and greatest coordinates of the box \[m\].
     pub fn surface(&self, x: [f64; 2], z: [f64; 2], mut visit: impl FnMut(f64, f64)) {
         let (Some([first, last]), Some([low, high])) =
             (cells(x, self.first_x, COLS), cells(z, self.floor, ROWS))
@@ -174,26 +175,26 @@ impl Default for ClearanceField {
     }
 }
 
-/// First and last cell of a range [m], as far as it is in the window.
+/// First and last cell of that part of a range \[m\] that lies in the window.
 fn cells([least, greatest]: [f64; 2], edge: f64, count: usize) -> Option<[usize; 2]> {
     let [first, last] = [least, greatest].map(|value| libm::floor((value - edge) / CELL));
     let inside = last >= 0.0 && first < count as f64;
     inside.then(|| [first.max(0.0) as usize, (last as usize).min(count - 1)])
 }
 
-/// Index of `cells` and share of the way to the next, kept inside.
+/// Index of the cell at a position, and share of the way to the next cell. Both stay inside `cells` cells.
 pub(crate) fn split(position: f64, cells: usize) -> (usize, f64) {
     let inside = position.clamp(0.0, (cells - 1) as f64 - 1e-9);
     let index = inside as usize;
     (index, inside - index as f64)
 }
 
-/// Distances [1 / PARTS m] by squared distance in cells.
+/// Distances [1 / PARTS m], indexed by the squared distance in cells.
 const PART_OF_SQUARE: [u8; REACH * REACH + 1] = {
     let mut parts = [0; REACH * REACH + 1];
     let mut squared = 0;
     while squared < parts.len() {
-        // The integer root of (PARTS * CELL)^2 times the square.
+        // The integer root of (PARTS * CELL)^2 times the squared distance.
         let scale = (PARTS * CELL) as usize;
         parts[squared] = (squared * scale * scale).isqrt() as u8;
         squared += 1;

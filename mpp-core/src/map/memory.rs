@@ -1,51 +1,62 @@
-//! The map with memory: evidence of obstacles in the world frame, in a window that rolls along with
-//! the aircraft.
+//! The map with memory: evidence of obstacles in the world frame, in a window that moves along with the
+//! aircraft.
 //!
-//! A beam speaks against obstacles on its way and for one where it ended. Of the back of an obstacle, which
-//! no beam sees, the map knows nothing: [`super::ClearanceField`] completes it.
+//! A beam is evidence against obstacles on its way, and evidence for an obstacle at its end. No beam sees
+//! the back of an obstacle, so the map knows nothing of it; [`super::ClearanceField`] completes it.
 
+use super::Pose;
 use crate::sense::LidarScan;
+use crate::tuning::memory::{
+    BEHIND, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS, OCCUPIED, PASSED,
+    PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
+};
 use core::ops::Range;
 
-/// Edge of a cell [m].
-pub(super) const CELL: f64 = 0.5;
-/// Cells downrange; a power of two.
+/// Number of cells downrange; a power of two.
 pub(super) const COLS: usize = 128;
-/// Cells in height; a power of two.
+/// Number of cells in height; a power of two.
 pub(super) const ROWS: usize = 64;
-/// Columns kept behind the aircraft.
-const BEHIND: i32 = 16;
-
-/// Evidence of one hit, and the evidence from which on a cell counts as occupied.
-const HIT: i8 = 60;
-const OCCUPIED: i8 = 25;
-/// Evidence of a beam that passes on its way to a hit, and of one that never returned, which may
-/// also be a beam that was lost.
-const PASSED: i8 = 30;
-const PASSED_UNANSWERED: i8 = 10;
-/// Bound of the evidence either way: what is believed can be unlearned.
-const LIMIT: i8 = 100;
-
-/// Steps along a beam, within cells [m].
-const STEP: f64 = 0.35;
-/// Share of its range by which a hit may be too far, and length before a hit that says nothing [m].
-const RANGE_DOUBT: f64 = 0.03;
-const DOUBT: f64 = 1.0;
-/// Share of the lidar's sight that a beam without return speaks for.
-const UNANSWERED: f64 = 8.0 / 9.0;
-/// Bound of the steps along one beam.
+/// Greatest number of steps along one beam.
 const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 
-/// The map.
+/// The map with memory.
+///
+/// # Example
+///
+/// One hit makes a cell occupied. The [`super::ClearanceField`] completes what lies behind it.
+///
+/// ```
+/// use mpp_core::map::{ClearanceField, FAR, MemoryMap, Pose};
+/// use mpp_core::sense::LidarScan;
+///
+/// // One beam along the body axis, which returns from 20.1 m.
+/// let mut scan = LidarScan::new();
+/// scan.ranges.push(20.1).expect("there is room for 128 beams");
+///
+/// let mut map = MemoryMap::new();
+/// map.roll(0.0, 50.0);
+/// map.insert(&scan, 45.0, &Pose { x: 0.0, z: 50.2, pitch: 0.0 });
+/// let mut field = Box::new(ClearanceField::new());
+/// field.build(&map);
+///
+/// assert!(field.is_occupied(20.1, 50.2) && field.is_occupied(21.1, 50.2));
+/// assert!(!field.is_occupied(10.0, 50.2) && !field.is_unknown(10.0, 50.2));
+/// assert!(field.is_unknown(10.0, 60.0));
+/// assert!((field.distance(10.0, 50.2) - FAR).abs() < 1e-9);
+/// assert!(field.distance(18.0, 50.2) < 2.5);
+/// ```
 #[derive(Clone, Debug)]
 pub struct MemoryMap {
-    /// By row from [`Self::floor`] up, and by world column modulo [`COLS`].
+    /// Evidence of each cell. Rows count up from [`Self::floor`]; columns are world columns modulo [`COLS`].
     evidence: [[i8; COLS]; ROWS],
-    /// World column of the window's near edge.
+    /// World column at the near edge of the window.
     first_col: i32,
-    /// Height of the window's low edge [m].
+    /// Height of the low edge of the window \[m\].
     floor: f64,
     started: bool,
+    /// Cells that a beam of the scan at hand ended in and that stand alone, columns as in `evidence`. The other
+    /// beams of the scan do not clear them.
+    lone_hits: [u128; ROWS],
 }
 
 impl MemoryMap {
@@ -57,6 +68,7 @@ impl MemoryMap {
             first_col: 0,
             floor: 0.0,
             started: false,
+            lone_hits: [0; ROWS],
         }
     }
 
@@ -65,8 +77,9 @@ impl MemoryMap {
         self.started = false;
     }
 
-    /// Moves the window along with an aircraft at `x` [m]; the first time, and when the aircraft is
-    /// behind it (after a position that was far wrong), it is laid anew about `altitude` [m].
+    /// Moves the window along with an aircraft at `x` \[m\]. At the first call, and when the aircraft is
+    /// behind the window, the function empties the map and centres its height on `altitude` \[m\]. An
+    /// aircraft is behind the window after a position that was far wrong.
     pub fn roll(&mut self, x: f64, altitude: f64) {
         let first = (libm::floor(x / CELL) as i32).saturating_sub(BEHIND);
         let behind = first < self.first_col.saturating_sub(BEHIND);
@@ -86,8 +99,8 @@ impl MemoryMap {
         self.first_col = first.max(self.first_col);
     }
 
-    /// Takes what is known for what is remembered: whether the cell of each centre `(x, z)` [m] of the
-    /// window is occupied.
+    /// Overwrites the memory of the whole window with certain knowledge. `occupied` tells whether the cell
+    /// with the centre `(x, z)` \[m\] is occupied.
     pub fn know(&mut self, occupied: impl Fn(f64, f64) -> bool) {
         let (first, floor) = (self.first_col, self.floor);
         for (row, evidence) in self.evidence.iter_mut().enumerate() {
@@ -100,43 +113,39 @@ impl MemoryMap {
         }
     }
 
-    /// Takes in a scan made at `(x, z)` [m] and a pitch [rad] by a lidar with this sight [m].
-    pub fn insert(&mut self, scan: &LidarScan, sight: f64, x: f64, z: f64, pitch: f64) {
-        self.insert_beams(scan, 0..scan.ranges.len(), sight, x, z, pitch);
+    /// Takes in a scan from a pose by a lidar with the range `sight` \[m\].
+    pub fn insert(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
+        self.insert_beams(scan, 0..scan.ranges.len(), sight, pose);
     }
 
-    /// Takes in some beams of a scan, as far as it has them.
-    pub fn insert_beams(
-        &mut self,
-        scan: &LidarScan,
-        beams: Range<usize>,
-        sight: f64,
-        x: f64,
-        z: f64,
-        pitch: f64,
-    ) {
+    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect.
+    pub fn insert_beams(&mut self, scan: &LidarScan, beams: Range<usize>, sight: f64, pose: &Pose) {
+        let &Pose { x, z, pitch } = pose;
+        if beams.start == 0 {
+            self.note_lone_hits(scan, pose);
+        }
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
         for (beam, range) in ranges.skip(beams.start) {
-            let angle = pitch + (scan.angle_min + scan.angle_increment * beam as f64);
+            let angle = pitch + scan.beam_angle(beam);
             let (up, ahead) = libm::sincos(angle);
             let at = |range: f64| (x + range * ahead, z + range * up);
             let range = f64::from(*range);
             if range > 0.0 {
-                self.pass(at, range - DOUBT - RANGE_DOUBT * range, PASSED);
+                self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED);
                 if let Some(evidence) = self.cell_mut(self.locate(at(range))) {
                     *evidence = weighed(*evidence, HIT);
                 }
             } else {
-                self.pass(at, UNANSWERED * sight, PASSED_UNANSWERED);
+                self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED);
             }
         }
     }
 
-    /// Evidence against obstacles along a beam up to a length [m], once a cell.
+    /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\].
     fn pass(&mut self, at: impl Fn(f64) -> (f64, f64), length: f64, evidence_against: i8) {
         let mut last = None;
         for step in 0..MAX_STEPS {
-            let along = 0.25 + STEP * f64::from(step);
+            let along = FIRST_STEP + STEP * f64::from(step);
             if along >= length {
                 break;
             }
@@ -145,13 +154,57 @@ impl MemoryMap {
                 continue;
             }
             last = Some(place);
-            if let Some(evidence) = self.cell_mut(place) {
+            if !self.is_lone_hit(place)
+                && let Some(evidence) = self.cell_mut(place)
+            {
                 *evidence = weighed(*evidence, -evidence_against);
             }
         }
     }
 
-    /// Row and world column of a point `(x, z)` [m].
+    /// Notes the cells that the beams of a scan ended in and that stand alone: a pole, a wire, or a bar end on.
+    /// Beams that pass the rim of something larger clear the cells that errors of the range set beside it.
+    fn note_lone_hits(&mut self, scan: &LidarScan, pose: &Pose) {
+        let mut hits = [0_u128; ROWS];
+        for (beam, range) in scan.ranges.iter().enumerate() {
+            let range = f64::from(*range);
+            if range > 0.0 {
+                let (up, ahead) = libm::sincos(pose.pitch + scan.beam_angle(beam));
+                let (row, col) = self.locate((pose.x + range * ahead, pose.z + range * up));
+                let ahead = col.saturating_sub(self.first_col);
+                let row = usize::try_from(row).ok();
+                if (0..COLS as i32).contains(&ahead)
+                    && let Some(cells) = row.and_then(|row| hits.get_mut(row))
+                {
+                    *cells |= 1 << slot(col);
+                }
+            }
+        }
+        for (row, lone) in self.lone_hits.iter_mut().enumerate() {
+            *lone = 0;
+            let near = hits.get(row.saturating_sub(2)..(row + 3).min(ROWS));
+            let near = near.unwrap_or_default();
+            let mut rest = hits.get(row).copied().unwrap_or(0);
+            while rest != 0 {
+                let col = rest.trailing_zeros();
+                rest &= rest - 1;
+                let about =
+                    |cells: &u128| (cells.rotate_left(2).rotate_right(col) & 0b11111).count_ones();
+                if near.iter().map(about).sum::<u32>() <= LONE_CELLS {
+                    *lone |= 1 << col;
+                }
+            }
+        }
+    }
+
+    /// Whether a beam of the scan at hand ended in a cell that stands alone.
+    fn is_lone_hit(&self, (row, col): (i32, i32)) -> bool {
+        let row = usize::try_from(row).ok();
+        row.and_then(|row| self.lone_hits.get(row))
+            .is_some_and(|cells| cells >> slot(col) & 1 == 1)
+    }
+
+    /// Row and world column of a point `(x, z)` \[m\].
     fn locate(&self, (x, z): (f64, f64)) -> (i32, i32) {
         let row = libm::floor((z - self.floor) / CELL) as i32;
         (row, libm::floor(x / CELL) as i32)
@@ -166,25 +219,25 @@ impl MemoryMap {
         Some(&mut row[slot(col)])
     }
 
-    /// The window's near edge [m].
+    /// Downrange position of the window's near edge \[m\].
     #[must_use]
     pub fn first_x(&self) -> f64 {
         f64::from(self.first_col) * CELL
     }
 
-    /// The window's low edge [m].
+    /// Height of the window's low edge \[m\].
     #[must_use]
     pub fn floor(&self) -> f64 {
         self.floor
     }
 
-    /// Of one row of the window, from the near edge on: cells that count as occupied, and cells that
-    /// nothing is known of, a bit each.
+    /// Two bit masks of one row of the window, from the near edge on: the cells that count as occupied, and
+    /// the cells of which the map knows nothing.
     #[must_use]
     pub fn row(&self, row: usize) -> (u128, u128) {
         let (mut occupied, mut unknown) = (0, 0);
         if let Some(evidence) = self.evidence.get(row) {
-            // Flight computers shift words of 32 bits.
+            // The loop builds blocks of 32 bits, because flight computers shift words of 32 bits.
             for cells in evidence.as_chunks::<32>().0.iter().rev() {
                 let (mut block, mut unknown_block) = (0_u32, 0_u32);
                 for (bit, evidence) in (0..).zip(cells) {
@@ -206,7 +259,8 @@ impl Default for MemoryMap {
     }
 }
 
-/// Evidence with more of it; what was seen is never again as unknown as what was not.
+/// Sum of old and new evidence, within the limits. It is never 0, because 0 means that no beam has seen
+/// the cell.
 fn weighed(evidence: i8, more: i8) -> i8 {
     match evidence.saturating_add(more).clamp(-LIMIT, LIMIT) {
         0 => -1,
@@ -214,7 +268,7 @@ fn weighed(evidence: i8, more: i8) -> i8 {
     }
 }
 
-/// Where a world column is kept.
+/// Index at which the map stores a world column.
 fn slot(col: i32) -> usize {
     col as usize & (COLS - 1)
 }

@@ -1,61 +1,54 @@
-//! The occupancy grid: a binary matrix of 1 m cells about the aircraft, padded by one cell
-//! (paper, section II-C).
+//! The occupancy grid: a binary matrix of 1 m cells around the aircraft, padded by one cell (paper,
+//! section II-C).
 //!
-//! Grid coordinates are `(row, col)`: row counts height, column downrange distance; the aircraft is
-//! at `(ORIGIN_ROW, ORIGIN_COL)`, the low corner of that cell. The grid does not pitch with the
-//! aircraft.
+//! Grid coordinates are `(row, col)`: the row counts height, and the column counts downrange distance.
+//! The aircraft is at `(ORIGIN_ROW, ORIGIN_COL)`, the low corner of that cell. The grid does not pitch
+//! with the aircraft.
 
 mod clearance;
 mod memory;
+mod point;
 mod walk;
 
 use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use crate::sense::LidarScan;
+use crate::vehicle::VehicleState;
 pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
 pub use memory::MemoryMap;
+pub use point::GridPoint;
 pub(crate) use walk::CellWalk;
 
-/// Cells that a walk across the whole grid can pass: the bound of every walk.
+/// Greatest number of cells on a walk across the whole grid. It bounds every walk.
 pub(crate) const MAX_WALK: usize = GRID_ROWS + GRID_COLS + 3;
 
 const WORDS: usize = GRID_COLS.div_ceil(64);
 
-/// A point in grid coordinates [m].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct GridPoint {
-    /// Height above the grid's low edge.
-    pub row: f64,
-    /// Distance from the grid's near edge.
-    pub col: f64,
+/// Position and pitch of the aircraft at a scan.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// Downrange position \[m\].
+    pub x: f64,
+    /// Height \[m\].
+    pub z: f64,
+    /// Pitch of the body axis \[rad\].
+    pub pitch: f64,
 }
 
-impl GridPoint {
-    /// Where the aircraft is.
-    pub const AIRCRAFT: Self = Self {
-        row: ORIGIN_ROW as f64,
-        col: ORIGIN_COL as f64,
-    };
-
-    /// Distance to another point [m].
+impl Pose {
+    /// The pose of a vehicle.
     #[must_use]
-    pub fn distance(&self, other: &Self) -> f64 {
-        let (row, col) = (self.row - other.row, self.col - other.col);
-        libm::sqrt(row * row + col * col)
-    }
-
-    /// The point at a share (0 to 1) of the way to `other`.
-    #[must_use]
-    pub fn towards(&self, other: &Self, share: f64) -> Self {
+    pub fn of(state: &VehicleState) -> Self {
         Self {
-            row: self.row * (1.0 - share) + other.row * share,
-            col: self.col * (1.0 - share) + other.col * share,
+            x: state.x,
+            z: state.z,
+            pitch: state.air.pitch,
         }
     }
 }
 
-/// Occupied cells, one bit each; whatever is not marked counts as free.
+/// Occupancy of the cells, one bit for each. A cell without a mark counts as free.
 #[derive(Clone, Debug)]
 pub struct OccupancyGrid {
     rows: [[u64; WORDS]; GRID_ROWS],
@@ -75,7 +68,7 @@ impl OccupancyGrid {
         self.rows = [[0; WORDS]; GRID_ROWS];
     }
 
-    /// Marks a cell; false when it lies outside of the grid.
+    /// Marks a cell as occupied. Returns false if the cell lies outside of the grid.
     pub fn mark(&mut self, row: i32, col: i32) -> bool {
         let Some((word, bit)) = Self::bit(col) else {
             return false;
@@ -101,7 +94,7 @@ impl OccupancyGrid {
         }
     }
 
-    /// Whether a cell is occupied; outside of the grid nothing is.
+    /// Whether a cell is occupied. A cell outside of the grid counts as free.
     #[must_use]
     pub fn occupied(&self, row: i32, col: i32) -> bool {
         let Some((word, bit)) = Self::bit(col) else {
@@ -120,32 +113,32 @@ impl OccupancyGrid {
         self.occupied(libm::floor(point.row) as i32, libm::floor(point.col) as i32)
     }
 
-    /// Word and mask of a column, none outside of the grid.
+    /// Word and mask of a column, or `None` for a column outside of the grid.
     fn bit(col: i32) -> Option<(usize, u64)> {
         let col = usize::try_from(col).ok().filter(|col| *col < GRID_COLS)?;
         Some((col / 64, 1 << (col % 64)))
     }
 
-    /// Rebuilds the grid from one scan at a pitch [rad]: a mark where each beam ended, padded.
-    /// Returns how many hits lay outside of the grid.
+    /// Rebuilds the grid from one scan at a pitch \[rad\]: marks the cell in which each beam ended, and pads
+    /// the marks. Returns the number of hits outside of the grid.
     ///
-    /// The authors' code frees the aircraft's own cell before padding, so that an obstacle nearer
-    /// than 1 m vanishes; the corrected rules keep it.
+    /// The authors' code frees the aircraft's own cell before the padding, so that an obstacle nearer than
+    /// 1 m vanishes. The corrected rules keep this obstacle.
     pub fn rebuild(&mut self, scan: &LidarScan, pitch: f64, rules: Rules) -> usize {
         self.clear();
         let mut outside = 0;
         for (beam, range) in scan.ranges.iter().enumerate() {
             let range = f64::from(*range);
             if range > 0.0 {
-                let angle = pitch + (scan.angle_min + scan.angle_increment * beam as f64);
+                let angle = pitch + scan.beam_angle(beam);
                 let (sin, cos) = libm::sincos(angle);
-                // Rounding towards the low corner, as the cells are numbered.
+                // `floor` rounds to the low corner of the cell, whose coordinates are the number of the cell.
                 let row = libm::floor(GridPoint::AIRCRAFT.row + range * sin) as i32;
                 let col = libm::floor(GridPoint::AIRCRAFT.col + range * cos) as i32;
                 outside += usize::from(!self.mark(row, col));
             }
         }
-        if rules == Rules::Authors {
+        if rules.are_authors() {
             self.unmark(ORIGIN_ROW, ORIGIN_COL);
         }
         self.pad();
@@ -186,7 +179,7 @@ impl Default for OccupancyGrid {
     }
 }
 
-/// A row of cells with the neighbours to its left and right.
+/// A row in which the left and right neighbours of each occupied cell are occupied too.
 fn widen(cells: &[u64; WORDS]) -> [u64; WORDS] {
     let mut wide = *cells;
     for word in 0..WORDS {

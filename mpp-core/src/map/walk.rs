@@ -5,8 +5,8 @@ use super::GridPoint;
 
 /// Iterates over the cells along a ray: `(row, col, distance at which the cell is entered [m])`.
 ///
-/// The first item is the cell of the origin at distance 0. The walk never ends by itself; the
-/// caller stops at a distance, which bounds the cells by `2 distance + 3`.
+/// The first item is the cell of the origin at distance 0. The walk never ends by itself: the caller
+/// stops it at a distance, which bounds the number of cells by `2 distance + 3`.
 pub(crate) struct CellWalk {
     cell: [i32; 2],
     step: [i32; 2],

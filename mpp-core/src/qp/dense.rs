@@ -1,19 +1,19 @@
-//! Small dense algebra on the controls of the horizon.
+//! Dense linear algebra on the controls of the horizon.
 
 use super::Weights;
 use super::triangle::{Triangle, entries};
 use crate::config::STAGES;
 
-/// Controls of the whole horizon, stage by stage.
+/// Number of controls in the whole horizon. They are ordered by stage.
 pub(super) const CONTROLS: usize = 2 * STAGES;
 
 pub(super) type ControlVector = [f64; CONTROLS];
 
-/// Upper factor `U` of a positive definite matrix, `U U'`. A vector that is zero from some control on
-/// keeps its zeros through `U^-1`.
+/// Upper factor `U` of a positive definite matrix, `U U'`. If a vector `b` is zero from some control on,
+/// `U^-1 b` is zero from that control on too.
 #[derive(Clone, Debug)]
 pub(super) struct Upper {
-    /// From the last row to the first, each from its diagonal on.
+    /// Rows from the last to the first. Each row begins with its diagonal entry.
     rows: Triangle<{ entries(CONTROLS) }>,
 }
 
@@ -24,12 +24,13 @@ impl Upper {
         }
     }
 
-    /// A row from its diagonal on.
+    /// A row, which begins with its diagonal entry.
     fn row(&self, index: usize) -> &[f64] {
         self.rows.row(CONTROLS - 1 - index)
     }
 
-    /// Factors `R + w G'G`, `G` being given by rows; none if it is not positive definite.
+    /// Factors `R + w G'G`, where `terminal` contains the rows of `G`. Returns `None` if the matrix is not
+    /// positive definite.
     pub(super) fn factor(
         &mut self,
         terminal: &[ControlVector; 6],
@@ -63,7 +64,7 @@ impl Upper {
         Some(())
     }
 
-    /// `U^-1 b`, in place, of a `b` that is zero but for its first `len` entries.
+    /// Computes `U^-1 b` in place. Only the first `len` entries of `b` may differ from zero.
     pub(super) fn solve(&self, len: usize, b: &mut [f64]) {
         let len = len.min(CONTROLS);
         for (index, row) in (0..len).rev().zip(self.rows.rows_from(CONTROLS - len)) {
@@ -75,7 +76,7 @@ impl Upper {
         }
     }
 
-    /// `U^-T b`, in place.
+    /// Computes `U^-T b` in place.
     pub(super) fn solve_transposed(&self, b: &mut ControlVector) {
         for (index, row) in self.rows.rows_before(CONTROLS).enumerate() {
             if let (Some([value, later @ ..]), [diagonal, factors @ ..]) = (b.get_mut(index..), row)
@@ -89,8 +90,8 @@ impl Upper {
     }
 }
 
-/// Product of `b` with the first entries of `a`, in four sums side by side: they need not wait for
-/// each other.
+/// Product of `b` with the first entries of `a`. The function keeps four independent sums, which need not
+/// wait for each other.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (chunks, rest) = b.as_chunks::<4>();
     let mut sums = [0.0; 4];

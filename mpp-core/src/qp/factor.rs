@@ -1,8 +1,10 @@
-//! A Cholesky factor that rows are appended to and removed from.
+//! A Cholesky factor to which the solver appends rows, and from which it removes rows.
 
-use super::dense::dot;
-use super::solve::CAPACITY;
+use super::dense::{CONTROLS, dot};
 use super::triangle::{Triangle, entries};
+
+/// Greatest number of active rows: the number of controls, and some more for rows that yield.
+pub(super) const CAPACITY: usize = CONTROLS + 28;
 
 /// Lower factor `L` of the Gram matrix of the active rows, in the order in which they were added.
 #[derive(Clone, Debug)]
@@ -23,7 +25,7 @@ impl Factor {
         self.len = 0;
     }
 
-    /// `L^-1 b`, in place on the first entries of `b`.
+    /// Computes `L^-1 b` in place on the first entries of `b`.
     pub(super) fn forward(&self, b: &mut [f64; CAPACITY]) {
         for (index, row) in self.rows.rows_from(0).take(self.len).enumerate() {
             if let Some((known, [value, ..])) = b.split_at_mut_checked(index)
@@ -34,7 +36,7 @@ impl Factor {
         }
     }
 
-    /// `L^-T b`, in place on the first entries of `b`.
+    /// Computes `L^-T b` in place on the first entries of `b`.
     pub(super) fn backward(&self, b: &mut [f64; CAPACITY]) {
         for row in self.rows.rows_before(self.len) {
             if let [factors @ .., diagonal] = row
@@ -48,8 +50,8 @@ impl Factor {
         }
     }
 
-    /// Appends a row whose products with the active rows, passed through [`Self::forward`], are
-    /// `products`, and whose Schur complement is `complement` > 0. False when there is no room.
+    /// Appends a row with the Schur complement `complement` > 0. `products` are the row's products with the
+    /// active rows after [`Self::forward`]. Returns false if there is no room.
     pub(super) fn append(&mut self, products: &[f64; CAPACITY], complement: f64) -> bool {
         let [factors @ .., diagonal] = self.rows.row_mut(self.len) else {
             return false;
@@ -62,11 +64,11 @@ impl Factor {
         true
     }
 
-    /// Removes row `index`; Givens rotations bring the rest back to lower triangular form.
+    /// Removes row `index`. Givens rotations bring the other rows back to lower triangular form.
     pub(super) fn remove(&mut self, index: usize) {
         let last = self.len.saturating_sub(1);
         for col in index..last {
-            // The next row will stand here and reach one column too far: rotate (col, col + 1).
+            // The next row moves to this place and is then one column too long: rotate (col, col + 1).
             let [.., a, b] = self.rows.row(col + 1) else {
                 break;
             };

@@ -8,14 +8,14 @@
 //!      thrust_k >= 0
 //! ```
 //!
-//! Two parts: [`Condensed`] depends on the model alone and serves every candidate; [`Solver`]
-//! finds one candidate's optimum. States and controls are deviations from level trim, in the order
-//! `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`.
+//! The program has two parts. [`Condensed`] depends on the model alone and serves every candidate of that
+//! model. [`Solver`] finds the optimum of one candidate. States and controls are deviations from level
+//! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`.
 //!
 //! The method is a dual active set (Goldfarb, Idnani: "A numerically stable dual method for
-//! solving strictly convex quadratic programs", 1983) on the *outputs* that rows touch. With
-//! `H` the condensed Hessian and `Y` the map from controls to outputs, all it needs is the kernel
-//! `K = Y H^-1 Y'`, formed once.
+//! solving strictly convex quadratic programs", 1983). It works on the *outputs*, which are the
+//! quantities that rows bound. Let `H` be the condensed Hessian and `Y` the map from controls to outputs.
+//! The method then needs only the kernel `K = Y H^-1 Y'`, which is computed once.
 
 mod condense;
 mod dense;
@@ -28,26 +28,26 @@ mod triangle;
 
 use crate::config::{KNOTS, STAGES};
 pub use condense::{CondenseError, Condensed};
-pub use model::{Dynamics, Initial, ModelError, StageModel, SteadyState};
+pub use model::{Dynamics, Initial, ModelError, StageModel};
 pub use rows::{Bounds, ROWS, RowKind};
 pub use solve::{MAX_ITERATIONS, Solver};
 
-/// Planner state `(x, z, v, theta, theta', gamma)`, a deviation from level trim.
+/// State of a program: the deviation `(x, z, v, theta, theta', gamma)` from level trim.
 pub type StageState = [f64; 6];
-/// Planner control `(elevator, thrust)`, a deviation from level trim.
+/// Control of a program: the deviation `(elevator, thrust)` from level trim.
 pub type StageControl = [f64; 2];
 
 /// Weights of the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// On `(elevator^2, thrust^2)` of each stage.
+    /// Weights of `(elevator^2, thrust^2)` in each stage.
     pub control: StageControl,
-    /// On the squared distance of the last state from the target.
+    /// Weight of the squared distance of the last state from the target.
     pub terminal: f64,
 }
 
 impl Weights {
-    /// The paper's.
+    /// The paper's weights.
     pub const PAPER: Self = Self {
         control: [1.0, 3.0],
         terminal: 100.0,
@@ -58,40 +58,40 @@ impl Weights {
 /// exceeds a row's multiplier, the row holds exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Penalty {
-    /// Per metre (or radian).
+    /// Price per metre (or radian).
     pub linear: f64,
-    /// Per square metre (or square radian); must be positive.
+    /// Price per square metre (or square radian). It must be positive.
     pub quadratic: f64,
 }
 
-/// One candidate's program.
+/// The program of one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Problem {
     /// First state.
     pub initial: StageState,
-    /// Where the last state should be.
+    /// Target of the last state.
     pub target: StageState,
-    /// Right-hand sides of every row; infinite where a row is not there.
+    /// Right-hand sides of all rows; infinite for a row that the program does not have.
     pub bounds: Bounds,
-    /// Price of corridor and attitude rows; none makes them hard. Thrust rows are always hard.
+    /// Price of violating corridor and attitude rows. Without a price these rows are hard. Thrust rows are
+    /// always hard.
     pub penalty: Option<Penalty>,
-    /// Cost above which the candidate is of no interest; infinite to solve to the end.
+    /// Cost above which the solver drops the candidate. With an infinite limit it solves to the end.
     pub cost_limit: f64,
 }
 
-/// How a solve ended.
+/// The result of a solve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Status {
-    /// Solved.
+    /// The solver found the optimum.
     Optimal,
-    /// No controls satisfy every hard row; the solver's multipliers prove it.
+    /// No controls satisfy every hard row. The solver's multipliers prove it.
     Infeasible,
-    /// The optimum costs more than the limit; not solved to the end.
+    /// The optimum costs more than the limit, so the solver stopped early.
     Dominated,
-    /// [`MAX_ITERATIONS`] were not enough, or more rows are active than there is room for.
+    /// The solve needs more than [`MAX_ITERATIONS`] steps, or more active rows than there is room for.
     IterationLimit,
-    /// Rounding has the upper hand, or the input is not finite: the result is not to be used.
+    /// Rounding errors are too large, or the input is not finite. The caller must not use the result.
     NumericalFailure,
 }
 
@@ -104,12 +104,12 @@ pub struct Solution {
     pub controls: [StageControl; STAGES],
     /// Cost without penalties.
     pub cost: f64,
-    /// Worst violation [m or rad] of a row that the controls can change; 0 when all hold.
+    /// Worst violation [m or rad] of a row that the controls can change. It is 0 if all these rows hold.
     pub violation: f64,
 }
 
 impl Solution {
-    /// A place for a solution.
+    /// A solution of zeros, to be filled.
     #[must_use]
     pub const fn new() -> Self {
         Self {

@@ -1,41 +1,31 @@
-//! The discrete model of the planner: forward Euler at the stage period, rotation in steady state
-//! (paper, section III-D).
+//! The discrete model of the planner: forward Euler at the stage period, with the rotation in steady
+//! state (paper, section III-D).
 
 use super::{StageControl, StageState};
 use crate::config::STAGE_PERIOD;
 use crate::inverse::inverse;
-use crate::vehicle::{Airframe, Linearization, Trim};
+use crate::vehicle::{Linearization, Trim};
+use core::fmt;
 use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
 
-/// How pitch and pitch rate, too fast for the stage period, are replaced by steady state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SteadyState {
-    /// The paper: `(I - A) x_{k+1} = B u_k` for both, which makes the pitch rate zero and lets the
-    /// damping act against the turning path: 0.0309 rad of angle of attack per unit of elevator.
-    ZeroPitchRate,
-    /// Balance of moments at a constant angle of attack, the pitch turning with the path:
-    /// 0.0249 rad per unit of elevator, as the aircraft flies.
-    MomentBalance,
-}
-
-/// How the plan's first state follows from the estimate.
+/// The rule that gives the plan's first state from the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Initial {
-    /// The estimate itself (the paper).
+    /// The first state is the estimate (the paper).
     Estimate,
-    /// The authors' code, which sends the estimate through the steady-state rows, so that its
-    /// pitch and pitch rate are not the plan's.
+    /// The first state is the estimate after multiplication by the steady-state rows (the authors'
+    /// code). Pitch and pitch rate of the plan then differ from the estimate.
     ThroughSteadyState,
 }
 
-/// `x_{k+1} = a x_k + b u_k`.
+/// Model of a stage, `x_{k+1} = a x_k + b u_k`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StageModel {
-    /// 6 x 6.
+    /// State matrix, 6 x 6.
     pub a: Matrix6<f64>,
-    /// 6 x 2.
+    /// Control matrix, 6 x 2.
     pub b: Matrix6x2<f64>,
-    /// From the estimated deviation to the plan's first state, 6 x 6.
+    /// Matrix that maps the estimated deviation to the plan's first state, 6 x 6.
     pub initial: Matrix6<f64>,
 }
 
@@ -43,12 +33,22 @@ pub struct StageModel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModelError;
 
+impl fmt::Display for ModelError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "the plan's model has no steady state: check the pitch stiffness of the airframe",
+        )
+    }
+}
+
+impl core::error::Error for ModelError {}
+
 const PITCH: usize = 3;
 const PITCH_RATE: usize = 4;
 const FLIGHT_PATH: usize = 5;
 
 impl StageModel {
-    /// A model that stands still: a place for one.
+    /// A model of zeros, to be filled.
     #[must_use]
     pub const fn at_rest() -> Self {
         let zero = [[0.0; 6]; 6];
@@ -59,22 +59,15 @@ impl StageModel {
         }
     }
 
-    /// Discretises the linearised aircraft about level trim.
+    /// Discretises the linearised aircraft about level trim. Pitch and pitch rate are too fast for the stage
+    /// period, so they are in steady state (the paper): `(I - A) x_{k+1} = B u_k` holds for both. This makes
+    /// the pitch rate zero.
     ///
     /// # Errors
-    /// [`ModelError`]: the planner does not start.
-    pub fn new(
-        airframe: &Airframe,
-        trim: &Trim,
-        linear: &Linearization,
-        steady: SteadyState,
-        initial: Initial,
-    ) -> Result<Self, ModelError> {
+    /// [`ModelError`] if the model has no steady state. The planner then does not start.
+    pub fn new(trim: &Trim, linear: &Linearization, initial: Initial) -> Result<Self, ModelError> {
         let (a, b) = euler(trim, linear);
-        let (left, a, b) = match steady {
-            SteadyState::ZeroPitchRate => zero_pitch_rate(a, b),
-            SteadyState::MomentBalance => moment_balance(airframe, a, b),
-        };
+        let (left, a, b) = zero_pitch_rate(a, b);
         let inverse = inverse(&left).ok_or(ModelError)?;
         let model = Self {
             a: inverse * a,
@@ -92,7 +85,7 @@ impl StageModel {
         }
     }
 
-    /// The model as one stage's dynamics.
+    /// The dynamics of one stage by this model.
     #[must_use]
     pub fn dynamics(&self) -> Dynamics {
         Dynamics {
@@ -109,19 +102,19 @@ impl StageModel {
     }
 }
 
-/// `x_{k+1} = a x_k + b u_k + offset`: one stage, as linearised about any trajectory.
+/// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dynamics {
-    /// 6 x 6.
+    /// State matrix, 6 x 6.
     pub a: Matrix6<f64>,
-    /// 6 x 2.
+    /// Control matrix, 6 x 2.
     pub b: Matrix6x2<f64>,
-    /// Where the state goes from zero without control.
+    /// Next state from the state zero without control.
     pub offset: Vector6<f64>,
 }
 
 impl Dynamics {
-    /// Dynamics that stand still: a place for some.
+    /// Dynamics of zeros, to be filled.
     #[must_use]
     pub const fn at_rest() -> Self {
         Self {
@@ -137,7 +130,7 @@ impl Dynamics {
         self.step_with(state, control, &self.offset)
     }
 
-    /// The same with another offset.
+    /// The state after the stage with another offset.
     pub(super) fn step_with(
         &self,
         state: &StageState,
@@ -150,7 +143,7 @@ impl Dynamics {
     }
 }
 
-/// `I + dt A_c` and `dt B_c` with the position rows.
+/// The matrices `I + dt A_c` and `dt B_c`, with the rows of the position.
 fn euler(trim: &Trim, linear: &Linearization) -> (Matrix6<f64>, Matrix6x2<f64>) {
     let mut a = Matrix6::identity();
     a[(0, 2)] = STAGE_PERIOD;
@@ -176,20 +169,5 @@ fn zero_pitch_rate(mut a: Matrix6<f64>, b: Matrix6x2<f64>) -> Implicit {
             a[(row, col)] = 0.0;
         }
     }
-    (left, a, b)
-}
-
-fn moment_balance(airframe: &Airframe, mut a: Matrix6<f64>, mut b: Matrix6x2<f64>) -> Implicit {
-    let mut left = Matrix6::identity();
-    left[(PITCH, FLIGHT_PATH)] = -1.0;
-    for row in PITCH..=PITCH_RATE {
-        for col in 0..6 {
-            a[(row, col)] = 0.0;
-        }
-        for col in 0..2 {
-            b[(row, col)] = 0.0;
-        }
-    }
-    b[(PITCH, 0)] = -airframe.moment_elevator / airframe.moment_alpha;
     (left, a, b)
 }

@@ -1,18 +1,18 @@
-//! The rows of the program: which outputs each touches, and its right-hand side.
+//! The rows of the program: the outputs in each row, and the right-hand sides.
 
 use crate::config::{DIRECTIONS, KNOTS, STAGES};
 use crate::corridor::{Corridor, DIRECTION_VECTORS};
 
-/// Outputs, what rows touch: positions `(x, z)` at boundaries 1 to N, then the thrusts of stages 0 to
-/// N - 1, then attitudes `(theta, gamma)` at boundaries 1 to N. Programs without attitude rows need
-/// only the first part.
+/// Number of outputs. Outputs are the quantities that rows bound: positions `(x, z)` at boundaries 1 to N,
+/// then the thrusts of stages 0 to N - 1, then attitudes `(theta, gamma)` at boundaries 1 to N. Programs
+/// without attitude rows do not need the attitudes.
 pub(super) const OUTPUTS: usize = ATTITUDE_OUTPUT + 2 * STAGES;
-/// The first thrust among the outputs.
+/// Index of the first thrust among the outputs.
 pub(super) const THRUST_OUTPUT: usize = 2 * STAGES;
-/// The first attitude among the outputs.
+/// Index of the first attitude among the outputs.
 pub(super) const ATTITUDE_OUTPUT: usize = THRUST_OUTPUT + STAGES;
 
-/// How many controls, from the first on, can change an output: those of the stages before it.
+/// Number of controls, from the first on, that can change an output: those of the stages before it.
 pub(super) const fn reach(output: usize) -> usize {
     let stage = if output < THRUST_OUTPUT {
         output / 2
@@ -24,27 +24,28 @@ pub(super) const fn reach(output: usize) -> usize {
     2 * (stage + 1)
 }
 
-/// Rows on positions, boundary 0 included.
+/// Number of rows on positions, boundary 0 included.
 const POSITION_ROWS: usize = KNOTS * DIRECTIONS;
-/// Rows on attitudes: angle of attack and flight path, upper and lower, of boundaries 1 to N.
+/// Number of rows on attitudes: angle of attack and flight path, upper and lower, at boundaries 1 to N.
 const ATTITUDE_ROWS: usize = STAGES * 4;
-/// All rows of a program.
+/// Number of all rows of a program.
 pub const ROWS: usize = POSITION_ROWS + ATTITUDE_ROWS + STAGES;
 
 const _: () = assert!(ROWS < u16::MAX as usize && OUTPUTS < u8::MAX as usize);
 
-/// Right-hand sides of the rows; infinite where a row is not there.
+/// Right-hand sides of the rows; infinite for a row that the program does not have.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds(pub [f64; ROWS]);
 
-/// What a row bounds.
+/// The quantity that a row bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RowKind {
-    /// A half-plane of the corridor, by stage boundary and direction.
+    /// Half-plane of the corridor. The numbers are the stage boundary and the direction.
     Position(usize, usize),
-    /// Angle of attack (even) or flight path (odd), upper (0, 1) or lower (2, 3), by stage boundary.
+    /// Limit of the attitude. The first number is the stage boundary. The second number is even for the
+    /// angle of attack and odd for the flight path; 0 and 1 are upper limits, 2 and 3 are lower limits.
     Attitude(usize, usize),
-    /// Thrust from below, by stage.
+    /// Lower limit of the thrust. The number is the stage.
     Thrust(usize),
 }
 
@@ -63,7 +64,7 @@ impl RowKind {
     }
 }
 
-/// `first.1 y[first.0] + second.1 y[second.0]`: a row's left-hand side in outputs `y`.
+/// Left-hand side of a row in the outputs `y`: `first.1 y[first.0] + second.1 y[second.0]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RowPattern {
     pub(super) first: (usize, f64),
@@ -71,7 +72,7 @@ pub(super) struct RowPattern {
 }
 
 impl RowPattern {
-    /// The pattern of a row; none for the rows of boundary 0, which no control can change.
+    /// The pattern of a row. It is `None` for the rows of boundary 0, which no control can change.
     pub(super) fn of(row: usize) -> Option<Self> {
         match RowKind::of(row) {
             RowKind::Position(0, _) => None,
@@ -103,7 +104,7 @@ impl RowPattern {
         }
     }
 
-    /// The row's left-hand side.
+    /// Value of the row's left-hand side.
     pub(super) fn value(&self, outputs: &[f64; OUTPUTS]) -> f64 {
         let at = |(output, factor): (usize, f64)| {
             outputs.get(output).map_or(0.0, |value| value * factor)
@@ -111,7 +112,8 @@ impl RowPattern {
         at(self.first) + at(self.second)
     }
 
-    /// `K c`: how the outputs move with the row's multiplier; those of attitudes only if asked for.
+    /// `K c`: change of the outputs with the row's multiplier. The attitudes are left out unless
+    /// `attitude_rows` is true.
     pub(super) fn column(
         &self,
         kernel: &[[f64; OUTPUTS]; OUTPUTS],
@@ -139,8 +141,9 @@ impl RowPattern {
     }
 }
 
-/// `sum += factors . rows`, over the outputs of attitudes only if asked for. Two rows at a time:
-/// rows of the kernel are needed in pairs, and each sum is loaded and stored once for both.
+/// Computes `sum += factors . rows`. The attitudes are left out unless `attitude_rows` is true. The
+/// function adds two rows at a time, because the solver needs rows of the kernel in pairs. It then loads
+/// and stores each sum once for both rows.
 pub(super) fn add_scaled(
     sum: &mut [f64; OUTPUTS],
     rows: [&[f64; OUTPUTS]; 2],
@@ -160,8 +163,8 @@ pub(super) fn add_scaled(
     }
 }
 
-/// By how much outputs exceed the bounds of all rows, those of boundary 0 left out (minus
-/// infinity), which outputs do not hold.
+/// Excess of the outputs over the bounds of all rows. The outputs do not contain boundary 0, so its rows
+/// get minus infinity.
 pub(super) fn excesses(outputs: &[f64; OUTPUTS], bounds: &Bounds) -> [f64; ROWS] {
     let mut excess = [f64::NEG_INFINITY; ROWS];
     let (positions, rest) = excess.split_at_mut(POSITION_ROWS);
@@ -187,8 +190,9 @@ pub(super) fn excesses(outputs: &[f64; OUTPUTS], bounds: &Bounds) -> [f64; ROWS]
     excess
 }
 
-/// The row whose excess times `weight` is largest, if any is positive. `attitude` tells whether
-/// attitude rows are to be looked at. Bounds of rows without weight must be finite.
+/// The row with the largest product of excess and `weight`, if any product is positive. The function
+/// leaves out the attitude rows unless `attitude_rows` is true. Bounds of rows with weight 0 must be
+/// finite.
 pub(super) fn most_violated(
     outputs: &[f64; OUTPUTS],
     bounds: &Bounds,
@@ -245,8 +249,8 @@ struct Worst {
 }
 
 impl Worst {
-    /// Looks at the values of rows from `first` on. Halving them finds the largest with few
-    /// comparisons that wait for each other.
+    /// Compares with the values of the rows from `first` on. Repeated halving finds the largest value with
+    /// few comparisons that depend on each other.
     fn consider<const N: usize>(&mut self, values: &[f64; N], first: usize) {
         let mut halves = *values;
         let mut len = N;
@@ -272,7 +276,7 @@ impl Worst {
 
 type OutputParts<'a> = (&'a [[f64; 2]], &'a [f64], &'a [[f64; 2]]);
 
-/// Positions, thrusts, attitudes.
+/// Splits the outputs into positions, thrusts and attitudes.
 fn parts(outputs: &[f64; OUTPUTS]) -> OutputParts<'_> {
     let (motion, rest) = outputs.split_at(THRUST_OUTPUT);
     let (thrust, attitude) = rest.split_at(STAGES);
@@ -293,26 +297,27 @@ fn attitude_excess([pitch, flight_path]: &[f64; 2], limits: &[f64; 4]) -> [f64; 
     [attack - a, flight_path - b, -attack - c, -flight_path - d]
 }
 
-/// Splits per-row values into those of rows that a penalty softens and those that are always hard.
+/// Splits values by row into those of rows that a penalty can soften and those of rows that are always
+/// hard.
 pub(super) fn split_soft(values: &[f64; ROWS]) -> (&[f64], &[f64]) {
     values.split_at(POSITION_ROWS + ATTITUDE_ROWS)
 }
 
 impl Bounds {
-    /// No rows at all.
+    /// Bounds without any row.
     #[must_use]
     pub const fn none() -> Self {
         Self([f64::INFINITY; ROWS])
     }
 
-    /// Bounds of positions, attitudes and thrusts.
+    /// Splits the bounds into those of positions, attitudes and thrusts.
     fn parts(&self) -> (&[[f64; DIRECTIONS]], &[[f64; 4]], &[f64]) {
         let (position, rest) = self.0.split_at(POSITION_ROWS);
         let (attitude, thrust) = rest.split_at(ATTITUDE_ROWS);
         (position.as_chunks().0, attitude.as_chunks().0, thrust)
     }
 
-    /// The rows of two opposite faces that cross by more than `least` [m], if any do.
+    /// The rows of two opposite faces that cross by more than `least` \[m\], if there are such faces.
     pub(super) fn crossing_faces(&self, least: f64) -> Option<(usize, usize)> {
         const HALF: usize = DIRECTIONS / 2;
         self.parts()
@@ -330,7 +335,7 @@ impl Bounds {
             })
     }
 
-    /// Whether any attitude row is there.
+    /// Whether the program has any attitude row.
     pub(super) fn has_attitude(&self) -> bool {
         self.parts()
             .1
@@ -339,7 +344,7 @@ impl Bounds {
             .any(|bound| *bound != f64::INFINITY)
     }
 
-    /// Takes every row away.
+    /// Removes every row.
     pub fn clear(&mut self) {
         self.0.fill(f64::INFINITY);
     }
@@ -352,8 +357,8 @@ impl Bounds {
         }
     }
 
-    /// Sets the attitude rows: deviations from trim of `(angle of attack, flight path)`, upper then
-    /// lower limits [rad].
+    /// Sets the attitude rows: upper and lower limits \[rad\] of the deviations of `(angle of attack, flight
+    /// path)` from trim.
     pub fn set_attitude(&mut self, upper: [f64; 2], lower: [f64; 2]) {
         let sides = [upper[0], upper[1], -lower[0], -lower[1]];
         let rows = self.0.iter_mut().skip(POSITION_ROWS).take(ATTITUDE_ROWS);
@@ -362,7 +367,7 @@ impl Bounds {
         }
     }
 
-    /// Sets the thrust rows: thrust may fall by at most this much [N] below trim.
+    /// Sets the thrust rows: the thrust may fall below trim by at most `reserve` \[N\].
     pub fn set_thrust(&mut self, reserve: f64) {
         for row in self.0.iter_mut().skip(POSITION_ROWS + ATTITUDE_ROWS) {
             *row = reserve;

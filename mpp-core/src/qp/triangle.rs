@@ -1,6 +1,6 @@
 //! Triangular matrices without their zeros.
 
-/// Entries of a triangle of some rows.
+/// Number of entries in a triangle with this number of rows.
 pub(super) const fn entries(rows: usize) -> usize {
     rows * (rows + 1) / 2
 }
@@ -14,7 +14,7 @@ impl<const LEN: usize> Triangle<LEN> {
         Self([0.0; LEN])
     }
 
-    /// A row; empty beyond the last.
+    /// A row. It is empty for an index beyond the last row.
     pub(super) fn row(&self, index: usize) -> &[f64] {
         self.0
             .get(entries(index)..entries(index + 1))
@@ -27,7 +27,7 @@ impl<const LEN: usize> Triangle<LEN> {
             .unwrap_or(&mut [])
     }
 
-    /// The rows from one on.
+    /// The rows from `first` on.
     pub(super) fn rows_from(&self, first: usize) -> impl Iterator<Item = &[f64]> {
         let mut rest = self.0.get(entries(first)..).unwrap_or(&[]);
         (first + 1..).map_while(move |len| {
@@ -37,7 +37,7 @@ impl<const LEN: usize> Triangle<LEN> {
         })
     }
 
-    /// The rows before one, backwards.
+    /// The rows before `end`, in reverse order.
     pub(super) fn rows_before(&self, end: usize) -> impl Iterator<Item = &[f64]> {
         let mut rest = self.0.get(..entries(end)).unwrap_or(&[]);
         (1..end + 1).rev().map_while(move |len| {
@@ -47,7 +47,7 @@ impl<const LEN: usize> Triangle<LEN> {
         })
     }
 
-    /// Overwrites a row with the first entries of the next.
+    /// Overwrites a row with the first entries of the next row.
     pub(super) fn move_up(&mut self, index: usize) {
         if let Some((to, from)) = self.0.split_at_mut_checked(entries(index + 1)) {
             let row = to.get_mut(entries(index)..).unwrap_or(&mut []);

@@ -1,6 +1,6 @@
 //! Airframe parameters: the paper's appendix, and the authors' code.
 
-/// Standard gravity [m/s^2], as the paper's appendix.
+/// Standard gravity [m/s^2], from the paper's appendix.
 pub const GRAVITY: f64 = 9.81;
 
 /// Longitudinal airframe parameters (paper, appendix).
@@ -11,14 +11,14 @@ pub const GRAVITY: f64 = 9.81;
 /// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Me delta_e`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Airframe {
-    /// Mass `m` [kg].
+    /// Mass `m` \[kg\].
     pub mass: f64,
     /// Moment of inertia in pitch `I_yy` [kg m^2].
     pub pitch_inertia: f64,
     /// Wing area `S` [m^2].
     pub wing_area: f64,
-    /// Reference length of the pitching moment `l` [m]: the chord `c` in the paper, 1 in the
-    /// authors' code, which leaves the chord out.
+    /// Reference length of the pitching moment `l` \[m\]. It is the chord `c` in the paper, and 1 in the
+    /// authors' code, which leaves out the chord.
     pub moment_length: f64,
     /// Air density `rho` [kg/m^3].
     pub air_density: f64,
@@ -36,13 +36,50 @@ pub struct Airframe {
     pub moment_alpha: f64,
     /// Pitch damping through the rate of the angle of attack `C_Ma'` [s/rad].
     pub moment_alpha_rate: f64,
-    /// Elevator effectiveness `C_Me` [1 per unit of elevator command]. The command is a number,
-    /// not radians: level trim needs 3.85.
+    /// Elevator effectiveness `C_Me` [1 per unit of elevator command]. The command is a number without a
+    /// unit, not an angle in radians: level trim of [`Airframe::REFERENCE`] at 12 m/s needs 3.749.
     pub moment_elevator: f64,
 }
 
 impl Airframe {
-    /// The paper's appendix as printed: with chord and `I_yy = 0.17`.
+    /// Whether every parameter is a finite number.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        let Self {
+            mass,
+            pitch_inertia,
+            wing_area,
+            moment_length,
+            air_density,
+            lift_zero,
+            lift_alpha,
+            drag_zero,
+            drag_induced,
+            moment_zero,
+            moment_alpha,
+            moment_alpha_rate,
+            moment_elevator,
+        } = *self;
+        [
+            mass,
+            pitch_inertia,
+            wing_area,
+            moment_length,
+            air_density,
+            lift_zero,
+            lift_alpha,
+            drag_zero,
+            drag_induced,
+            moment_zero,
+            moment_alpha,
+            moment_alpha_rate,
+            moment_elevator,
+        ]
+        .iter()
+        .all(|number| number.is_finite())
+    }
+
+    /// The airframe of the paper's appendix as printed, with chord and `I_yy = 0.17`.
     pub const PAPER: Self = Self {
         mass: 3.2,
         pitch_inertia: 0.17,
@@ -59,8 +96,8 @@ impl Airframe {
         moment_elevator: 0.2,
     };
 
-    /// The authors' code: derivatives per degree times 180/pi, no chord in the moment, a uniform
-    /// rod's inertia. The flights behind the paper's results used this airframe.
+    /// The airframe of the authors' code: derivatives per degree times 180/pi, no chord in the moment, and
+    /// the inertia of a uniform rod. The flights behind the paper's results used this airframe.
     pub const REFERENCE: Self = Self {
         mass: 3.2,
         pitch_inertia: 1.0 / 12.0 * 3.2 * (0.8 * 0.8),
@@ -71,14 +108,14 @@ impl Airframe {
         ..Self::PAPER
     };
 
-    /// Elevator command [-] that balances the pitching moment at a constant angle of attack [rad].
+    /// Elevator command [-] that balances the pitching moment at a constant angle of attack \[rad\].
     #[must_use]
     pub fn elevator_for(&self, angle_of_attack: f64) -> f64 {
         -(self.moment_alpha * angle_of_attack + self.moment_zero) / self.moment_elevator
     }
 
-    /// Angle of attack [rad] at which an elevator command [-] balances the pitching moment: the inverse
-    /// of [`Airframe::elevator_for`].
+    /// Angle of attack \[rad\] at which an elevator command [-] balances the pitching moment. It is the
+    /// inverse of [`Airframe::elevator_for`].
     #[must_use]
     pub fn angle_of_attack_for(&self, elevator: f64) -> f64 {
         -(self.moment_elevator * elevator + self.moment_zero) / self.moment_alpha

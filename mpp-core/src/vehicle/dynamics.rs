@@ -1,39 +1,39 @@
 //! The nonlinear longitudinal equations of motion (paper, section II-A).
 //!
-//! The paper prints `L/(mv) - cos(gamma)/v - T sin(alpha)/(mv)` for the flight path rate; lift,
-//! weight and thrust balance only as `(L - m g cos(gamma) + T sin(alpha)) / (m v)`, which is also
-//! what the authors' code integrates.
+//! The paper prints `L/(mv) - cos(gamma)/v - T sin(alpha)/(mv)` for the flight path rate. The balance of
+//! lift, weight and thrust gives `(L - m g cos(gamma) + T sin(alpha)) / (m v)` instead. The authors' code
+//! integrates this second form too.
 
 use super::{Airframe, GRAVITY};
 use nalgebra::Vector4;
 
-/// Motion through the air: what the estimator estimates and the controller regulates.
+/// Motion through the air. The estimator estimates it, and the regulator controls it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct AirState {
     /// Airspeed `v` [m/s].
     pub airspeed: f64,
-    /// Pitch `theta` [rad], nose-up positive.
+    /// Pitch `theta` \[rad\], nose-up positive.
     pub pitch: f64,
     /// Pitch rate `theta'` [rad/s].
     pub pitch_rate: f64,
-    /// Flight path angle `gamma` [rad], climbing positive.
+    /// Flight path angle `gamma` \[rad\], climbing positive.
     pub flight_path: f64,
 }
 
 impl AirState {
-    /// Angle of attack `alpha = theta - gamma` [rad].
+    /// Angle of attack `alpha = theta - gamma` \[rad\].
     #[must_use]
     pub fn angle_of_attack(&self) -> f64 {
         self.pitch - self.flight_path
     }
 
-    /// As `(v, theta, theta', gamma)`.
+    /// The motion as a vector `(v, theta, theta', gamma)`.
     #[must_use]
     pub fn to_vector(&self) -> Vector4<f64> {
         Vector4::new(self.airspeed, self.pitch, self.pitch_rate, self.flight_path)
     }
 
-    /// From `(v, theta, theta', gamma)`.
+    /// The motion from a vector `(v, theta, theta', gamma)`.
     #[must_use]
     pub fn from_vector(vector: &Vector4<f64>) -> Self {
         Self {
@@ -54,18 +54,26 @@ impl AirState {
 /// The whole vehicle state: position in the world and motion through the air.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct VehicleState {
-    /// Downrange distance [m].
+    /// Downrange distance \[m\].
     pub x: f64,
-    /// Height [m], up positive.
+    /// Height \[m\], up positive.
     pub z: f64,
     /// Motion through the air.
     pub air: AirState,
 }
 
-/// What the actuators are told.
+impl VehicleState {
+    /// Whether every value is finite.
+    #[must_use]
+    pub fn is_finite(&self) -> bool {
+        self.x.is_finite() && self.z.is_finite() && self.air.is_finite()
+    }
+}
+
+/// The command to the actuators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Control {
-    /// Thrust `T` along the body axis [N].
+    /// Thrust `T` along the body axis \[N\].
     pub thrust: f64,
     /// Elevator command `delta_e` [-].
     pub elevator: f64,
@@ -73,7 +81,7 @@ pub struct Control {
 
 /// Time derivative of the motion through the air, in the units of [`AirState`] per second.
 ///
-/// Not finite at zero airspeed: the equations have no meaning there.
+/// The result is not finite at zero airspeed, where the equations have no meaning.
 #[must_use]
 pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirState {
     let a = airframe;

@@ -1,13 +1,13 @@
-//! What motor and elevator can do, as far as the core is told.
+//! Limits of motor and elevator, as far as the core knows them.
 
 use super::{Airframe, Control};
 
-/// Limits of the actuators; `None` is no limit.
+/// Limits of the actuators. `None` means no limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActuatorLimits {
-    /// Greatest thrust [N]; the least is always 0.
+    /// Greatest thrust \[N\]. The least thrust is always 0.
     pub thrust_max: Option<f64>,
-    /// Time constant of the thrust's first-order lag [s].
+    /// Time constant of the thrust's first-order lag \[s\].
     pub thrust_lag: Option<f64>,
     /// Greatest distance of the elevator from its trim, in units of the command.
     pub elevator_range: Option<f64>,
@@ -16,7 +16,7 @@ pub struct ActuatorLimits {
 }
 
 impl ActuatorLimits {
-    /// No limits but that of a propeller, which does not brake.
+    /// No limits except the least thrust 0, because a propeller does not brake.
     pub const NONE: Self = Self {
         thrust_max: None,
         thrust_lag: None,
@@ -39,7 +39,7 @@ impl ActuatorLimits {
             .all(|limit| *limit > 0.0 && limit.is_finite())
     }
 
-    /// The nearest command within the limits, `dt` [s] after `last` was given.
+    /// The nearest command within the limits, `dt` \[s\] after the actuators gave `last`.
     #[must_use]
     pub fn within(&self, command: Control, trim: Control, last: Control, dt: f64) -> Control {
         let mut within = command;
@@ -58,7 +58,7 @@ impl ActuatorLimits {
         within
     }
 
-    /// What the actuators give in the `dt` [s] after `last`, of a command within the limits.
+    /// The controls that the actuators give `dt` \[s\] after `last`, under a command within the limits.
     #[must_use]
     pub fn given(&self, within: Control, last: Control, dt: f64) -> Control {
         let mut given = within;
@@ -69,11 +69,22 @@ impl ActuatorLimits {
         given
     }
 
-    /// Greatest distance of the angle of attack from its trim [rad] that the elevator balances.
+    /// Greatest distance of the angle of attack from its trim that the elevator balances \[rad\].
     #[must_use]
     pub fn angle_of_attack(&self, airframe: &Airframe) -> f64 {
-        let per_unit = libm::fabs(airframe.moment_elevator / airframe.moment_alpha);
-        self.elevator_range
-            .map_or(f64::INFINITY, |range| range * per_unit)
+        let range = self.elevator_range;
+        range.map_or(f64::INFINITY, |range| range * per_unit(airframe))
     }
+
+    /// Greatest rate of the angle of attack [rad/s] that the elevator follows in balance.
+    #[must_use]
+    pub fn angle_of_attack_rate(&self, airframe: &Airframe) -> f64 {
+        let rate = self.elevator_rate;
+        rate.map_or(f64::INFINITY, |rate| rate * per_unit(airframe))
+    }
+}
+
+/// Angle of attack that a unit of the elevator's command balances \[rad\].
+fn per_unit(airframe: &Airframe) -> f64 {
+    libm::fabs(airframe.moment_elevator / airframe.moment_alpha)
 }

@@ -3,18 +3,20 @@
 use super::{AirState, Airframe, Control, GRAVITY};
 use nalgebra::{Matrix4, Matrix4x2};
 
-/// Which Jacobian to form.
+/// Form of the Jacobian.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JacobianForm {
-    /// Every partial derivative.
+    /// The Jacobian with every partial derivative.
     Exact,
-    /// As the authors' code, to compare with it: without `d theta''/d theta'`, without the share of
-    /// `d gamma'/dv` that comes from the division by `v` and its way into `d theta''/dv`, and
-    /// without `d theta''/dT`.
+    /// The Jacobian of the authors' code, for comparison. It leaves out `d theta''/d theta'`,
+    /// `d theta''/dT`, the share of `d gamma'/dv` that comes from the division by `v`, and the share of
+    /// `d theta''/dv` that comes from `d gamma'/dv`.
+    #[cfg(feature = "paper")]
     Authors,
 }
 
-/// `d/dt dx = a dx + b du` about an operating point; state order `(v, theta, theta', gamma)`.
+/// Linear model `d/dt dx = a dx + b du` about an operating point. The order of the state is
+/// `(v, theta, theta', gamma)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Linearization {
     /// State Jacobian, 4 x 4.
@@ -52,6 +54,7 @@ pub fn linearize(
     let path_rate = (lift - a.mass * GRAVITY * cos_path + thrust * sin_alpha) / momentum;
     let path_v = match form {
         JacobianForm::Exact => lift_v / momentum - path_rate / v,
+        #[cfg(feature = "paper")]
         JacobianForm::Authors => lift_v / momentum,
     };
     let path_pitch = (lift_alpha + thrust * cos_alpha) / momentum;
@@ -72,6 +75,7 @@ pub fn linearize(
             moment_scale * a.moment_alpha_rate,
             -moment_scale * a.moment_alpha_rate * path_thrust,
         ),
+        #[cfg(feature = "paper")]
         JacobianForm::Authors => (moment_v, 0.0, 0.0),
     };
     let pitch_pitch = moment_scale * (a.moment_alpha - a.moment_alpha_rate * path_pitch);

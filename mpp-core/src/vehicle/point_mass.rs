@@ -1,26 +1,27 @@
-//! Motion of the point mass: the equations of motion with the rotation in balance, which it reaches
-//! within a tenth of a second. What plans are flown out by.
+//! Motion of the point mass: the equations of motion with the rotation in balance. The aircraft reaches
+//! this balance within a tenth of a second. Roll-outs of plans use this model.
 //!
-//! The angle of attack is a state, its rate a control: a plan then never asks for a jump of lift.
+//! The angle of attack is a state, and its rate is a control. A plan therefore never asks for a jump of
+//! the lift.
 
 use super::{AirState, Airframe, Control, GRAVITY, VehicleState, Wind};
 use nalgebra::{Matrix5, SMatrix};
 
-/// Least airspeed of a roll-out [m/s]: the equations divide by it.
+/// Least airspeed of a roll-out [m/s]. It keeps the divisor of the equations away from zero.
 const LEAST_AIRSPEED: f64 = 3.0;
 
 /// State of the point mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathState {
-    /// Downrange distance [m].
+    /// Downrange distance \[m\].
     pub x: f64,
-    /// Height [m].
+    /// Height \[m\].
     pub z: f64,
     /// Airspeed [m/s].
     pub airspeed: f64,
-    /// Flight path angle [rad].
+    /// Flight path angle \[rad\].
     pub flight_path: f64,
-    /// Angle of attack [rad].
+    /// Angle of attack \[rad\].
     pub angle_of_attack: f64,
 }
 
@@ -29,12 +30,12 @@ pub struct PathState {
 pub struct PathControl {
     /// Rate of the angle of attack [rad/s].
     pub angle_of_attack_rate: f64,
-    /// Thrust [N].
+    /// Thrust \[N\].
     pub thrust: f64,
 }
 
 impl PathState {
-    /// Of the whole vehicle's state.
+    /// The point mass of a vehicle with this state.
     #[must_use]
     pub fn of(state: &VehicleState) -> Self {
         Self {
@@ -46,7 +47,7 @@ impl PathState {
         }
     }
 
-    /// The state after `dt` [s] of a constant control, in `steps` steps of the classic Runge-Kutta
+    /// The state after `dt` \[s\] under a constant control, by `steps` steps of the classic Runge-Kutta
     /// method.
     #[must_use]
     pub fn after(&self, airframe: &Airframe, control: &PathControl, dt: f64, steps: u8) -> Self {
@@ -58,7 +59,7 @@ impl PathState {
         state
     }
 
-    /// The state after `dt` [s] in moving air, as [`Self::after`].
+    /// The state after `dt` \[s\] in moving air; otherwise like [`Self::after`].
     #[must_use]
     pub fn after_in(
         &self,
@@ -85,7 +86,7 @@ impl PathState {
         ends.moved(&k2, h / 3.0).moved(&k3, h / 3.0)
     }
 
-    /// Time derivative.
+    /// Time derivative of the state.
     #[must_use]
     pub fn rate(&self, airframe: &Airframe, control: &PathControl) -> Self {
         let a = airframe;
@@ -106,7 +107,7 @@ impl PathState {
         }
     }
 
-    /// `self + h rate`
+    /// `self + h rate`, with at least the least airspeed.
     fn moved(&self, rate: &Self, h: f64) -> Self {
         Self {
             x: self.x + h * rate.x,
@@ -117,7 +118,7 @@ impl PathState {
         }
     }
 
-    /// The whole vehicle's state and the controls that keep its rotation in balance.
+    /// The state of the whole vehicle, and the controls that keep its rotation in balance.
     #[must_use]
     pub fn reference(&self, airframe: &Airframe, control: &PathControl) -> (VehicleState, Control) {
         let a = airframe;
@@ -142,9 +143,9 @@ impl PathState {
         (state, feedforward)
     }
 
-    /// How the state after `dt` [s] depends on state and control, by the matrix exponential (to the
-    /// fourth order) of the Jacobian halfway: 5 x 5 on `(x, z, v, gamma, alpha)` and 5 x 2 on `(alpha
-    /// rate, thrust)`.
+    /// Derivatives of the state after `dt` \[s\]: 5 x 5 with respect to `(x, z, v, gamma, alpha)` and 5 x 2
+    /// with respect to `(alpha rate, thrust)`. They come from the matrix exponential (to the fourth order) of
+    /// the Jacobian halfway.
     #[must_use]
     pub fn sensitivity(
         &self,
@@ -161,7 +162,7 @@ impl PathState {
         (Matrix5::identity() + step * mean, mean * input * dt)
     }
 
-    /// Jacobian of [`Self::rate`] in state and control.
+    /// Jacobian of [`Self::rate`] with respect to state and control.
     #[must_use]
     pub fn jacobian(
         &self,

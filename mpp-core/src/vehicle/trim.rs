@@ -1,37 +1,70 @@
-//! Steady flight: the operating points that the planner and the controller are built around.
+//! Steady flight: the operating points of the planner and of the regulator.
 
 use super::{AirState, Airframe, Control, GRAVITY};
+use core::fmt;
 
 /// Steady straight flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trim {
     /// The steady motion; its pitch rate is zero.
     pub state: AirState,
-    /// The controls that hold it.
+    /// The controls that hold the steady motion.
     pub control: Control,
 }
 
-/// No steady flight exists there, or it was not found.
+/// The reason why there is no trim. The vehicle then does not start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum TrimError {
-    /// A parameter or a result is not finite, or an airspeed not positive. The vehicle does not
-    /// start: check the airframe.
-    NonFinite,
-    /// The iteration did not settle within its bound. The vehicle does not start.
+    /// The airspeed is not a positive, finite number.
+    Airspeed,
+    /// The angle of the flight path or of attack is not a finite number.
+    Angle,
+    /// A parameter of the airframe is not a finite number.
+    Airframe,
+    /// The balance of forces gives a number that is not finite: the wing does not carry the aircraft.
+    NotCarried,
+    /// The elevator command that balances the moments is not a finite number: the elevator has no effect.
+    NoElevator,
+    /// The iteration did not settle within its bound.
     NotConverged,
 }
 
-/// Bound of the substitutions; each gains more than a digit at the paper's airspeeds.
+impl fmt::Display for TrimError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Airspeed => {
+                "the airspeed of level flight is not a positive, finite number: check cruise and \
+                 airframe"
+            }
+            Self::Angle => "the angle of steady flight is not a finite number: give it in radians",
+            Self::Airframe => {
+                "a parameter of the airframe is not a finite number: check the airframe"
+            }
+            Self::NotCarried => {
+                "the wing does not carry the aircraft in steady flight: check cruise and airframe"
+            }
+            Self::NoElevator => {
+                "the elevator has no effect on steady flight: check the moments of the airframe"
+            }
+            Self::NotConverged => {
+                "no steady flight was found at the airspeed: check cruise and airframe"
+            }
+        })
+    }
+}
+
+impl core::error::Error for TrimError {}
+
+/// Greatest number of substitutions. Each one gains more than a digit at the paper's airspeeds.
 const MAX_ITERATIONS: usize = 60;
 
-/// Change of the angle of attack [rad] that counts as settled.
+/// Change of the angle of attack \[rad\] below which the iteration has settled.
 const TOLERANCE: f64 = 1e-14;
 
 impl Trim {
-    /// The operating point of the authors' code: where its root finder gave up looking for level
-    /// flight at 4.3 N. None exists below 4.40 N with this drag polar; here the aircraft slows down by
-    /// 0.03 m/s^2.
+    /// The operating point of the authors' code. Their root finder searched for level flight at 4.3 N and
+    /// stopped at this point. With this drag polar no level flight exists below 4.40 N; at this point the
+    /// aircraft slows down by 0.03 m/s^2.
     #[must_use]
     pub fn of_authors(airframe: &Airframe) -> Self {
         let state = AirState {
@@ -49,21 +82,21 @@ impl Trim {
         }
     }
 
-    /// Steady straight flight at an airspeed [m/s] and a flight path angle [rad]: `alpha` and `T`
-    /// from lift and drag balance. A steep descent may need a negative thrust.
+    /// Steady straight flight at an airspeed [m/s] and a flight path angle \[rad\]. The balances of lift and
+    /// drag give `alpha` and `T`. A steep descent may need a negative thrust.
     ///
     /// # Errors
-    /// [`TrimError`] when no such flight is found.
+    /// [`TrimError`] if the iteration finds no such flight.
     pub fn at_speed(airframe: &Airframe, airspeed: f64, path: f64) -> Result<Self, TrimError> {
         let a = airframe;
-        if airspeed.is_nan() || airspeed <= 0.0 {
-            return Err(TrimError::NonFinite);
+        if !(airspeed > 0.0 && airspeed.is_finite()) {
+            return Err(TrimError::Airspeed);
         }
         let pressure_area = 0.5 * a.air_density * (airspeed * airspeed) * a.wing_area;
         let (sin_path, cos_path) = libm::sincos(path);
         let mut alpha = 0.0;
         for _ in 0..MAX_ITERATIONS {
-            // Thrust carries a few percent of the weight, so substitution contracts quickly.
+            // The thrust carries only a few percent of the weight, so the substitution converges quickly.
             let (sin_alpha, cos_alpha) = libm::sincos(alpha);
             let lift_coefficient = a.lift_zero + a.lift_alpha * alpha;
             let drag = pressure_area
@@ -74,7 +107,7 @@ impl Trim {
             let change = next - alpha;
             alpha = next;
             if change.abs() < TOLERANCE {
-                return finite(Self {
+                let trim = Self {
                     state: AirState {
                         airspeed,
                         pitch: path + alpha,
@@ -85,17 +118,19 @@ impl Trim {
                         thrust,
                         elevator: a.elevator_for(alpha),
                     },
-                });
+                };
+                return trim.checked(a, path);
             }
         }
-        Err(TrimError::NotConverged)
+        Err(cause(a, path, TrimError::NotConverged))
     }
 
-    /// Steady level flight at an angle of attack [rad]: airspeed and thrust from `L + T sin alpha = m g`
-    /// and `T cos alpha = D`.
+    /// Steady level flight at an angle of attack \[rad\]. Airspeed and thrust follow from
+    /// `L + T sin alpha = m g` and `T cos alpha = D`.
     ///
     /// # Errors
-    /// [`TrimError::NonFinite`] when the wing does not carry the aircraft at that angle.
+    /// [`TrimError`]: for example [`TrimError::NotCarried`] if the wing does not carry the aircraft at that
+    /// angle.
     pub fn at_angle_of_attack(airframe: &Airframe, alpha: f64) -> Result<Self, TrimError> {
         let a = airframe;
         let (sin_alpha, cos_alpha) = libm::sincos(alpha);
@@ -104,7 +139,7 @@ impl Trim {
         let carried = lift + drag * sin_alpha / cos_alpha;
         let speed_squared = 2.0 * a.mass * GRAVITY / (a.air_density * a.wing_area * carried);
         let pressure_area = 0.5 * a.air_density * speed_squared * a.wing_area;
-        finite(Self {
+        let trim = Self {
             state: AirState {
                 airspeed: libm::sqrt(speed_squared),
                 pitch: alpha,
@@ -115,17 +150,30 @@ impl Trim {
                 thrust: pressure_area * drag / cos_alpha,
                 elevator: a.elevator_for(alpha),
             },
-        })
+        };
+        trim.checked(a, alpha)
+    }
+
+    /// Returns the trim if all its numbers are finite, and otherwise the cause.
+    fn checked(self, airframe: &Airframe, angle: f64) -> Result<Self, TrimError> {
+        let Control { thrust, elevator } = self.control;
+        if !self.state.is_finite() || !thrust.is_finite() {
+            Err(cause(airframe, angle, TrimError::NotCarried))
+        } else if !elevator.is_finite() {
+            Err(cause(airframe, angle, TrimError::NoElevator))
+        } else {
+            Ok(self)
+        }
     }
 }
 
-fn finite(trim: Trim) -> Result<Trim, TrimError> {
-    if trim.state.is_finite()
-        && trim.control.thrust.is_finite()
-        && trim.control.elevator.is_finite()
-    {
-        Ok(trim)
+/// The cause of a failed trim: a number of the input that is not finite, or else `otherwise`.
+fn cause(airframe: &Airframe, angle: f64, otherwise: TrimError) -> TrimError {
+    if !angle.is_finite() {
+        TrimError::Angle
+    } else if !airframe.is_finite() {
+        TrimError::Airframe
     } else {
-        Err(TrimError::NonFinite)
+        otherwise
     }
 }

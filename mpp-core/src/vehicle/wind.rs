@@ -1,21 +1,21 @@
-//! Motion of the air, and what it makes of motion through it.
+//! Motion of the air, and its effect on the motion of the aircraft over ground.
 
 use super::AirState;
 
 /// Velocity of the air over ground.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wind {
-    /// Downrange [m/s].
+    /// Downrange component [m/s].
     pub x: f64,
-    /// Up [m/s].
+    /// Upward component [m/s].
     pub z: f64,
 }
 
 impl Wind {
-    /// None.
+    /// Still air.
     pub const STILL: Self = Self { x: 0.0, z: 0.0 };
 
-    /// Velocity over ground of an aircraft that moves like this through the air, `(x, z)` [m/s].
+    /// Velocity over ground `(x, z)` [m/s] of an aircraft with the motion `air` through the air.
     #[must_use]
     pub fn ground_velocity(&self, air: &AirState) -> (f64, f64) {
         let (sin, cos) = libm::sincos(air.flight_path);

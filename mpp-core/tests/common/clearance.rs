@@ -1,4 +1,4 @@
-//! How near a flight came.
+//! The least distance of a flight from obstacles.
 
 use crate::common::world::Disc;
 

@@ -1,14 +1,14 @@
-//! What a map's occupied cells are completed to.
+//! The completion of a map's occupied cells.
 
 use super::cells::{COLS, ROWS, centre, occupied};
 use mpp_core::map::MemoryMap;
 
-/// The occupied cells together with what is taken for hidden parts of obstacles.
+/// The occupied cells together with the cells that count as hidden parts of obstacles.
 pub(crate) struct Cells(Vec<Vec<bool>>);
 
 impl Cells {
-    /// By definition: what is unknown and shares an edge with an occupied cell, and then what is
-    /// unknown and shares an edge or a corner with one of these.
+    /// Completes the cells by the definition. First come unknown cells that share an edge with an
+    /// occupied cell, then unknown cells that share an edge or a corner with one of these.
     pub(crate) fn completed(map: &MemoryMap) -> Self {
         let all = |of: &dyn Fn(i32, i32) -> bool| {
             let row = |row| (0..COLS as i32).map(|col| of(row, col)).collect();
@@ -37,7 +37,7 @@ impl Cells {
         cell.is_some_and(|cell| *cell)
     }
 
-    /// Their centres, by row and column.
+    /// Centres of the cells, by row and column.
     pub(crate) fn centres(&self, map: &MemoryMap) -> Vec<(f64, f64)> {
         let cells = (0..ROWS as i32).flat_map(|row| (0..COLS as i32).map(move |col| (row, col)));
         cells

@@ -3,7 +3,7 @@
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// The same numbers for the same seed.
+/// A generator that gives the same numbers for the same seed.
 pub(crate) struct Draw(Pcg64Mcg);
 
 impl Draw {
@@ -11,12 +11,12 @@ impl Draw {
         Self(Pcg64Mcg::seed_from_u64(seed))
     }
 
-    /// Uniform in [0, 1).
+    /// A uniform random number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
     }
 
-    /// Uniform between two numbers.
+    /// A uniform random number between two numbers.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }

@@ -1,10 +1,12 @@
 //! Maps with memory, built from scans.
 
 use crate::common::draw::Draw;
+use crate::common::pose::pose;
 use mpp_core::map::{ClearanceField, MemoryMap};
 use mpp_core::sense::LidarScan;
 
-/// A scan of 100 beams over 100 degrees; ten at a time see an arc at a random range, or nothing.
+/// A scan of 100 beams over 100 degrees. Ten beams at a time see an arc at a random range, or
+/// nothing.
 pub(crate) fn noise(draw: &mut Draw) -> LidarScan {
     let degree = core::f64::consts::PI / 180.0;
     let mut scan = LidarScan::new();
@@ -19,18 +21,18 @@ pub(crate) fn noise(draw: &mut Draw) -> LidarScan {
     scan
 }
 
-/// A map that took in some such scans about `(x, 50)`.
+/// A map that took in this number of such scans about `(x, 50)`.
 pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
     let mut map = MemoryMap::new();
     map.roll(x, 50.0);
     for _ in 0..scans {
         let (z, pitch) = (draw.between(42.0, 58.0), draw.between(-0.3, 0.3));
-        map.insert(&noise(draw), 45.0, x, z, pitch);
+        map.insert(&noise(draw), 45.0, &pose(x, z, pitch));
     }
     map
 }
 
-/// Its field.
+/// The distance field of a map.
 pub(crate) fn field(map: &MemoryMap) -> ClearanceField {
     let mut field = ClearanceField::new();
     field.build(map);

@@ -4,7 +4,7 @@ use mpp_core::estimate::Measurement;
 use mpp_core::sense::SensorFrame;
 use mpp_core::vehicle::VehicleState;
 
-/// What they read.
+/// The frame that the sensors read.
 pub(crate) fn frame(state: &VehicleState) -> SensorFrame {
     SensorFrame {
         measurement: Measurement {

@@ -1,18 +1,18 @@
-//! A world of discs, and a lidar that looks at it.
+//! A world of discs, and a lidar that scans it.
 
 use mpp_core::config::MAX_BEAMS;
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::VehicleState;
 
-/// Centre `(x, z)` and radius [m].
+/// A disc: centre `(x, z)` and radius \[m\].
 pub(crate) type Disc = (f64, f64, f64);
 
-/// Sight of the lidar [m].
+/// Greatest range of the lidar \[m\].
 pub(crate) const SIGHT: f64 = 50.0;
 const BEAMS: usize = 100;
 const _: () = assert!(BEAMS <= MAX_BEAMS);
 
-/// A sweep of 100 beams over 100 degrees, without noise.
+/// A scan of 100 beams over 100 degrees, without noise.
 pub(crate) fn scan(discs: &[Disc], state: &VehicleState) -> LidarScan {
     let mut scan = LidarScan::new();
     let degree = core::f64::consts::PI / 180.0;

@@ -1,4 +1,4 @@
-//! Small programs against the obvious way to solve them: every way in which rows can take part is
+//! Tests small programs against the simple way to solve them: all combinations of active rows are
 //! tried.
 
 use crate::dense::{
@@ -11,11 +11,11 @@ use mpp_core::qp::{Penalty, Problem, Solution, Solver, Status};
 
 /// Error of costs, relative, and of controls: rounding leaves 1e-12.
 const SAME: f64 = 1e-9;
-/// What brute force takes for zero: violations [m, rad, N], and multipliers and slopes relative to
-/// their size.
+/// Limit below which brute force takes a value for zero: violations [m, rad, N], and multipliers
+/// and slopes relative to their size.
 const ZERO: f64 = 1e-9;
 
-/// How a row takes part.
+/// The role of a row.
 #[derive(Clone, Copy, PartialEq)]
 enum Role {
     Inactive,
@@ -23,8 +23,8 @@ enum Role {
     Yielding,
 }
 
-/// The point at which cost and rows balance in given roles, and the rows' multipliers; none where
-/// the rows depend on each other.
+/// The point at which cost and rows balance in given roles, and the rows' multipliers. Returns
+/// `None` if the rows depend on each other.
 fn balance(
     program: &DenseProgram,
     roles: &[Role],
@@ -66,7 +66,7 @@ fn balance(
     Some((controls.try_into().ok()?, multipliers))
 }
 
-/// Whether every row keeps its role, and nothing is left of the slope.
+/// Whether every row keeps its role, and the slope vanishes.
 fn is_optimal(
     program: &DenseProgram,
     roles: &[Role],
@@ -99,7 +99,7 @@ fn is_optimal(
     largest(&slope) <= ZERO * scale
 }
 
-/// The optimum, and the roles of the rows in it; none if rows contradict each other.
+/// The optimum, and the roles of the rows in it. Returns `None` if rows contradict each other.
 fn try_everything(program: &DenseProgram, penalty: Option<Penalty>) -> Option<(Vector, Vec<Role>)> {
     let choices = if penalty.is_some() { 3 } else { 2_usize };
     let rows = &program.rows;

@@ -1,16 +1,16 @@
-//! What an answer of the solver must keep to be believed: the conditions of Karush, Kuhn and Tucker
-//! at an optimum, a valid sum of rows at a contradiction. By the dense program alone.
+//! The conditions that a trusted answer of the solver must keep: those of Karush, Kuhn and Tucker
+//! at an optimum, and a valid sum of rows at a contradiction. They use the dense program alone.
 
 use crate::dense::{CONTROLS, DenseProgram, flat, largest};
 use crate::programs::softens;
 use mpp_core::qp::{Penalty, ROWS, Solution, Solver};
 
-/// Largest entry of a gradient that should vanish, relative to the largest share it is summed from.
+/// Largest entry of a gradient that should vanish, relative to the largest term of its sum.
 const STATIONARY: f64 = 1e-7;
 /// Violation of a row that callers accept [m, rad, N].
 pub(crate) const ACCEPTED: f64 = 1e-6;
-/// Rounding in a proof may leave room for controls of this size, summed over the horizon: thirty
-/// for each, and flights take one.
+/// Size of controls, summed over the horizon, for which rounding in a proof may leave room: thirty
+/// for each control, where flights take one.
 const ABSURD_CONTROLS: f64 = 1e3;
 
 /// Multipliers by row.
@@ -22,8 +22,8 @@ fn multipliers(solver: &Solver) -> [f64; ROWS] {
     all
 }
 
-/// Rows hold up to `tight`, those with a multiplier are tight or yield by their price, and slope and
-/// weighted rows balance.
+/// Checks that rows hold up to `tight`, that rows with a multiplier are tight or yield by their
+/// price, and that slope and weighted rows balance.
 pub(crate) fn assert_optimal(
     program: &DenseProgram,
     penalty: Option<Penalty>,
@@ -71,8 +71,8 @@ pub(crate) fn assert_optimal(
     );
 }
 
-/// The weighted rows add up to `gradient . u <= negative`, and the gradient vanishes but for
-/// rounding: only absurd controls could keep it.
+/// Checks that the weighted rows add up to `gradient . u <= negative`, and that the gradient
+/// vanishes except for rounding. Only absurd controls could keep such a sum.
 pub(crate) fn assert_contradiction(program: &DenseProgram, solver: &Solver) {
     let multipliers = multipliers(solver);
     let mut gradient = [0.0; CONTROLS];

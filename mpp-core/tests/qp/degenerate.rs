@@ -1,5 +1,5 @@
-//! Rows that coincide, touch, oppose each other exactly or do nothing: the solver ends, and what it
-//! says is true.
+//! Tests rows that coincide, touch, oppose each other exactly or do nothing. The solver ends, and
+//! its answer is true.
 
 use crate::conditions::{ACCEPTED, assert_contradiction, assert_optimal};
 use crate::dense::DenseProgram;
@@ -15,14 +15,14 @@ const PENALTY: Penalty = Penalty {
     linear: 50.0,
     quadratic: 200.0,
 };
-/// Differences of controls [elevator, N] and of relative costs between two programs that are the
-/// same but for the faces' directions, which are horizontal or upright to 1e-8 only.
+/// Differences of controls [elevator, N] and of relative costs between two programs that differ
+/// only in the faces' directions, which are horizontal or upright to 1e-8 only.
 const SAME: f64 = 1e-7;
-/// The same, of costs, where nearly every control is pinned: multipliers are large, and rows may be
-/// missed by 1e-9.
+/// Difference of relative costs where nearly every control is pinned. Multipliers are large then,
+/// and rows may be missed by 1e-9.
 const PINNED: f64 = 1e-5;
 
-/// Solves, and checks whatever comes out: that it came in time, and is an optimum or a proof.
+/// Solves, and checks any result: it came in time, and it is an optimum or a proof.
 fn proved(solver: &mut Solver, setup: &Setup, problem: &Problem) -> (Status, Solution) {
     let mut solution = Solution::new();
     let status = solver.solve(&setup.shared, problem);
@@ -51,7 +51,7 @@ fn assert_same(a: &Solution, b: &Solution) {
     assert!(difference(&a.controls, &b.controls) <= SAME);
 }
 
-/// A random start and target, no rows.
+/// A program with a random start and target and no rows.
 fn bare(setup: &Setup, draw: &mut Draw) -> Problem {
     Problem {
         bounds: Bounds::none(),
@@ -76,7 +76,8 @@ fn is_chosen(way: usize, row: usize) -> bool {
         }
 }
 
-/// Calls `check` with programs whose chosen rows are all met exactly by one flight, and its cost.
+/// Calls `check` with programs whose chosen rows are all met exactly by one flight, and with its
+/// cost.
 fn for_each_pinned_program(
     seed: u64,
     count: usize,
@@ -101,7 +102,7 @@ fn faces_and_limits_that_touch_exactly_leave_their_one_flight() {
     for_each_pinned_program(50, 180, |setup, problem, way, cost, _| {
         let best = optimum(&mut solver, setup, problem);
         assert!(best.cost <= cost * (1.0 + SAME));
-        // Attitudes pin every control that the target feels; positions leave the last one.
+        // Attitudes pin every control that affects the target; positions leave the last one free.
         assert!(way % 4 != 0 || best.cost >= cost * (1.0 - SAME));
     });
 }
@@ -168,7 +169,8 @@ fn pinned_soft_rows_end_in_their_optimum() {
     for_each_pinned_program(53, 180, |setup, problem, _, cost, draw| {
         let mut problem = *problem;
         problem.penalty = Some(PENALTY);
-        // Some of the boundaries: all of them are more rows than the solver holds.
+        // Only some of the boundaries are used, because all of them are more rows than the solver
+        // holds.
         let few = 3 + draw.below(4);
         for row in 0..ROWS {
             let (RowKind::Position(knot, _) | RowKind::Attitude(knot, _)) = RowKind::of(row) else {
@@ -184,8 +186,8 @@ fn pinned_soft_rows_end_in_their_optimum() {
 
 #[test]
 fn rows_that_say_the_same_count_once() {
-    // The first climb and the first thrust each reach the second position alone, through one number:
-    // all its faces on one side, and a limit, are the same row.
+    // The first climb and the first thrust each reach the second position alone, through one
+    // number. So all its faces on one side, and a limit, are the same row.
     let mut solver = Box::new(Solver::new());
     let mut draw = Draw::new(54);
     for setup in Setup::all().iter().cycle().take(60) {
@@ -249,8 +251,8 @@ fn rows_met_exactly_by_the_optimum_without_rows_cost_nothing() {
                 assert_eq!(solver.iterations(), 1);
             }
         }
-        // One row cuts the optimum off, others keep it from evading. Not a face above or below: those
-        // are not quite opposite, and a flight far to the side would slip through.
+        // One row cuts the optimum off, and others keep it from evading. No face above or below is
+        // used: those are not quite opposite, and a flight far to the side would slip through.
         for off in [1e-8, 1e-6, 1e-4] {
             let upright = |row| matches!(RowKind::of(row), RowKind::Position(_, 0 | 4));
             let mut rows = core::iter::repeat_with(|| any_row(&mut draw));
@@ -266,7 +268,8 @@ fn rows_met_exactly_by_the_optimum_without_rows_cost_nothing() {
             problem.bounds.0[cut] = values[cut] - off;
             problem.penalty = None;
             if solver.solve(&setup.shared, &problem) == Status::NumericalFailure {
-                // Nearer to the boundary of feasibility than rounding lets the method see.
+                // The program is nearer to the boundary of feasibility than rounding lets the
+                // method see.
                 unproven += 1;
             } else {
                 proved(&mut solver, setup, &problem);

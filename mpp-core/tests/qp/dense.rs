@@ -1,19 +1,19 @@
-//! Programs spelled out in the controls alone, by rolling out one control after the other: dense,
-//! slow, and nothing shared with what condenses and solves them.
+//! Programs in the controls alone, made by rolling out one control after the other. They are dense
+//! and slow, and they share nothing with the code that condenses and solves them.
 
 use crate::programs::left_hand_side;
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::qp::{Dynamics, Problem, ROWS, StageControl, StageState, Weights};
 
-/// Controls of the horizon.
+/// Number of controls in the horizon.
 pub(crate) const CONTROLS: usize = 2 * STAGES;
 pub(crate) type Vector = [f64; CONTROLS];
 pub(crate) type Stages = [Dynamics; STAGES];
 
-/// A row without an entry above this is a constant.
+/// A row without an entry above this limit is a constant.
 const UNCHANGEABLE: f64 = 1e-12;
 
-/// `normal . u <= bound`.
+/// The row `normal . u <= bound`.
 pub(crate) struct DenseRow {
     pub(crate) number: usize,
     pub(crate) normal: Vector,
@@ -30,7 +30,8 @@ impl DenseRow {
     }
 }
 
-/// `u' hessian u / 2 + gradient . u`, but for a constant, under the rows with a finite bound.
+/// The program `u' hessian u / 2 + gradient . u`, without a constant, under the rows with a finite
+/// bound.
 pub(crate) struct DenseProgram {
     pub(crate) hessian: [Vector; CONTROLS],
     pub(crate) gradient: Vector,
@@ -92,7 +93,7 @@ fn unit(index: usize) -> [StageControl; STAGES] {
     controls
 }
 
-/// `x_{k+1} = a_k x_k + b_k u_k + offset_k`.
+/// Rolls out `x_{k+1} = a_k x_k + b_k u_k + offset_k`.
 pub(crate) fn roll_out(
     stages: &Stages,
     initial: &StageState,
@@ -146,8 +147,9 @@ pub(crate) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
-/// Solves linear equations, each given by its factors and its right-hand side last, by Gauss's
-/// elimination with full pivoting; none where they depend on each other but for rounding.
+/// Solves linear equations by Gauss's elimination with full pivoting. Each equation holds its
+/// factors, with its right-hand side last. Returns `None` if the equations depend on each other
+/// except for rounding.
 pub(crate) fn solve_equations(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     const DEPENDENT: f64 = 1e-13;
     let count = rows.len();
@@ -181,7 +183,7 @@ pub(crate) fn solve_equations(mut rows: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     Some(solution)
 }
 
-/// Largest absolute entry among rows and columns from `first` on, right-hand sides left out.
+/// Largest absolute entry among rows and columns from `first` on, without right-hand sides.
 fn largest_entry(rows: &[Vec<f64>], first: usize) -> (f64, usize, usize) {
     let mut found = (0.0, first, first);
     for row in first..rows.len() {

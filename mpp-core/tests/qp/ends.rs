@@ -1,4 +1,4 @@
-//! How solves end: limits, caps, constants, contradictions and numbers that are none.
+//! Tests how solves end: limits, caps, constants, contradictions and values that are no numbers.
 
 use crate::programs::{Draw, Setup, priced, violations};
 use mpp_core::config::DIRECTIONS;
@@ -6,14 +6,13 @@ use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::qp::{
     Bounds, MAX_ITERATIONS, Penalty, Problem, ROWS, RowKind, Solution, Solver, Status,
 };
-use mpp_core::settings::Settings;
 
 const PENALTY: Penalty = Penalty {
     linear: 1e4,
     quadratic: 1e3,
 };
 
-/// Nothing missing, nothing moving, no rows.
+/// A program at rest: at its target, without motion, without rows.
 fn at_rest() -> Problem {
     Problem {
         initial: [0.0; 6],
@@ -35,7 +34,8 @@ fn optimum(solver: &mut Solver, setup: &Setup, problem: &Problem) -> Option<Solu
         .then_some(solution)
 }
 
-/// Whether a solve stops at its cost limit; an optimum without rows is there before it looks.
+/// Whether a solve stops at its cost limit. An optimum without rows is found before the limit is
+/// checked.
 fn is_dominated(solver: &mut Solver, setup: &Setup, problem: &Problem) -> bool {
     match solver.solve(&setup.shared, problem) {
         Status::Dominated => true,
@@ -120,7 +120,7 @@ fn no_random_program_comes_near_the_cap() {
 
 #[test]
 fn rows_that_no_control_changes_decide_at_once() {
-    let setup = Setup::new(&Settings::paper());
+    let setup = Setup::paper();
     let mut solver = Box::new(Solver::new());
     for knot in 0..2 {
         for (direction, [up, forward]) in DIRECTION_VECTORS.iter().enumerate() {
@@ -151,8 +151,8 @@ fn opposite_faces_may_touch_but_not_cross() {
         let mut solver = Box::new(Solver::new());
         for (knot, face) in (3..=18).flat_map(|knot| (0..4).map(move |face| (knot, face))) {
             let opposite = row(RowKind::Position(knot, face + DIRECTIONS / 2));
-            // The faces above and below are opposite to 1e-8 only: where they cross by less than 1e-5,
-            // there is room far to the side.
+            // The faces above and below are opposite to 1e-8 only. Where they cross by less than
+            // 1e-5, there is room far to the side.
             let least = if face == 0 {
                 Status::Optimal
             } else {
@@ -187,7 +187,7 @@ fn opposite_faces_may_touch_but_not_cross() {
 
 #[test]
 fn numbers_that_are_none_fail_and_do_not_stick() {
-    let setup = Setup::new(&Settings::flight());
+    let setup = Setup::flight();
     let mut solver = Box::new(Solver::new());
     let problem = setup.program(&mut Draw::new(23));
     let healthy = solver.solve(&setup.shared, &problem);
@@ -221,7 +221,7 @@ fn numbers_that_are_none_fail_and_do_not_stick() {
 
 #[test]
 fn a_bound_of_minus_infinity_is_never_kept() {
-    let setup = Setup::new(&Settings::flight());
+    let setup = Setup::flight();
     let mut solver = Box::new(Solver::new());
     for row in 0..ROWS {
         let mut problem = at_rest();

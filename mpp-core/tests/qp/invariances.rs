@@ -1,4 +1,5 @@
-//! What must not change the result, and what must change it in a known way.
+//! Tests changes of a program that must not change the result, or that must change it in a known
+//! way.
 
 use crate::programs::{Draw, Setup, is_constant, violations};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty, Problem, ROWS, Solution, Solver, Status};
@@ -15,7 +16,7 @@ fn largest_difference(a: &Solution, b: &Solution) -> f64 {
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
-/// Solves a hard program; none when it is infeasible.
+/// Solves a hard program. Returns `None` if it is infeasible.
 fn optimum(solver: &mut Solver, setup: &Setup, problem: &Problem) -> Option<Solution> {
     let mut solution = Solution::new();
     (solver.solve(&setup.shared, problem) == Status::Optimal
@@ -41,7 +42,7 @@ fn for_each_optimum(
     assert!(checked >= 50, "only {checked} were feasible");
 }
 
-/// Everything that a solve leaves behind.
+/// All results of a solve.
 type Trace = (Status, usize, Vec<(usize, f64)>, Status, Solution);
 
 fn trace(solver: &Solver, setup: &Setup, status: Status) -> Trace {
@@ -70,7 +71,7 @@ fn steps_taken_in_any_slices_end_in_the_same_bits() {
             ..setup.program(&mut draw)
         };
         let whole = {
-            // A workspace that nothing was solved in before.
+            // This workspace has solved nothing before.
             let mut fresh = Box::new(Solver::new());
             let status = fresh.solve(&setup.shared, &problem);
             trace(&fresh, setup, status)
@@ -166,7 +167,7 @@ fn stricter_rows_never_cost_less() {
 
 #[test]
 fn every_row_binds_its_own_output() {
-    // A row alone, set to cut off the optimum without rows, is met exactly and costs something.
+    // A single row that cuts off the optimum without rows is met exactly and costs something.
     for_each_optimum(36, |solver, setup, problem, _, draw| {
         let mut bare = *problem;
         bare.bounds = mpp_core::qp::Bounds::none();

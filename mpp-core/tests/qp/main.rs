@@ -1,4 +1,4 @@
-//! Properties of the program's solver: optimality, invariances, ends.
+//! Tests properties of the program's solver: optimality, invariances, ends.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod brute_force;

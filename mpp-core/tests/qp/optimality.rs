@@ -1,12 +1,12 @@
-//! The conditions of Karush, Kuhn and Tucker, evaluated by the model alone.
+//! Tests the conditions of Karush, Kuhn and Tucker, evaluated with the model alone.
 
 use crate::programs::{Draw, Setup, is_constant, left_hand_side, priced, softens, violations};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Penalty, Problem, ROWS, Solution, Solver, Status};
 
-/// Largest entry of a gradient that should vanish, relative to the largest share it is summed from.
+/// Largest entry of a gradient that should vanish, relative to the largest term of its sum.
 const STATIONARY: f64 = 1e-7;
-/// Rows with a multiplier are tight, and others hold, up to this [m, rad, N].
+/// Limit up to which rows with a multiplier are tight, and other rows hold [m, rad, N].
 const TIGHT: f64 = 1e-7;
 
 /// Checks that cost and weighted rows balance.

@@ -1,4 +1,4 @@
-//! Random programs about random tubes, and what their rows and costs are by the model alone.
+//! Random programs about random tubes, with their rows and costs evaluated with the model alone.
 
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
@@ -11,7 +11,7 @@ use mpp_core::vehicle::linearize;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// The model of a preset, and what it condenses to.
+/// The model of a preset, and its condensed form.
 pub(crate) struct Setup {
     pub(crate) model: StageModel,
     pub(crate) weights: Weights,
@@ -20,38 +20,41 @@ pub(crate) struct Setup {
 }
 
 impl Setup {
-    pub(crate) fn new(settings: &Settings) -> Self {
-        let planner = &settings.planner;
+    fn new(settings: &Settings, weights: Weights) -> Self {
+        let own = settings.planner.paper().unwrap();
         let trim = settings.cruise.trim(&settings.airframe).unwrap();
-        let linear = linearize(
-            &settings.airframe,
-            &trim.state,
-            trim.control,
-            planner.jacobian,
-        );
-        let model = StageModel::new(
-            &settings.airframe,
-            &trim,
-            &linear,
-            planner.steady_state,
-            planner.initial,
-        )
-        .unwrap();
+        let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
+        let model = StageModel::new(&trim, &linear, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
-        shared.condense(&model, &planner.weights).unwrap();
+        shared.condense(&model, &weights).unwrap();
         Self {
             model,
-            weights: planner.weights,
+            weights,
             shared,
             thrust: trim.control.thrust,
         }
     }
 
-    pub(crate) fn all() -> [Self; 3] {
-        [Settings::reference(), Settings::paper(), Settings::flight()].map(|s| Self::new(&s))
+    /// Preset `paper`.
+    pub(crate) fn paper() -> Self {
+        let paper = Settings::paper();
+        Self::new(&paper, paper.planner.weights)
     }
 
-    /// A random program: half-planes about a random smooth line, narrow ones now and then.
+    /// The paper's model with the flight planner's weights. (The flight planner has a model of its
+    /// own for each stage: `varying.rs`.)
+    pub(crate) fn flight() -> Self {
+        Self::new(&Settings::paper(), Settings::flight().planner.weights)
+    }
+
+    pub(crate) fn all() -> [Self; 3] {
+        let reference = Settings::reference();
+        let reference = Self::new(&reference, reference.planner.weights);
+        [reference, Self::paper(), Self::flight()]
+    }
+
+    /// A random program: half-planes about a random smooth line. The half-planes are narrow now and
+    /// then.
     pub(crate) fn program(&self, draw: &mut Draw) -> Problem {
         let mut corridor = Corridor::new();
         let (climb, wave, phase) = (
@@ -111,8 +114,8 @@ impl Setup {
         0.5 * (effort + self.weights.terminal * missing)
     }
 
-    /// Gradient of a function of the controls that is at most quadratic: central differences are
-    /// exact but for rounding, and the step is large to keep that small.
+    /// Gradient of a function of the controls that is at most quadratic. Central differences are
+    /// exact except for rounding, and the step is large to keep the rounding small.
     pub(crate) fn gradient(
         &self,
         controls: &[StageControl; STAGES],
@@ -148,7 +151,7 @@ pub(crate) fn left_hand_side(
     }
 }
 
-/// How far each row is violated; negative where it has room.
+/// Violation of each row; negative where it has room.
 pub(crate) fn violations(problem: &Problem, solution: &Solution) -> [f64; ROWS] {
     core::array::from_fn(|row| {
         left_hand_side(row, &solution.states, &solution.controls) - problem.bounds.0[row]
@@ -160,7 +163,7 @@ pub(crate) fn softens(row: usize) -> bool {
     !matches!(RowKind::of(row), RowKind::Thrust(_))
 }
 
-/// Whether no control can change a row: positions follow the controls two stages later.
+/// Whether no control can change a row. Positions follow the controls two stages later.
 pub(crate) fn is_constant(row: usize) -> bool {
     matches!(RowKind::of(row), RowKind::Position(0 | 1, _))
 }
@@ -185,17 +188,17 @@ impl Draw {
         Self(Pcg64Mcg::seed_from_u64(seed))
     }
 
-    /// Uniform in [0, 1).
+    /// A uniform random number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
     }
 
-    /// Uniform between two numbers.
+    /// A uniform random number between two numbers.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    /// Uniform below a number.
+    /// A uniform random whole number below a number.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize
     }

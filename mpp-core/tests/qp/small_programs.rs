@@ -18,7 +18,7 @@ pub(crate) fn number(kind: RowKind) -> usize {
     (0..ROWS).find(|row| RowKind::of(*row) == kind).unwrap()
 }
 
-/// Rows that leave no room together, with the weights in which they cancel: opposite faces, three
+/// Rows that together leave no room, with the weights with which they cancel: opposite faces, three
 /// faces around a point, opposite attitudes, and a climb from below that its flight path forbids.
 fn opposed_rows(setup: &Setup, draw: &mut Draw) -> Vec<(usize, f64)> {
     let knot = 2 + draw.below(STAGES - 1);
@@ -45,7 +45,7 @@ fn opposed_rows(setup: &Setup, draw: &mut Draw) -> Vec<(usize, f64)> {
     }
 }
 
-/// What a program was made to be.
+/// The intended kind of a program.
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) enum Made {
     Feasible,
@@ -53,8 +53,8 @@ pub(crate) enum Made {
     Either,
 }
 
-/// A program of few rows about random controls, which keep them all, miss some that contradict each
-/// other, or neither.
+/// A program of few rows about random controls. The controls keep all rows, or miss some that
+/// contradict each other, or neither.
 fn program(setup: &Setup, most_rows: usize, made: Made, draw: &mut Draw) -> Problem {
     let spread = [0.0, 0.0, 1.5, 0.2, 0.4, 0.2];
     let initial = spread.map(|spread| draw.between(-spread, spread));

@@ -1,4 +1,4 @@
-//! Programs that are another one in other units or upside down, and their optima.
+//! Tests programs that are another program in other units or upside down, and their optima.
 
 use crate::programs::{Draw, Setup};
 use crate::small_programs::{difference, number};
@@ -13,7 +13,7 @@ const PENALTY: Penalty = Penalty {
     quadratic: 200.0,
 };
 
-/// Hard and soft programs in turn, as many.
+/// Hard and soft programs in turn, in equal numbers.
 fn programs(seed: u64, count: usize) -> impl Iterator<Item = (Setup, Problem)> {
     let mut draw = Draw::new(seed);
     (0..count).map(move |index| {
@@ -39,7 +39,7 @@ fn solve(solver: &mut Solver, shared: &Condensed, problem: &Problem) -> (Status,
     }
 }
 
-/// Weights and prices times a factor, condensed.
+/// The condensed program with weights and prices times a factor.
 fn scaled(setup: &Setup, problem: &Problem, factor: f64) -> (Box<Condensed>, Problem) {
     let weights = Weights {
         control: setup.weights.control.map(|weight| factor * weight),
@@ -83,7 +83,7 @@ fn weights_and_prices_in_another_unit_change_nothing_but_the_cost() {
 
 #[test]
 fn sixteen_times_the_weights_give_the_same_bits() {
-    // Nothing rounds differently: of sixteen, the fourth root is a power of two as well.
+    // Nothing is rounded differently: the fourth root of sixteen is a power of two as well.
     let mut solver = Box::new(Solver::new());
     for (setup, problem) in programs(61, 90) {
         let (status, best) = solve(&mut solver, &setup.shared, &problem);
@@ -103,17 +103,17 @@ fn sixteen_times_the_weights_give_the_same_bits() {
     }
 }
 
-/// Down for up: height, pitch, pitch rate and flight path change sign.
+/// Turns a state upside down: height, pitch, pitch rate and flight path change sign.
 fn mirrored_state([x, z, v, pitch, rate, path]: StageState) -> StageState {
     [x, -z, v, -pitch, -rate, -path]
 }
 
-/// And the elevator.
+/// Turns a control upside down: the elevator changes sign.
 fn mirrored_control([elevator, thrust]: StageControl) -> StageControl {
     [-elevator, thrust]
 }
 
-/// The row that says of the mirrored flight what this one says of the flight itself.
+/// The row that means for the mirrored flight what this row means for the flight itself.
 fn mirrored_row(row: usize) -> usize {
     number(match RowKind::of(row) {
         RowKind::Position(knot, direction) => RowKind::Position(knot, (12 - direction) % 8),
@@ -151,8 +151,8 @@ fn mirrored(setup: &Setup, problem: &Problem) -> (Box<Condensed>, Problem) {
 #[test]
 fn the_mirrored_program_has_the_mirrored_optimum() {
     let mut solver = Box::new(Solver::new());
-    // The face above leans by 1e-8 and the one below does not: over tens of metres, mirrored faces are
-    // up to 1e-6 m away from where they should be.
+    // The face above leans by 1e-8 and the face below does not. Over tens of metres, mirrored faces
+    // are up to 1e-6 m away from their right places.
     let mut optimal = [0; 2];
     for (setup, problem) in programs(62, 240) {
         let (status, best) = solve(&mut solver, &setup.shared, &problem);

@@ -1,4 +1,4 @@
-//! Stages that each have a model of their own, with offsets.
+//! Tests stages that each have a model of their own, with offsets.
 
 use crate::conditions::{assert_contradiction, assert_optimal};
 use crate::dense::{DenseProgram, Stages, cost, roll_out};
@@ -14,7 +14,7 @@ const PENALTY: Penalty = Penalty {
 /// Violation that rounding leaves of a row [m, rad, N].
 const TIGHT: f64 = 1e-7;
 
-/// Everything that a solve leaves behind.
+/// All results of a solve.
 type Trace = (Status, usize, Vec<(usize, f64)>, Status, Solution);
 
 fn trace(shared: &Condensed, problem: &Problem) -> Trace {
@@ -26,7 +26,7 @@ fn trace(shared: &Condensed, problem: &Problem) -> Trace {
     (status, solver.iterations(), multipliers, accepted, solution)
 }
 
-/// A preset's model, bent at random in each stage by a tenth, and pushed.
+/// A preset's model, changed at random in each stage by a tenth, and with an offset.
 fn bent(setup: &Setup, draw: &mut Draw) -> Stages {
     core::array::from_fn(|_| {
         let mut dynamics = setup.model.dynamics();
@@ -96,7 +96,7 @@ fn optima_over_stages_of_their_own_meet_the_optimality_conditions() {
             linear: libm::exp10(draw.between(-2.0, 3.0)),
             quadratic: libm::exp10(draw.between(0.0, 3.0)),
         });
-        // Prices below what thrust rows cost, which are hard all the same.
+        // The prices are below the cost of thrust rows, which are still hard.
         problem
             .bounds
             .set_thrust(draw.between(0.2, 1.0) * setup.thrust);
@@ -128,7 +128,7 @@ fn optima_over_stages_of_their_own_meet_the_optimality_conditions() {
 
 #[test]
 fn offsets_alone_are_a_drift_that_the_optimum_meets() {
-    // Without rows, a push in the last stage is a target moved the other way.
+    // Without rows, an offset in the last stage equals a target that is moved the other way.
     let mut draw = Draw::new(73);
     for setup in Setup::all().iter().cycle().take(30) {
         let mut stages = [setup.model.dynamics(); STAGES];

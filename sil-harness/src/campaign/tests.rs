@@ -1,6 +1,10 @@
-//! Campaigns: the same rows however they are flown, written and read.
+//! Tests campaigns: the rows are the same however they are flown, written and read.
 
 use super::*;
+use mpp_analysis::campaign::{
+    Campaign, Disagreement, Lists, Report, Row, Shard, Taxonomy, merge, wilson,
+};
+use mpp_sim::scenario::{Preset, ScenarioFile};
 use std::path::PathBuf;
 use std::sync::Mutex;
 
@@ -63,7 +67,7 @@ fn rows_depend_neither_on_threads_nor_on_shards() {
         merge(&campaign, parts.into_iter().flatten()).unwrap(),
         whole
     );
-    // The rows are of different flights, not one flight eight times.
+    // The rows come from eight different flights.
     let mut hashes: Vec<&str> = whole.iter().map(|row| row.log_hash.as_str()).collect();
     hashes.sort_unstable();
     hashes.dedup();
@@ -77,7 +81,7 @@ fn a_shard_is_a_part_of_a_whole() {
     }
 }
 
-/// Writes a file, cuts it at every kind of place, and goes on with it.
+/// Writes a file, cuts it at every kind of place, and continues it.
 #[test]
 fn a_cut_file_is_gone_on_with_and_nothing_is_lost_or_repeated() {
     let campaign = short();
@@ -96,7 +100,7 @@ fn a_cut_file_is_gone_on_with_and_nothing_is_lost_or_repeated() {
             std::fs::write(&path, &whole[..cut]).unwrap();
             let (mut file, known) = RowFile::open(&path, &header).unwrap();
             assert_eq!(known, rows[..known.len()]);
-            // A torn line is dropped, and only that one.
+            // Only the incomplete line is dropped.
             let complete = ends.iter().filter(|end| **end < cut).count();
             assert_eq!(known.len(), complete.saturating_sub(1));
             rows[known.len()..]
@@ -200,7 +204,7 @@ fn files_that_disagree_about_a_flight_are_refused() {
     other.summary.replans += 1;
     assert!(matches!(
         merge(&campaign, [row, other]),
-        Err(CampaignError::Disagree(..))
+        Err(Disagreement { .. })
     ));
 }
 
@@ -208,9 +212,9 @@ fn files_that_disagree_about_a_flight_are_refused() {
 fn a_report_counts_what_its_rows_say() {
     let campaign = short();
     let mut rows = merge(&campaign, fly_jobs(&campaign, Shard::WHOLE, 1)).unwrap();
-    rows[0].summary.class = crate::outcome::Class::LeftBand;
+    rows[0].summary.class = mpp_sim::outcome::Class::LeftBand;
     rows[0].summary.strict = false;
-    rows[1].summary.class = crate::outcome::Class::NoPlan;
+    rows[1].summary.class = mpp_sim::outcome::Class::NoPlan;
     (rows[1].summary.strict, rows[1].success) = (false, false);
     let report = serde_json::to_value(Report::new(&campaign, &rows)).unwrap();
     assert_eq!(
@@ -251,7 +255,7 @@ fn a_report_counts_what_its_rows_say() {
             .iter()
             .all(|cell| total(cell) == 2)
     );
-    // Cells without flights yet say so.
+    // A cell without flights has no success rate yet.
     let early = Report::new(&campaign, &rows[..2]);
     assert_eq!(early.cells[3].success_rate, None);
     assert!(early.to_string().contains("2 of 8 flights are here"));
@@ -271,7 +275,7 @@ fn an_oracle_is_paired_field_by_field() {
         (row.cell, row.seed, row.summary.strict) = (cells[cell], 11 + trial, strict);
         row
     };
-    // The last field of ours has no counterpart yet.
+    // The oracle has not flown our last field yet.
     let ours = [true, false, true, false, true];
     let theirs = [true, true, false, false];
     let ours = (0..).zip(ours).map(|(trial, strict)| row(0, trial, strict));
@@ -295,7 +299,7 @@ fn an_oracle_is_paired_field_by_field() {
 
 #[test]
 fn failures_are_sorted_by_cause() {
-    use crate::inquest::{Cause, Failure};
+    use mpp_sim::inquest::{Cause, Failure};
     let mut campaign = short();
     (campaign.oracle, campaign.obstacles, campaign.paths) = (true, vec![20], vec![5]);
     campaign.trials = 4;
@@ -341,7 +345,7 @@ fn failures_are_sorted_by_cause() {
     assert_eq!(found, expected);
     let text = Taxonomy(&report).to_string();
     assert!(text.contains(": 3 of 4 flights failed\n  hidden           2, the oracle flies     1"));
-    // A row says it as the report does.
+    // A row names the cause as the report does.
     let json = serde_json::to_value(row(0, 0, Some(Cause::Hidden))).unwrap();
     assert_eq!(json["failure"]["cause"], "hidden");
     let back: Row = serde_json::from_value(json).unwrap();

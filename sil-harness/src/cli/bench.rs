@@ -1,12 +1,13 @@
-//! `bench`: our parts beside others, in one run.
+//! `bench`: measures our parts and others in one run.
 
+use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
-use super::{FAILURE, Failure, USAGE, data, talk};
-use crate::bench::{
-    CycleBench, Instance, generate, read_instances, run_cycle, run_qp, write_instances,
-};
-use crate::scenario::Preset;
+use super::values::preset;
+use crate::files::{read_instances, write_instances};
 use indicatif::ProgressBar;
+use mpp_analysis::bench::{CycleBench, generate, run_cycle, run_qp};
+use mpp_analysis::instance::Instance;
+use mpp_sim::scenario::Preset;
 use serde::Serialize;
 use std::fmt::Display;
 use std::path::PathBuf;
@@ -19,10 +20,10 @@ pub(super) struct BenchArgs {
 
 #[derive(Clone, Debug, clap::Subcommand)]
 enum What {
-    /// The QP solver beside Clarabel, on the same programs, one thread, best of several runs
+    /// Compare the QP solver with Clarabel on the same programs; one thread, best of several runs
     Qp(QpArgs),
-    /// A planning cycle of preset flight beside one of reference, by stage, on the same recorded
-    /// cycles, one thread, best of several runs
+    /// Compare a planning cycle of preset flight with one of reference, stage by stage, on the same
+    /// recorded cycles; one thread, best of several runs
     Cycle(CycleArgs),
 }
 
@@ -30,22 +31,22 @@ enum What {
 struct CycleArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Obstacles of the recorded flights
+    /// Number of obstacles in the recorded flights
     #[arg(long, default_value_t = 40)]
     obstacles: usize,
-    /// Candidate paths of a cycle [default: 25]
+    /// Number of candidate paths of a cycle [default: 25]
     #[arg(long)]
     paths: Option<u16>,
     /// Replanning rate [Hz] [default: 1]
     #[arg(long)]
     replan_hz: Option<f64>,
-    /// Flights to record
+    /// Number of flights to record
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     flights: u32,
-    /// Seed of the first; the others follow [default: 1]
+    /// Seed of the first flight; the next flights take the next seeds [default: 1]
     #[arg(long)]
     seed: Option<u64>,
-    /// How often each cycle is planned; the fastest counts
+    /// Number of times that each cycle is planned; the fastest counts
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     runs: u32,
     /// Print the report as one JSON object
@@ -55,19 +56,20 @@ struct CycleArgs {
 
 #[derive(Clone, Debug, clap::Args)]
 struct QpArgs {
-    /// Programs: recorded cases (a case_*.json or a directory of them) or a file of --export
+    /// Programs to solve: a recorded case_*.json, a directory of them, or a file that --export
+    /// wrote
     #[arg(long)]
     instances: Option<PathBuf>,
-    /// Programs to generate from flights
+    /// Number of programs to generate from flights
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     generate: Option<u32>,
-    /// Seed of the first flight that programs are generated from
+    /// Seed of the first flight from which programs are generated
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Preset of those flights; `flight` has soft rows
-    #[arg(long, value_enum, default_value_t = Preset::Reference)]
+    #[arg(long, value_parser = preset(), default_value_t = Preset::Reference)]
     preset: Preset,
-    /// Write the programs to a file, a JSON object a line, and do not solve them
+    /// Write the programs to a file, one JSON object per line, and do not solve them
     #[arg(long)]
     export: Option<PathBuf>,
     /// Print the report as one JSON object
@@ -104,9 +106,9 @@ fn run_cycle_bench(args: &CycleArgs) -> Result<u8, Failure> {
 
 fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure> {
     if json {
-        data(serde_json::to_string(report).map_err(|error| Failure::new(FAILURE, error))?);
+        data(serde_json::to_string(report).map_err(|error| Failure::new(FAILURE, error))?)?;
     } else {
-        data(report.to_string().trim_end());
+        data(report.to_string().trim_end())?;
     }
     Ok(0)
 }

@@ -1,13 +1,13 @@
-//! `campaign`: many flights over a grid, in parallel, resumable.
+//! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
+use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
-use super::{FAILURE, Failure, USAGE, data, talk};
-use crate::campaign::{
-    Campaign, CampaignError, Cell, Header, Lists, Report, Row, RowFile, Shard, Taxonomy, merge,
-    read, run as fly_all,
-};
-use crate::scenario::Preset;
+use super::signals::Signals;
+use super::values::preset;
+use crate::campaign::{CampaignError, Header, RowFile, read, run as fly_all};
 use indicatif::{ProgressBar, ProgressStyle};
+use mpp_analysis::campaign::{Campaign, Cell, Lists, Report, Row, Shard, Taxonomy, merge};
+use mpp_sim::scenario::Preset;
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -16,44 +16,45 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct CampaignArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Random obstacles, a list such as 20,40 [default: the scenario's]
+    /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     obstacles: Vec<usize>,
-    /// Candidate paths of a planning cycle, a list [default: the scenario's]
+    /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
-    #[arg(long, value_delimiter = ',', value_enum)]
+    #[arg(long, value_delimiter = ',', value_parser = preset())]
     preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     replan_hz: Vec<f64>,
-    /// Let an oracle fly the same fields too, and give success as a share of what it flies
+    /// Let an oracle fly the same fields too, and give success as a share of the fields that it
+    /// flies
     #[arg(long)]
     oracle: bool,
-    /// Flights of each cell
+    /// Number of flights in each cell
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     trials: u32,
-    /// Seed of the first flight; the others follow [default: the scenario's]
+    /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
     #[arg(long)]
     seed: Option<u64>,
-    /// Threads; 0 takes every core
+    /// Number of threads; 0 takes every core
     #[arg(long, default_value_t = 0)]
     threads: usize,
     /// Fly only the i-th of n parts, such as 2/8
     #[arg(long, default_value = "1/1")]
     shard: Shard,
-    /// Row file (JSON lines) to write, or to go on with
+    /// Row file (JSON lines) to write or to continue
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Also measure the core's wall time; it depends on the machine
     #[arg(long)]
     timing: bool,
-    /// Fly nothing: report the rows of these files, shards of one campaign
+    /// Fly nothing; report the rows of these files, which are shards of one campaign
     #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
     report: Vec<PathBuf>,
-    /// Also say why flights failed, cell by cell, the most frequent cause first; in JSON it is always
-    /// there
+    /// Also print the causes of failures for each cell, the most frequent cause first; the JSON
+    /// report always holds them
     #[arg(long)]
     taxonomy: bool,
     /// Print the report as one JSON object
@@ -68,11 +69,11 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         report_of(&args.report).map_err(|error| failure(&error))
     }?;
     if args.json {
-        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?);
+        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
     } else {
-        data(report.to_string().trim_end());
+        data(report.to_string().trim_end())?;
         if args.taxonomy {
-            data(Taxonomy(&report).to_string().trim_end());
+            data(Taxonomy(&report).to_string().trim_end())?;
         }
     }
     Ok(0)
@@ -80,8 +81,20 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
 
 fn failure(error: &CampaignError) -> Failure {
     let code = match error {
-        CampaignError::Flight(..) | CampaignError::Disagree(..) => FAILURE,
-        _ => USAGE,
+        CampaignError::Flight(..)
+        | CampaignError::Log(..)
+        | CampaignError::Full(..)
+        | CampaignError::Interrupted(_)
+        | CampaignError::Disagree(_) => FAILURE,
+        CampaignError::Scenario(_)
+        | CampaignError::File(..)
+        | CampaignError::NoFile(_)
+        | CampaignError::NoRowFile(_)
+        | CampaignError::Line(..)
+        | CampaignError::Differs(..)
+        | CampaignError::Busy(_)
+        | CampaignError::NoRows
+        | CampaignError::Threads(_) => USAGE,
     };
     Failure::new(code, error)
 }
@@ -99,9 +112,9 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
             return Err(CampaignError::Differs(path.display().to_string(), what));
         }
     }
-    let none = || CampaignError::Line("--report".to_owned(), 0, "no file".to_owned());
-    let campaign = first.ok_or_else(none)?.campaign;
-    Ok(Report::new(&campaign, &merge(&campaign, rows)?))
+    let campaign = first.ok_or(CampaignError::NoRows)?.campaign;
+    let rows = merge(&campaign, rows).map_err(CampaignError::Disagree)?;
+    Ok(Report::new(&campaign, &rows))
 }
 
 fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
@@ -114,14 +127,22 @@ fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
     let campaign = Campaign::new(scenario, lists, args.trials, args.seed);
-    let campaign = campaign.map_err(|error| failure(&error))?;
-    let rows = fly_rows(args, &campaign).map_err(|error| failure(&error))?;
-    let rows = merge(&campaign, rows).map_err(|error| failure(&error))?;
+    let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
+    let signals = Signals::heed()?;
+    let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
+        Some(code) if matches!(error, CampaignError::Interrupted(_)) => Failure::new(code, error),
+        _ => failure(&error),
+    })?;
+    let rows = merge(&campaign, rows).map_err(|error| Failure::new(FAILURE, error))?;
     Ok(Report::new(&campaign, &rows))
 }
 
-/// Flies what is missing, and gives every row of this shard.
-fn fly_rows(args: &CampaignArgs, campaign: &Campaign) -> Result<Vec<Row>, CampaignError> {
+/// Flies the missing flights and returns every row of this shard.
+fn fly_rows(
+    args: &CampaignArgs,
+    campaign: &Campaign,
+    signals: &Signals,
+) -> Result<Vec<Row>, CampaignError> {
     let (file, known) = match &args.out {
         Some(path) => {
             let header = Header::new(campaign.clone(), args.shard)?;
@@ -150,14 +171,19 @@ fn fly_rows(args: &CampaignArgs, campaign: &Campaign) -> Result<Vec<Row>, Campai
             file.push(&row)?;
         }
         rows.push(row);
-        Ok(())
+        match signals.raised() {
+            Some(_) => Err(CampaignError::Interrupted(
+                args.out.as_ref().map(|path| path.display().to_string()),
+            )),
+            None => Ok(()),
+        }
     });
     progress.finish_and_clear();
     flown?;
     Ok(sink.into_inner().unwrap_or_else(PoisonError::into_inner).1)
 }
 
-/// Drawn on a terminal only.
+/// Makes a progress bar. It is drawn on a terminal only.
 fn progress_bar(flights: usize) -> ProgressBar {
     let bar = ProgressBar::new(flights as u64);
     let style =

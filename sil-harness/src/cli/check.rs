@@ -1,7 +1,7 @@
-//! `check-reference`: our core and plant against recorded data.
+//! `check-reference`: checks our core and plant against recorded data.
 
-use super::{FAILURE, Failure, USAGE, data};
-use crate::check_reference::check_directory;
+use super::answer::{FAILURE, Failure, USAGE, data};
+use crate::files::check_directory;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -17,9 +17,9 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, Failure> {
     let report = check_directory(&args.directory).map_err(|error| Failure::new(USAGE, error))?;
     if args.json {
         let text = serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?;
-        data(text);
+        data(text)?;
     } else {
-        data(report.to_string().trim_end());
+        data(report.to_string().trim_end())?;
     }
     Ok(if report.passed() { 0 } else { FAILURE })
 }

@@ -1,6 +1,6 @@
-//! `core`: the flight core as a process of its own.
+//! `core`: runs the flight core as a process of its own.
 
-use super::{Failure, LINK, talk};
+use super::answer::{Failure, LINK, talk};
 use crate::link::{PATIENCE, serve};
 use std::net::TcpListener;
 use std::time::Duration;
@@ -13,7 +13,7 @@ pub(super) struct CoreArgs {
     /// End after the first harness
     #[arg(long)]
     once: bool,
-    /// Seconds that a silent harness is waited for
+    /// Seconds to wait for a silent harness, but at most 5 for its hello
     #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
     patience: u64,
 }

@@ -1,16 +1,17 @@
-//! `figures`: counterparts of the paper's figures.
+//! `figures`: draws counterparts of the paper's figures.
 
+use super::answer::{FAILURE, Failure, USAGE, talk};
 use super::campaign::report_of;
-use super::{FAILURE, Failure, USAGE, talk};
-use crate::figure::{
-    Cycle, FigureError, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
+use crate::files::write_whole;
+use mpp_analysis::figure::{
+    FigureError, OneReplan, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
     success_svg,
 };
-use crate::link::PipeLink;
-use crate::log::FlightLog;
-use crate::run::fly;
-use crate::scenario::{Preset, Scenario, TICKS_PER_SECOND};
-use crate::scene::Scene;
+use mpp_sim::flight::fly;
+use mpp_sim::log::FlightLog;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario, TICKS_PER_SECOND};
+use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -18,15 +19,15 @@ pub(super) struct FiguresArgs {
     /// Directory for the pictures (SVG)
     #[arg(long, default_value = "out/figures")]
     out: PathBuf,
-    /// Seed of everything that is flown for them
+    /// Seed of all flights in the pictures
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Row files of one campaign: draws its success rates too
+    /// Row files of one campaign; its success rates are then drawn too
     #[arg(long, value_name = "FILE", num_args = 1..)]
     rows: Vec<PathBuf>,
 }
 
-/// Obstacles of the flight whose planning is drawn.
+/// Number of obstacles in the flight whose planning is drawn.
 const CYCLE_OBSTACLES: usize = 30;
 
 pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
@@ -56,23 +57,22 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
     for (name, svg) in pictures {
         let path = args.out.join(name).with_extension("svg");
-        std::fs::write(&path, svg).map_err(|error| {
-            Failure::new(FAILURE, format!("cannot write {}: {error}", path.display()))
-        })?;
+        write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
         talk(path.display());
     }
     Ok(0)
 }
 
-/// The cycle of a flight with the most candidates of both kinds, feasible and not.
-fn telling_cycle(seed: u64) -> Result<Cycle, Failure> {
+/// Finds the cycle of a flight with the most candidates of both kinds: the smaller of the two
+/// numbers, feasible and not feasible, is greatest.
+fn telling_cycle(seed: u64) -> Result<OneReplan, Failure> {
     let scenario = Scenario {
         obstacles: CYCLE_OBSTACLES,
         ..Scenario::new(Preset::Paper, seed)
     };
     // A flight that ends early has fewer cycles.
     let cycles = (0..16).filter_map(|second| {
-        let cycle = Cycle::of_flight(&scenario, second * TICKS_PER_SECOND).ok()?;
+        let cycle = OneReplan::of_flight(&scenario, second * TICKS_PER_SECOND).ok()?;
         let refined = cycle
             .candidates
             .iter()
@@ -85,7 +85,7 @@ fn telling_cycle(seed: u64) -> Result<Cycle, Failure> {
     telling.map(|(_, cycle)| cycle).ok_or_else(none)
 }
 
-/// Every challenge scene with some flights through it, each at its own offset.
+/// Draws every challenge scene with one flight through it.
 fn challenge(seed: u64) -> Result<String, Failure> {
     let mut scenes = Vec::new();
     for scene in Scene::ALL {

@@ -1,15 +1,21 @@
-//! `fly`: one flight, its log and its picture.
+//! `fly`: flies one flight and writes its log and its picture.
 
+use super::answer::{FAILURE, Failure, LINK, USAGE, data, talk};
+use super::file_name::file_name;
 use super::ground::GroundArgs;
 use super::scenario::{ScenarioArgs, replace};
-use super::{FAILURE, Failure, LINK, USAGE, data, talk};
-use crate::figure::flight_svg;
-use crate::link::{FifoLink, Link, LinkError, PATIENCE, PipeLink, TcpLink};
-use crate::log::{FlightLog, Summary};
-use crate::outcome::Outcome;
-use crate::run::{FlyError, fly_with};
-use crate::scenario::{Preset, Scenario};
+use super::signals::Signals;
+use super::values::preset;
+use crate::files::{write_log, write_whole};
+use crate::link::{FifoLink, PATIENCE, TcpLink};
 use indicatif::{ProgressBar, ProgressStyle};
+use mpp_analysis::figure::flight_svg;
+use mpp_sim::flight::{FlyError, fly_with};
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::log::{FlightLog, Header, Summary};
+use mpp_sim::outcome::Outcome;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -21,27 +27,27 @@ pub(super) struct FlyArgs {
     /// Seed of the field, of all noise and of the planner [default: 1]
     #[arg(long)]
     seed: Option<u64>,
-    /// Obstacles between 25 m and 240 m downrange [default: 20]
+    /// Number of obstacles between 25 m and 240 m downrange [default: 20]
     #[arg(long)]
     obstacles: Option<usize>,
-    /// Candidate paths of a planning cycle; 0 tracks the shortest path itself, unrefined
-    /// [default: 25]
+    /// Number of candidate paths of a planning cycle; with 0 the core tracks the shortest path
+    /// itself, without refinement [default: 25]
     #[arg(long)]
     paths: Option<u16>,
-    /// Parameters and rules [default: flight]
-    #[arg(long, value_enum)]
+    /// Preset, which is a set of parameters and rules [default: flight]
+    #[arg(long, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
     #[arg(long)]
     replan_hz: Option<f64>,
-    /// Let an oracle fly: the true field and state, at 10 Hz
+    /// Let an oracle fly, which knows the true field and state and replans at 10 Hz
     #[arg(long, conflicts_with = "link")]
     oracle: bool,
-    /// Where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and to-harness
-    /// [default: in this process]
+    /// Place where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and
+    /// to-harness [default: in this process]
     #[arg(long)]
     link: Option<String>,
-    /// Seconds that a silent core is waited for over TCP
+    /// Seconds to wait for a silent core over TCP
     #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
     patience: u64,
     #[command(flatten)]
@@ -49,7 +55,7 @@ pub(super) struct FlyArgs {
     /// Print the result as one JSON object
     #[arg(long)]
     json: bool,
-    /// Directory for the log and the picture
+    /// Directory for the log and the picture; their names say what differs from the preset's flight
     #[arg(long, default_value = "out")]
     out: PathBuf,
 }
@@ -66,6 +72,43 @@ impl FlyArgs {
         file.build().map_err(|error| Failure::new(USAGE, error))
     }
 
+    /// The scenario of a log whose orders are given again.
+    fn scenario_of(&self, log: &FlightLog) -> Result<Scenario, Failure> {
+        let usage = |why: String| Failure::new(USAGE, format!("--orders: {why}"));
+        let flown = (log.header.scenario()).map_err(|error| usage(error.to_string()))?;
+        let rate = |hz: f64| (hz - flown.replan_hz()).abs() > 1e-9;
+        let flags = [
+            ("--seed", self.seed.is_some_and(|seed| seed != flown.seed)),
+            (
+                "--obstacles",
+                self.obstacles.is_some_and(|count| count != flown.obstacles),
+            ),
+            (
+                "--paths",
+                self.paths.is_some_and(|count| count != flown.paths),
+            ),
+            (
+                "--preset",
+                self.preset.is_some_and(|preset| preset != flown.preset),
+            ),
+            ("--replan-hz", self.replan_hz.is_some_and(rate)),
+            ("--oracle", self.oracle && !flown.oracle),
+        ];
+        let flags = flags.into_iter().chain(self.scenario.other_than(&flown));
+        let mut other = flags.filter_map(|(flag, other)| other.then_some(flag));
+        let file = || self.scenario.has_file() && self.scenario().is_ok_and(|asked| asked != flown);
+        if let Some(flag) = other.next().or_else(|| file().then_some("--scenario")) {
+            return Err(usage(format!(
+                "the log's flight was flown with another {flag}: leave {flag} out"
+            )));
+        }
+        if Header::of(&flown, &flown.field()).field != log.header.field {
+            let why = "header.field is not what its seed draws: such a world cannot be flown here";
+            return Err(usage(why.to_owned()));
+        }
+        Ok(flown)
+    }
+
     fn connect(&self, scenario: &Scenario) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
             None => Ok(Box::new(PipeLink::of(scenario))),
@@ -74,7 +117,7 @@ impl FlyArgs {
     }
 }
 
-/// A core that runs elsewhere.
+/// Connects to a core that runs elsewhere.
 fn connect(text: &str, patience: Duration) -> Result<Box<dyn Link>, Failure> {
     let failed = |error| Failure::new(LINK, error);
     match text.split_once(':') {
@@ -104,11 +147,16 @@ struct ResultLine<'a> {
     rejections: usize,
     log_hash: &'a str,
     log: String,
-    figure: String,
+    figure: Option<String>,
 }
 
 pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
-    let scenario = args.scenario()?;
+    let recorded = args.ground.recorded()?;
+    let scenario = match &recorded {
+        Some(log) => args.scenario_of(log)?,
+        None => args.scenario()?,
+    };
+    let signals = Signals::heed()?;
     let mut link = args.connect(&scenario)?;
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
@@ -122,14 +170,24 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
         },
     ));
     let progress = progress_bar(u64::from(scenario.ticks));
-    let mut crew = args.ground.open(&scenario, progress)?;
+    let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
     let result = fly_with(&scenario, link.as_mut(), &mut crew);
-    crew.ground.end(&result)?;
+    // The files first: nothing that goes wrong at the end of a link costs the log.
+    let name = file_name(&scenario);
+    let kept = result.as_ref().ok().map(|log| keep(&args.out, &name, log));
+    let interrupted = crew.ground.interrupted();
+    let ended = crew.ground.end(&result);
     let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;
-    report(args, &log)
+    let code = match kept {
+        Some(kept) => report(args, &log, &kept?)?,
+        None => FAILURE,
+    };
+    ended?;
+    let was = log.summary.outcome == Outcome::Interrupted;
+    Ok(interrupted.filter(|_| was).unwrap_or(code))
 }
 
-/// Drawn on a terminal only.
+/// Makes a progress bar. It is drawn on a terminal only.
 fn progress_bar(ticks: u64) -> ProgressBar {
     let bar = ProgressBar::new(ticks);
     let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} ticks, {per_sec}, {eta} left");
@@ -147,23 +205,38 @@ fn exit_code(error: &FlyError) -> u8 {
     }
 }
 
-/// Writes log and picture, and prints the result.
-fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
+/// What a flight left on the disk.
+struct Kept {
+    log: PathBuf,
+    /// None of a flight that ended before its first tick.
+    figure: Option<PathBuf>,
+    hash: String,
+}
+
+/// Writes the log, then the picture.
+fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
     let failed = |what: &Path, why: String| {
         Failure::new(FAILURE, format!("cannot write {}: {why}", what.display()))
     };
-    std::fs::create_dir_all(&args.out).map_err(|error| failed(&args.out, error.to_string()))?;
-    let name = format!("{}-seed{}", log.header.preset, log.header.seed);
-    let log_path = args.out.join(format!("{name}.json"));
-    let figure_path = args.out.join(format!("{name}.svg"));
-    log.write_json(&log_path)
-        .map_err(|error| failed(&log_path, error.to_string()))?;
-    let svg = flight_svg(log).map_err(|error| failed(&figure_path, error.to_string()))?;
-    std::fs::write(&figure_path, svg).map_err(|error| failed(&figure_path, error.to_string()))?;
-    let hash = log
-        .hash()
-        .map_err(|error| failed(&log_path, error.to_string()))?;
+    std::fs::create_dir_all(out).map_err(|error| failed(out, error.to_string()))?;
+    let flown = !log.ticks.t.is_empty();
+    let kept = Kept {
+        log: out.join(format!("{name}.json")),
+        figure: flown.then(|| out.join(format!("{name}.svg"))),
+        hash: log
+            .hash()
+            .map_err(|error| Failure::new(FAILURE, error.to_string()))?,
+    };
+    write_log(&kept.log, log).map_err(|error| Failure::new(FAILURE, error))?;
+    if let Some(figure) = &kept.figure {
+        let svg = flight_svg(log).map_err(|error| failed(figure, error.to_string()))?;
+        write_whole(figure, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
+    }
+    Ok(kept)
+}
 
+/// Prints the result.
+fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
     let line = ResultLine {
         seed: log.header.seed,
         preset: &log.header.preset,
@@ -172,16 +245,17 @@ fn report(args: &FlyArgs, log: &FlightLog) -> Result<u8, Failure> {
         paths: log.header.paths,
         summary: log.summary,
         rejections: log.rejections.len(),
-        log_hash: &hash,
-        log: log_path.display().to_string(),
-        figure: figure_path.display().to_string(),
+        log_hash: &kept.hash,
+        log: kept.log.display().to_string(),
+        figure: kept.figure.as_ref().map(|path| path.display().to_string()),
     };
     if args.json {
         let text = serde_json::to_string(&line).map_err(|error| Failure::new(FAILURE, error))?;
-        data(text);
+        data(text)?;
     } else {
-        talk(format_args!("log {}, picture {}", line.log, line.figure));
-        data(text_line(&line));
+        let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
+        talk(format_args!("log {}, picture {figure}", line.log));
+        data(text_line(&line))?;
     }
     Ok(log.summary.outcome.exit_code())
 }

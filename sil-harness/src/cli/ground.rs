@@ -1,38 +1,45 @@
-//! Flags of a flight with people on the ground.
+//! Flags for people on the ground, who follow and steer a flight.
 
 mod crew;
 mod pacer;
 
-use super::{Failure, LINK, USAGE, talk};
+use super::answer::{Failure, LINK, USAGE, talk};
+use super::signals::Signals;
+use crate::files::read_log;
+use crate::ground::param_file;
 use crate::ground::transport::{Transport, address, signing_time, usual_addresses};
 use crate::ground::vehicle::{Vehicle, VehicleConfig};
-use crate::ground::{Again, Order, OrderEntry, Refused, param_file};
-use crate::log::FlightLog;
-use crate::picture::live::Live;
-use crate::run::header;
-use crate::scenario::Scenario;
+use crate::live::Live;
+use crate::pace::{Speed, speed};
 use crew::Crew;
-use flight_node::parameters::{PARAMETERS, Tuning};
 use hil_protocol::mavlink::Key;
 use indicatif::ProgressBar;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::Planner;
-use pacer::{Pacer, Speed, speed};
+use mpp_node::parameters::{self, Tuning};
+use mpp_sim::log::{FlightLog, Header};
+use mpp_sim::orders::{Again, Order, Refused};
+use mpp_sim::outcome::Outcome;
+use mpp_sim::scenario::Scenario;
+use pacer::{Pacer, patience};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct GroundArgs {
-    /// Answer MAVLink ground stations at udp:HOST:PORT [default: udp:127.0.0.1:14550 and :14540]
+    /// Answer MAVLink ground stations at udp:HOST:PORT [default: udp:127.0.0.1:14550 and :14540].
+    /// Without --mavlink-key whoever reaches the socket may command, even end the flight: every
+    /// program on this machine, and everybody on the network if HOST is another machine
     #[arg(long, num_args = 0..=1, default_missing_value = "usual", value_name = "UDP", value_delimiter = ',')]
     mavlink: Vec<String>,
-    /// Which of several vehicles this is: system N + 1, program port 14540 + N
+    /// Number N of this vehicle among several: system N + 1, program port 14540 + N
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=253))]
     instance: u8,
     /// Wait at the start until a ground station arms the vehicle
     #[arg(long)]
     hold: bool,
-    /// Obey only commands signed with the passphrase in this file's first line
+    /// Obey only commands signed with the passphrase in this file's first line; FILE.state beside it
+    /// keeps the newest signed times, so that nothing recorded is obeyed again
     #[arg(long, value_name = "FILE")]
     mavlink_key: Option<PathBuf>,
     /// Record the telemetry in this file
@@ -41,24 +48,30 @@ pub(super) struct GroundArgs {
     /// Set parameters from a file of NAME,VALUE lines
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// Give the orders of this flight's log again, at the same ticks
+    /// Repeat the flight of this log, with its orders at the same ticks
     #[arg(long, value_name = "LOG", conflicts_with = "params")]
     orders: Option<PathBuf>,
-    /// Show the flight as it happens on a page at this address, at the pace of real time and with
-    /// --mavlink
+    /// Show the flight live on a page at this address; the default speed is then real time, and
+    /// --mavlink is on
     #[arg(long, num_args = 0..=1, default_missing_value = "127.0.0.1:8088", value_name = "HOST:PORT")]
     live: Option<String>,
-    /// Speed against real time, for instance 1, or max [default: max, with --live 1]
+    /// Speed relative to real time, 0.01 to 1000, or max [default: max; 1 with --mavlink or --live]
     #[arg(long, value_parser = speed)]
     speed: Option<Speed>,
 }
 
 impl GroundArgs {
+    /// Whether ground stations or pages may follow the flight.
+    fn connected(&self) -> bool {
+        !self.mavlink.is_empty() || self.live.is_some()
+    }
+
     fn speed(&self) -> Speed {
-        match (self.speed, &self.live) {
-            (Some(speed), _) => speed,
-            (None, Some(_)) => Speed::Times(1.0),
-            (None, None) => Speed::Max,
+        match self.speed {
+            Some(speed) => speed,
+            // People cannot follow anything faster.
+            None if self.connected() => Speed::Times(1.0),
+            None => Speed::Max,
         }
     }
 
@@ -67,17 +80,19 @@ impl GroundArgs {
             return Ok(None);
         };
         let refused = |why: String| Failure::new(LINK, format!("--live {address}: {why}"));
-        let header = header(scenario, &scenario.field());
+        let header = Header::of(scenario, &scenario.field());
         let live = Live::open(address, &header).map_err(|error| refused(error.to_string()))?;
         talk(format_args!("live at http://{}/", live.address()));
         Ok(Some(live))
     }
 
-    /// Everybody who has a say in the flight.
+    /// Opens the ground: everybody who may follow or steer the flight.
     pub(super) fn open(
         &self,
         scenario: &Scenario,
+        recorded: Option<FlightLog>,
         progress: ProgressBar,
+        signals: Signals,
     ) -> Result<Again<Crew>, Failure> {
         let crew = Crew {
             orders: self.first_orders(scenario)?,
@@ -87,12 +102,18 @@ impl GroundArgs {
             transport: self.transport()?,
             pacer: Pacer::new(self.speed()),
             progress,
+            signals,
         };
-        Ok(Again::new(self.again()?, crew))
+        let interrupted = recorded
+            .as_ref()
+            .filter(|log| log.summary.outcome == Outcome::Interrupted)
+            .and_then(|log| u32::try_from(log.ticks.t.len()).ok());
+        let orders = recorded.map(|log| log.orders);
+        Ok(Again::new(orders, crew).until(interrupted))
     }
 
     fn transport(&self) -> Result<Option<Transport>, Failure> {
-        let connected = !self.mavlink.is_empty() || self.live.is_some();
+        let connected = self.connected();
         if !connected && (self.hold || self.mavlink_key.is_some()) {
             let why = "--hold, --mavlink-key: nobody could arm or command without --mavlink";
             return Err(Failure::new(USAGE, why));
@@ -102,7 +123,7 @@ impl GroundArgs {
         }
         let vehicle = Vehicle::new(&VehicleConfig {
             instance: self.instance,
-            patience: self.speed().patience(),
+            patience: patience(self.speed()),
             hold: self.hold,
             key: self.key()?,
         });
@@ -114,6 +135,12 @@ impl GroundArgs {
             }
             let refused = |error| Failure::new(LINK, format!("--mavlink: {error}"));
             transport.connect(peers).map_err(refused)?;
+        }
+        if let Some(path) = &self.mavlink_key {
+            let mut state = path.clone().into_os_string();
+            state.push(".state");
+            let refused = |why| Failure::new(USAGE, format!("--mavlink-key: {why}"));
+            transport.remember(Path::new(&state)).map_err(refused)?;
         }
         if let Some(path) = &self.tlog {
             let file = File::create(path).map_err(|error| unusable("--tlog", path, error))?;
@@ -155,22 +182,24 @@ impl GroundArgs {
                 "no passphrase in the first line",
             ));
         }
+        if is_open_to_others(path) {
+            talk(format_args!(
+                "--mavlink-key: others on this machine can read {0}: chmod 600 {0}",
+                path.display()
+            ));
+        }
         Ok(Some((Key::of_passphrase(passphrase), signing_time())))
     }
 
-    /// The orders of a log.
-    fn again(&self) -> Result<Option<Vec<OrderEntry>>, Failure> {
-        let Some(path) = &self.orders else {
-            return Ok(None);
-        };
-        let bytes = std::fs::read(path).map_err(|error| unusable("--orders", path, error))?;
-        let log =
-            FlightLog::from_json(&bytes).map_err(|error| unusable("--orders", path, error))?;
-        Ok(Some(log.orders))
+    /// Reads the log whose flight is repeated, if there is one.
+    pub(super) fn recorded(&self) -> Result<Option<FlightLog>, Failure> {
+        let refused = |error| Failure::new(USAGE, format!("--orders: {error}"));
+        let log = self.orders.as_deref().map(read_log).transpose();
+        log.map_err(refused)
     }
 
-    /// The orders of a parameter file: each is looked at here, so that a flight begins with all of
-    /// them or not at all.
+    /// Reads the orders of a parameter file. Each order is checked here, so that a flight begins
+    /// with all of them or not at all.
     fn first_orders(&self, scenario: &Scenario) -> Result<Vec<Order>, Failure> {
         let Some(path) = &self.params else {
             return Ok(Vec::new());
@@ -178,14 +207,11 @@ impl GroundArgs {
         let usage = |why: String| unusable("--params", path, why);
         let text = std::fs::read_to_string(path).map_err(|error| usage(error.to_string()))?;
         let mut tuning =
-            Tuning::new(&scenario.configure()).map_err(|why| usage(format!("{why:?}")))?;
+            Tuning::new(&scenario.configure()).map_err(|why| usage(why.to_string()))?;
         let mut orders = Vec::new();
         for (name, value) in param_file::parse(&text).map_err(|error| usage(error.to_string()))? {
-            let number = PARAMETERS
-                .iter()
-                .position(|parameter| parameter.name == name);
             let refused = |refused: Refused| usage(format!("{name} {value}: {refused}"));
-            let Some(number) = number.and_then(|number| u8::try_from(number).ok()) else {
+            let Some(number) = parameters::number(&name) else {
                 return Err(refused(Refused::UnknownParameter));
             };
             tuning = tuning
@@ -196,7 +222,7 @@ impl GroundArgs {
         let mut planner = Box::new(Planner::new());
         FlightLoop::new(&tuning.settings)
             .and_then(|_| planner.set_up(&tuning.settings))
-            .map_err(|error| usage(format!("the core cannot fly with it: {error:?}")))?;
+            .map_err(|error| usage(format!("the core cannot fly with it: {error}")))?;
         Ok(orders)
     }
 }
@@ -205,7 +231,22 @@ fn unusable(flag: &str, path: &Path, why: impl std::fmt::Display) -> Failure {
     Failure::new(USAGE, format!("{flag} {}: {why}", path.display()))
 }
 
-/// How each client connects.
+/// Whether others than its owner may read a file.
+fn is_open_to_others(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = path.metadata().map(|found| found.permissions().mode());
+        mode.is_ok_and(|mode| mode & 0o044 != 0)
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = path;
+        false
+    }
+}
+
+/// The lines that tell how each client connects.
 fn client_lines(instance: u8, peer: &str) -> String {
     let system = u16::from(instance) + 1;
     format!(
@@ -215,4 +256,27 @@ fn client_lines(instance: u8, peer: &str) -> String {
          \x20 mavsdk: add_any_connection('udpin://{peer}')\n\
          \x20 mpp-ground --connect udpin:{peer} monitor"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        ground: GroundArgs,
+    }
+
+    #[test]
+    fn who_can_be_followed_flies_at_the_pace_of_the_clock() {
+        let speed = |line: &str| Line::parse_from(line.split(' ')).ground.speed();
+        assert_eq!(speed("fly"), Speed::Max);
+        assert_eq!(speed("fly --tlog a.tlog"), Speed::Max);
+        assert_eq!(speed("fly --mavlink"), Speed::Times(1.0));
+        assert_eq!(speed("fly --live"), Speed::Times(1.0));
+        assert_eq!(speed("fly --mavlink --speed max"), Speed::Max);
+        assert_eq!(speed("fly --live --speed 4"), Speed::Times(4.0));
+    }
 }

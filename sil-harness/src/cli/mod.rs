@@ -1,29 +1,26 @@
-//! The command line: data on stdout, talk on stderr.
+//! The command line: data on stdout, messages on stderr.
 //!
 //! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link,
-//! 8 terminated from the ground.
+//! 8 terminated from the ground, 130 and 143 interrupted.
 
+mod answer;
 mod bench;
 mod campaign;
 mod check;
 mod core;
 mod figures;
+mod file_name;
 mod fly;
 mod ground;
 mod params;
 mod replay;
 mod scenario;
+mod signals;
+mod values;
 
+use answer::talk;
 use clap::{Parser, Subcommand};
-use std::io::Write;
 use std::process::ExitCode;
-
-/// What the harness cannot do, or found wrong.
-const FAILURE: u8 = 1;
-/// The command line asks for something that makes no sense.
-const USAGE: u8 = 2;
-/// The link to the core failed.
-const LINK: u8 = 6;
 
 /// Software in the loop for Model Predictive Planning: flies the flight core through obstacle
 /// fields. Without a command it flies once.
@@ -46,9 +43,9 @@ enum Command {
     Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
     Core(core::CoreArgs),
-    /// Measure our parts beside others, in one run
+    /// Measure our parts and others in one run
     Bench(bench::BenchArgs),
-    /// Make a page of a recorded flight, to step through in a browser
+    /// Make a page from a recorded flight, with which a browser can step through the flight
     Replay(replay::ReplayArgs),
     /// Print the parameters of a preset, as a file that `fly --params` and ground stations read
     Params(params::ParamsArgs),
@@ -76,32 +73,6 @@ pub fn run() -> ExitCode {
         Err(failure) => {
             talk(format_args!("error: {}", failure.message));
             ExitCode::from(failure.code)
-        }
-    }
-}
-
-/// A line for people. Whether anybody reads it is none of a flight's business, so a closed pipe is
-/// not an error (`eprintln!` would panic).
-fn talk(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stderr(), "{line}");
-}
-
-/// A line of data.
-fn data(line: impl std::fmt::Display) {
-    let _ = writeln!(std::io::stdout(), "{line}");
-}
-
-/// Why a command did not do what it was asked.
-struct Failure {
-    code: u8,
-    message: String,
-}
-
-impl Failure {
-    fn new(code: u8, message: impl std::fmt::Display) -> Self {
-        Self {
-            code,
-            message: message.to_string(),
         }
     }
 }

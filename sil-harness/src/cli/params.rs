@@ -1,38 +1,40 @@
-//! `params`: the parameters of a preset.
+//! `params`: prints the parameters of a preset.
 
-use super::{FAILURE, Failure, data};
+use super::answer::{FAILURE, Failure, data};
+use super::values::preset;
 use crate::ground::param_file;
-use crate::scenario::{Preset, Scenario};
-use flight_node::parameters::{PARAMETERS, Parameter, Tuning};
+use mpp_node::parameters::{self, PARAMETERS, Parameter, Tuning};
+use mpp_sim::scenario::{Preset, Scenario};
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct ParamsArgs {
-    /// Whose values
-    #[arg(long, value_enum, default_value_t = Preset::Flight)]
+    /// Preset whose values are printed
+    #[arg(long, value_parser = preset(), default_value_t = Preset::Flight)]
     preset: Preset,
-    /// Print unit, range and whether it can change in flight, too
+    /// Also print the unit, the range and whether the parameter can change in flight
     #[arg(long)]
     long: bool,
 }
 
 pub(super) fn run(args: &ParamsArgs) -> Result<u8, Failure> {
     let tuning = Tuning::new(&Scenario::new(args.preset, 0).configure())
-        .map_err(|why| Failure::new(FAILURE, format!("{why:?}")))?;
+        .map_err(|why| Failure::new(FAILURE, why.to_string()))?;
     if args.long {
         for (name, value) in param_file::values(&tuning) {
-            let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name);
+            let number = parameters::number(name).map(usize::from);
+            let parameter = number.and_then(|number| PARAMETERS.get(number));
             data(format_args!(
                 "{}",
                 parameter.map_or(String::new(), |p| line(p, value))
-            ));
+            ))?;
         }
     } else {
-        data(param_file::format(&tuning).trim_end());
+        data(param_file::format(&tuning).trim_end())?;
     }
     Ok(0)
 }
 
-/// A line that is still one of a parameter file.
+/// Formats a line that is still valid in a parameter file.
 fn line(parameter: &Parameter, value: f64) -> String {
     let [least, most] = parameter.range;
     let when = if parameter.in_flight {

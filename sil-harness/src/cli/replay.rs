@@ -1,24 +1,23 @@
-//! `replay`: a recorded flight as a page.
+//! `replay`: makes a page from a recorded flight.
 
-use super::{FAILURE, Failure, USAGE, talk};
-use crate::log::FlightLog;
-use crate::picture::replay::replay;
+use super::answer::{FAILURE, Failure, USAGE, talk};
+use crate::files::{read_log, write_whole};
+use mpp_analysis::picture::replay::replay;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct ReplayArgs {
-    /// A flight's log
+    /// Log of the flight
     log: PathBuf,
-    /// The page
+    /// Page to write
     #[arg(long, default_value = "out/replay.html")]
     out: PathBuf,
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
-    let unreadable = |why: String| Failure::new(USAGE, format!("{}: {why}", args.log.display()));
-    let bytes = std::fs::read(&args.log).map_err(|error| unreadable(error.to_string()))?;
-    let log = FlightLog::from_json(&bytes).map_err(|error| unreadable(error.to_string()))?;
-    let (page, whole) = replay(&log).map_err(|error| unreadable(error.to_string()))?;
+    let log = read_log(&args.log).map_err(|error| Failure::new(USAGE, error))?;
+    let (page, whole) = replay(&log)
+        .map_err(|error| Failure::new(USAGE, format!("{}: {error}", args.log.display())))?;
     if !whole {
         talk(
             "the page has no scans and candidates: flown again, this flight does not come out the \
@@ -34,7 +33,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
     if let Some(directory) = args.out.parent() {
         std::fs::create_dir_all(directory).map_err(failed)?;
     }
-    std::fs::write(&args.out, page).map_err(failed)?;
+    write_whole(&args.out, page.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
     talk(format_args!("page {}", args.out.display()));
     Ok(0)
 }

@@ -1,25 +1,28 @@
-//! What every command that flies takes: a scenario file, and flags that go before it.
+//! The arguments of every command that flies: a scenario file, and flags that take precedence over
+//! it.
 
-use super::{Failure, USAGE};
-use crate::scenario::{AirframeName, ScenarioFile};
-use crate::scene::Scene;
+use super::answer::{Failure, USAGE};
+use super::values::{airframe, scene};
+use crate::files::read_scenario;
+use mpp_sim::scenario::{AirframeName, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND};
+use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct ScenarioArgs {
-    /// Scenario (TOML, as docs/scenarios/example.toml); the other flags go before it
+    /// Scenario (TOML, as docs/scenarios/example.toml); the other flags take precedence over it
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// Challenge scene, alone unless --obstacles says otherwise
-    #[arg(long, value_enum)]
+    /// Challenge scene; it stands alone unless --obstacles is given
+    #[arg(long, value_parser = scene())]
     scene: Option<Scene>,
-    /// Aircraft, as it is and as the core knows it [default: reference]
-    #[arg(long, value_enum)]
+    /// Airframe, both of the aircraft and of the core's model [default: reference]
+    #[arg(long, value_parser = airframe())]
     airframe: Option<AirframeName>,
     /// Simulated time from a scan until its plan is flown [ms], a multiple of 10 [default: 10]
     #[arg(long)]
     latency_ms: Option<u32>,
-    /// Planner slices that run between two ticks [default: until the cycle is done]
+    /// Planner slices that run between two ticks [default: all that the cycle needs]
     #[arg(long)]
     slices_per_tick: Option<u32>,
     /// Length of the flight [s] [default: 20]
@@ -28,10 +31,10 @@ pub(super) struct ScenarioArgs {
 }
 
 impl ScenarioArgs {
-    /// The file, with what these flags say put in its place.
+    /// Reads the scenario file. The flags replace its values.
     pub(super) fn file(&self) -> Result<ScenarioFile, Failure> {
         let mut file = match &self.scenario {
-            Some(path) => ScenarioFile::read(path).map_err(|error| Failure::new(USAGE, error))?,
+            Some(path) => read_scenario(path).map_err(|error| Failure::new(USAGE, error))?,
             None => ScenarioFile::default(),
         };
         replace(&mut file.scene, self.scene);
@@ -40,6 +43,31 @@ impl ScenarioArgs {
         replace(&mut file.slices_per_tick, self.slices_per_tick);
         replace(&mut file.duration, self.duration);
         Ok(file)
+    }
+
+    /// These flags, each with whether it asks for something else than this scenario.
+    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 5] {
+        let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
+        let slices = other(self.slices_per_tick, flown.slices_per_tick);
+        let seconds = other(self.duration, flown.ticks / TICKS_PER_SECOND);
+        [
+            ("--scene", self.scene.is_some() && self.scene != flown.scene),
+            (
+                "--airframe",
+                self.airframe.is_some_and(|a| a != flown.airframe),
+            ),
+            (
+                "--latency-ms",
+                other(self.latency_ms, flown.latency_ticks * TICK_MS),
+            ),
+            ("--slices-per-tick", slices),
+            ("--duration", seconds),
+        ]
+    }
+
+    /// Whether a file was given.
+    pub(super) fn has_file(&self) -> bool {
+        self.scenario.is_some()
     }
 }
 

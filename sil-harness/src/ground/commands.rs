@@ -1,9 +1,10 @@
-//! Commands: every one is acknowledged, those that nobody knows too.
+//! Commands. The vehicle acknowledges every command, even an unknown one.
 
-use super::vehicle::{Address, Severity, Vehicle, Waiting};
-use super::{Mode, Order};
+use super::demands::{Address, Command, Demand};
+use super::vehicle::{Severity, Vehicle, Waiting};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
+use mpp_sim::orders::{Mode, Order};
 
 /// Numbers of MAV_CMD.
 mod number {
@@ -23,7 +24,7 @@ const FORCE: f32 = 21196.0;
 /// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED.
 pub(super) const CUSTOM_MODE: u8 = 1;
 
-/// What an acknowledgement says, as MAV_RESULT counts.
+/// The result in an acknowledgement, with the numbers of MAV_RESULT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Outcome {
     Accepted = 0,
@@ -32,40 +33,23 @@ enum Outcome {
     Failed = 4,
 }
 
-impl Mode {
-    /// Its number in ArduPlane's table, which ground stations use for fixed wings.
-    pub(super) fn number(self) -> u32 {
-        match self {
-            Self::Auto => 10,
-            Self::Cruise => 7,
-        }
-    }
-
-    fn from_number(number: u32) -> Option<Self> {
-        [Self::Auto, Self::Cruise]
-            .into_iter()
-            .find(|mode| mode.number() == number)
+/// A mode's number in ArduPlane's table, which ground stations use for fixed wings.
+pub(super) fn mode_number(mode: Mode) -> u32 {
+    match mode {
+        Mode::Auto => 10,
+        Mode::Cruise => 7,
     }
 }
 
-/// A command, however it came.
-pub(super) struct Command {
-    number: u16,
-    first: f32,
-    second: f32,
-    from: Address,
-}
-
-/// What changes a flight or the link, if it is meant for this vehicle.
-pub(super) enum Demand {
-    Command(Command),
-    Parameter(PARAM_SET_DATA),
-    Mode(SET_MODE_DATA),
-    Streams(REQUEST_DATA_STREAM_DATA),
+fn mode_of(number: u32) -> Option<Mode> {
+    [Mode::Auto, Mode::Cruise]
+        .into_iter()
+        .find(|mode| mode_number(*mode) == number)
 }
 
 impl Vehicle {
-    /// What a frame asks this vehicle to change; none if it is something else, or another's.
+    /// The change that a frame asks this vehicle for. Returns `None` if the frame asks for no
+    /// change, or if it is for another vehicle.
     pub(super) fn demand(&self, frame: &Frame<'_>, from: Address) -> Option<Demand> {
         let (system, component, demand) = if let Some(long) = frame.decode::<COMMAND_LONG_DATA>() {
             let command = Command {
@@ -115,7 +99,7 @@ impl Vehicle {
         match demand {
             Demand::Command(command) => self.command(&command),
             Demand::Parameter(write) => self.write_parameter(&write),
-            Demand::Mode(set) => match Mode::from_number(set.custom_mode) {
+            Demand::Mode(set) => match mode_of(set.custom_mode) {
                 Some(mode) => self.order(Order::Mode { mode }, Waiting::Nobody),
                 None => self.say(Severity::Warning, "No such mode: AUTO or CRUISE"),
             },
@@ -139,7 +123,7 @@ impl Vehicle {
                 Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second),
                 id => self.request(id),
             },
-            // Older ways to ask for the same.
+            // These are older requests for the same messages.
             number::GET_INTERVAL => self.tell_interval(command.first),
             number::HOME => self.request(Some(HOME_POSITION_DATA::ID)),
             number::REQUEST_PROTOCOL => self.request(Some(PROTOCOL_VERSION_DATA::ID)),
@@ -151,7 +135,8 @@ impl Vehicle {
         }
     }
 
-    /// None: the acknowledgement follows when the flight has done it.
+    /// Returns `None` if the acknowledgement follows later, when the flight has carried out the
+    /// order.
     fn arm(&mut self, command: &Command) -> Option<Outcome> {
         let on = match command.first {
             0.0 => false,
@@ -178,7 +163,7 @@ impl Vehicle {
         let custom = |flags: u32| flags & u32::from(CUSTOM_MODE) != 0;
         let mode = whole(command.first)
             .filter(|flags| custom(*flags))
-            .and_then(|_| Mode::from_number(whole(command.second)?));
+            .and_then(|_| mode_of(whole(command.second)?));
         let Some(mode) = mode else {
             self.say(Severity::Warning, "No such mode: AUTO or CRUISE");
             return Some(Outcome::Denied);
@@ -211,7 +196,7 @@ impl Vehicle {
         accepted_if(id.is_some_and(|id| self.send_by_id(id)))
     }
 
-    /// What became of an order that was a command.
+    /// Acknowledges a command whose order is settled.
     pub(super) fn acknowledge(&mut self, command: u16, to: Address, done: bool) {
         let outcome = if done {
             Outcome::Accepted
@@ -248,10 +233,10 @@ fn accepted_if(done: bool) -> Option<Outcome> {
     })
 }
 
-/// A number of something that was sent as a float; none if it is no such number.
+/// The whole number that was sent as a float; `None` if the float is no such number.
 fn whole(value: f32) -> Option<u32> {
     let number = value as u32;
-    // Not equal either if it is no number, negative, or out of range.
+    // The comparison also fails if the value is no number, negative or out of range.
     #[expect(clippy::float_cmp, reason = "whole numbers are exact")]
     (number as f32 == value && number < u32::MAX).then_some(number)
 }

@@ -1,13 +1,14 @@
-//! What anybody may ask, and every message that can be sent on request.
+//! Requests that anybody may make, and every message that can be sent on request.
 
-use super::Mode;
-use super::commands::CUSTOM_MODE;
+use super::commands::{CUSTOM_MODE, mode_number};
+use super::demands::Address;
 use super::tlog::EPOCH_US;
-use super::vehicle::{Address, Vehicle};
-use crate::run::Moment;
-use hil_protocol::PlanTrajectory;
+use super::vehicle::{Severity, Vehicle};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
+use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory};
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::Mode;
 
 /// MAV_TYPE_FIXED_WING.
 const FIXED_WING: u8 = 1;
@@ -15,29 +16,29 @@ const FIXED_WING: u8 = 1;
 const GENERIC: u8 = 0;
 /// MAV_STATE_STANDBY and MAV_STATE_ACTIVE.
 const STATES: [u8; 2] = [3, 4];
-/// MAV_MODE_FLAG: stabilised, with a mode of its own kind; by its own plan.
+/// MAV_MODE_FLAG: custom mode and stabilised. `AUTO` means that the vehicle flies its own plan.
 const MODE_FLAGS: u8 = CUSTOM_MODE | 16;
 const AUTO: u8 = 4;
 /// MAV_MODE_FLAG_SAFETY_ARMED.
 const ARMED: u8 = 128;
 /// MAV_SYS_STATUS_SENSOR: airspeed, laser, attitude reference, motors.
 const SENSORS: u32 = 0x10 | 0x100 | 0x20_0000 | 0x8000;
-/// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as they are.
+/// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as plain floats.
 const CAPABILITIES: u64 = 8 | 2048 | 8192 | 131_072;
-/// Where the field lies, for maps [deg]: nowhere in particular, and at sea level, so that every
-/// altitude is a height.
+/// Position of the start on maps \[deg\]. The place is arbitrary. It counts as sea level, so that
+/// every altitude is a height.
 const HOME: (f64, f64) = (47.397_742, 8.545_594);
-/// A degree northwards [m].
+/// Length of a degree of latitude \[m\].
 const DEGREE: f64 = 111_319.49;
-/// Largest thrust that the throttle display knows [N]: it only scales a percentage.
+/// Thrust that the throttle display shows as 100 % \[N\]. It only scales a percentage.
 const FULL_THROTTLE: f64 = 15.0;
 /// MAV_MISSION_UNSUPPORTED.
 const NO_MISSIONS: u8 = 3;
-/// Beams of an [`MPP_LIDAR_SCAN_DATA`].
+/// Number of beams in an [`MPP_LIDAR_SCAN_DATA`].
 const BEAMS: usize = MPP_LIDAR_SCAN_DATA::DEFAULT.ranges.len();
 
 impl Vehicle {
-    /// Answers what changes nothing.
+    /// Answers requests that change nothing.
     pub(super) fn handle_inquiry(&mut self, frame: &Frame<'_>, from: Address) {
         if let Some(request) = frame.decode::<PARAM_REQUEST_LIST_DATA>() {
             if self.is_target(request.target_system, request.target_component) {
@@ -48,7 +49,7 @@ impl Vehicle {
                 self.read_parameter(&request);
             }
         } else if let Some(ping) = frame.decode::<PING_DATA>() {
-            // With a target it is an answer.
+            // A ping with a target is an answer.
             if ping.target_system == 0 && ping.target_component == 0 {
                 self.send(&PING_DATA {
                     target_system: from.system,
@@ -57,10 +58,10 @@ impl Vehicle {
                 });
             }
         } else if let Some(sync) = frame.decode::<TIMESYNC_DATA>() {
-            // Else it is an answer.
+            // A message with another `tc1` is an answer.
             if sync.tc1 == 0 && self.is_target(sync.target_system, sync.target_component) {
                 self.send(&TIMESYNC_DATA {
-                    // At the start, too, an answer must not look like a question.
+                    // An answer must not look like a question, not even at the start.
                     tc1: (i64::from(self.milliseconds()) * 1_000_000).max(1),
                     ts1: sync.ts1,
                     target_system: from.system,
@@ -79,7 +80,7 @@ impl Vehicle {
             }
         } else if let Some(upload) = frame.decode::<MISSION_COUNT_DATA>() {
             if self.is_target(upload.target_system, upload.target_component) {
-                // There are no missions but the empty one.
+                // The vehicle accepts only the empty mission.
                 let verdict = if upload.count == 0 { 0 } else { NO_MISSIONS };
                 self.acknowledge_mission(verdict, upload.mission_type, from);
             }
@@ -100,7 +101,8 @@ impl Vehicle {
         });
     }
 
-    /// Sends a message as things are now; false if it is none that can be had so.
+    /// Sends a message with the present values. Returns `false` if this message cannot be
+    /// requested.
     pub(super) fn send_by_id(&mut self, id: u32) -> bool {
         match id {
             HEARTBEAT_DATA::ID => self.send_heartbeat(),
@@ -126,11 +128,45 @@ impl Vehicle {
         true
     }
 
+    pub(super) fn report_plan(&mut self, report: &PlanReport) {
+        let count = report.candidates;
+        let line = match report.outcome {
+            PlanOutcome::Adopted => None,
+            PlanOutcome::LeastViolating => {
+                Some(format!("None of {count} feasible: least violating"))
+            }
+            PlanOutcome::KeptPrevious => Some(format!("None of {count} feasible: last plan kept")),
+            PlanOutcome::TrimHold => Some(format!("None of {count} feasible: straight and level")),
+        };
+        if let Some(line) = line {
+            self.say(Severity::Warning, &line);
+        }
+        if !report.complete {
+            let line = format!("Planner deadline missed, {} slices used", report.slices);
+            self.say(Severity::Warning, &line);
+        }
+        if self.streams.wants(MPP_PLAN_STATUS_DATA::ID) {
+            self.send(&MPP_PLAN_STATUS_DATA {
+                time_boot_ms: self.milliseconds(),
+                scan_tick: report.scan_tick,
+                used_from_tick: report.used_from_tick,
+                slices: report.slices,
+                cost: report.cost as f32,
+                violation: report.violation as f32,
+                candidates: report.candidates,
+                feasible: report.feasible,
+                tree_runs: report.tree_runs,
+                outcome: report.outcome as u8,
+                complete: u8::from(report.complete),
+            });
+        }
+    }
+
     pub(super) fn send_heartbeat(&mut self) {
         let armed = if self.armed { ARMED } else { 0 };
         let by_plan = if self.mode == Mode::Auto { AUTO } else { 0 };
         self.send(&HEARTBEAT_DATA {
-            custom_mode: self.mode.number(),
+            custom_mode: mode_number(self.mode),
             mavtype: FIXED_WING,
             autopilot: GENERIC,
             base_mode: MODE_FLAGS | by_plan | armed,
@@ -158,8 +194,8 @@ impl Vehicle {
     }
 
     /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
-    /// height; heading is north, roll and yaw are zero. It does not know the wind: over ground it
-    /// moves as in the air.
+    /// height; heading is north, roll and yaw are zero. The vehicle does not know the wind, so it
+    /// reports its motion through the air as its motion over ground.
     fn send_motion(&mut self, id: u32) {
         let (air, thrust, _) = self.motion();
         let air = *air;
@@ -268,7 +304,7 @@ impl Vehicle {
                 time_boot_ms: self.milliseconds(),
                 min_distance: 0,
                 max_distance: reach,
-                // Beyond its reach: nothing is there.
+                // A value beyond the greatest range means that nothing is there.
                 current_distance: nearest.unwrap_or(reach.saturating_add(1)),
                 covariance: u8::MAX,
                 vertical_fov: beams * scan.angle_increment,

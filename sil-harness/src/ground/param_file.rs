@@ -1,14 +1,14 @@
 //! Parameter files, as ground stations read and write them: a name and a value in each line.
 
-use flight_node::parameters::{PARAMETERS, Tuning};
+use mpp_node::parameters::{PARAMETERS, Tuning};
 use std::fmt::{self, Write};
 
-/// What is wrong with a parameter file.
+/// An error in a parameter file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ParamFileError {
     /// The line, counted from 1.
     pub line: usize,
-    /// What is in it.
+    /// Text of the line.
     pub text: String,
 }
 
@@ -20,10 +20,11 @@ impl fmt::Display for ParamFileError {
 
 impl std::error::Error for ParamFileError {}
 
-/// Names and values of a file. Between the two a comma, blanks or both; `#` begins a comment.
+/// Reads names and values from the text of a file. A comma, blanks or both separate a name from its
+/// value; `#` begins a comment.
 ///
 /// # Errors
-/// The first line that is neither.
+/// [`ParamFileError`] for the first line that is neither empty nor a name with a value.
 pub fn parse(text: &str) -> Result<Vec<(String, f64)>, ParamFileError> {
     let mut values = Vec::new();
     for (number, line) in text.lines().enumerate() {
@@ -46,12 +47,12 @@ pub fn parse(text: &str) -> Result<Vec<(String, f64)>, ParamFileError> {
     Ok(values)
 }
 
-/// Every parameter in force, one line each.
+/// Formats every parameter in force, one per line.
 #[must_use]
 pub fn format(tuning: &Tuning) -> String {
     let mut text = String::new();
     for (name, value) in values(tuning) {
-        // A string takes every line.
+        // A write to a string cannot fail.
         let _ = writeln!(text, "{name},{value}");
     }
     text
@@ -68,7 +69,7 @@ pub fn values(tuning: &Tuning) -> impl Iterator<Item = (&'static str, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::{Preset, Scenario};
+    use mpp_sim::scenario::{Preset, Scenario};
 
     fn tuning(preset: Preset) -> Tuning {
         Tuning::new(&Scenario::new(preset, 1).configure()).unwrap()

@@ -1,38 +1,20 @@
 //! The parameter protocol: lists, reads and writes.
 //!
-//! Every value is sent as a 32-bit float. A value that comes back unchanged changes nothing, and
-//! any other means the decimal number that a person would have typed.
+//! Every value is sent as a 32-bit float. A value that comes back unchanged changes nothing. Any
+//! other value means the decimal number that a person would have typed.
 
 use super::vehicle::{Severity, Vehicle, Waiting};
-use super::{Order, Refused};
-use flight_node::parameters::{PARAMETERS, Tuning};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{CharArray, text};
-use std::collections::VecDeque;
+use mpp_node::parameters::{self, PARAMETERS, Tuning};
+use mpp_sim::orders::{Order, Refused};
 
 /// MAV_PARAM_TYPE_REAL32.
 const REAL32: u8 = 9;
-/// Values sent in a tick while a list is sent: no socket's buffer overflows.
-const A_TICK: usize = 2;
-
-/// Parameters on their way.
-pub(super) struct ParameterSender(VecDeque<u8>);
-
-impl ParameterSender {
-    pub(super) fn new() -> Self {
-        Self(VecDeque::new())
-    }
-
-    /// The numbers to be sent in this tick.
-    pub(super) fn due(&mut self) -> Vec<u8> {
-        self.0.drain(..A_TICK.min(self.0.len())).collect()
-    }
-}
-
 impl Vehicle {
-    /// Answers a request for the whole list, or for one value.
+    /// Answers a request for the whole list.
     pub(super) fn list_parameters(&mut self) {
-        self.parameters.0 = present(self.tuning.as_ref()).into();
+        self.parameters.begin(present(self.tuning.as_ref()));
     }
 
     pub(super) fn read_parameter(&mut self, request: &PARAM_REQUEST_READ_DATA) {
@@ -62,7 +44,7 @@ impl Vehicle {
         self.order(Order::Parameter { name, value }, Waiting::Parameter(number));
     }
 
-    /// A write is answered by the value in force, whatever became of it.
+    /// Answers a write with the value in force, whether or not the write took effect.
     pub(super) fn answer_write(&mut self, number: u8, result: Result<(), Refused>) {
         self.send_parameter(number);
         if let (Err(refused), Some(parameter)) = (result, PARAMETERS.get(usize::from(number))) {
@@ -87,7 +69,7 @@ impl Vehicle {
     }
 }
 
-/// Numbers of the parameters that this preset has; their places are what MAVLink calls the index.
+/// Numbers of the parameters that this preset has. The place in this list is MAVLink's index.
 fn present(tuning: Option<&Tuning>) -> Vec<u8> {
     let numbers = 0..PARAMETERS.len() as u8;
     numbers
@@ -95,16 +77,12 @@ fn present(tuning: Option<&Tuning>) -> Vec<u8> {
         .collect()
 }
 
-/// The number of a name.
+/// The number of the parameter with this name.
 fn number(name: &CharArray<16>) -> Option<u8> {
-    let name = name.to_str().ok()?;
-    let place = PARAMETERS
-        .iter()
-        .position(|parameter| parameter.name == name)?;
-    u8::try_from(place).ok()
+    parameters::number(name.to_str().ok()?)
 }
 
-/// The shortest decimal number that is this float: 0.1, not 0.10000000149.
+/// The shortest decimal number that gives this float: 0.1, not 0.10000000149.
 fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::NAN)
 }

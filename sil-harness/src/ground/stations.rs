@@ -1,6 +1,6 @@
-//! Which ground stations are there.
+//! The ground stations that are connected.
 
-/// What changed about a station.
+/// A change in a station's connection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Change {
     Came,
@@ -14,9 +14,9 @@ struct Station {
     lost: bool,
 }
 
-/// Stations that were heard, by their heartbeats and in simulated time.
+/// Stations that were heard. Their heartbeats count, in simulated time.
 pub(super) struct Stations {
-    /// Ticks of silence after which a station is lost; none: never.
+    /// Ticks of silence after which a station is lost; `None` means never.
     patience: Option<u32>,
     heard: Vec<Station>,
 }
@@ -29,7 +29,7 @@ impl Stations {
         }
     }
 
-    /// Another patience, which begins at this tick.
+    /// Sets another patience, which begins at this tick.
     pub(super) fn set_patience(&mut self, patience: Option<u32>, tick: u32) {
         self.patience = patience;
         for station in &mut self.heard {
@@ -37,7 +37,7 @@ impl Stations {
         }
     }
 
-    /// A station's heartbeat.
+    /// Records a station's heartbeat. Returns the change, if there is one.
     pub(super) fn hear(&mut self, system: u8, tick: u32) -> Option<Change> {
         let Some(station) = self.heard.iter_mut().find(|s| s.system == system) else {
             self.heard.push(Station {
@@ -51,7 +51,7 @@ impl Stations {
         std::mem::take(&mut station.lost).then_some(Change::Returned)
     }
 
-    /// The stations that are lost from this tick on.
+    /// Finds the stations that are lost from this tick on.
     pub(super) fn missing(&mut self, tick: u32) -> Vec<(u8, Change)> {
         let Some(patience) = self.patience else {
             return Vec::new();
@@ -84,7 +84,7 @@ mod tests {
         assert_eq!(stations.missing(1201), [(255, Change::Lost)]);
     }
 
-    /// Ticks that flew by while there was none count for nothing.
+    /// Ticks that passed without a patience do not count.
     #[test]
     fn a_new_patience_begins_when_it_is_set() {
         let mut stations = Stations::new(None);

@@ -1,23 +1,20 @@
-//! Which message is sent how often.
+//! The rates at which messages are sent.
 
-use crate::scenario::TICKS_PER_SECOND;
 use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;
+use mpp_sim::scenario::{TICK_US, TICKS_PER_SECOND};
 
-/// Length of a tick [us].
-const TICK_US: f32 = 1e6 / TICKS_PER_SECOND as f32;
-
-/// When a message is sent.
+/// The rate of a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Rate {
-    /// Every so many ticks.
+    /// The message is sent once in this number of ticks.
     Every(u32),
-    /// When there is something new.
+    /// The message is sent when there is something new.
     Event,
     Never,
 }
 
-/// The messages that are sent without being asked for each time: id and usual rate.
+/// The messages that are sent without a request for each: id and usual rate.
 const USUAL: [(u32, Rate); 12] = [
     (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
@@ -47,7 +44,7 @@ impl Streams {
         Self(USUAL.to_vec())
     }
 
-    /// Messages that are due at a tick, oldest habits first.
+    /// Messages that are due at a tick, in the order of the table.
     pub(super) fn due(&self, tick: u32) -> Vec<u32> {
         let due = |(id, rate): &(u32, Rate)| match rate {
             Rate::Every(ticks) => tick.is_multiple_of(*ticks).then_some(*id),
@@ -61,19 +58,21 @@ impl Streams {
         self.0.contains(&(id, Rate::Event))
     }
 
-    /// Time between two messages [us] as MAVLink counts it: -1 never, 0 unknown to us.
+    /// Time between two messages \[us\] as MAVLink counts it: -1 means never, 0 means an unknown
+    /// message.
     pub(super) fn interval(&self, id: u32) -> i32 {
         match self.0.iter().find(|(own, _)| *own == id) {
-            Some((_, Rate::Every(ticks))) => (*ticks as f32 * TICK_US) as i32,
-            // Each event.
+            Some((_, Rate::Every(ticks))) => (*ticks * TICK_US) as i32,
+            // An interval of 1 us stands for each event.
             Some((_, Rate::Event)) => 1,
             Some((_, Rate::Never)) => -1,
             None => 0,
         }
     }
 
-    /// Asks for a message every so many microseconds, to the nearest tick: 0 as usual, below 0
-    /// never. False if it is no such message, or one that must not be silenced.
+    /// Sets the time between two messages in microseconds, to the nearest tick. 0 means the usual
+    /// rate; a value below 0 means never. Returns `false` if the message is unknown, if the time is
+    /// not finite, or if the heartbeat would change.
     pub(super) fn set(&mut self, id: u32, interval: f32) -> bool {
         let usual = USUAL.iter().find(|(own, _)| *own == id);
         let stream = self.0.iter_mut().find(|(own, _)| *own == id);
@@ -91,12 +90,12 @@ impl Streams {
         } else if *usual == Rate::Event {
             Rate::Event
         } else {
-            Rate::Every(((interval / TICK_US).round() as u32).max(1))
+            Rate::Every(((interval / TICK_US as f32).round() as u32).max(1))
         };
         true
     }
 
-    /// The older way to ask, by groups and in Hz.
+    /// Sets the rate of a group of messages in Hz. This is the older kind of request.
     pub(super) fn set_group(&mut self, group: u8, hertz: u16, start: bool) {
         let ids: &[u32] = match group {
             0 => &[

@@ -1,27 +1,29 @@
-//! Sockets, and the recording of what goes over them.
+//! Sockets, and the recording of the frames that go over them.
 
+use super::guests::Guests;
+use super::heard::Heard;
 use super::tlog::TlogWriter;
 use super::vehicle::Vehicle;
-use super::{Ground, Order, Refused};
-use crate::run::Moment;
-use flight_node::parameters::Tuning;
+use crate::files::write_soon;
 use mpp_core::vehicle::VehicleState;
+use mpp_node::parameters::Tuning;
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Ground, Order, Refused};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs, UdpSocket};
+use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-/// Where ground stations listen by custom.
+/// The port on which ground stations usually listen.
 pub const STATION_PORT: u16 = 14550;
-/// Where programs listen by custom, the first instance's.
+/// The port on which programs usually listen. It is the port of the first instance.
 pub const PROGRAM_PORT: u16 = 14540;
-/// Addresses that are remembered beside those that were given.
-const GUESTS: usize = 16;
-/// Longest datagram that is read [bytes].
+/// Longest datagram that is read \[bytes\].
 const DATAGRAM: usize = 2048;
-/// Datagrams that are read in a tick: who sends more does not stop the flight.
+/// Number of datagrams that are read in a tick. A station that sends more does not stop the flight.
 const A_TICK: usize = 1000;
-/// 2015-01-01T00:00:00Z, from which signatures count, since 1970.
+/// The start of the time of signatures, 2015-01-01T00:00:00Z, since 1970.
 const SIGNING_EPOCH: Duration = Duration::from_secs(1_420_070_400);
 
 /// A vehicle with its sockets.
@@ -29,14 +31,16 @@ pub struct Transport {
     vehicle: Vehicle,
     socket: Option<UdpSocket>,
     peers: Vec<SocketAddr>,
-    most_peers: usize,
+    guests: Guests,
+    /// Where signed times are kept, and those that are.
+    memory: Option<(PathBuf, Heard)>,
     tlog: Option<TlogWriter<BufWriter<File>>>,
     tlog_error: Option<io::Error>,
     report: Box<dyn FnMut(&str)>,
 }
 
-/// The addresses of an instance: station and program on this machine. From the tenth on, instances
-/// share a program's port.
+/// The addresses of an instance: station and program on this machine. From the tenth instance on,
+/// the instances share one program port.
 #[must_use]
 pub fn usual_addresses(instance: u8) -> Vec<SocketAddr> {
     let port = PROGRAM_PORT + u16::from(instance.min(9));
@@ -53,10 +57,10 @@ pub fn signing_time() -> u64 {
     u64::try_from(time).unwrap_or(u64::MAX)
 }
 
-/// The addresses of `HOST:PORT`.
+/// The address of `HOST:PORT`.
 ///
 /// # Errors
-/// When it is not one, or no such host is known.
+/// An error when the text is no such address, or when no such host is known.
 pub fn address(text: &str) -> io::Result<SocketAddr> {
     let mut found = text.to_socket_addrs()?;
     let none = || io::Error::new(io::ErrorKind::NotFound, "no such host");
@@ -64,24 +68,25 @@ pub fn address(text: &str) -> io::Result<SocketAddr> {
 }
 
 impl Transport {
-    /// A vehicle that nobody hears; `report` gets what whoever started it should read.
+    /// A vehicle without a connection. `report` gets the lines for the person who started it.
     pub fn new(vehicle: Vehicle, report: impl FnMut(&str) + 'static) -> Self {
         Self {
             vehicle,
             socket: None,
             peers: Vec::new(),
-            most_peers: 0,
+            guests: Guests::default(),
+            memory: None,
             tlog: None,
             tlog_error: None,
             report: Box::new(report),
         }
     }
 
-    /// Speaks to these addresses, and to everybody who answers. Others on the network can only
-    /// reach it if one of the addresses is on the network.
+    /// Speaks to these addresses, and to everybody who answers. Other machines on the network can
+    /// only reach the vehicle if one of the addresses is on the network.
     ///
     /// # Errors
-    /// When no socket is to be had.
+    /// An error when no socket can be opened.
     pub fn connect(&mut self, peers: Vec<SocketAddr>) -> io::Result<()> {
         let local = peers.iter().all(|peer| peer.ip().is_loopback());
         let host = match (peers.first(), local) {
@@ -92,10 +97,45 @@ impl Transport {
         };
         let socket = UdpSocket::bind(host)?;
         socket.set_nonblocking(true)?;
-        self.most_peers = peers.len() + GUESTS;
         self.socket = Some(socket);
         self.peers = peers;
         Ok(())
+    }
+
+    /// Keeps the times of signatures in this file, for the next flight, and believes none that is not
+    /// newer than those in it.
+    ///
+    /// # Errors
+    /// A sentence: the file cannot be read or written, or holds something else.
+    pub fn remember(&mut self, path: &Path) -> Result<(), String> {
+        let mut heard = kept(path)?;
+        heard.forget(signing_time());
+        write_soon(path, heard.format().as_bytes()).map_err(|error| error.to_string())?;
+        self.vehicle.remember(&heard);
+        self.memory = Some((path.to_owned(), heard));
+        Ok(())
+    }
+
+    /// Writes the times of signatures down if there are newer ones: before what was signed is done.
+    fn memorise(&mut self) {
+        let (Some((path, known)), Some(heard)) = (&mut self.memory, self.vehicle.heard()) else {
+            return;
+        };
+        if known == heard {
+            return;
+        }
+        known.merge(heard);
+        // Another vehicle with the same key may have written, too.
+        let mut all = known.clone();
+        let others = kept(path).map(|others| all.merge(&others));
+        let written = others.and_then(|()| {
+            write_soon(path, all.format().as_bytes()).map_err(|error| error.to_string())
+        });
+        if let Err(why) = written {
+            let line = format!("{why}: what was signed in this flight may be obeyed in the next");
+            (self.report)(&line);
+            self.memory = None;
+        }
     }
 
     /// Records everything that is sent and received.
@@ -103,29 +143,30 @@ impl Transport {
         self.tlog = Some(TlogWriter::new(BufWriter::new(file)));
     }
 
-    /// Before the flight: one tick at the start.
+    /// Passes one tick at the start, before the flight.
     pub fn hold(&mut self) {
         let since_start = self.vehicle.microseconds();
         self.vehicle.hold();
         self.deliver(since_start);
     }
 
-    /// Values changed that no station asked for.
+    /// Takes values that changed without a request from a station.
     pub fn tuned(&mut self, tuning: &Tuning) {
         self.vehicle.tuned(tuning);
     }
 
-    /// Another number of ticks of silence after which a station is lost; none: never.
+    /// Sets another number of ticks of silence after which a station is lost; `None` means never.
     pub fn set_patience(&mut self, patience: Option<u32>) {
         self.vehicle.set_patience(patience);
     }
 
-    /// The flight is over.
+    /// Ends the link after the flight.
     ///
     /// # Errors
-    /// What went wrong with the recording.
+    /// The error of the recording.
     pub fn end(mut self, how: &str) -> io::Result<Vehicle> {
         self.vehicle.end(how);
+        self.memorise();
         self.deliver(self.vehicle.microseconds());
         if let Some(tlog) = self.tlog {
             tlog.finish()?;
@@ -133,24 +174,22 @@ impl Transport {
         self.tlog_error.map_or(Ok(self.vehicle), Err)
     }
 
-    /// Takes in everything that has come.
+    /// Reads everything that has arrived.
     fn listen(&mut self) {
         let since_start = self.vehicle.microseconds();
         self.vehicle.set_signing_time(signing_time());
+        self.guests.expire(since_start);
         let mut buffer = [0; DATAGRAM];
-        // Whatever else a socket says, for instance that nobody listens yet, may be over at the
-        // next tick.
+        // Any other answer of the socket ends the loop, for instance that nobody listens yet. The
+        // cause may be gone at the next tick.
         for _ in 0..A_TICK {
             let Some(Ok((length, from))) = self.socket.as_ref().map(|s| s.recv_from(&mut buffer))
             else {
                 break;
             };
             let frames = self.vehicle.receive(&buffer[..length]);
-            if !frames.is_empty()
-                && !self.peers.contains(&from)
-                && self.peers.len() < self.most_peers
-            {
-                self.peers.push(from);
+            if !frames.is_empty() && !self.peers.contains(&from) {
+                self.guests.hear(from, since_start);
             }
             for frame in frames {
                 self.write(since_start, &frame);
@@ -162,8 +201,8 @@ impl Transport {
     fn deliver(&mut self, since_start: u64) {
         for frame in self.vehicle.take_outgoing() {
             if let Some(socket) = &self.socket {
-                for peer in &self.peers {
-                    // Nobody needs to be there.
+                for peer in self.peers.iter().chain(self.guests.addresses()) {
+                    // A failed send is no error, because no station needs to be there.
                     let _ = socket.send_to(frame.wire.as_bytes(), peer);
                 }
             }
@@ -184,6 +223,16 @@ impl Transport {
     }
 }
 
+/// The signed times in a file; none if there is none.
+fn kept(path: &Path) -> Result<Heard, String> {
+    let named = |why: String| format!("{}: {why}", path.display());
+    match std::fs::read_to_string(path) {
+        Ok(text) => Heard::parse(&text).map_err(named),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Heard::default()),
+        Err(error) => Err(named(error.to_string())),
+    }
+}
+
 impl Ground for Transport {
     fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
         self.vehicle.begin(tuning, start);
@@ -191,7 +240,11 @@ impl Ground for Transport {
 
     fn orders(&mut self, _: u32) -> Vec<Order> {
         self.listen();
-        self.vehicle.take_orders()
+        let orders = self.vehicle.take_orders();
+        if !orders.is_empty() {
+            self.memorise();
+        }
+        orders
     }
 
     fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {

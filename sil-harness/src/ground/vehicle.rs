@@ -1,30 +1,29 @@
-//! What a ground station sees of a flight: a fixed wing that answers as such vehicles do.
+//! The vehicle that a ground station sees: a fixed wing that answers as such vehicles do.
 //!
 //! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks
-//! since the start, those before the flight included.
+//! since the start; ticks before the flight count too.
 
-use super::parameters::ParameterSender;
+use super::demands::{Address, Demand, Demands};
+use super::heard::Heard;
+use super::parameter_queue::ParameterQueue;
 use super::security::Security;
 use super::stations::{Change, Stations};
 use super::streams::Streams;
-use super::{Mode, Order, Refused};
-use crate::run::Moment;
-use crate::scenario::TICKS_PER_SECOND;
-use flight_node::parameters::Tuning;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender, text};
-use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::vehicle::{AirState, VehicleState};
+use mpp_node::parameters::Tuning;
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Mode, Order, Refused};
+use mpp_sim::scenario::{Scenario, TICK_MS, TICK_US};
 use std::collections::VecDeque;
 
 /// MAV_COMP_ID_AUTOPILOT1.
 pub(super) const COMPONENT: u8 = 1;
 /// MAV_TYPE_GCS.
 const STATION: u8 = 6;
-/// Milliseconds of a tick.
-const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
 
-/// How loud a text is, as MAV_SEVERITY counts.
+/// The severity of a text, with the numbers of MAV_SEVERITY.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Severity {
     Warning = 4,
@@ -32,42 +31,35 @@ pub(super) enum Severity {
     Info = 6,
 }
 
-/// What is to be known before the start.
+/// The configuration of a vehicle.
 #[derive(Clone)]
 pub struct VehicleConfig {
-    /// 0 is system 1, and so on.
+    /// Number of the vehicle: 0 is system 1, and so on.
     pub instance: u8,
-    /// Ticks of silence after which a station is lost; none: never.
+    /// Ticks of silence after which a station is lost; `None` means never.
     pub patience: Option<u32>,
-    /// Wait at the start until somebody arms the vehicle.
+    /// Whether the vehicle waits at the start until somebody arms it.
     pub hold: bool,
-    /// A key, and the time of the first signature [10 us since 2015-01-01].
+    /// Key, and time of the first signature [10 us since 2015-01-01].
     pub key: Option<(Key, u64)>,
 }
 
 /// A frame on its way to every station.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outgoing {
-    /// As it is sent.
+    /// The frame as it is sent.
     pub wire: Datagram,
-    /// Without its signature, which is never the same twice.
+    /// The frame without its signature, which is different each time.
     pub plain: Datagram,
 }
 
-/// Who waits for what becomes of an order.
+/// The receiver of an order's result.
 pub(super) enum Waiting {
     /// The sender of a command.
     Command(u16, Address),
-    /// Everybody, for a parameter's value.
+    /// Everybody waits for a parameter's value.
     Parameter(u8),
     Nobody,
-}
-
-/// A station or one of its parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Address {
-    pub(super) system: u8,
-    pub(super) component: u8,
 }
 
 /// The vehicle.
@@ -78,7 +70,8 @@ pub struct Vehicle {
     framer: Framer,
     pub(super) streams: Streams,
     stations: Stations,
-    pub(super) parameters: ParameterSender,
+    demands: Demands<Demand>,
+    pub(super) parameters: ParameterQueue,
     pub(super) tuning: Option<Tuning>,
     outbox: Vec<Outgoing>,
     notes: Vec<String>,
@@ -107,7 +100,8 @@ impl Vehicle {
             framer: Framer::new(),
             streams: Streams::new(),
             stations: Stations::new(config.patience),
-            parameters: ParameterSender::new(),
+            demands: Demands::new(),
+            parameters: ParameterQueue::default(),
             tuning: None,
             outbox: Vec::new(),
             notes: Vec::new(),
@@ -124,19 +118,19 @@ impl Vehicle {
         }
     }
 
-    /// The core is configured, the aircraft is at its start.
+    /// Begins a flight: the core is configured and the aircraft is at its start.
     pub fn begin(&mut self, tuning: &Tuning, start: &VehicleState) {
         self.tuning = Some(*tuning);
         self.state = *start;
         self.estimate = start.air;
     }
 
-    /// Values changed that no station asked for.
+    /// Takes values that changed without a request from a station.
     pub fn tuned(&mut self, tuning: &Tuning) {
         self.tuning = Some(*tuning);
     }
 
-    /// Whether it may fly.
+    /// Whether the vehicle may fly.
     #[must_use]
     pub fn is_armed(&self) -> bool {
         self.armed
@@ -148,23 +142,41 @@ impl Vehicle {
         self.now
     }
 
-    /// Commands and writes that were refused because they bear no good signature.
+    /// Number of commands and writes that were refused because they bear no good signature.
     #[must_use]
     pub fn refused_signatures(&self) -> u32 {
         self.security.refused
     }
 
-    /// Moves the time of signatures on [10 us since 2015-01-01]; without it they are the start's.
+    /// Commands and writes that were not carried out, because too many came at once.
+    #[must_use]
+    pub fn lost_demands(&self) -> u32 {
+        self.demands.lost()
+    }
+
+    /// Believes no signature that is not newer than these.
+    pub fn remember(&mut self, heard: &Heard) {
+        self.security.remember(heard);
+    }
+
+    /// The newest times of signatures that were believed; none without a key.
+    #[must_use]
+    pub fn heard(&self) -> Option<&Heard> {
+        self.security.heard()
+    }
+
+    /// Advances the time of signatures [10 us since 2015-01-01]. Without this call it stays that of
+    /// the start.
     pub fn set_signing_time(&mut self, time: u64) {
         self.security.set_time(time);
     }
 
-    /// Another number of ticks of silence, from now on, after which a station is lost.
+    /// Sets another number of ticks of silence, from now on, after which a station is lost.
     pub fn set_patience(&mut self, patience: Option<u32>) {
         self.stations.set_patience(patience, self.now);
     }
 
-    /// Takes in a datagram from a station; gives the intact frames in it.
+    /// Handles a datagram from a station. Returns the intact frames in it.
     pub fn receive(&mut self, datagram: &[u8]) -> Vec<Vec<u8>> {
         let mut frames = Vec::new();
         let mut framer = std::mem::take(&mut self.framer);
@@ -181,17 +193,17 @@ impl Vehicle {
         std::mem::take(&mut self.orders)
     }
 
-    /// What is to be sent.
+    /// Takes the frames that are to be sent.
     pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
         std::mem::take(&mut self.outbox)
     }
 
-    /// What whoever started the vehicle should read.
+    /// Takes the lines for the person who started the vehicle.
     pub fn take_notes(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notes)
     }
 
-    /// What became of the oldest order that is not settled, and the values in force.
+    /// Takes the result of the oldest order that is not settled, and the values in force.
     pub fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
         self.tuning = Some(*tuning);
         if result.is_ok() {
@@ -210,12 +222,12 @@ impl Vehicle {
         }
     }
 
-    /// One tick at the start, before the flight.
+    /// Passes one tick at the start, before the flight.
     pub fn hold(&mut self) {
         self.pass();
     }
 
-    /// One tick of the flight.
+    /// Takes one tick of the flight.
     pub fn observe(&mut self, moment: &Moment<'_>) {
         self.flying = true;
         self.state = moment.tick.state;
@@ -234,7 +246,7 @@ impl Vehicle {
         self.pass();
     }
 
-    /// The flight is over.
+    /// Ends the flight.
     pub fn end(&mut self, how: &str) {
         self.flying = false;
         self.armed = false;
@@ -242,7 +254,7 @@ impl Vehicle {
         self.send_heartbeat();
     }
 
-    /// Ends a tick: what is due is sent, and time goes on.
+    /// Ends a tick: sends what is due and advances the time.
     fn pass(&mut self) {
         for id in self.streams.due(self.now) {
             self.send_by_id(id);
@@ -253,7 +265,16 @@ impl Vehicle {
         for (system, change) in self.stations.missing(self.now) {
             self.note_station(system, change);
         }
+        if self.demands.is_news() {
+            self.say(
+                Severity::Warning,
+                "Too many commands at once: some are lost",
+            );
+        }
         self.now += 1;
+        for demand in self.demands.due() {
+            self.meet(demand);
+        }
     }
 
     fn handle(&mut self, frame: &Frame<'_>) {
@@ -263,7 +284,7 @@ impl Vehicle {
             component: frame.component,
         };
         if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
-            // Nobody without the key shall pass for the station.
+            // A sender without the key must not count as a station.
             if trusted && heartbeat.mavtype == STATION {
                 let change = self.stations.hear(frame.system, self.now);
                 if let Some(change) = change {
@@ -272,7 +293,9 @@ impl Vehicle {
             }
         } else if let Some(demand) = self.demand(frame, from) {
             if trusted {
-                self.meet(demand);
+                if let Some(demand) = self.demands.admit(demand) {
+                    self.meet(demand);
+                }
             } else {
                 self.security.refused = self.security.refused.saturating_add(1);
             }
@@ -286,7 +309,7 @@ impl Vehicle {
         (system == 0 || system == self.system) && (component == 0 || component == COMPONENT)
     }
 
-    /// Gives an order; `waiting` hears what becomes of it.
+    /// Gives an order. `waiting` gets its result.
     pub(super) fn order(&mut self, order: Order, waiting: Waiting) {
         self.orders.push(order);
         self.waiting.push_back(waiting);
@@ -300,42 +323,8 @@ impl Vehicle {
         };
         let line = format!("Ground station {system} {what}");
         self.say(severity, &line);
-        let seconds = f64::from(self.now) / f64::from(TICKS_PER_SECOND);
+        let seconds = Scenario::time(self.now);
         self.notes.push(format!("{seconds:.2} s: {line}"));
-    }
-
-    fn report_plan(&mut self, report: &PlanReport) {
-        let count = report.candidates;
-        let line = match report.outcome {
-            PlanOutcome::Adopted => None,
-            PlanOutcome::LeastViolating => {
-                Some(format!("None of {count} feasible: least violating"))
-            }
-            PlanOutcome::KeptPrevious => Some(format!("None of {count} feasible: last plan kept")),
-            PlanOutcome::TrimHold => Some(format!("None of {count} feasible: straight and level")),
-        };
-        if let Some(line) = line {
-            self.say(Severity::Warning, &line);
-        }
-        if !report.complete {
-            let line = format!("Planner deadline missed, {} slices used", report.slices);
-            self.say(Severity::Warning, &line);
-        }
-        if self.streams.wants(MPP_PLAN_STATUS_DATA::ID) {
-            self.send(&MPP_PLAN_STATUS_DATA {
-                time_boot_ms: self.milliseconds(),
-                scan_tick: report.scan_tick,
-                used_from_tick: report.used_from_tick,
-                slices: report.slices,
-                cost: report.cost as f32,
-                violation: report.violation as f32,
-                candidates: report.candidates,
-                feasible: report.feasible,
-                tree_runs: report.tree_runs,
-                outcome: report.outcome as u8,
-                complete: u8::from(report.complete),
-            });
-        }
     }
 
     pub(super) fn say(&mut self, severity: Severity, line: &str) {
@@ -354,15 +343,15 @@ impl Vehicle {
         self.outbox.push(Outgoing { wire, plain });
     }
 
-    /// Time since the start [ms].
+    /// Time since the start \[ms\].
     pub(super) fn milliseconds(&self) -> u32 {
         self.now.saturating_mul(TICK_MS)
     }
 
-    /// Time since the start [us].
+    /// Time since the start \[us\].
     #[must_use]
     pub fn microseconds(&self) -> u64 {
-        u64::from(self.now) * u64::from(TICK_MS) * 1000
+        u64::from(self.now) * u64::from(TICK_US)
     }
 
     pub(super) fn motion(&self) -> (&AirState, f64, usize) {

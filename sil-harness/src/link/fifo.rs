@@ -1,13 +1,13 @@
 //! The core as another process, over two FIFOs.
 
-use super::{Link, LinkError};
 use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
+use mpp_sim::link::{Link, LinkError};
 use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::Path;
 
-/// Two FIFOs in one directory: `to-core` and `to-harness`. A core that dies closes its end; one that
-/// hangs is waited for.
+/// Two FIFOs in one directory: `to-core` and `to-harness`. A core that dies closes its end. The
+/// link waits for a core that hangs.
 pub struct FifoLink {
     to_core: File,
     to_harness: File,
@@ -17,7 +17,7 @@ pub struct FifoLink {
 }
 
 impl FifoLink {
-    /// Opens both FIFOs; waits until the core has opened them too.
+    /// Opens both FIFOs. Waits until the core has opened them too.
     ///
     /// # Errors
     /// [`LinkError::Io`] when they are not there.
@@ -28,7 +28,7 @@ impl FifoLink {
                 .open(&path)
                 .map_err(|error| LinkError::Io(format!("opening {}", path.display()), error))
         };
-        // In the core's order: an end waits for the other one.
+        // The FIFOs are opened in the core's order, because each end waits for the other one.
         let to_core = open("to-core", OpenOptions::new().write(true))?;
         let to_harness = open("to-harness", OpenOptions::new().read(true))?;
         Ok(Self {

@@ -1,14 +1,15 @@
 //! The core as a process of its own: serves one harness after another.
 
-use super::LinkError;
-use super::tcp::read_error;
-use flight_node::FlightNode;
+use super::tcp::{is_silence, read_error};
+use hil_protocol::{Decoder, Message};
+use mpp_node::FlightNode;
+use mpp_sim::link::LinkError;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-/// Serves a core on a listening socket; after the first flight only, if `once`. `report` gets a
-/// line for each session.
+/// Serves a core on a listening socket. With `once` it ends after the first session. `report` gets
+/// lines about each session.
 ///
 /// # Errors
 /// [`LinkError`] of the socket, and with `once` that of the session.
@@ -34,22 +35,86 @@ pub fn serve(
     }
 }
 
-/// One harness, until it closes the link.
+/// How long a client may take to say hello, whatever else it sends: others wait for it to end.
+const HELLO: Duration = Duration::from_secs(5);
+
+/// Whether a client is a harness, and when its last whole message came.
+struct Client {
+    decoder: Decoder,
+    greeted: bool,
+    last: Instant,
+    patience: Duration,
+}
+
+impl Client {
+    /// Takes in what came; bytes that come to no message do not count.
+    fn hear(&mut self, bytes: &[u8]) {
+        let messages = bytes
+            .iter()
+            .filter_map(|byte| self.decoder.push(*byte)?.ok());
+        let mut heard = false;
+        for message in messages {
+            self.greeted |= matches!(message, Message::Hello(_));
+            heard = self.greeted;
+        }
+        if heard {
+            self.last = Instant::now();
+        }
+    }
+
+    /// How long it may be silent in all.
+    fn patience(&self) -> Duration {
+        match self.greeted {
+            true => self.patience,
+            false => self.patience.min(HELLO),
+        }
+    }
+
+    /// How long it is still waited for.
+    fn left(&self) -> Duration {
+        self.patience().saturating_sub(self.last.elapsed())
+    }
+
+    fn silent(&self) -> LinkError {
+        LinkError::Silent {
+            waiting: "core",
+            awaited: self.awaited(),
+            patience: Some(self.patience()),
+        }
+    }
+
+    fn awaited(&self) -> String {
+        let what = if self.greeted {
+            "the next frame"
+        } else {
+            "hello"
+        };
+        format!("{what} from the harness")
+    }
+}
+
+/// Serves one harness until it closes the link.
 fn serve_session(mut stream: TcpStream, patience: Duration) -> Result<(), LinkError> {
     let io = |error| LinkError::Io("preparing the link to the harness".to_owned(), error);
     stream.set_nodelay(true).map_err(io)?;
-    stream.set_read_timeout(Some(patience)).map_err(io)?;
     stream.set_write_timeout(Some(patience)).map_err(io)?;
     let mut node = Box::new(FlightNode::new());
+    let mut client = Client {
+        decoder: Decoder::new(),
+        greeted: false,
+        last: Instant::now(),
+        patience,
+    };
     let mut bytes = [0; 4096];
     loop {
+        // What is there already is looked at, however late.
+        let wait = client.left().max(Duration::from_millis(1));
+        stream.set_read_timeout(Some(wait)).map_err(io)?;
         let count = match stream.read(&mut bytes) {
             Ok(0) => return Ok(()),
             Ok(count) => count,
-            Err(error) => {
-                let awaited = "the next frame from the harness".to_owned();
-                return Err(read_error(error, "core", awaited, patience));
-            }
+            Err(error) if is_silence(&error) => return Err(client.silent()),
+            Err(error) => return Err(read_error(error, "core", client.awaited(), patience)),
         };
         let mut sent = Ok(());
         node.receive(&bytes[..count], |frame| {
@@ -57,6 +122,11 @@ fn serve_session(mut stream: TcpStream, patience: Duration) -> Result<(), LinkEr
                 sent = stream.write_all(frame);
             }
         });
+        // After the core has done its work: that takes nothing of the harness's time.
+        client.hear(&bytes[..count]);
         sent.map_err(|error| LinkError::Io("answering the harness".to_owned(), error))?;
+        if client.left().is_zero() {
+            return Err(client.silent());
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The core as another process, over TCP.
 
-use super::{Link, LinkError};
 use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
+use mpp_sim::link::{Link, LinkError};
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
@@ -30,9 +30,9 @@ impl TcpLink {
     /// A link over a connection, with its own patience.
     ///
     /// # Errors
-    /// What the operating system says to the connection's options.
+    /// The error of the operating system when it refuses the connection's options.
     pub fn over(stream: TcpStream, address: String, patience: Duration) -> std::io::Result<Self> {
-        // A tick is one small frame each way: never wait to fill a packet.
+        // A tick is one small frame each way, so the link never waits to fill a packet.
         stream.set_nodelay(true)?;
         stream.set_read_timeout(Some(patience))?;
         stream.set_write_timeout(Some(patience))?;
@@ -59,7 +59,12 @@ impl TcpLink {
     }
 }
 
-/// What a failed read means: silence, or an error.
+/// Whether nothing came, for as long as was waited.
+pub(super) fn is_silence(error: &std::io::Error) -> bool {
+    matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut)
+}
+
+/// The meaning of a failed read: silence, a closed link or another error.
 pub(super) fn read_error(
     error: std::io::Error,
     waiting: &'static str,
@@ -67,7 +72,7 @@ pub(super) fn read_error(
     patience: Duration,
 ) -> LinkError {
     match error.kind() {
-        ErrorKind::WouldBlock | ErrorKind::TimedOut => LinkError::Silent {
+        _ if is_silence(&error) => LinkError::Silent {
             waiting,
             awaited,
             patience: Some(patience),

@@ -1,14 +1,15 @@
-//! Commands: acknowledged always, carried out between ticks, in the log.
+//! Commands are always acknowledged, carried out between ticks, and written to the log.
 
 use crate::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
+use mpp_sim::flight::{fly, fly_with};
+use mpp_sim::log::FlightLog;
+use mpp_sim::orders::{Again, Mode, Order, OrderEntry};
+use mpp_sim::outcome::Outcome;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::Scenario;
 use sil_harness::ground::vehicle::VehicleConfig;
-use sil_harness::ground::{Again, Mode, Order, OrderEntry};
-use sil_harness::link::{PATIENCE, PipeLink, TcpLink, serve};
-use sil_harness::log::FlightLog;
-use sil_harness::outcome::Outcome;
-use sil_harness::run::{fly, fly_with};
-use sil_harness::scenario::Scenario;
+use sil_harness::link::{PATIENCE, TcpLink, serve};
 use std::net::TcpListener;
 use std::time::Duration;
 
@@ -36,7 +37,7 @@ fn every_command_is_acknowledged() {
         (command(512, 242.0, 0.0), ACCEPTED),
         (command(512, 300.0, 0.0), ACCEPTED),
         (command(512, 330.0, 0.0), DENIED),
-        // 0 is the heartbeat's number: what is no number must not become it.
+        // 0 is the heartbeat's number. A value that is no number must not become 0.
         (command(512, f32::NAN, 0.0), DENIED),
         (command(512, -1.0, 0.0), DENIED),
         (command(512, 30.5, 0.0), DENIED),
@@ -49,7 +50,7 @@ fn every_command_is_acknowledged() {
     for (number, (command, _)) in cases.iter().enumerate() {
         radio.at(100 + number as i64, command);
     }
-    // The same as integers, to everybody, and to somebody else.
+    // The same command comes as integers to this vehicle, to everybody, and to another vehicle.
     radio.at(
         200,
         &COMMAND_INT_DATA {
@@ -88,7 +89,7 @@ fn an_interval_is_kept_in_simulated_time() {
     assert_eq!((count(0, 500), count(500, 1000)), (50, 250));
 }
 
-/// Parameters before and in flight, modes, the motor.
+/// A flight with parameters before it and in it, with modes, and with the motor switched.
 fn eventful() -> Radio {
     let mut radio = Radio::new(&VehicleConfig {
         hold: true,
@@ -117,7 +118,7 @@ fn a_flight_is_reproduced_from_its_log() {
     assert_eq!(read, log);
 
     struct Nobody;
-    impl sil_harness::ground::Ground for Nobody {}
+    impl mpp_sim::orders::Ground for Nobody {}
     let mut again = Again::new(Some(read.orders), Nobody);
     let second = fly_with(&scenario(), &mut PipeLink::new(), &mut again).unwrap();
     assert_eq!(second.hash().unwrap(), log.hash().unwrap());

@@ -1,8 +1,8 @@
-//! What a station asks without changing the flight.
+//! Tests the requests of a station that do not change the flight.
 
 use crate::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
-use sil_harness::scenario::Scenario;
+use mpp_sim::scenario::Scenario;
 
 fn short() -> Scenario {
     Scenario {
@@ -67,8 +67,8 @@ fn an_interval_is_told_in_both_ways() {
     assert_eq!(radio.acks()[3], (512, 2));
 }
 
-/// To whom it is meant for, as an answer and never as a question: its time is not 0, at the start
-/// either.
+/// A question is answered if it is for this vehicle. The answer must not look like a question: its
+/// time is not 0, not even at the start.
 #[test]
 fn a_question_for_the_time_is_answered_once() {
     let mut radio = Radio::new(&CONFIG);
@@ -184,7 +184,7 @@ fn a_map_shows_where_the_log_says() {
     assert_eq!(places.len(), 10);
     for (tick, place) in places {
         let row = tick as usize;
-        // On the sphere with the equator's radius.
+        // The computation uses a sphere with the equator's radius.
         let north = f64::from(place.lat - home.latitude) * 1e-7_f64.to_radians() * 6_378_137.0;
         assert!((north - log.ticks.x[row]).abs() < 0.02, "{tick}: {north}");
         let height = f64::from(place.alt - home.altitude) / 1e3;

@@ -1,15 +1,16 @@
-//! The link itself: bad, silent, signed, recorded.
+//! Tests the link itself: bad, silent, signed, recorded.
 
 use crate::radio::{CONFIG, Channel, Radio, command, heartbeat, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
+use mpp_sim::flight::fly;
+use mpp_sim::pipe::PipeLink;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
-use sil_harness::link::PipeLink;
-use sil_harness::run::fly;
 
-/// Loses a fifth, sends a fifth twice, damages a fifth and keeps a fifth for later.
+/// A link that loses a fifth of the datagrams, sends a fifth twice, damages a fifth and keeps a
+/// fifth for later.
 fn bad(seed: u64) -> Channel {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut kept: Vec<Vec<u8>> = Vec::new();
@@ -37,7 +38,7 @@ fn bad(seed: u64) -> Channel {
     })
 }
 
-/// Everything that a station may say without changing the flight, once a second.
+/// Sends, once a second, everything that a station may say without changing the flight.
 fn chatter(radio: &mut Radio) {
     for second in 0..12 {
         let tick = 100 * second;
@@ -79,7 +80,7 @@ fn no_link_and_the_worst_link_fly_the_same_bytes() {
     }
 }
 
-/// An order that comes twice, or is damaged on the way, is carried out once or not at all.
+/// An order that comes twice, or that is damaged on the way, is carried out once or not at all.
 #[test]
 fn a_repeated_order_is_one_order() {
     let mut radio = Radio::new(&CONFIG);
@@ -128,7 +129,7 @@ fn a_recording_has_the_same_bytes_each_time() {
     };
     let first = record();
     assert!(first == record());
-    // 2026-01-01T00:00:00Z.
+    // The first time is 2026-01-01T00:00:00Z.
     let time = u64::from_be_bytes(*first.first_chunk().unwrap());
     assert_eq!(time, 1_767_225_600_000_000);
     assert_eq!(first[8], 0xFD);
@@ -192,7 +193,7 @@ fn with_a_key_only_its_holder_commands() {
         NOW + 2,
     );
     let log = radio.fly(&scenario());
-    // Reading is free.
+    // A request to read needs no signature.
     assert_eq!(
         radio.values(),
         [
@@ -203,7 +204,7 @@ fn with_a_key_only_its_holder_commands() {
     assert_eq!(radio.acks(), [(176, 0)]);
     assert_eq!(log.orders.len(), 1, "{:?}", log.orders);
     assert_eq!(radio.vehicle.refused_signatures(), 4);
-    // Nor is another's order counted, or what is none.
+    // Frames for another vehicle and frames that are no orders are not counted either.
     let errors = radio.all(|message| match message {
         MavMessage::SYS_STATUS(status) => Some(status.errors_count2),
         _ => None,
@@ -211,8 +212,8 @@ fn with_a_key_only_its_holder_commands() {
     assert_eq!(errors.last().unwrap().1, 4);
 }
 
-/// A vehicle that has flown for ten minutes is believed by a station that has just started, and what
-/// was recorded at its start is not believed by the vehicle.
+/// A vehicle that has flown for ten minutes is trusted by a station that has just started. The
+/// vehicle does not trust what was recorded at its start.
 #[test]
 fn signatures_go_with_the_time() {
     const TEN_MINUTES: u64 = 60_000_000;
@@ -234,12 +235,13 @@ fn signatures_go_with_the_time() {
     }
     vehicle.receive(&signed(NOW));
     assert_eq!(vehicle.refused_signatures(), 1);
-    // A station whose clock is ahead takes the vehicle along.
-    vehicle.receive(&signed(NOW + 2 * TEN_MINUTES));
+    // A station whose clock is a little ahead moves the vehicle's time on.
+    let ahead = NOW + TEN_MINUTES + TEN_MINUTES / 20;
+    vehicle.receive(&signed(ahead));
     assert_eq!(vehicle.refused_signatures(), 1);
     vehicle.take_outgoing();
     vehicle.end("here");
-    let mut station = Verifier::new(Key::of_passphrase("secret"), NOW + 2 * TEN_MINUTES);
+    let mut station = Verifier::new(Key::of_passphrase("secret"), ahead);
     for frame in vehicle.take_outgoing() {
         Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
             assert_eq!(station.verify(frame), Ok(()));
@@ -247,7 +249,62 @@ fn signatures_go_with_the_time() {
     }
 }
 
-/// A station without the key cannot pass for one that is there.
+/// A frame of the arming command, signed by a station at a time.
+fn arming(system: u8, time: u64) -> Vec<u8> {
+    let mut signer = Signer::new(Key::of_passphrase("secret"), 9, time);
+    let frame = Sender::new(system, 1).signed_frame(&command(400, 1.0, 0.0), &mut signer);
+    frame.as_bytes().to_vec()
+}
+
+/// One stamp of a year ahead would make every honest one too old.
+#[test]
+fn a_stamp_from_far_ahead_locks_nobody_out() {
+    const MINUTE: u64 = 6_000_000;
+    let mut vehicle = Vehicle::new(&keyed());
+    vehicle.receive(&arming(250, NOW + 365 * 24 * 60 * MINUTE));
+    vehicle.receive(&arming(251, NOW + MINUTE + 1));
+    assert_eq!(vehicle.refused_signatures(), 2);
+    vehicle.receive(&arming(252, NOW + MINUTE));
+    vehicle.receive(&arming(253, NOW));
+    assert_eq!(vehicle.refused_signatures(), 2);
+}
+
+/// What was recorded in one flight is not obeyed in the next, and what is new is.
+#[test]
+fn a_frame_of_the_flight_before_is_refused() {
+    let mut first = Vehicle::new(&keyed());
+    first.receive(&arming(254, NOW + 7));
+    assert_eq!(first.refused_signatures(), 0);
+    let kept = first.heard().unwrap().format();
+    let mut second = Vehicle::new(&keyed());
+    second.remember(&sil_harness::ground::heard::Heard::parse(&kept).unwrap());
+    second.receive(&arming(254, NOW + 7));
+    assert_eq!(second.refused_signatures(), 1);
+    second.receive(&arming(254, NOW + 8));
+    second.receive(&arming(253, NOW + 7));
+    assert_eq!(second.refused_signatures(), 1);
+}
+
+/// However many commands come in a tick, the flight carries out a few and goes on.
+#[test]
+fn a_flood_of_commands_is_carried_out_bit_by_bit() {
+    let mut radio = Radio::new(&CONFIG);
+    for index in 1..=1000 {
+        let height = 50.0 + f32::from(u16::try_from(index).unwrap()) / 1000.0;
+        radio.at(300, &write("MPP_ALT_M", height));
+    }
+    let log = radio.fly(&scenario());
+    let mut ticks: Vec<u64> = log.orders.iter().map(|entry| entry.tick).collect();
+    // 16 at once and 256 later; the rest is lost, and that is told.
+    assert_eq!(ticks.len(), 16 + 256, "{ticks:?}");
+    assert_eq!(radio.vehicle.lost_demands(), 1000 - 16 - 256);
+    let told = |(_, text): &(u32, String)| text.contains("Too many commands at once");
+    assert_eq!(radio.texts().iter().filter(|text| told(text)).count(), 1);
+    ticks.dedup();
+    assert_eq!(ticks, (300..317).collect::<Vec<u64>>());
+}
+
+/// A station without the key cannot replace a station that is there.
 #[test]
 fn an_unsigned_heartbeat_is_nobodys() {
     let mut radio = Radio::new(&keyed());

@@ -1,4 +1,5 @@
-//! Flights with ground stations: what they see, what they can change, and what they cannot.
+//! Tests flights with ground stations: what stations see, what they can change, and what they
+//! cannot change.
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 #![expect(clippy::float_cmp, reason = "what is told is what is, to the last bit")]

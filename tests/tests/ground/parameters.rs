@@ -1,13 +1,13 @@
-//! Parameters as a station reads and writes them.
+//! Tests the parameters that a station reads and writes.
 
 use crate::radio::{CONFIG, Radio, command, scenario, write};
-use flight_node::parameters::{PARAMETERS, Tuning};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::{ConfigureVerdict, ParameterVerdict};
 use mpp_core::settings::Settings;
+use mpp_node::parameters::{PARAMETERS, Tuning};
+use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::ground::param_file::values;
 use sil_harness::ground::vehicle::VehicleConfig;
-use sil_harness::scenario::{Preset, Scenario};
 
 fn tuning(preset: Preset) -> Tuning {
     Tuning::new(&Scenario::new(preset, 1).configure()).unwrap()
@@ -38,7 +38,7 @@ fn the_list_is_every_parameter_of_the_preset_as_it_is_flown() {
     }
 }
 
-/// A value that is written is one that the settings hold, and no other field moves.
+/// The settings hold every value that is written, and no other field changes.
 #[test]
 fn each_parameter_is_a_field_of_its_own() {
     let before = tuning(Preset::Flight);
@@ -53,7 +53,7 @@ fn each_parameter_is_a_field_of_its_own() {
             value * 1.25 + 0.5
         };
         let other = other.min(parameter.range[1]);
-        // Latency must stay within the period.
+        // The latency must stay within the period.
         let after = match before.with(number, other, false) {
             Err(ParameterVerdict::SetUp(_)) => before.with(number, 0.5, false).unwrap(),
             after => after.unwrap(),
@@ -88,27 +88,42 @@ fn refusals_name_their_reason() {
         verdict("LQR_R_ELEVATOR", 1.0, true),
         ParameterVerdict::InFlight
     );
-    // This preset has hard rows.
+    // Paths that are tracked without refinement have a cycle of their own.
+    assert_eq!(
+        verdict("MPP_PATHS", 0.0, true),
+        ParameterVerdict::PathsInFlight
+    );
+    // This preset has hard rows, so it has no penalty.
     assert_eq!(
         verdict("MPP_PEN_LIN", 1.0, false),
-        ParameterVerdict::Unknown
+        ParameterVerdict::NotInPreset
     );
     assert!(matches!(
         verdict("MPP_LATENCY_S", 2.0, false),
         ParameterVerdict::SetUp(_)
     ));
     assert_eq!(tuning.with(200, 1.0, false), Err(ParameterVerdict::Unknown));
-    // Actuators are the business of preset `flight`; the elevator's range is about one trim.
+    // The flight planner has no baseline, and its distances from obstacles have other names.
+    let flight = self::tuning(Preset::Flight);
+    assert_eq!(
+        flight.with(number("MPP_PATHS"), 0.0, false),
+        Err(ParameterVerdict::SetUp(ConfigureVerdict::PathsZero))
+    );
+    for name in ["MPP_PAD_NEAR_M", "MPP_PAD_FAR_M"] {
+        let verdict = flight.with(number(name), 1.0, false);
+        assert_eq!(verdict, Err(ParameterVerdict::NotInPreset));
+    }
+    // Only preset `flight` uses the actuators' limits. The elevator's range is about one trim.
     assert_eq!(
         verdict("ACT_ELEV_RANGE", 2.0, false),
-        ParameterVerdict::Unknown
+        ParameterVerdict::NotInPreset
     );
     let flight = self::tuning(Preset::Flight);
     let limited = flight.with(number("ACT_ELEV_RANGE"), 2.0, false).unwrap();
     assert!(flight.with(number("MPP_CRUISE_MS"), 14.0, false).is_ok());
     assert_eq!(
         limited.with(number("MPP_CRUISE_MS"), 14.0, false),
-        Err(ParameterVerdict::SetUp(ConfigureVerdict::Actuators))
+        Err(ParameterVerdict::CruiseFixed)
     );
 }
 
@@ -121,7 +136,7 @@ fn a_refused_write_is_answered_with_the_value_in_force() {
         .at(120, &write("LQR_R_ELEVATOR", 0.7))
         .at(130, &write("MPP_PATHS", 12.0))
         .at(140, &write("NO_SUCH_THING", 1.0));
-    // A preset that refines as many candidates as it is told to.
+    // This preset refines as many candidates as the parameter says.
     let log = radio.fly(&Scenario {
         ticks: 1200,
         ..Scenario::new(Preset::Paper, 1)
@@ -143,7 +158,7 @@ fn a_refused_write_is_answered_with_the_value_in_force() {
         assert!(texts.iter().any(|text| text == expected), "{texts:?}");
     }
     assert_eq!(log.orders.len(), 1);
-    // From the next cycle on.
+    // The value holds from the next cycle on.
     assert!(
         log.plans
             .iter()
@@ -151,7 +166,7 @@ fn a_refused_write_is_answered_with_the_value_in_force() {
     );
 }
 
-/// Before the flight the core is asked, so a value with which it cannot fly is refused in time.
+/// The core is asked before the flight, so a value with which it cannot fly is refused in time.
 #[test]
 fn a_value_that_the_core_cannot_fly_with_is_refused_before_the_flight() {
     let mut radio = Radio::new(&VehicleConfig {
@@ -180,7 +195,7 @@ fn a_new_altitude_is_flown_to() {
     radio.at(200, &write("MPP_ALT_M", 56.0));
     let log = radio.fly(&empty);
     let last = log.ticks.z.last().unwrap();
-    // The plan's weights bring it there slowly.
+    // The plan's weights bring the aircraft there slowly.
     assert!((52.5..57.0).contains(last), "{last}");
 }
 

@@ -1,16 +1,17 @@
-//! A station that speaks at chosen ticks, over a link that may be bad.
+//! A radio: a station that speaks at chosen ticks, over a link that may be bad.
 
-use flight_node::parameters::Tuning;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, MessageData, Sender, Signer, text};
 use mpp_core::vehicle::VehicleState;
+use mpp_node::parameters::Tuning;
+use mpp_sim::flight::fly_with;
+use mpp_sim::log::FlightLog;
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Ground, Order, Refused};
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::ground::tlog::TlogWriter;
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
-use sil_harness::ground::{Ground, Order, Refused};
-use sil_harness::link::PipeLink;
-use sil_harness::log::FlightLog;
-use sil_harness::run::{Moment, fly_with};
-use sil_harness::scenario::{Preset, Scenario};
 
 pub(crate) const CONFIG: VehicleConfig = VehicleConfig {
     instance: 0,
@@ -26,13 +27,13 @@ pub(crate) fn scenario() -> Scenario {
     }
 }
 
-/// What a link does to the datagrams of one direction.
+/// The change that a link makes to the datagrams of one direction.
 pub(crate) type Channel = Box<dyn FnMut(Vec<Vec<u8>>) -> Vec<Vec<u8>>>;
 
-/// A vehicle, a station that sends at given ticks, and all that the station hears.
+/// A vehicle, a station that sends at given ticks, and everything that the station hears.
 pub(crate) struct Radio {
     pub(crate) vehicle: Vehicle,
-    /// Tick of the flight and datagram; -1 is before the flight.
+    /// Tick of the flight and datagram; -1 means before the flight.
     script: Vec<(i64, Vec<u8>)>,
     pub(crate) up: Channel,
     pub(crate) down: Channel,
@@ -66,7 +67,7 @@ impl Radio {
         self
     }
 
-    /// The same, signed at a time.
+    /// Sends a message before a tick is flown, signed at a time.
     pub(crate) fn signed_at<M: MessageData>(
         &mut self,
         tick: i64,
@@ -78,7 +79,7 @@ impl Radio {
         self.script.push((tick, frame.as_bytes().to_vec()));
     }
 
-    /// Flies, and gives the log.
+    /// Flies and returns the log.
     pub(crate) fn fly(&mut self, scenario: &Scenario) -> FlightLog {
         self.script.sort_by_key(|(tick, _)| *tick);
         fly_with(scenario, &mut PipeLink::new(), self).unwrap()
@@ -109,7 +110,7 @@ impl Radio {
         })
     }
 
-    /// Name and value of every parameter that was told.
+    /// Name and value of every parameter that was sent.
     pub(crate) fn values(&self) -> Vec<(String, f32)> {
         let value = |message: &MavMessage| match message {
             MavMessage::PARAM_VALUE(value) => Some((

@@ -1,26 +1,27 @@
-//! What a station sees is what the log holds.
+//! Tests that a station sees what the log holds.
 
 use crate::radio::{CONFIG, Radio, scenario};
 use hil_protocol::LidarScan;
 use hil_protocol::mavlink::messages::*;
-use sil_harness::ground::{Ground, Order};
-use sil_harness::link::PipeLink;
-use sil_harness::run::{Moment, fly_with};
-use sil_harness::scenario::{Preset, Scenario};
+use mpp_sim::flight::fly_with;
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Ground, Order};
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 
-/// A radio, and what the plant and the core had to say.
+/// A radio, with the data that plant and core gave.
 struct Witness {
     radio: Radio,
     scans: Vec<LidarScan>,
     knots: Vec<(u32, Vec<[f32; 3]>)>,
-    /// Cycles that were not done at their deadline.
+    /// Number of cycles that were not done at their deadline.
     missed: usize,
 }
 
 impl Ground for Witness {
     fn begin(
         &mut self,
-        tuning: &flight_node::parameters::Tuning,
+        tuning: &mpp_node::parameters::Tuning,
         start: &mpp_core::vehicle::VehicleState,
     ) {
         self.radio.begin(tuning, start);
@@ -39,7 +40,7 @@ impl Ground for Witness {
     }
 }
 
-fn witnessed(scenario: &Scenario) -> (Witness, sil_harness::log::FlightLog) {
+fn witnessed(scenario: &Scenario) -> (Witness, mpp_sim::log::FlightLog) {
     let mut witness = Witness {
         radio: Radio::new(&CONFIG),
         scans: Vec::new(),
@@ -108,7 +109,8 @@ fn scans_and_plans_are_those_of_the_flight() {
         for (place, knot) in knots.iter().enumerate() {
             assert_eq!([told.x[place], told.z[place], told.gamma[place]], *knot);
             // The log samples the same trajectory at the knots that were flown.
-            let tick = *scan_tick as usize + 25 * place;
+            // A plan of preset `flight` starts where it is taken over, a tick after its scan.
+            let tick = *scan_tick as usize + 1 + 25 * place;
             let flown = place > 0 && place < 4 && tick < log.ticks.t.len();
             if flown
                 && log
@@ -150,7 +152,7 @@ fn motion_is_that_of_the_log() {
     }
 }
 
-/// A wall of a field: there are cycles without a feasible candidate.
+/// The field is a wall, so there are cycles without a feasible candidate.
 #[test]
 fn every_cycle_without_a_feasible_plan_is_told() {
     let dense = Scenario {

@@ -1,11 +1,13 @@
-//! What the harness sends is spoilt on the way: rejected, logged, and the flight goes on.
+//! The harness's messages are damaged on the way. They are rejected and logged, and the flight goes
+//! on.
 
 use crate::{Spoilt, causes, short};
 use hil_protocol::{ConfigureVerdict, MAX_FRAME, Message, RejectionCause, SensorFrame, encode};
-use sil_harness::link::{Link, PipeLink};
-use sil_harness::log::FlightLog;
-use sil_harness::outcome::Outcome;
-use sil_harness::run::fly;
+use mpp_sim::flight::fly;
+use mpp_sim::link::Link;
+use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
+use mpp_sim::pipe::PipeLink;
 
 #[expect(clippy::unwrap_used, reason = "spoilt input must not stop a flight")]
 fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
@@ -16,8 +18,8 @@ fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
     fly(&short(2), &mut link, |_| {}).unwrap()
 }
 
-/// Every tenth sensor frame holds values that are no numbers: each is rejected and logged, and the
-/// flight goes on.
+/// Every tenth sensor frame holds values that are no numbers. Each such frame is rejected and
+/// logged, and the flight goes on.
 #[test]
 fn values_that_are_no_numbers_are_rejected_and_logged() {
     let log = fly_spoilt(|pipe, message| {
@@ -98,7 +100,7 @@ fn scans_that_cannot_be_used_are_rejected_and_logged() {
             "TickOrder { expected: 400, found: 399 }",
         ]
     );
-    // The plans of those scans are missing, and the one before is flown on.
+    // The plans of those scans are missing, so the earlier plan is flown on.
     assert_eq!(log.plans.len(), 1);
 }
 
@@ -121,7 +123,7 @@ fn garbage_and_damaged_frames_are_rejected_and_logged() {
             80 => pipe.send_bytes(&vec![0x55; 4000]),
             _ => {}
         }
-        // A delimiter ends what noise left behind; the frame itself then comes whole.
+        // A delimiter ends the rest of the noise. The frame itself then comes whole.
         pipe.send_bytes(&[0]);
         false
     });
@@ -131,7 +133,7 @@ fn garbage_and_damaged_frames_are_rejected_and_logged() {
     assert_eq!(log.summary.outcome, Outcome::Survived);
 }
 
-/// A core without a configuration says so, and one with a flight under way refuses another.
+/// A core without a configuration reports this, and a core in flight refuses another configuration.
 #[test]
 fn messages_out_of_place_are_rejected() {
     let mut pipe = PipeLink::new();
@@ -157,7 +159,7 @@ fn messages_out_of_place_are_rejected() {
     assert!(
         matches!(pipe.receive("a reply"), Ok(Message::ConfigureReply(r)) if r.verdict == ConfigureVerdict::AlreadyConfigured)
     );
-    // What only a core may say.
+    // Only a core may send this message.
     pipe.send(&answer).unwrap();
     assert!(
         matches!(pipe.receive("a rejection"), Ok(Message::Rejection(r)) if r.cause == RejectionCause::UnexpectedMessage { id: answer.id() })

@@ -1,13 +1,16 @@
-//! The link: the same flight over a pipe and over TCP, and everything that can go wrong on it.
+//! Tests the link: the same flight over a pipe and over TCP, and everything that can go wrong on
+//! it.
 
 mod input;
 mod restarts;
 
-use hil_protocol::{ConfigureVerdict, DecodeError, Message};
-use sil_harness::link::{Link, LinkError, PipeLink, TcpLink, serve};
-use sil_harness::log::FlightLog;
-use sil_harness::run::{FlyError, fly};
-use sil_harness::scenario::{Preset, Scenario};
+use hil_protocol::{ConfigureVerdict, DecodeError, Hello, MAX_FRAME, Message, Role, encode};
+use mpp_sim::flight::{FlyError, fly};
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::log::FlightLog;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
+use sil_harness::link::{TcpLink, serve};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::thread;
@@ -22,10 +25,10 @@ fn short(seed: u64) -> Scenario {
     }
 }
 
-/// A pipe on which what the harness sends is spoilt on the way.
+/// A pipe that damages the harness's messages on the way.
 struct Spoilt<F: FnMut(&mut PipeLink, &Message) -> bool> {
     pipe: PipeLink,
-    /// True when it has dealt with the message itself.
+    /// Returns `true` when it has dealt with the message itself.
     spoil: F,
 }
 
@@ -94,7 +97,7 @@ fn a_core_that_dies_in_flight_is_named() {
     let (listener, address) = local_listener();
     let core = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
-        let mut node = Box::new(flight_node::FlightNode::new());
+        let mut node = Box::new(mpp_node::FlightNode::new());
         let mut bytes = [0; 4096];
         let mut frames = 0;
         while frames < 40 {
@@ -125,8 +128,48 @@ fn a_silent_harness_is_named_by_the_core() {
     let error = serve(&listener, true, PATIENCE, |_| {}).unwrap_err();
     let text = error.to_string();
     assert!(
-        text.contains("core waits for the next frame from the harness"),
+        text.contains("core waits for hello from the harness"),
         "{text}"
+    );
+}
+
+/// Somebody who sends something now and then, but never says hello, does not keep others waiting.
+#[test]
+fn a_stranger_that_drips_is_dropped_and_the_next_harness_is_served() {
+    let (listener, address) = local_listener();
+    let mut stranger = TcpStream::connect(&address).unwrap();
+    let drip = thread::spawn(move || {
+        while stranger.write_all(b"GET ").is_ok() {
+            thread::sleep(PATIENCE / 20);
+        }
+    });
+    let (reports, told) = std::sync::mpsc::channel();
+    thread::spawn(move || {
+        serve(&listener, false, PATIENCE, |line| {
+            // Nobody listens once the test is over.
+            let _ = reports.send(line.to_owned());
+        })
+    });
+    // Its hello is there before the core asks for it.
+    let mut harness = TcpStream::connect(&address).unwrap();
+    let hello = Message::Hello(Hello {
+        role: Role::Harness,
+        software: [0, 1, 0],
+        tick_period_us: 10_000,
+        beams_max: 64,
+        stages: 20,
+    });
+    let mut frame = [0; MAX_FRAME];
+    harness
+        .write_all(encode(&hello, &mut frame).unwrap())
+        .unwrap();
+    let mut answer = [0; 8];
+    harness.read_exact(&mut answer).unwrap();
+    drip.join().unwrap();
+    let told: Vec<String> = told.iter().take(2).collect();
+    assert!(
+        told[1].contains("core waits for hello from the harness"),
+        "{told:?}"
     );
 }
 
@@ -135,7 +178,7 @@ fn a_core_of_another_version_is_refused_by_name() {
     let (listener, address) = local_listener();
     let core = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
-        // A frame of protocol version 9: header, CRC-32 and COBS by hand.
+        // This is a frame of protocol version 9: header, CRC-32 and COBS made by hand.
         let plain = [0x4D, 0x50, 9, 1];
         let mut frame = vec![0x09];
         frame.extend(plain);
@@ -153,7 +196,7 @@ fn a_core_of_another_version_is_refused_by_name() {
     assert!(error.to_string().contains("protocol 9"), "{error}");
 }
 
-/// Bit by bit, as its definition reads.
+/// CRC-32 bit by bit, as its definition reads.
 fn crc32(bytes: &[u8]) -> u32 {
     let mut crc = !0_u32;
     for byte in bytes {

@@ -1,14 +1,15 @@
-//! A core that restarts, whatever is awaited at that moment.
+//! Tests a core that restarts at any moment.
 
 use crate::{Spoilt, causes, short};
 use hil_protocol::{Hello, Message, Role, id};
-use sil_harness::ground::{Again, Ground, Order, OrderEntry};
-use sil_harness::link::{Link, PipeLink};
-use sil_harness::log::FlightLog;
-use sil_harness::run::{FlyError, fly_with};
-use sil_harness::scenario::{Preset, Scenario};
+use mpp_sim::flight::{FlyError, fly_with};
+use mpp_sim::link::Link;
+use mpp_sim::log::FlightLog;
+use mpp_sim::orders::{Again, Ground, Order, OrderEntry};
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
 
-/// The core restarts and says hello, as one that was reset does.
+/// Restarts the core, which then says hello like a core after a reset.
 fn restart(pipe: &mut PipeLink) {
     *pipe = PipeLink::new();
     let hello = Hello {
@@ -21,7 +22,7 @@ fn restart(pipe: &mut PipeLink) {
     assert!(pipe.send(&Message::Hello(hello)).is_ok());
 }
 
-/// Another number of paths before the flight, another period in it.
+/// Orders another number of paths before the flight, and another period in it.
 fn orders() -> Vec<OrderEntry> {
     let order = |tick, name: &str, value| OrderEntry {
         tick,
@@ -37,8 +38,8 @@ fn orders() -> Vec<OrderEntry> {
     ]
 }
 
-/// Flies with these orders; the core restarts before it sees the messages that `when` names. Those
-/// are lost, or reach the core that has just started.
+/// Flies with these orders. The core restarts before it sees the messages that `when` selects. With
+/// `lost` these messages are lost; otherwise they reach the core that has just started.
 fn fly_through(lost: bool, mut when: impl FnMut(&Message) -> bool) -> Result<FlightLog, FlyError> {
     struct Nobody;
     impl Ground for Nobody {}
@@ -52,7 +53,7 @@ fn fly_through(lost: bool, mut when: impl FnMut(&Message) -> bool) -> Result<Fli
             now && lost
         },
     };
-    // A preset that refines as many candidates as it is told to.
+    // This preset refines as many candidates as the parameter says.
     let scenario = Scenario {
         ticks: 400,
         ..Scenario::new(Preset::Paper, 2)
@@ -64,7 +65,7 @@ fn fly_through(lost: bool, mut when: impl FnMut(&Message) -> bool) -> Result<Fli
     )
 }
 
-/// True for the messages of a kind at these places, counted from 0.
+/// Returns `true` for the messages of a kind at these places, counted from 0.
 fn places(kind: u8, places: Vec<usize>) -> impl FnMut(&Message) -> bool {
     let mut count = 0;
     move |message| {
@@ -89,16 +90,16 @@ fn a_core_that_restarts_in_flight_is_configured_anew_and_flies_on() {
             }
         },
     };
-    let log = sil_harness::run::fly(&short(2), &mut link, |_| {}).unwrap();
+    let log = mpp_sim::flight::fly(&short(2), &mut link, |_| {}).unwrap();
     assert_eq!(causes(&log), ["CoreRestarted"]);
     assert_eq!(log.ticks.t.len(), 500);
-    // The first plan was lost with the core, which holds level trim until the next one.
+    // The first plan was lost with the core. The new core holds level trim until the next plan.
     let tracked = |tick: usize| log.ticks.ref_x[tick].is_some();
     assert!(tracked(69) && !tracked(70) && !tracked(99) && tracked(110));
 }
 
-/// Every message that is answered, before the flight, in it, and while the core is told again what
-/// it has to know: whatever is lost with a core is asked again of the next one.
+/// The core restarts at every message that has an answer: before the flight, in it, and while the
+/// core is told its values again. Every lost question is asked again of the next core.
 #[test]
 fn no_restart_loses_an_order() {
     let undisturbed = fly_through(true, |_| false).unwrap();
@@ -137,7 +138,7 @@ fn no_restart_loses_an_order() {
     }
 }
 
-/// Before the first tick nothing is lost but time.
+/// A restart before the first tick costs only time.
 #[test]
 fn a_restart_before_the_flight_changes_nothing_of_it() {
     let undisturbed = fly_through(true, |_| false).unwrap();

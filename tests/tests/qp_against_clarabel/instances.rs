@@ -1,28 +1,31 @@
-//! Generated programs: random obstacle fields, the tree's paths through them, the corridors around
-//! those, and random motions at the start.
+//! Generated programs. They have random obstacle fields, the tree's paths through them, the
+//! corridors around these paths, and random motions at the start.
 
 use mpp_core::config::{GRID_ROWS, TREE_SAMPLES};
 use mpp_core::corridor::Corridor;
 use mpp_core::map::{GridPoint, OccupancyGrid};
-use mpp_core::plan::{Extension, Path, Search, resample};
-use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageModel, StageState};
-use mpp_core::settings::Settings;
+use mpp_core::paths::{Extension, Path, Search, resample};
+use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageModel, StageState, Weights};
+use mpp_core::settings::{AttitudeLimits, PaperSettings, Settings};
 use mpp_core::vehicle::{AirState, Trim, linearize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-/// Paths taken of one tree.
+/// Number of paths that are taken from one tree.
 const PATHS_OF_A_TREE: usize = 3;
 
-/// A preset's model, as the planner sets it up.
+/// A model, and the data for programs about it.
 pub(crate) struct Preset {
-    pub(crate) settings: Settings,
+    pub(crate) own: PaperSettings,
+    pub(crate) weights: Weights,
+    /// Limits that attitude rows keep, if there are any.
+    pub(crate) attitude: Option<AttitudeLimits>,
     pub(crate) trim: Trim,
     pub(crate) model: StageModel,
     pub(crate) shared: Box<Condensed>,
 }
 
-/// One program in the words of the paper, from which both solvers' inputs are made.
+/// One program in the paper's notation, from which both solvers' inputs are made.
 #[derive(Clone)]
 pub(crate) struct Instance {
     pub(crate) initial: StageState,
@@ -34,40 +37,39 @@ pub(crate) struct Instance {
 }
 
 impl Preset {
-    pub(crate) fn new(settings: Settings) -> Self {
+    fn new(settings: &Settings, weights: Weights, attitude: Option<AttitudeLimits>) -> Self {
+        let own = *settings.planner.paper().unwrap();
         let trim = settings.cruise.trim(&settings.airframe).unwrap();
-        let planner = &settings.planner;
-        let linear = linearize(
-            &settings.airframe,
-            &trim.state,
-            trim.control,
-            planner.jacobian,
-        );
-        let model = StageModel::new(
-            &settings.airframe,
-            &trim,
-            &linear,
-            planner.steady_state,
-            planner.initial,
-        )
-        .unwrap();
+        let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
+        let model = StageModel::new(&trim, &linear, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
-        shared.condense(&model, &planner.weights).unwrap();
+        shared.condense(&model, &weights).unwrap();
         Self {
-            settings,
+            own,
+            weights,
+            attitude,
             trim,
             model,
             shared,
         }
     }
 
+    /// The presets of the paper's method, and the corrected preset with the weights and the
+    /// attitude rows of the flight planner.
     pub(crate) fn all() -> [Self; 3] {
-        [Settings::reference(), Settings::paper(), Settings::flight()].map(Self::new)
+        let (reference, paper) = (Settings::reference(), Settings::paper());
+        let flight = Settings::flight().planner;
+        let attitude = flight.flight().map(|own| own.attitude);
+        [
+            Self::new(&reference, reference.planner.weights, None),
+            Self::new(&paper, paper.planner.weights, None),
+            Self::new(&paper, flight.weights, attitude),
+        ]
     }
 }
 
 impl Instance {
-    /// The same with every row moved outwards [m, rad, N].
+    /// The same program with every row moved outwards [m, rad, N].
     pub(crate) fn relaxed(&self, by: f64) -> Self {
         let mut relaxed = self.clone();
         relaxed
@@ -84,7 +86,7 @@ impl Instance {
         relaxed
     }
 
-    /// The program as the crate takes it.
+    /// The program in the form that the crate takes.
     pub(crate) fn problem(&self, penalty: Option<Penalty>) -> Problem {
         let mut bounds = Bounds::none();
         bounds.set_corridor(&self.corridor);
@@ -110,12 +112,12 @@ impl Draw {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
-    /// Uniform in [0, 1).
+    /// A uniform random number in [0, 1).
     pub(crate) fn unit(&mut self) -> f64 {
         f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
     }
 
-    /// Uniform between two numbers.
+    /// A uniform random number between two numbers.
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
@@ -151,7 +153,7 @@ fn mark_disc(grid: &mut OccupancyGrid, centre: GridPoint, radius: f64) {
     }
 }
 
-/// A motion about trim as it is met in flight.
+/// A random motion about trim, as it occurs in flight.
 fn motion(draw: &mut Draw, trim: &Trim) -> AirState {
     AirState {
         airspeed: trim.state.airspeed + draw.between(-1.5, 1.5),
@@ -161,16 +163,16 @@ fn motion(draw: &mut Draw, trim: &Trim) -> AirState {
     }
 }
 
-/// The next few programs: those of one random field and one tree.
+/// The next few programs. They come from one random field and one tree.
 pub(crate) fn next_instances(draw: &mut Draw, preset: &Preset) -> Vec<Instance> {
-    let planner = &preset.settings.planner;
+    let own = &preset.own;
     let grid = field(draw);
     let estimate = motion(draw, &preset.trim);
     let height_missing = draw.between(-8.0, 8.0);
-    // Limits down to 40 % of the preset's, so that many programs meet them.
+    // The limits go down to 40 % of the preset's limits, so that many programs meet them.
     let strictness = draw.between(0.4, 1.0);
     let mut search = Search::new();
-    search.restart(planner.rules);
+    search.restart(own.rules);
     for _ in 0..=TREE_SAMPLES {
         if search.extend(&grid, || draw.unit()) == Extension::Complete {
             break;
@@ -183,15 +185,15 @@ pub(crate) fn next_instances(draw: &mut Draw, preset: &Preset) -> Vec<Instance> 
         && instances.len() < PATHS_OF_A_TREE
     {
         next = after;
-        let points = resample(&path, planner.rules);
+        let points = resample(&path, own.rules);
         let mut corridor = Corridor::new();
         let cruise = preset.trim.state.airspeed;
-        corridor.trace(&grid, &points, cruise, &planner.padding, planner.rules);
+        corridor.trace(&grid, &points, cruise, &own.padding, own.rules);
         instances.push(Instance {
             initial: preset.shared.initial_state(&preset.trim, &estimate),
             target: [0.0, height_missing, 0.0, 0.0, 0.0, 0.0],
             corridor,
-            attitude: planner.attitude.map(|limits| {
+            attitude: preset.attitude.map(|limits| {
                 let level = preset.trim.state.flight_path;
                 let angle_of_attack = strictness * limits.angle_of_attack;
                 let flight_path = strictness * limits.flight_path;

@@ -1,5 +1,5 @@
-//! The program's solver against Clarabel, an interior point solver that shares nothing with it, on
-//! generated corridors.
+//! Tests the program's solver against Clarabel on generated corridors. Clarabel is an interior
+//! point solver that shares nothing with ours.
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod instances;
@@ -10,28 +10,30 @@ use clarabel::solver::SolverStatus;
 use instances::{Draw, Instance, Preset, next_instances};
 use mpp_core::qp::{Penalty, Problem, RowKind, Solution, Solver, Status};
 
-/// Programs of each comparison.
+/// Number of programs in each comparison.
 const PROGRAMS: usize = 1_000;
 /// Relative error of costs: Clarabel stops at 1e-8.
 const COST_TOLERANCE: f64 = 1e-6;
-/// Violation of rows [m, rad, N]: what the planner calls feasible.
+/// Violation of rows up to which the planner calls a program feasible [m, rad, N].
 const ROW_TOLERANCE: f64 = 1e-6;
 /// Programs whose margin is within this [m, rad, N] may go either way: Clarabel's own feasibility
 /// tolerance is 1e-8 of the data's size, which is some metres.
 const BORDERLINE: f64 = 1e-7;
-/// Such programs are one in ten thousand; more of them would hide wrong verdicts.
+/// Most such programs that are allowed. They are one in ten thousand; more of them would hide wrong
+/// verdicts.
 const MOST_BORDERLINE: usize = 3;
-/// Programs that are moved to the edge of feasibility, and from there to both sides.
+/// Number of programs that are moved to the edge of feasibility, and from there to both sides.
 const PROGRAMS_AT_THE_EDGE: usize = 300;
-/// Programs just outside of the edge where rounding hides the proof; what the solver then finds
-/// breaks rows and is rejected: 2 of 900 so far.
+/// Most programs just outside of the edge where rounding may hide the proof. The solver's result
+/// then breaks rows and is rejected: 2 of 900 so far.
 const MOST_UNPROVED: usize = 4;
-/// Absolute controls [N or elevator], summed over the horizon, that rounding in a proof may leave
-/// room for: thirty for each, and flights take one.
+/// Absolute controls [N or elevator], summed over the horizon, for which rounding in a proof may
+/// leave room: thirty for each control, where flights take one.
 const ABSURD_CONTROLS: f64 = 1e3;
-/// Iterations that no realistic program comes near: 65 were the most seen, 400 is the cap.
+/// Iterations that no realistic program reaches: 65 were the most seen, 400 is the cap.
 const MOST_ITERATIONS: usize = 120;
-/// The same for soft rows, which stiffen and yield on the way: 185 were the most seen.
+/// Iterations that no realistic program with soft rows reaches. Soft rows stiffen and yield on the
+/// way: 185 were the most seen.
 const MOST_SOFT_ITERATIONS: usize = 300;
 
 /// Calls `check` with programs of all presets in turn.
@@ -58,7 +60,7 @@ fn is_attitude(row: usize) -> bool {
     matches!(RowKind::of(row), RowKind::Attitude(..))
 }
 
-/// What a comparison came to.
+/// The result of a comparison.
 #[derive(Debug, Default)]
 struct Tally {
     feasible: usize,
@@ -73,7 +75,7 @@ struct Tally {
     most_iterations: usize,
 }
 
-/// Whether a program has a solution; none where that is too close to call.
+/// Whether a program has a solution; `None` if it is too close to decide.
 fn has_solution(preset: &Preset, instance: &Instance, status: SolverStatus) -> Option<bool> {
     match status {
         SolverStatus::Solved => Some(true),
@@ -162,7 +164,7 @@ fn verdicts_costs_and_proofs_agree_with_clarabel() {
     assert!(tally.most_iterations <= MOST_ITERATIONS);
 }
 
-/// The verdict on a solve as callers take it: after the solution was checked.
+/// The verdict on a solve as callers take it, after the check of the solution.
 fn verdict(solver: &mut Solver, preset: &Preset, instance: &Instance) -> Status {
     let problem = instance.problem(None);
     match solver.solve(&preset.shared, &problem) {

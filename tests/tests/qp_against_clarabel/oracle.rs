@@ -1,12 +1,13 @@
-//! Clarabel's answers. The program is written out in full, states and controls as variables, by the
-//! benchmark's `FullForm`, which shares nothing with the solver under test.
+//! Clarabel's answers. The benchmark's `FullForm` writes the program in full, with states and
+//! controls as variables. It shares nothing with the solver under test.
 
 use crate::instances::{Instance, Preset};
 use clarabel::solver::{IPSolver, SolverStatus};
+use mpp_analysis::bench::{Form, FullForm};
+use mpp_analysis::instance;
 use mpp_core::qp::{Penalty, Solution};
-use sil_harness::bench::{self, Form, FullForm};
 
-/// What Clarabel says.
+/// Clarabel's answer.
 pub(crate) struct Answer {
     pub(crate) status: SolverStatus,
     pub(crate) cost: f64,
@@ -18,9 +19,9 @@ fn full_form(
     penalty: Option<Penalty>,
     form: Form,
 ) -> FullForm {
-    let weights = &preset.settings.planner.weights;
     let problem = instance.problem(penalty);
-    let program = bench::Instance::of_program(String::new(), &preset.model, weights, &problem);
+    let stages = [preset.model.dynamics()];
+    let program = instance::Instance::of_program(String::new(), &stages, &preset.weights, &problem);
     FullForm::new(&program, form)
 }
 
@@ -33,13 +34,14 @@ fn ask(full: &FullForm) -> Answer {
     }
 }
 
-/// The program with hard rows, or with a slack for each soft row that the controls can change.
+/// Solves the program with hard rows, or with a slack for each soft row that the controls can
+/// change.
 pub(crate) fn solve(preset: &Preset, instance: &Instance, penalty: Option<Penalty>) -> Answer {
     ask(&full_form(preset, instance, penalty, Form::Optimum))
 }
 
-/// The least `t` [m, rad, N] for which all rows, relaxed by `t`, can hold: negative
-/// where the program has room, positive where rows contradict each other.
+/// The least `t` [m, rad, N] for which all rows, relaxed by `t`, can hold. It is negative where the
+/// program has room and positive where rows contradict each other.
 pub(crate) fn margin(preset: &Preset, instance: &Instance) -> f64 {
     let answer = ask(&full_form(preset, instance, None, Form::Margin));
     assert_eq!(
@@ -50,7 +52,7 @@ pub(crate) fn margin(preset: &Preset, instance: &Instance) -> f64 {
     answer.cost
 }
 
-/// Cost of a solution with the price of what it violates, and its worst violation of a hard row.
+/// Cost of a solution with the price of its violations, and its worst violation of a hard row.
 pub(crate) fn priced(
     preset: &Preset,
     instance: &Instance,

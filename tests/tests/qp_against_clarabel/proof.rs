@@ -1,10 +1,10 @@
-//! Checks the solver's proof that a program has no solution, by the model alone.
+//! Checks the solver's proof that a program has no solution, with the model alone.
 
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::qp::{Problem, RowKind, Solver, StageControl, StageModel, StageState};
 
-/// `(knot or stage, index, factor)` of the states or of the controls that a row adds up.
+/// The terms `(knot or stage, index, factor)` of the states or of the controls in a row.
 enum Terms {
     States(usize, Vec<(usize, f64)>),
     Thrust(usize),
@@ -45,7 +45,7 @@ fn roll_out(
     states
 }
 
-/// A row's left-hand side under controls.
+/// A row's left-hand side for given controls.
 fn value(
     model: &StageModel,
     initial: &StageState,
@@ -75,15 +75,15 @@ fn gradient(model: &StageModel, row: usize) -> Vec<f64> {
         .collect()
 }
 
-/// What the weighted sum of rows reads: `gradient . u <= right`.
+/// The weighted sum of rows: `gradient . u <= right`.
 pub(crate) struct Sum {
     /// Least weight.
     pub(crate) least_weight: f64,
-    /// Largest entry of the gradient, relative to what the weighted rows add up without signs.
+    /// Largest entry of the gradient, relative to the sum of the weighted rows without signs.
     pub(crate) gradient: f64,
     /// Right-hand side.
     pub(crate) right: f64,
-    /// How large controls would have to be, as the sum of their absolute values, to hold the sum.
+    /// Size that controls would need, as the sum of their absolute values, to satisfy the sum.
     pub(crate) escape: f64,
 }
 

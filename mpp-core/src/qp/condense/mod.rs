@@ -1,7 +1,8 @@
-//! The part of the program that all candidates of a model share: states eliminated, Hessian
-//! factored, kernel of the outputs formed.
+//! The part of the program that all candidates of a model share. It eliminates the states, factors the
+//! Hessian, and computes the kernel of the outputs.
 
 mod outputs;
+mod roll_out;
 
 use super::dense::{CONTROLS, ControlVector, Upper, dot};
 use super::response::Response;
@@ -9,23 +10,24 @@ use super::rows::{OUTPUTS, ROWS, RowPattern, reach};
 use super::{Dynamics, StageControl, StageModel, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
 use crate::vehicle::{AirState, Trim};
+use core::fmt;
 use nalgebra::Vector6;
-use outputs::{add_scaled, roll_out};
+use roll_out::{add_scaled, roll_out};
 
-/// Rows whose `c' K c` is below this are constants but for rounding: positions follow the controls
-/// two stages later.
+/// Value of `c' K c` below which a row is constant up to rounding. In the paper's model the first position
+/// rows are constant, because a control changes the position only two stages later.
 const UNCHANGEABLE: f64 = 1e-20;
 
-/// What a candidate without rows depends on: first state, target, and a one for the offsets.
+/// Number of inputs of a program without rows: the first state, the target, and a 1 for the offsets.
 const INPUTS: usize = 13;
 
-/// `x_k` by controls and by inputs.
+/// Coefficients of the state `x_k` in the controls and in the inputs.
 struct States {
     by_controls: [ControlVector; 6],
     by_inputs: [[f64; INPUTS]; 6],
 }
 
-/// Everything that candidates share.
+/// The part of the program that all candidates of a model share.
 #[derive(Clone, Debug)]
 pub struct Condensed {
     model: StageModel,
@@ -33,33 +35,46 @@ pub struct Condensed {
     pub(super) weights: Weights,
     /// `K = Y H^-1 Y'`.
     pub(super) kernel: [[f64; OUTPUTS]; OUTPUTS],
-    /// Upper factor of `H = U U'`: from the last control to the first, as outputs come to depend on
-    /// them.
+    /// Upper factor of `H = U U'`. It goes from the last control to the first, because early outputs do not
+    /// depend on late controls: the solves then keep these zeros.
     factor: Upper,
-    /// `U^-1 Y'`; while condensing, `Y'`.
+    /// `U^-1 Y'`. During condensing it first holds `Y'`.
     half_response: Response,
-    /// The optimum without rows by input: outputs and controls.
+    /// Outputs of the optimum without rows, for each input.
     outputs_by_input: [[f64; OUTPUTS]; INPUTS],
+    /// Controls of the optimum without rows, for each input.
     controls_by_input: [ControlVector; INPUTS],
-    /// Its cost is `z' M z / 2` of the inputs `z`.
+    /// Matrix `M` of the cost of the optimum without rows, `z' M z / 2` for the inputs `z`.
     cost_by_inputs: [[f64; INPUTS]; INPUTS],
-    /// The last input: 1 where the dynamics have offsets.
+    /// The last input: 1 if the dynamics have offsets, otherwise 0.
     constant: f64,
-    /// Weight of each row's violation when the next row to enter is chosen: `(c' K c)^(-1/2)`, and 0
-    /// where the controls cannot change the row. Violations count by what it takes to mend them.
+    /// Weight of each row's violation in the choice of the next row to enter: `(c' K c)^(-1/2)`, and 0 if the
+    /// controls cannot change the row. It scales a violation by the effort of its correction.
     pub(super) pricing: [f64; ROWS],
-    /// The same where rows are soft: `(c' K c)^(-1/4)`, which has the shorter tail there.
+    /// Weight of each row's violation in that choice if rows are soft: `(c' K c)^(-1/4)`. It shortens the
+    /// longest solves of programs with soft rows.
     pub(super) soft_pricing: [f64; ROWS],
-    /// The rows of no price.
+    /// The rows with weight 0, which the controls cannot change.
     pub(super) constant_rows: heapless::Vec<usize, ROWS>,
 }
 
-/// The Hessian is not positive definite: a weight is not positive, or the model not finite. The
-/// planner does not start.
+/// The Hessian is not positive definite: a weight is not positive, or the model is not finite. The
+/// planner then does not start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CondenseError;
 
-/// A candidate's optimum without rows.
+impl fmt::Display for CondenseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "the plan's cost has no single optimum: give the controls positive weights, and the \
+             terminal state one that is not negative",
+        )
+    }
+}
+
+impl core::error::Error for CondenseError {}
+
+/// The optimum of a candidate without rows.
 pub(super) struct Unconstrained {
     pub(super) controls: ControlVector,
     pub(super) outputs: [f64; OUTPUTS],
@@ -90,7 +105,7 @@ impl Condensed {
     /// Condenses a model that is the same in every stage.
     ///
     /// # Errors
-    /// [`CondenseError`] as described there.
+    /// [`CondenseError`] if the Hessian is not positive definite.
     pub fn condense(&mut self, model: &StageModel, weights: &Weights) -> Result<(), CondenseError> {
         self.model = *model;
         self.dynamics.fill(model.dynamics());
@@ -98,10 +113,11 @@ impl Condensed {
         self.condense_stages(weights)
     }
 
-    /// Condenses a model of its own for each stage, which `linearise` writes in place: they are large.
+    /// Condenses a different model for each stage. `linearise` writes the models in place, because they are
+    /// large.
     ///
     /// # Errors
-    /// [`CondenseError`] as described there.
+    /// [`CondenseError`] if the Hessian is not positive definite.
     pub fn condense_varying(
         &mut self,
         weights: &Weights,
@@ -112,8 +128,8 @@ impl Condensed {
         self.condense_stages(weights)
     }
 
-    /// `H = R + w G'G`, its Cholesky factor, and from it kernel, responses and the optimum without
-    /// rows.
+    /// Computes `H = R + w G'G`, its Cholesky factor, and from the factor the kernel, the responses and the
+    /// optimum without rows.
     fn condense_stages(&mut self, weights: &Weights) -> Result<(), CondenseError> {
         self.weights = *weights;
         let mut last = States {
@@ -143,7 +159,7 @@ impl Condensed {
             *price = if squared > UNCHANGEABLE {
                 1.0 / libm::sqrt(squared)
             } else {
-                // As many places as rows: the push cannot fail.
+                // The list has as many places as there are rows, so the push cannot fail.
                 let _ = self.constant_rows.push(row);
                 0.0
             };
@@ -155,20 +171,26 @@ impl Condensed {
         Ok(())
     }
 
-    /// The model that was condensed, if it is the same in every stage.
+    /// The condensed dynamics of every stage.
+    #[must_use]
+    pub fn stages(&self) -> &[Dynamics; STAGES] {
+        &self.dynamics
+    }
+
+    /// The condensed model. It is valid only if the model is the same in every stage.
     #[must_use]
     pub fn model(&self) -> &StageModel {
         &self.model
     }
 
-    /// The plan's first state for an estimated motion: its deviation from trim, at the origin.
+    /// The plan's first state for an estimated motion: the deviation from trim, at the origin.
     #[must_use]
     pub fn initial_state(&self, trim: &Trim, estimate: &AirState) -> StageState {
         let d = estimate.to_vector() - trim.state.to_vector();
         (self.model.initial * Vector6::new(0.0, 0.0, d.x, d.y, d.z, d.w)).into()
     }
 
-    /// The optimum without rows.
+    /// Computes the optimum without rows.
     pub(super) fn unconstrained(&self, initial: &StageState, target: &StageState) -> Unconstrained {
         let mut inputs = [self.constant; INPUTS];
         for (input, value) in inputs.iter_mut().zip(initial.iter().chain(target)) {
@@ -192,14 +214,15 @@ impl Condensed {
         optimum
     }
 
-    /// The controls `H^-1 Y' c` that push back by `c`, multipliers by output.
+    /// The controls `H^-1 Y' c` for the multipliers `c` by output. A solution subtracts them from the optimum
+    /// without rows.
     pub(super) fn push_back(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
         let mut controls = self.half_push(outputs);
         self.factor.solve_transposed(&mut controls);
         controls
     }
 
-    /// `U^-1 Y' c`; its square is `c' K c`, without the cancellation of that.
+    /// `U^-1 Y' c`. Its squared norm is `c' K c`, without the cancellation of digits in that product.
     pub(super) fn half_push(&self, outputs: &[f64; OUTPUTS]) -> ControlVector {
         let mut half = [0.0; CONTROLS];
         for (output, factor) in outputs.iter().enumerate() {
@@ -219,7 +242,7 @@ impl Condensed {
         outputs
     }
 
-    /// States and outputs under controls.
+    /// Computes states and outputs under controls.
     pub(super) fn roll_out(
         &self,
         initial: &StageState,
@@ -237,7 +260,7 @@ impl Condensed {
         );
     }
 
-    /// Cost of controls that end in a state.
+    /// Cost of controls that lead to the last state `last`.
     pub(super) fn cost(
         &self,
         controls: &[StageControl],

@@ -1,27 +1,29 @@
-//! What controls and inputs do to states and outputs.
+//! Effect of controls and inputs on states and outputs.
 
-use super::super::dense::{CONTROLS, ControlVector};
+use super::super::Dynamics;
+use super::super::dense::CONTROLS;
 use super::super::rows::{ATTITUDE_OUTPUT, OUTPUTS, THRUST_OUTPUT};
-use super::super::{Dynamics, StageState};
+use super::roll_out::{add_scaled, roll_out};
 use super::{Condensed, INPUTS, States};
 use crate::config::{KNOTS, STAGES};
 use nalgebra::Vector6;
 
-/// Where the outputs stand in a state.
+// Indices of the outputs in a state.
 const X: usize = 0;
 const Z: usize = 1;
 const PITCH: usize = 3;
 const PATH: usize = 5;
 
 impl Condensed {
-    /// Writes the outputs by controls (`Y`) and by inputs; `states` becomes the last.
+    /// Writes the coefficients of the outputs in the controls (`Y`) and in the inputs. At the end `states`
+    /// holds the coefficients of the last state.
     pub(super) fn write_outputs(&mut self, states: &mut States) {
         let States {
             by_controls,
             by_inputs,
         } = states;
         for (index, row) in by_inputs.iter_mut().enumerate() {
-            // The first inputs are the first state.
+            // The first six inputs are the first state.
             row[index] = 1.0;
         }
         for (stage, dynamics) in self.dynamics.iter().enumerate() {
@@ -64,7 +66,7 @@ impl Condensed {
         }
     }
 
-    /// The optimum without rows, `u = w H^-1 G' (target - free last state)`, by input.
+    /// Writes the optimum without rows, `u = w H^-1 G' (target - free last state)`, for each input.
     pub(super) fn write_unconstrained(&mut self, last: &mut States) {
         let States {
             by_controls: steering,
@@ -111,8 +113,8 @@ impl Condensed {
         }
     }
 
-    /// Adds what an input's controls do to its outputs, and takes what they do to the last state from
-    /// what is missing there.
+    /// Adds the effect of an input's controls to the outputs of this input, and subtracts their effect on the
+    /// last state from `missing`.
     fn add_outputs(&mut self, input: usize, missing: &mut [f64; 6]) {
         let mut states = [[0.0; 6]; KNOTS];
         let mut outputs = [0.0; OUTPUTS];
@@ -138,37 +140,4 @@ fn advance<const N: usize>(dynamics: &Dynamics, s: &mut [[f64; N]; 6]) {
         }
     }
     *s = product;
-}
-
-pub(super) fn add_scaled(sum: &mut [f64], term: &[f64], factor: f64) {
-    for (sum, term) in sum.iter_mut().zip(term) {
-        *sum += factor * term;
-    }
-}
-
-/// States and outputs under controls, by the dynamics of each stage and their offsets.
-pub(super) fn roll_out<'a>(
-    stages: impl Iterator<Item = (&'a Dynamics, &'a Vector6<f64>)>,
-    initial: &StageState,
-    controls: &ControlVector,
-    states: &mut [StageState; KNOTS],
-    outputs: &mut [f64; OUTPUTS],
-) {
-    let mut state = *initial;
-    let [first, later @ ..] = states;
-    *first = state;
-    let (motion, rest) = outputs.split_at_mut(THRUST_OUTPUT);
-    let (thrusts, attitudes) = rest.split_at_mut(STAGES);
-    let places = motion.as_chunks_mut::<2>().0.iter_mut().zip(thrusts);
-    let places = places.zip(attitudes.as_chunks_mut::<2>().0).zip(later);
-    let stages = stages.zip(controls.as_chunks::<2>().0);
-    for (((dynamics, offset), control), (((motion, thrust), attitude), next)) in stages.zip(places)
-    {
-        state = dynamics.step_with(&state, control, offset);
-        *next = state;
-        let [x, z, _, pitch, _, flight_path] = state;
-        *motion = [x, z];
-        *attitude = [pitch, flight_path];
-        *thrust = control[1];
-    }
 }

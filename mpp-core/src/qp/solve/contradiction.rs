@@ -1,22 +1,24 @@
-//! Rows that depend on the active ones, but for rounding: whether they can be kept with them.
+//! Decides whether a solution can keep a row that depends on the active rows up to rounding.
 //!
-//! The Schur complement of such a row is a difference of nearly equal numbers, and says nothing. The
-//! vector whose square it is does: it keeps its digits down to the rounding of the controls.
+//! The Schur complement of such a row is a difference of nearly equal numbers, and has no valid digits.
+//! It is also the squared norm of a vector. The vector keeps its digits down to the rounding of the
+//! controls, so this module computes the complement from the vector.
 
-use super::step::Direction;
-use super::{Active, CAPACITY, Solver};
+use super::direction::{Direction, Stand};
+use super::{Active, Solver};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
 use crate::qp::dense::{ControlVector, dot};
+use crate::qp::factor::CAPACITY;
 use crate::qp::rows::{OUTPUTS, RowPattern};
 
-/// Rows that contradict each other by less than this [m, rad or N] may do so by rounding.
+/// Greatest contradiction between rows [m, rad or N] that may come from rounding.
 const NEGLIGIBLE: f64 = 1e-8;
 
-/// Rates below this share of the largest are zero but for rounding.
+/// Share of the largest rate below which a rate is zero up to rounding.
 const NO_RATE: f64 = 1e-13;
 
-/// A sum of rows' patterns, by output.
+/// Weighted sum of the patterns of rows, by output.
 struct Sum([f64; OUTPUTS]);
 
 impl Sum {
@@ -29,19 +31,9 @@ impl Sum {
     }
 }
 
-/// How an entering row stands to active rows that it depends on.
-#[derive(Clone, Copy, PartialEq)]
-pub(super) enum Stand {
-    /// They leave it room, if only a little: the step that mends it is this long.
-    Apart(f64),
-    /// It touches them: what is violated may be rounding.
-    Touches,
-    /// No flight keeps them all.
-    Contradicts,
-}
-
 impl Solver {
-    /// Corrects a direction whose complement is lost in rounding, and tells how the row stands.
+    /// Corrects a direction whose complement is lost in rounding. Returns the relation of the entering row to
+    /// the active rows.
     pub(super) fn resolve(
         &self,
         shared: &Condensed,
@@ -51,7 +43,7 @@ impl Solver {
     ) -> Stand {
         self.correct(shared, entering, direction);
         let (rates, complement) = (&direction.rates, direction.complement);
-        // Rounding in the active rows counts as well.
+        // The excess includes the rounding errors of the active rows.
         let active = self.active.iter().zip(rates);
         let excess = violation
             - active
@@ -59,7 +51,7 @@ impl Solver {
                 .sum::<f64>();
         if excess <= NEGLIGIBLE {
             Stand::Touches
-        // Sixteen times the rise from here is more than once from the optimum without rows.
+        // A rise of 16 absurd rises from here is a rise of more than one from the optimum without rows.
         } else if excess * excess > 32.0 * self.absurd_rise * complement {
             Stand::Contradicts
         } else {
@@ -67,7 +59,7 @@ impl Solver {
         }
     }
 
-    /// One step of iterative refinement of the rates, and the complement as a square.
+    /// Makes one step of iterative refinement of the rates, and computes the complement as a squared norm.
     fn correct(&self, shared: &Condensed, entering: &Active, direction: &mut Direction) {
         let outputs = shared.outputs_of_half(&self.remainder(shared, entering, &direction.rates));
         let mut missing = [0.0; CAPACITY];
@@ -113,8 +105,8 @@ impl Solver {
         shared.half_push(&sum.0)
     }
 
-    /// The verdict on rows that contradict each other: the entering row and the active ones, whose
-    /// left-hand sides cancel.
+    /// The verdict on an entering row that contradicts the active rows. Their weighted left-hand sides cancel
+    /// each other.
     pub(super) fn contradiction(
         &mut self,
         shared: &Condensed,
@@ -131,7 +123,7 @@ impl Solver {
         self.proven(shared)
     }
 
-    /// The verdict on multipliers that have grown beyond what a flight is worth.
+    /// The verdict on multipliers that have grown until the cost is absurd.
     pub(super) fn excessive_multipliers(
         &mut self,
         shared: &Condensed,
@@ -146,8 +138,9 @@ impl Solver {
         self.proven(shared)
     }
 
-    /// Whether the certificate proves infeasibility, from the data of the program alone: the weighted
-    /// sum of its rows is violated by the optimum without rows, and mending that takes an absurd cost.
+    /// Checks whether the certificate proves infeasibility from the data of the program alone. The proof is
+    /// that the optimum without rows violates the weighted sum of the certificate's rows, and that a
+    /// correction of this violation takes an absurd cost.
     fn proven(&mut self, shared: &Condensed) -> Status {
         let free = shared.unconstrained(&self.problem.initial, &self.problem.target);
         let mut sum = Sum([0.0; OUTPUTS]);
@@ -172,7 +165,7 @@ impl Solver {
         }
     }
 
-    /// How far a row gives way per multiplier.
+    /// Distance by which a row yields, per unit of its multiplier.
     pub(super) fn elasticity(&self, row: &Active) -> f64 {
         match self.problem.penalty {
             Some(penalty) if row.yielded => 1.0 / penalty.quadratic,

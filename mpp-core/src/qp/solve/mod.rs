@@ -1,43 +1,43 @@
-//! One candidate's optimum by a dual active set.
+//! The optimum of one candidate by a dual active set method.
 //!
-//! The unconstrained optimum violates rows. The most violated one *enters*: its multiplier grows,
-//! and the multipliers of the active rows change so that those stay tight, until it is tight too.
-//! On the way an active row's multiplier may reach zero, and the row leaves. The dual objective only
-//! ever rises, which ends the search and bounds the cost from below all the time.
+//! The unconstrained optimum violates rows. The most violated row *enters*: its multiplier grows until
+//! the row is tight. At the same time the multipliers of the active rows change so that these rows stay
+//! tight. If the multiplier of an active row reaches zero on the way, that row leaves. The dual objective
+//! only rises. Therefore the search ends, and the objective is always a lower bound of the cost.
 //!
-//! A *soft* row's multiplier stops at the linear price: from there on it *yields*, that is, it is
-//! violated by `s = (multiplier - linear) / quadratic`, which adds `1 / quadratic` to its diagonal
-//! of the Gram matrix. When the multiplier falls back to the linear price it stiffens again.
+//! When the multiplier of a *soft* row reaches the linear price, the row *yields*: from there on the
+//! solution violates it by `s = (multiplier - linear) / quadratic`. This adds `1 / quadratic` to the row's
+//! diagonal entry of the Gram matrix. When the multiplier falls back to the linear price, the row becomes
+//! stiff again.
 
 mod contradiction;
+mod direction;
 mod step;
 
 use super::condense::Condensed;
 use super::dense::CONTROLS;
-use super::factor::Factor;
+use super::factor::{CAPACITY, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
 use super::{Problem, Solution, Status};
 use crate::config::KNOTS;
 
-/// Rows that can be active at a time: as many as controls, and some more when rows yield.
-pub(super) const CAPACITY: usize = CONTROLS + 28;
-
-/// Bound of the iterations of one solve.
+/// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
 
-/// A row counts as violated beyond this [m, rad or N].
+/// Excess above which a row counts as violated [m, rad or N].
 const TOLERANCE: f64 = 1e-9;
 
-/// Opposite faces that cross by less than this [m] are left to the method: the directions are
-/// opposite to 1e-8 only.
+/// Least crossing of opposite faces \[m\] that decides a program before its first step. The method itself
+/// decides on smaller ones, because the directions are opposite only up to 1e-8.
 const CROSSING: f64 = 1e-5;
 
 /// Worst violation of a hard row in an accepted solution.
 const ACCEPTED: f64 = 1e-6;
 
-/// Rows contradict each other where keeping them costs as much as missing the target by this [m] and
-/// this many times the optimum without rows.
+/// Miss of the target \[m\] whose cost is absurd. Rows contradict each other if a solution that keeps them
+/// costs as much as this miss and [`ABSURD_FACTOR`] times the optimum without rows together.
 const ABSURD_MISS: f64 = 1000.0;
+/// Factor of the cost of the optimum without rows in the absurd cost.
 const ABSURD_FACTOR: f64 = 1e3;
 
 /// A row with a multiplier.
@@ -50,21 +50,59 @@ struct Active {
 }
 
 /// Workspace of the solver.
+///
+/// # Example
+///
+/// A program with one face: at knot 10 the aircraft has to be 2 m above its start.
+///
+/// ```
+/// use mpp_core::corridor::Corridor;
+/// use mpp_core::qp::{Bounds, Condensed, Initial, Problem, Solution, Solver, StageModel, Status, Weights};
+/// use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
+///
+/// let airframe = Airframe::REFERENCE;
+/// let trim = Trim::at_speed(&airframe, 12.0, 0.0)?;
+/// let linear = linearize(&airframe, &trim.state, trim.control, JacobianForm::Exact);
+/// let mut shared = Box::new(Condensed::new());
+/// shared.condense(&StageModel::new(&trim, &linear, Initial::Estimate)?, &Weights::PAPER)?;
+///
+/// let mut corridor = Corridor::new();
+/// // Direction 4 points down: `-z <= -2`.
+/// corridor.bounds[10][4] = -2.0;
+/// let mut problem = Problem {
+///     initial: [0.0; 6],
+///     target: [0.0; 6],
+///     bounds: Bounds::none(),
+///     penalty: None,
+///     cost_limit: f64::INFINITY,
+/// };
+/// problem.bounds.set_corridor(&corridor);
+/// problem.bounds.set_thrust(trim.control.thrust);
+///
+/// let mut solver = Box::new(Solver::new());
+/// let mut solution = Solution::new();
+/// assert_eq!(solver.solve(&shared, &problem), Status::Optimal);
+/// assert_eq!(solver.solution(&shared, &mut solution), Status::Optimal);
+/// // The optimum goes no higher than it has to, and returns to where it started.
+/// assert!((solution.states[10][1] - 2.0).abs() < 1e-6);
+/// assert!(solution.states[18][1].abs() < 0.5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Solver {
     problem: Problem,
     unconstrained: [f64; CONTROLS],
     outputs: [f64; OUTPUTS],
     active: heapless::Vec<Active, CAPACITY>,
-    /// The bounds of rows that may enter, with their tolerance; infinite for those that are active.
+    /// Bounds of the rows that may enter, with the tolerance added; infinite for rows that must not enter.
     open: Bounds,
-    /// Whether the program has attitude rows; without, their outputs are not followed.
+    /// Whether the program has attitude rows. Without them the solver does not update the attitudes.
     attitude_rows: bool,
     entering: Option<Active>,
     factor: Factor,
     dual: f64,
-    /// The rise of the cost above the optimum without rows that no flight is worth; infinite where
-    /// rows are soft, which every flight keeps.
+    /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because a
+    /// program with soft rows always has a solution.
     absurd_rise: f64,
     iterations: usize,
     status: Option<Status>,
@@ -98,7 +136,8 @@ impl Solver {
         }
     }
 
-    /// Takes up a problem: its optimum without rows, and the rows that no control can change.
+    /// Starts on a problem: computes the optimum without rows, and checks the rows that no control can change
+    /// and the opposite faces.
     pub fn start(&mut self, shared: &Condensed, problem: &Problem) {
         self.problem = *problem;
         self.active.clear();
@@ -106,7 +145,7 @@ impl Solver {
         let mut numbers = true;
         for (open, (bound, price)) in self.open.0.iter_mut().zip(rows) {
             numbers &= !bound.is_nan();
-            // An infinite bound times no weight would not be a number.
+            // An infinite bound times the weight 0 would be NaN.
             *open = if *price > 0.0 { bound + TOLERANCE } else { 0.0 };
         }
         self.attitude_rows = problem.bounds.has_attitude();
@@ -132,7 +171,7 @@ impl Solver {
         };
     }
 
-    /// Runs up to `iterations` steps; the status once there is one.
+    /// Makes up to `iterations` steps. Returns the status as soon as there is one.
     pub fn advance(&mut self, shared: &Condensed, iterations: usize) -> Option<Status> {
         for _ in 0..iterations {
             if self.status.is_some() {
@@ -155,15 +194,15 @@ impl Solver {
             .unwrap_or(Status::IterationLimit)
     }
 
-    /// Steps taken since the start.
+    /// Number of steps since the start.
     #[must_use]
     pub fn iterations(&self) -> usize {
         self.iterations
     }
 
-    /// Rows and their multipliers: at an optimum those of the active rows, at
-    /// [`Status::Infeasible`] those whose sum of rows reads `0 <= negative`, for all controls but
-    /// absurdly expensive ones.
+    /// Rows and their multipliers. At an optimum these are the active rows. At [`Status::Infeasible`] they
+    /// are a proof: the weighted sum of these rows reads `0 <= negative` for all controls except absurdly
+    /// expensive ones.
     pub fn multipliers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
         let proof = self.status == Some(Status::Infeasible);
         let optimum = self
@@ -176,8 +215,8 @@ impl Solver {
             .chain(certificate.filter(move |_| proof))
     }
 
-    /// Writes the trajectory of the multipliers found. The status, [`Status::NumericalFailure`] if a
-    /// hard row does not hold after all.
+    /// Writes the trajectory that follows from the multipliers. Returns the status, or
+    /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
         let mut pushes = [0.0; OUTPUTS];
         for active in &self.active {
@@ -238,7 +277,8 @@ impl Solver {
         self.problem.penalty.is_some() && !matches!(RowKind::of(row), RowKind::Thrust(_))
     }
 
-    /// Hard rows that no control can change hold, or the problem is infeasible at once.
+    /// Checks the hard rows that no control can change. If one of them is violated, the problem is
+    /// infeasible.
     fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
         for row in shared.constant_rows.iter().copied() {
             let Some(bound) = self.problem.bounds.0.get(row) else {
@@ -263,8 +303,8 @@ impl Solver {
         None
     }
 
-    /// Opposite faces of a corridor that cross by more than rounding leave no room for a position:
-    /// two rows are the whole proof.
+    /// Checks the opposite faces of a corridor. Faces that cross by more than rounding leave no room for a
+    /// position, so two rows are the whole proof of infeasibility.
     fn check_opposite_faces(&mut self) -> Option<Status> {
         if self.problem.penalty.is_some() {
             return None;

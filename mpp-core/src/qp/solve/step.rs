@@ -1,30 +1,21 @@
 //! One step of the method: from one event to the next.
 
-use super::contradiction::Stand;
-use super::{Active, CAPACITY, Solver, TOLERANCE};
+use super::direction::{Direction, Stand};
+use super::{Active, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
+use crate::qp::factor::CAPACITY;
 use crate::qp::rows::{OUTPUTS, RowPattern, add_scaled, most_violated};
 
-/// Schur complements below this share of the row's own norm are zero but for rounding: the row
-/// depends on the active ones.
+/// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
+/// depends on the active rows.
 const DEPENDENT: f64 = 1e-10;
 
-/// Soft rows, and hard ones that touch, are kept apart by this much elasticity: it lets a row give
-/// way by 1e-12 of what it takes to move it.
+/// Least Schur complement of soft rows and of hard rows that touch, as a share of the row's own norm. It
+/// acts as a small elasticity, which lets such a row yield a little and so separates it from the others.
 const FLOOR: f64 = 1e-12;
 
-/// How the rest moves with the entering multiplier.
-pub(super) struct Direction {
-    /// `L^-1 C_A K c_p`
-    pub(super) products: [f64; CAPACITY],
-    /// By how much the multipliers of the active rows fall: `L^-T products`.
-    pub(super) rates: [f64; CAPACITY],
-    /// Schur complement of the entering row against the active ones; 0 when it depends on them.
-    pub(super) complement: f64,
-}
-
-/// What ends a step.
+/// The event that ends a step.
 #[derive(Clone, Copy)]
 enum Event {
     /// The entering row is tight.
@@ -89,7 +80,8 @@ impl Solver {
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
         }
-        // Twice, because it starts from the optimum without rows, and rounding must not decide.
+        // The factor is 2, because the dual starts from the cost of the optimum without rows, and
+        // because rounding must not decide.
         if self.dual > 2.0 * self.absurd_rise {
             return Some(self.excessive_multipliers(shared, &entering));
         }
@@ -99,8 +91,8 @@ impl Solver {
         self.apply(shared, event, entering, &direction)
     }
 
-    /// A row that depends on the active ones and is kept with them but for rounding is passed over; if
-    /// it has a multiplier already, it becomes active as it is.
+    /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
+    /// skips such a row. If the row already has a multiplier, it becomes active instead.
     fn touch(
         &mut self,
         entering: Active,
@@ -117,7 +109,7 @@ impl Solver {
         None
     }
 
-    /// How the rest moves with the multiplier of a row, whose `K c` is `column`.
+    /// The direction of a step for a row. `column` is the row's `K c`.
     fn direction(&self, column: &[f64; OUTPUTS], own: &Active) -> Direction {
         let (products, complement) = self.complement(column, own);
         let mut rates = products;
@@ -129,7 +121,7 @@ impl Solver {
         }
     }
 
-    /// `L^-1 C_A K c` and the Schur complement of a row. `column` is its `K c`.
+    /// The vector `L^-1 C_A K c` and the Schur complement of a row. `column` is the row's `K c`.
     fn complement(&self, column: &[f64; OUTPUTS], own: &Active) -> ([f64; CAPACITY], f64) {
         let mut products = [0.0; CAPACITY];
         for (product, active) in products.iter_mut().zip(&self.active) {
@@ -153,7 +145,7 @@ impl Solver {
         (products, complement)
     }
 
-    /// How far a row is from where its multiplier wants it.
+    /// Excess of a row over its bound, less the amount by which the row yields at its multiplier.
     pub(super) fn violation(&self, own: &Active) -> f64 {
         let bound = self
             .problem
@@ -169,7 +161,7 @@ impl Solver {
         own.pattern.value(&self.outputs) - bound - allowed
     }
 
-    /// What happens first while the entering multiplier grows, and how far away it is.
+    /// The first event while the entering multiplier grows, and the length of the step to it.
     fn first_event(&self, entering: &Active, rates: &[f64; CAPACITY], full: f64) -> (Event, f64) {
         let mut first = (Event::Enter, full);
         let mut consider = |event, length: f64| {
@@ -218,7 +210,7 @@ impl Solver {
         };
         for (active, rate) in self.active.iter_mut().zip(rates) {
             let step = length * rate;
-            // Rounding may take the multiplier that just left below zero.
+            // Rounding may take the multiplier of a row that leaves below zero.
             active.multiplier = (active.multiplier - step).max(0.0);
             let RowPattern { first, second } = active.pattern;
             add((first.0, step * first.1));

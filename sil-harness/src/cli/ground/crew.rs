@@ -1,21 +1,23 @@
-//! Everybody who follows a flight that the command line started.
+//! The crew: everybody who follows a flight that the command line started.
 
-use super::pacer::Pacer;
-use crate::cli::{FAILURE, Failure, talk};
+use super::pacer::{Pacer, patience};
+use crate::cli::answer::{FAILURE, Failure, talk};
+use crate::cli::signals::Signals;
 use crate::ground::transport::Transport;
-use crate::ground::{Ground, Order, Refused};
-use crate::log::FlightLog;
-use crate::picture::live::Live;
-use crate::run::{FlyError, Moment};
-use flight_node::parameters::Tuning;
+use crate::live::Live;
 use indicatif::ProgressBar;
 use mpp_core::vehicle::VehicleState;
+use mpp_node::parameters::Tuning;
+use mpp_sim::flight::FlyError;
+use mpp_sim::log::FlightLog;
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Ground, Order, Refused};
 
-/// Whoever the command line brings along.
+/// The ground of a flight that the command line started.
 pub(in crate::cli) struct Crew {
-    /// Orders for before the first tick.
+    /// Orders to give before the first tick.
     pub(super) orders: Vec<Order>,
-    /// How many orders of our own are given and not settled.
+    /// Number of our own orders that are given and not settled.
     pub(super) unsettled: usize,
     /// The values in force.
     pub(super) tuning: Option<Tuning>,
@@ -23,10 +25,16 @@ pub(in crate::cli) struct Crew {
     pub(super) transport: Option<Transport>,
     pub(super) pacer: Pacer,
     pub(super) progress: ProgressBar,
+    pub(super) signals: Signals,
 }
 
 impl Crew {
-    /// The flight is over.
+    /// The exit code of the signal that came, if one did.
+    pub(in crate::cli) fn interrupted(&self) -> Option<u8> {
+        self.signals.raised()
+    }
+
+    /// Ends the crew's work after the flight.
     pub(in crate::cli) fn end(self, result: &Result<FlightLog, FlyError>) -> Result<(), Failure> {
         self.progress.finish_and_clear();
         let how = match result {
@@ -44,8 +52,15 @@ impl Crew {
             .map_err(|error| Failure::new(FAILURE, format!("--tlog: {error}")))?;
         if vehicle.refused_signatures() > 0 {
             talk(format_args!(
-                "{} commands or writes were refused: no good signature",
+                "{} commands or writes were refused: no good signature, or one whose time is old or \
+                 more than a minute ahead of this clock",
                 vehicle.refused_signatures()
+            ));
+        }
+        if vehicle.lost_demands() > 0 {
+            talk(format_args!(
+                "{} commands or writes were lost: too many came at once, send them slower",
+                vehicle.lost_demands()
             ));
         }
         Ok(())
@@ -96,6 +111,10 @@ impl Ground for Crew {
         false
     }
 
+    fn interrupts(&mut self, _: u32) -> bool {
+        self.signals.raised().is_some()
+    }
+
     fn watch(&mut self, moment: &Moment<'_>) {
         self.progress.inc(1);
         if let Some(transport) = &mut self.transport {
@@ -103,8 +122,10 @@ impl Ground for Crew {
         }
         if let (Some(live), Some(tuning)) = (&mut self.live, &self.tuning) {
             live.watch(moment, tuning);
-            if let (Some(speed), Some(transport)) = (self.pacer.obey(live), &mut self.transport) {
-                transport.set_patience(speed.patience());
+            let interrupted = || self.signals.raised().is_some();
+            let speed = self.pacer.obey(live, interrupted);
+            if let (Some(speed), Some(transport)) = (speed, &mut self.transport) {
+                transport.set_patience(patience(speed));
             }
         }
         self.pacer.wait(false);

@@ -1,41 +1,27 @@
-//! The pace of a flight: that of the clock, or as fast as it goes.
+//! The pace of a flight: relative to real time, or as fast as possible.
 
-use crate::picture::live::Live;
-use crate::scenario::TICKS_PER_SECOND;
+use crate::live::Live;
+use crate::pace::Speed;
+use mpp_sim::scenario::TICKS_PER_SECOND;
 use std::time::{Duration, Instant};
 
-/// Simulated seconds of a station's silence after which it is lost, at the pace of real time.
+/// Simulated seconds of silence after which a station is lost, at the pace of real time.
 const PATIENCE: u32 = 5;
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Speed {
-    Max,
-    Times(f64),
-}
 
-impl Speed {
-    /// Ticks of a station's silence after which it is lost; none where its second is any number of
-    /// ours.
-    pub(super) fn patience(self) -> Option<u32> {
-        match self {
-            Self::Max => None,
-            Self::Times(times) => {
-                Some((f64::from(PATIENCE * TICKS_PER_SECOND) * times.max(1.0)) as u32)
-            }
+/// Ticks of silence after which a station is lost. It is `None` at maximum speed, where a station's
+/// second has no fixed number of ticks.
+pub(super) fn patience(speed: Speed) -> Option<u32> {
+    match speed {
+        Speed::Max => None,
+        Speed::Times(times) => {
+            Some((f64::from(PATIENCE * TICKS_PER_SECOND) * times.max(1.0)) as u32)
         }
-    }
-}
-
-pub(super) fn speed(text: &str) -> Result<Speed, String> {
-    match text.parse::<f64>() {
-        _ if text == "max" => Ok(Speed::Max),
-        Ok(times) if times.is_finite() && times > 0.0 => Ok(Speed::Times(times)),
-        _ => Err("give a positive number, or max".to_owned()),
     }
 }
 
 /// Keeps a flight at its pace.
 pub(super) struct Pacer {
-    /// As the command line has it.
+    /// The speed that the command line gave.
     started: Speed,
     speed: Speed,
     begin: Instant,
@@ -52,20 +38,16 @@ impl Pacer {
         }
     }
 
-    /// Does what the pages of a live flight ask for: waits while they pause, and takes their speed,
-    /// which it gives if it is another.
-    pub(super) fn obey(&mut self, live: &Live) -> Option<Speed> {
+    /// Does what the pages of a live flight ask for. Waits while they pause, unless the flight is
+    /// interrupted, and takes their speed. Returns this speed if it is new.
+    pub(super) fn obey(&mut self, live: &Live, interrupted: impl Fn() -> bool) -> Option<Speed> {
         let mut wish = live.wish();
         let paused = wish.pause;
-        while wish.pause {
+        while wish.pause && !interrupted() {
             std::thread::sleep(Duration::from_millis(20));
             wish = live.wish();
         }
-        let speed = match wish.speed {
-            None => self.started,
-            Some(times) if times.is_finite() => Speed::Times(times),
-            Some(_) => Speed::Max,
-        };
+        let speed = wish.speed.unwrap_or(self.started);
         let other = speed != self.speed;
         if paused || other {
             *self = Self {
@@ -76,7 +58,7 @@ impl Pacer {
         other.then_some(speed)
     }
 
-    /// Waits for the end of a tick; one at the start takes its time even if the flight takes none.
+    /// Waits for the end of a tick. A tick before the flight takes real time even at maximum speed.
     pub(super) fn wait(&mut self, at_start: bool) {
         let times = match self.speed {
             Speed::Max if !at_start => return,

@@ -1,0 +1,24 @@
+//! Campaigns as data: the grid of flights, a row for each flight, and the report about the rows.
+//!
+//! Every cell of the grid flies the same seeds, so that cells can be compared flight by flight. A
+//! row depends only on its cell and seed. `fly` with the same flags and seed repeats the flight,
+//! with the same log hash.
+
+mod causes;
+mod grid;
+mod merge;
+mod pairs;
+mod report;
+mod row;
+mod stats;
+mod table;
+mod taxonomy;
+
+pub use causes::CauseReport;
+pub use grid::{Campaign, Cell, Lists, NoShard, Shard};
+pub use merge::{Disagreement, merge};
+pub use pairs::AgainstOracle;
+pub use report::{CellReport, Outcomes, Report};
+pub use row::Row;
+pub use stats::wilson;
+pub use taxonomy::Taxonomy;

@@ -1,0 +1,51 @@
+//! One flight of a campaign.
+
+use super::grid::Cell;
+use mpp_sim::log::{FlightLog, Summary};
+use mpp_sim::outcome::Outcome;
+use serde::{Deserialize, Serialize};
+
+/// One flight: its cell, its seed and its summary.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Cell of the flight.
+    #[serde(flatten)]
+    pub cell: Cell,
+    /// Seed of the flight.
+    pub seed: u64,
+    /// Whether the flight is a success by the paper's rule.
+    pub success: bool,
+    /// Summary of the flight, as in its log.
+    #[serde(flatten)]
+    pub summary: Summary,
+    /// The flight log's hash.
+    pub log_hash: String,
+    /// Wall time of the core's work \[ms\], if it was measured. A seed does not determine it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub core_ms: Option<f64>,
+}
+
+impl Row {
+    /// The row of a flight.
+    #[must_use]
+    pub fn new(cell: Cell, log: &FlightLog, log_hash: String, core_ms: Option<f64>) -> Self {
+        Self {
+            cell,
+            seed: log.header.seed,
+            success: log.summary.outcome == Outcome::Survived,
+            summary: log.summary,
+            log_hash,
+            core_ms,
+        }
+    }
+
+    /// Whether two rows agree about a flight. The wall time does not count.
+    #[must_use]
+    pub fn agrees(&self, other: &Self) -> bool {
+        let timeless = |row: &Self| Self {
+            core_ms: None,
+            ..row.clone()
+        };
+        timeless(self) == timeless(other)
+    }
+}

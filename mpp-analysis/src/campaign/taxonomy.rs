@@ -1,0 +1,34 @@
+//! A report's failures as a table for people.
+
+use super::report::{CellReport, Report};
+use std::fmt;
+
+/// A report's failures by cause, as a table for people.
+pub struct Taxonomy<'a>(pub &'a Report);
+
+impl fmt::Display for Taxonomy<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for cell in &self.0.cells {
+            write_cell(f, cell)?;
+        }
+        Ok(())
+    }
+}
+
+fn write_cell(f: &mut fmt::Formatter<'_>, cell: &CellReport) -> fmt::Result {
+    let failed = cell.trials - cell.strict_successes;
+    writeln!(
+        f,
+        "{}: {failed} of {} flights failed",
+        cell.cell, cell.trials
+    )?;
+    for report in &cell.causes {
+        let name = report.cause.name();
+        write!(f, "  {name:<12} {:>5}", report.flights)?;
+        if let Some(flies) = report.oracle_flies {
+            write!(f, ", the oracle flies {flies:>5}")?;
+        }
+        writeln!(f, ", such as --seed {}", report.seed)?;
+    }
+    Ok(())
+}

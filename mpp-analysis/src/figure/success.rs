@@ -1,0 +1,170 @@
+//! Success rates over the number of obstacles, with their 95 % bands (paper, Figure 8).
+
+use super::error::FigureError;
+use super::page::{COLUMN, Sample, document, legend, legend_height};
+use super::panel::{Axis, Panel};
+use crate::campaign::{Cell, CellReport, Report};
+use mpp_sim::scenario::Preset;
+use plotters::prelude::*;
+
+/// The colours of the curves, from few paths to many. These colours mean nothing else in any
+/// figure.
+const SHADES: [RGBColor; 4] = [
+    RGBColor(150, 150, 150),
+    RGBColor(188, 157, 225),
+    RGBColor(134, 85, 190),
+    RGBColor(74, 20, 134),
+];
+/// The oracle's curve.
+const ORACLE: RGBColor = RGBColor(0, 150, 150);
+/// The paper's results.
+const PUBLISHED: RGBColor = RGBColor(30, 30, 30);
+/// Height of a panel \[px\].
+const HEIGHT: u32 = 1150;
+
+/// The paper's success rates [%] by number of paths, over 0, 5, 10, 15 and 20 obstacles.
+const PAPER: [(u16, [f64; 5]); 4] = [
+    (0, [100.0, 67.0, 28.0, 25.0, 18.0]),
+    (1, [100.0, 91.0, 67.0, 51.0, 35.0]),
+    (5, [100.0, 94.0, 85.0, 71.0, 65.0]),
+    (25, [100.0, 99.0, 98.0, 97.0, 90.0]),
+];
+
+/// The rule that decides on success.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rule {
+    /// The paper's rule.
+    Paper,
+    /// The strict rule.
+    Strict,
+}
+
+/// Draws a panel for each preset and replanning rate of a campaign, with a curve for each number of
+/// paths. Dots in the curves' colours are the paper's results. The oracle's curve is in each panel.
+///
+/// # Errors
+/// [`FigureError`].
+pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
+    let paths = &report.campaign.paths;
+    let names: Vec<String> = paths.iter().map(|paths| name(*paths)).collect();
+    let mut entries: Vec<(Sample, &str)> = names
+        .iter()
+        .enumerate()
+        .map(|(index, name)| (Sample::Line(shade(index, paths.len()), 16), name.as_str()))
+        .collect();
+    if report.campaign.oracle {
+        entries.push((Sample::Line(ORACLE, 16), "oracle"));
+    }
+    let compared = rule == Rule::Paper && report.campaign.preset.contains(&Preset::Reference);
+    if compared {
+        entries.push((Sample::Dot(PUBLISHED), "published"));
+    }
+    let top = legend_height(entries.len());
+    let panels: Vec<Panel> = panels(report, rule);
+    document((COLUMN, top + HEIGHT * panels.len() as u32), |canvas| {
+        let (head, mut rest) = canvas.split_vertically(top);
+        legend(&head, &entries)?;
+        for panel in &panels {
+            let (area, below) = rest.split_vertically(HEIGHT);
+            rest = below;
+            panel.draw(&area)?;
+        }
+        Ok(())
+    })
+}
+
+fn name(paths: u16) -> String {
+    match paths {
+        0 => "RRT* alone".to_owned(),
+        1 => "1 path".to_owned(),
+        more => format!("{more} paths"),
+    }
+}
+
+/// The colour of a curve. The colours go evenly from light to dark.
+fn shade(index: usize, count: usize) -> RGBColor {
+    let last = SHADES.len() - 1;
+    let place = if count > 1 {
+        index * last / (count - 1)
+    } else {
+        last
+    };
+    SHADES[place.min(last)]
+}
+
+fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
+    let campaign = &report.campaign;
+    let most = campaign.obstacles.iter().copied().max().unwrap_or(0) as f64;
+    let mut panels = Vec::new();
+    for &preset in &campaign.preset {
+        for &replan_hz in &campaign.replan_hz {
+            let x = Axis::tight("Obstacles", -0.02 * most..1.03 * most.max(1.0), 8);
+            let y_label = match rule {
+                Rule::Paper => "Success (%)",
+                Rule::Strict => "Strict success (%)",
+            };
+            let mut panel = Panel::new(x, Axis::tight(y_label, -3.0..108.0, 6));
+            for (index, &paths) in campaign.paths.iter().enumerate() {
+                let cells = cells(report, |cell| {
+                    let key = (cell.preset, cell.paths, cell.oracle);
+                    key == (preset, paths, false) && cell.replan_hz.to_bits() == replan_hz.to_bits()
+                });
+                curve(&mut panel, &cells, rule, shade(index, campaign.paths.len()));
+                if rule == Rule::Paper && preset == Preset::Reference {
+                    let colour = shade(index, campaign.paths.len());
+                    for dot in published(paths) {
+                        panel.dot(dot, 30, PUBLISHED);
+                        panel.dot(dot, 20, colour);
+                    }
+                }
+            }
+            let oracle = cells(report, |cell| cell.oracle);
+            curve(&mut panel, &oracle, rule, ORACLE);
+            let words = format!("{}, {replan_hz} Hz", preset.name());
+            panel.labels.push(((0.02 * most, 8.0), words, BLACK));
+            panels.push(panel);
+        }
+    }
+    panels
+}
+
+/// The flown cells of a curve, by obstacles.
+fn cells(report: &Report, of: impl Fn(&Cell) -> bool) -> Vec<&CellReport> {
+    let mut cells: Vec<&CellReport> = report.cells.iter().collect();
+    cells.retain(|cell| of(&cell.cell) && cell.trials > 0);
+    cells.sort_by_key(|cell| cell.cell.obstacles);
+    cells
+}
+
+/// Adds a curve upon its band.
+fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, colour: RGBColor) {
+    if cells.is_empty() {
+        return;
+    }
+    let value = |cell: &CellReport| match rule {
+        Rule::Paper => (cell.wilson_low, cell.success_rate, cell.wilson_high),
+        Rule::Strict => (
+            cell.strict_wilson_low,
+            cell.strict_success_rate,
+            cell.strict_wilson_high,
+        ),
+    };
+    let at = |cell: &CellReport, share: f64| (cell.cell.obstacles as f64, 100.0 * share);
+    let low = cells.iter().map(|cell| at(cell, value(cell).0));
+    let high = cells.iter().rev().map(|cell| at(cell, value(cell).2));
+    panel
+        .areas
+        .push((low.chain(high).collect(), colour.mix(0.25)));
+    let middle = cells
+        .iter()
+        .map(|cell| at(cell, value(cell).1.unwrap_or(0.0)));
+    panel.line(colour, 16, &middle.collect::<Vec<_>>());
+}
+
+fn published(paths: u16) -> Vec<(f64, f64)> {
+    let rates = PAPER.iter().find(|(known, _)| *known == paths);
+    let points = rates
+        .iter()
+        .flat_map(|(_, rates)| [0.0, 5.0, 10.0, 15.0, 20.0].into_iter().zip(*rates));
+    points.collect()
+}

@@ -1,0 +1,242 @@
+//! Tests the pictures of small flights.
+
+use super::flight::{CANVAS, FIELD_HEIGHT, field_panel};
+use super::panel::{self, Axis};
+use super::*;
+use crate::campaign::{Campaign, Lists, Report};
+use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
+use mpp_sim::dynamics::Dynamics;
+use mpp_sim::entries::{Columns, ObstacleEntry, PlanEntry, Tick};
+use mpp_sim::faults::Faults;
+use mpp_sim::field::ObstacleField;
+use mpp_sim::lidar::LidarConfig;
+use mpp_sim::log::{FlightLog, Header, SCHEMA, Summary};
+use mpp_sim::outcome::{Class, Outcome, Score};
+use mpp_sim::scenario::{Preset, Scenario, ScenarioFile};
+use mpp_sim::sensors::{AirDataNoise, AirDataSensors};
+use plotters::prelude::Ranged;
+
+/// A flight with swinging thrust and elevator, and with a reference of straight pieces.
+fn example(count: usize, obstacles: usize) -> FlightLog {
+    const DT: f64 = 0.01;
+    let airframe = Airframe::REFERENCE;
+    let trim = Trim::at_speed(&airframe, 12.0, 0.0).unwrap();
+    let state = VehicleState {
+        x: 0.0,
+        z: 50.0,
+        air: trim.state,
+    };
+    let mut plant = Dynamics { airframe, state };
+    let mut sensors = AirDataSensors::new(1, AirDataNoise::PAPER);
+    let field = ObstacleField::generate(1, obstacles, 0.0, 50.0);
+    let mut score = Score::new(50.0);
+    let mut ticks = Columns::default();
+    let mut wanted = state;
+    for k in 0..count {
+        let t = k as f64 * DT;
+        let swing = libm::sin(0.9 * t);
+        let control = Control {
+            thrust: trim.control.thrust + 1.5 * swing,
+            elevator: trim.control.elevator + 1.2 * swing,
+        };
+        if k % 100 == 0 {
+            wanted = plant.state;
+        }
+        wanted.x += wanted.air.airspeed * DT;
+        wanted.z += wanted.air.airspeed * wanted.air.flight_path * DT;
+        ticks.push(&Tick {
+            t,
+            state: plant.state,
+            measured: sensors.measure(&plant.state),
+            estimate: plant.state.air,
+            reference: (k >= 100).then_some(wanted),
+            control,
+            applied: control,
+            wind: (0.0, 0.0),
+        });
+        let before = plant.state;
+        plant.step(control, DT).unwrap();
+        score.update(&field, &before, &plant.state);
+    }
+    let plan = |tick| PlanEntry {
+        tick,
+        used_from_tick: Some(tick),
+        outcome: "optimal".into(),
+        candidates: 25,
+        feasible: 20,
+        tree_runs: 2,
+        slices: 700,
+        cost: Some(1.0),
+        violation: Some(0.0),
+    };
+    FlightLog {
+        schema: SCHEMA,
+        header: Header {
+            package_version: "0.0.0".into(),
+            seed: 1,
+            obstacles,
+            paths: 25,
+            preset: "paper".into(),
+            airframe: "reference".into(),
+            replan_hz: 1.0,
+            latency: 0.0,
+            slices_per_tick: None,
+            duration: 20.0,
+            lidar: LidarConfig::PAPER,
+            air_data: AirDataNoise::PAPER,
+            faults: Faults::default(),
+            scene: None,
+            oracle: false,
+            field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
+        },
+        plans: (100..count as u64).step_by(100).map(plan).collect(),
+        rejections: Vec::new(),
+        orders: Vec::new(),
+        summary: Summary {
+            outcome: Outcome::Survived,
+            strict: true,
+            class: Class::Success,
+            failure: None,
+            t_end: count as f64 * DT,
+            x_end: plant.state.x,
+            min_clearance: Some(score.min_clearance).filter(|c| c.is_finite()),
+            max_altitude_deviation: score.max_altitude_deviation,
+            replans: 19,
+            candidates: 475,
+            feasible: 380,
+            slices: 13_300,
+        },
+        ticks,
+    }
+}
+
+#[test]
+fn a_flight_is_drawn_and_always_the_same() {
+    let log = example(2000, 20);
+    let svg = flight_svg(&log).unwrap();
+    assert_eq!(svg, flight_svg(&log).unwrap());
+    assert!(svg.starts_with("<svg width=\"1000\" height=\"600\" viewBox=\"0 0 4000 2400\""));
+    // The legend has one circle, and the field has twenty.
+    assert_eq!(svg.matches("<circle").count(), 21);
+    // There are five flown curves. The reference of four panels has a piece for each plan.
+    assert_eq!(svg.matches("#E67800").count(), 5 + 1);
+    assert_eq!(svg.matches("#0072B2").count(), 4 * 19 + 1);
+    for words in [
+        "Downrange distance (m)",
+        "Height (m)",
+        "Time (s)",
+        "Thrust (N)",
+        "reference",
+    ] {
+        assert!(svg.contains(words), "{words}");
+    }
+}
+
+#[test]
+fn circles_and_axes_have_one_scale() {
+    for (count, obstacles) in [(2000, 20), (300, 1), (2, 0)] {
+        let field = field_panel(&example(count, obstacles));
+        let (width, height) = panel::plot_size((CANVAS.0, FIELD_HEIGHT), true);
+        let scale = |axis: &Axis, pixels| (axis.range().end - axis.range().start) / pixels;
+        let (x, z) = (scale(&field.x, width), scale(&field.y, height));
+        assert!((x / z - 1.0).abs() < 1e-9, "{x} and {z} m/px");
+        for (_, radius, _) in field.circles {
+            // The radius is a whole number of pixels, so it may be wrong by half a pixel.
+            assert!((f64::from(radius) * x - 1.0).abs() <= 0.5 * x);
+        }
+    }
+}
+
+#[test]
+fn a_flight_of_one_tick_is_drawn_and_an_empty_one_refused() {
+    assert!(flight_svg(&example(1, 0)).is_ok());
+    assert!(matches!(
+        flight_svg(&example(0, 20)),
+        Err(FigureError::EmptyFlight)
+    ));
+}
+
+#[test]
+fn a_planning_cycle_is_drawn_step_by_step() {
+    let scenario = Scenario {
+        obstacles: 30,
+        ..Scenario::new(Preset::Paper, 1)
+    };
+    let cycle = OneReplan::of_flight(&scenario, 400).unwrap();
+    assert_eq!(cycle.candidates.len(), 25);
+    let feasible = |cycle: &OneReplan| {
+        let refined = cycle
+            .candidates
+            .iter()
+            .filter(|candidate| candidate.refined.is_some());
+        refined.count()
+    };
+    assert!(feasible(&cycle) > 0);
+    // The chosen trajectory is one of the feasible ones, and it starts at the aircraft.
+    let start = cycle.chosen.knots[0].state;
+    assert!((start.x - cycle.state.x).abs() < 1e-9 && (start.z - cycle.state.z).abs() < 1e-9);
+    let end = cycle.chosen.knots[18].state;
+    let chosen = cycle
+        .candidates
+        .iter()
+        .filter_map(|candidate| candidate.refined.as_ref());
+    let gaps = chosen.map(|path| (path[18].0 - end.x).abs() + (path[18].1 - end.z).abs());
+    assert!(gaps.fold(f64::INFINITY, f64::min) < 1e-6);
+
+    let scan = scan_svg(&cycle).unwrap();
+    assert_eq!(scan, scan_svg(&cycle).unwrap());
+    assert!(scan.starts_with("<svg width=\"600\""));
+    // The returns are in two panels and in the legend.
+    assert_eq!(scan.matches("#C81E46").count(), 2 * cycle.hits.len() + 1);
+    let paths = candidates_svg(&cycle).unwrap();
+    assert_eq!(paths.matches("#009E73").count(), feasible(&cycle) + 1);
+    let rays = rays_svg(&cycle).unwrap();
+    for words in ["collocation point", "allowed region", "Height (m)"] {
+        assert!(rays.contains(words), "{words}");
+    }
+    let late = OneReplan::of_flight(
+        &Scenario {
+            ticks: 100,
+            ..scenario
+        },
+        5000,
+    );
+    assert!(matches!(late, Err(FigureError::NoCycle(_))));
+}
+
+#[test]
+fn success_curves_show_every_cell_and_the_papers_results() {
+    let lists = Lists {
+        preset: vec![Preset::Reference, Preset::Flight],
+        obstacles: vec![20, 5, 10],
+        paths: vec![1, 25],
+        replan_hz: Vec::new(),
+    };
+    let mut campaign = Campaign::new(ScenarioFile::default(), lists, 4, None).unwrap();
+    let report = Report::new(&campaign, &[]);
+    // Nothing is flown: there are only axes and the paper's dots.
+    assert!(success_svg(&report, Rule::Paper).is_ok());
+    let flown = |mut report: Report| {
+        for cell in &mut report.cells {
+            cell.trials = 4;
+            cell.success_rate = Some(0.5);
+            cell.strict_success_rate = Some(0.25);
+        }
+        report
+    };
+    let report = flown(report);
+    let svg = success_svg(&report, Rule::Paper).unwrap();
+    // Each of four curves has a band. Two curves have a ring and a dot for each of five published
+    // results, and the legend has one dot.
+    assert_eq!(svg.matches("<polygon").count(), 4);
+    assert_eq!(svg.matches("<circle").count(), 2 * 2 * 5 + 1);
+    assert!(svg.contains("reference, 1 Hz") && svg.contains("flight, 1 Hz"));
+    let strict = success_svg(&report, Rule::Strict).unwrap();
+    assert!(strict.contains("Strict success (%)") && !strict.contains("published"));
+    // The oracle's curve is in both panels, and in the legend.
+    campaign.oracle = true;
+    let beside = flown(Report::new(&campaign, &[]));
+    let svg = success_svg(&beside, Rule::Strict).unwrap();
+    assert_eq!(svg.matches("<polygon").count(), 4 + 2);
+    assert!(svg.contains(">\noracle\n<"));
+}

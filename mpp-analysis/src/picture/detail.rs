@@ -1,0 +1,296 @@
+//! The planner's map, candidates and choice in each cycle, for people to look at.
+//!
+//! The core reports only its choice. The same planner gets the same scans and states here, so it
+//! goes through the same candidates, one slice at a time.
+
+use crate::recording::{Reckoning, core_scan};
+use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
+use mpp_core::corridor::DIRECTION_VECTORS;
+use mpp_core::map::GridPoint;
+use mpp_core::planner::flight::FlightPlanner;
+use mpp_core::planner::{Planner, SetupError};
+use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::VehicleState;
+use mpp_node::parameters::Tuning;
+use mpp_sim::moment::Moment;
+use serde::{Deserialize, Serialize};
+
+/// A place `(x, z)` in the world \[m\], to the centimetre.
+pub type Place = (f64, f64);
+
+/// Half of the side of the square to which unbounded corridors are cut \[m\].
+const SQUARE: f64 = 8.0;
+/// Edge of a cell of the map with memory \[m\], and the window that is shown relative to the
+/// aircraft \[m\].
+const CELL: f64 = 0.5;
+const WINDOW: [f64; 2] = [-8.0, 56.0];
+/// Half of the window's height \[m\].
+const HEIGHT: f64 = 16.0;
+
+/// A row of cells: low corner `(x, z)`, and their length together \[m\].
+pub type Cells = (f64, f64, f64);
+
+/// One planning cycle.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct PlanDetail {
+    /// Tick of the cycle's scan.
+    pub tick: u32,
+    /// Position of the aircraft.
+    pub from: Place,
+    /// Positions where beams ended.
+    pub hits: Vec<Place>,
+    /// Cells that the planner took for occupied and for unknown. They come from the map with
+    /// memory, if the preset has one. Otherwise they come from the grid of this one scan, in which
+    /// nothing is unknown.
+    pub map: Map,
+    /// Collocation points of every candidate path.
+    pub paths: Vec<Vec<Place>>,
+    /// The candidate that was chosen.
+    pub chosen: Option<usize>,
+    /// Corridor of the chosen candidate: a polygon for each stage boundary, empty where nothing is
+    /// left.
+    pub corridor: Vec<Vec<Place>>,
+    /// The trajectory that was chosen.
+    pub trajectory: Vec<Place>,
+}
+
+/// The planner's knowledge of obstacles.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Map {
+    /// Edge of a cell \[m\].
+    pub cell: f64,
+    /// Cells that count as occupied.
+    pub occupied: Vec<Cells>,
+    /// Cells that no beam has reported on.
+    pub unknown: Vec<Cells>,
+}
+
+/// A planner whose cycles can be inspected.
+pub struct Inspector {
+    planner: Box<Planner>,
+    reckoning: Reckoning,
+}
+
+impl Inspector {
+    /// An inspector for a flight that begins with these values.
+    ///
+    /// # Errors
+    /// [`SetupError`] when the planner cannot be set up. The core could not be set up either.
+    pub fn new(tuning: &Tuning) -> Result<Self, SetupError> {
+        let mut planner = Box::new(Planner::new());
+        planner.set_up(&tuning.settings)?;
+        let reckoning = Reckoning::new(&tuning.settings)?;
+        Ok(Self { planner, reckoning })
+    }
+
+    /// The cycle that begins at this moment, if a scan was taken. `tuning` holds the values in
+    /// force.
+    pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
+        self.reckoning.update(moment.tick);
+        let wire = moment.scan?;
+        let state = VehicleState {
+            air: moment.tick.estimate,
+            ..moment.tick.state
+        };
+        let planner = &mut self.planner;
+        // The core does the same: values that it refuses were never in force.
+        let _ = planner.retune(&tuning.settings.planner);
+        let conditions = self.reckoning.conditions();
+        let scan = core_scan(wire);
+        planner.begin(moment.tick.t, &state, &conditions, &scan);
+
+        let mut detail = PlanDetail {
+            tick: wire.tick,
+            from: place(state.x, state.z),
+            ..PlanDetail::default()
+        };
+        let mut corridor = None;
+        let mut best = f64::INFINITY;
+        let mut best_violation = f64::INFINITY;
+        for _ in 0..slices(tuning) {
+            let refining = planner.candidate().is_some();
+            let more = planner.advance();
+            if let Some((path, problem)) = planner.candidate()
+                && !refining
+            {
+                detail.paths.push(path.map(|(x, z)| place(x, z)).into());
+                corridor = Some(problem.bounds);
+            }
+            let summary = planner.summary();
+            if (summary.cost, summary.violation) != (best, best_violation) {
+                (best, best_violation) = (summary.cost, summary.violation);
+                detail.chosen = detail.paths.len().checked_sub(1);
+                if let (Some(bounds), Some(path)) = (&corridor, detail.paths.last()) {
+                    let cruise = planner.trim().state.airspeed;
+                    detail.corridor = polygons(&bounds.0, cruise, path);
+                }
+            }
+            if !more {
+                break;
+            }
+        }
+        // A candidate that was begun but not ended at the deadline does not count.
+        detail.paths.truncate(planner.summary().candidates);
+        detail.map = map(planner, &state, tuning.settings.planner.altitude);
+        detail.hits = hits(&scan, &state);
+        if best.is_finite() {
+            let knots = planner.best().knots.iter();
+            detail.trajectory = knots.map(|k| place(k.state.x, k.state.z)).collect();
+        }
+        let _ = planner.finish();
+        Some(detail)
+    }
+}
+
+/// Number of slices that a cycle may use.
+fn slices(tuning: &Tuning) -> u64 {
+    let configure = &tuning.configure;
+    u64::from(configure.latency_ticks) * u64::from(configure.slices_per_tick)
+}
+
+fn place(x: f64, z: f64) -> Place {
+    let centimetres = |value: f64| (value * 100.0).round() / 100.0;
+    (centimetres(x), centimetres(z))
+}
+
+/// A point of the grid in the world.
+fn world(state: &VehicleState, point: GridPoint) -> Place {
+    let origin = GridPoint::AIRCRAFT;
+    place(
+        state.x + point.col - origin.col,
+        state.z + point.row - origin.row,
+    )
+}
+
+fn map(planner: &Planner, state: &VehicleState, altitude: f64) -> Map {
+    if let Some(paper) = planner.paper() {
+        let low = world(state, GridPoint { row: 0.0, col: 0.0 });
+        let grid = paper.grid();
+        let occupied = |row: usize, col: usize| grid.occupied(row as i32, col as i32);
+        return Map {
+            cell: 1.0,
+            occupied: rows(low, 1.0, [GRID_ROWS, GRID_COLS], occupied),
+            unknown: Vec::new(),
+        };
+    }
+    let Some(known) = planner.flight().map(FlightPlanner::clearance) else {
+        return Map::default();
+    };
+    let low = (
+        ((state.x + WINDOW[0]) / CELL).floor() * CELL,
+        altitude - HEIGHT,
+    );
+    let middle = |at: f64, cells: usize| at + CELL * (cells as f64 + 0.5);
+    let extent = [
+        (2.0 * HEIGHT / CELL) as usize,
+        ((WINDOW[1] - WINDOW[0]) / CELL) as usize,
+    ];
+    let cells = |is: &dyn Fn(f64, f64) -> bool| {
+        rows(low, CELL, extent, |row, col| {
+            is(middle(low.0, col), middle(low.1, row))
+        })
+    };
+    Map {
+        cell: CELL,
+        occupied: cells(&|x, z| known.is_occupied(x, z)),
+        unknown: cells(&|x, z| known.is_unknown(x, z)),
+    }
+}
+
+/// The cells of a raster for which `is` holds. Neighbours in a row are one entry.
+fn rows(
+    low: Place,
+    cell: f64,
+    [rows, cols]: [usize; 2],
+    is: impl Fn(usize, usize) -> bool,
+) -> Vec<Cells> {
+    let mut found = Vec::new();
+    for row in 0..rows {
+        let mut col = 0;
+        while col < cols {
+            let length = (col..cols).take_while(|col| is(row, *col)).count();
+            if length > 0 {
+                let (x, z) = place(low.0 + cell * col as f64, low.1 + cell * row as f64);
+                found.push((x, z, cell * length as f64));
+            }
+            col += length.max(1);
+        }
+    }
+    found
+}
+
+fn hits(scan: &LidarScan, state: &VehicleState) -> Vec<Place> {
+    let beams = scan.ranges.iter().enumerate();
+    beams
+        .filter(|(_, range)| **range > 0.0)
+        .map(|(beam, range)| {
+            let (up, ahead) = libm::sincos(state.air.pitch + scan.beam_angle(beam));
+            let range = f64::from(*range);
+            place(state.x + range * ahead, state.z + range * up)
+        })
+        .collect()
+}
+
+/// The parts that the eight half-planes of each stage boundary leave of a square about its path.
+fn polygons(bounds: &[f64], cruise: f64, path: &[Place]) -> Vec<Vec<Place>> {
+    // The half-planes are relative to level flight from the first place of the path.
+    let start = path.first().copied().unwrap_or_default();
+    let stages = bounds.chunks(DIRECTIONS).take(KNOTS).zip(path).enumerate();
+    stages
+        .map(|(stage, (bounds, (x, z)))| {
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+            let mut polygon: Vec<Place> = corners
+                .iter()
+                .map(|(right, up)| (x + SQUARE * right, z + SQUARE * up))
+                .collect();
+            let level = (start.0 + cruise * STAGE_PERIOD * stage as f64, start.1);
+            for ([up, ahead], bound) in DIRECTION_VECTORS.iter().zip(bounds) {
+                polygon = cut(&polygon, |(x, z)| {
+                    bound - ahead * (x - level.0) - up * (z - level.1)
+                });
+            }
+            polygon.iter().map(|(x, z)| place(*x, *z)).collect()
+        })
+        .collect()
+}
+
+/// The part of a convex polygon where `inside` is not negative.
+fn cut(polygon: &[Place], inside: impl Fn(Place) -> f64) -> Vec<Place> {
+    let mut kept = Vec::new();
+    for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
+        let (a, b) = (inside(*from), inside(*to));
+        if a >= 0.0 {
+            kept.push(*from);
+        }
+        if (a >= 0.0) != (b >= 0.0) {
+            let share = a / (a - b);
+            kept.push((
+                from.0 + share * (to.0 - from.0),
+                from.1 + share * (to.1 - from.1),
+            ));
+        }
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_in_a_row_are_one() {
+        let occupied = ["##.#", "....", ".###"];
+        let is = |row: usize, col: usize| occupied[row].as_bytes()[col] == b'#';
+        let expected = [(1.0, 5.0, 1.0), (2.5, 5.0, 0.5), (1.5, 6.0, 1.5)];
+        assert_eq!(rows((1.0, 5.0), 0.5, [3, 4], is), expected);
+    }
+
+    #[test]
+    fn a_square_is_cut_by_a_half_plane() {
+        let square = [(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)];
+        let left = cut(&square, |(x, _)| 1.0 - x);
+        assert_eq!(left, [(0.0, 0.0), (1.0, 0.0), (1.0, 2.0), (0.0, 2.0)]);
+        assert!(cut(&square, |_| -1.0).is_empty());
+        assert_eq!(cut(&square, |_| f64::INFINITY), square);
+    }
+}

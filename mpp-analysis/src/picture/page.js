@@ -1,0 +1,339 @@
+"use strict";
+const DATA = /*DATA*/null;
+const live = DATA === null, TOKEN = "/*TOKEN*/";
+const columns = ["t", "x", "z", "airspeed", "pitch", "pitch_rate", "flight_path", "ref_x", "ref_z", "ref_airspeed",
+  "ref_pitch", "ref_flight_path", "est_airspeed", "est_pitch", "est_flight_path", "thrust", "elevator"];
+const log = live ? { header: null, ticks: Object.fromEntries(columns.map(name => [name, []])), plans: [], orders: [],
+  summary: null } : DATA.log;
+const details = new Map((live ? [] : DATA.details).map(detail => [detail.tick, detail]));
+const T = log.ticks;
+const OUTCOMES = { Adopted: "feasible", LeastViolating: "least violating", KeptPrevious: "last plan kept",
+  TrimHold: "straight and level" };
+// What the occupancy layer is.
+const MEMORY = "what the planner took for occupied: its map with memory of all scans so far, cells of 0.5 m, " +
+  "hidden parts of obstacles completed; the faint ground is what no beam has told of.";
+const GRID = "what the planner took for occupied: the grid of this one scan, cells of 1 m, padded; " +
+  "whatever else is free.";
+const LAYERS = [["field", "obstacle"], ["scan", "scan"], ["occupancy", "cells"], ["candidates", "candidate"],
+  ["corridor", "corridor"], ["plan", "plan"], ["reference", "reference"], ["flown", "flown"]];
+const $ = id => document.getElementById(id);
+const on = Object.fromEntries(LAYERS.map(([name]) => [name, true]));
+const degrees = radians => radians * 180 / Math.PI;
+let now = 0, playing = live, speed = 1, colour = {}, started = null, changed = false;
+
+function readColours() {
+  const style = getComputedStyle(document.documentElement);
+  for (const name of ["text", "faint", "line", "ground", "unknown", ...LAYERS.map(([, c]) => c)])
+    colour[name] = style.getPropertyValue("--" + name).trim();
+}
+
+// The plan in force at a tick: the last one that is flown by then.
+function planAt(tick) {
+  let found = -1;
+  for (let i = 0; i < log.plans.length && log.plans[i].used_from_tick <= tick; i++) found = i;
+  return found;
+}
+
+function canvas(id) {
+  const element = $(id), ratio = window.devicePixelRatio || 1;
+  const width = element.clientWidth, height = element.clientHeight;
+  if (element.width !== Math.round(width * ratio) || element.height !== Math.round(height * ratio)) {
+    element.width = Math.round(width * ratio);
+    element.height = Math.round(height * ratio);
+  }
+  const pen = element.getContext("2d");
+  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+  pen.clearRect(0, 0, width, height);
+  pen.font = "12px system-ui, 'DejaVu Sans', sans-serif";
+  return [pen, width, height];
+}
+
+function line(pen, points, style, width, dash = []) {
+  pen.beginPath();
+  let down = false;
+  for (const point of points) {
+    if (point === null) { down = false; continue; }
+    if (down) pen.lineTo(point[0], point[1]); else pen.moveTo(point[0], point[1]);
+    down = true;
+  }
+  pen.strokeStyle = style; pen.lineWidth = width; pen.setLineDash(dash);
+  // Broad lines are the ground that others are seen on.
+  pen.globalAlpha = width > 3 ? 0.45 : 1;
+  pen.stroke();
+  pen.globalAlpha = 1;
+  pen.setLineDash([]);
+}
+
+function drawView() {
+  const [pen, width, height] = canvas("view");
+  if (!T.t.length) return;
+  const follow = $("follow").checked;
+  const last = T.t.length - 1;
+  const end = Math.max(...log.header.field.map(o => o.x), T.x[last]) + 20;
+  const scale = follow ? Math.min(width / 62, height / 26) : width / (end + 10);
+  const x0 = follow ? T.x[now] - 0.22 * width / scale : -8;
+  const z0 = follow ? T.z[now] : 50;
+  const at = (x, z) => [(x - x0) * scale, height / 2 - (z - z0) * scale];
+  const step = scale > 4 ? 10 : 50;
+  const plan = planAt(now);
+  const detail = plan < 0 ? undefined : details.get(log.plans[plan].tick);
+  const cells = (rows, style, edge) => {
+    pen.fillStyle = style;
+    for (const [x, z, length] of rows) {
+      const [u, v] = at(x, z + edge);
+      pen.fillRect(u, v, length * scale + .4, edge * scale + .4);
+    }
+  };
+  if (on.occupancy && detail) cells(detail.map.unknown, colour.unknown, detail.map.cell);
+  pen.fillStyle = colour.faint; pen.textAlign = "left";
+  for (let x = Math.ceil(x0 / step) * step; x < x0 + width / scale; x += step) {
+    line(pen, [at(x, -1e4), at(x, 1e4)], colour.line, 0.5);
+    pen.fillText(x + " m", at(x, 0)[0] + 3, height - 5);
+  }
+  for (let z = Math.ceil((z0 - height / 2 / scale) / 10) * 10; z < z0 + height / 2 / scale; z += 10) {
+    line(pen, [at(-1e4, z), at(1e4, z)], colour.line, 0.5);
+    pen.fillText(z + " m", 4, at(0, z)[1] - 3);
+  }
+  if (on.corridor && detail) {
+    pen.fillStyle = colour.corridor;
+    for (const polygon of detail.corridor) {
+      if (polygon.length < 3) continue;
+      pen.beginPath();
+      for (const [x, z] of polygon) pen.lineTo(...at(x, z));
+      pen.closePath();
+      pen.globalAlpha = 0.03; pen.fill();
+      pen.globalAlpha = 0.3; pen.strokeStyle = colour.corridor; pen.lineWidth = 0.7; pen.stroke();
+    }
+    pen.globalAlpha = 1;
+  }
+  if (on.field) {
+    pen.fillStyle = colour.obstacle;
+    for (const o of log.header.field) {
+      pen.beginPath(); pen.arc(...at(o.x, o.z), o.radius * scale, 0, 7); pen.fill();
+    }
+  }
+  if (on.occupancy && detail) {
+    $("occupancy").textContent = detail.map.cell < 1 ? MEMORY : GRID;
+    pen.globalAlpha = 0.8;
+    cells(detail.map.occupied, colour.cells, detail.map.cell);
+    pen.globalAlpha = 1;
+  }
+  if (on.candidates && detail)
+    detail.paths.forEach(path => line(pen, path.map(([x, z]) => at(x, z)), colour.candidate, 1));
+  if (on.scan && detail) {
+    pen.fillStyle = colour.scan;
+    for (const [x, z] of detail.hits) { const [u, v] = at(x, z); pen.fillRect(u - 2, v - 2, 4, 4); }
+  }
+  if (on.plan && detail) line(pen, detail.trajectory.map(([x, z]) => at(x, z)), colour.plan, 2, [6, 4]);
+  const upTo = Array.from({ length: now + 1 }, (_, i) => i);
+  if (on.reference)
+    line(pen, upTo.map(i => T.ref_x[i] === null ? null : at(T.ref_x[i], T.ref_z[i])), colour.reference, 5);
+  if (on.flown) line(pen, upTo.map(i => at(T.x[i], T.z[i])), colour.flown, 2);
+  const [u, v] = at(T.x[now], T.z[now]);
+  pen.save(); pen.translate(u, v); pen.rotate(-T.pitch[now]);
+  pen.fillStyle = colour.text; pen.beginPath();
+  pen.moveTo(12, 0); pen.lineTo(-10, -5); pen.lineTo(-6, 0); pen.lineTo(-10, 5); pen.fill();
+  pen.restore();
+}
+
+function drawCharts() {
+  const [pen, width, height] = canvas("charts");
+  if (!T.t.length) return;
+  const band = (height - 18) / 6, left = 44, right = width - 8;
+  const total = Math.max(T.t.length - 1, 1);
+  const u = tick => left + (right - left) * tick / total;
+  const stride = Math.max(1, Math.floor(total / (2 * width)));
+  const ticks = []; for (let i = 0; i <= total && i < T.t.length; i += stride) ticks.push(i);
+  const chart = (row, title, span, series) => {
+    const values = series.flatMap(s => s.of.map(v => v)).filter(v => v !== null && isFinite(v));
+    let low = Infinity, high = -Infinity;
+    for (const v of values) { low = Math.min(low, v); high = Math.max(high, v); }
+    if (low > high) [low, high] = [0, 1];
+    // Noise is not blown up to fill the chart.
+    const margin = Math.max((high - low) * .08, (span - (high - low)) / 2); low -= margin; high += margin;
+    const digits = high - low < 5 ? 1 : 0;
+    const top = row * band + 14, bottom = (row + 1) * band - 6;
+    const v = value => bottom - (bottom - top) * (value - low) / (high - low);
+    line(pen, [[left, bottom], [right, bottom]], colour.line, 1);
+    pen.fillStyle = colour.faint; pen.textAlign = "left"; pen.fillText(title, left, row * band + 11);
+    pen.textAlign = "right";
+    pen.fillText(high.toFixed(digits), left - 4, top + 8);
+    pen.fillText(low.toFixed(digits), left - 4, bottom);
+    for (const s of series)
+      line(pen, s.at.map((tick, i) => s.of[i] === null ? null : [u(tick), v(s.of[i])]), s.colour, s.width);
+  };
+  // Where both are the same, the broad reference shows on both sides of what was flown.
+  const of = (name, style, change = value => value) => ({ at: ticks, colour: style, width: name.startsWith("ref_") ? 4 : 1.5,
+    of: ticks.map(i => T[name][i] === null ? null : change(T[name][i])) });
+  chart(0, "height [m]", 1, [of("ref_z", colour.reference), of("z", colour.flown)]);
+  chart(1, "airspeed [m/s]", 1, [of("ref_airspeed", colour.reference), of("airspeed", colour.flown)]);
+  chart(2, "pitch [deg]", 4, [of("ref_pitch", colour.reference, degrees), of("pitch", colour.flown, degrees)]);
+  chart(3, "flight path [deg]", 4, [of("ref_flight_path", colour.reference, degrees), of("flight_path", colour.flown, degrees)]);
+  chart(4, "thrust [N]", 1, [of("thrust", colour.flown)]);
+  // What a plan came to holds until the next one.
+  const starts = log.plans.map(plan => plan.used_from_tick);
+  const plans = starts.flatMap((tick, i) => [tick, Math.min(starts[i + 1] ?? Infinity, total)]);
+  const steps = name => log.plans.flatMap(plan => [plan[name], plan[name]]);
+  chart(5, "planner: candidates (broad), feasible", 2, [
+    { at: plans, of: steps("candidates"), colour: colour.candidate, width: 4 },
+    { at: plans, of: steps("feasible"), colour: colour.plan, width: 1.5 }]);
+  const seconds = total / 100, choices = [1, 2, 5, 10, 20, 60, 120, 300, 600];
+  const every = choices.find(s => (right - left) * s / seconds > 55) || 1200;
+  pen.fillStyle = colour.faint; pen.textAlign = "center";
+  for (let s = 0; s <= seconds; s += every) {
+    line(pen, [[u(100 * s), height - 18], [u(100 * s), height - 14]], colour.faint, 1);
+    pen.fillText(s + " s", Math.min(u(100 * s), width - 16), height - 3);
+  }
+  line(pen, [[u(now), 0], [u(now), height - 18]], colour.text, 1);
+}
+
+function show() {
+  if (!T.t.length) return;
+  now = Math.min(Math.max(now, 0), T.t.length - 1);
+  $("time").max = T.t.length - 1;
+  $("time").value = now;
+  $("clock").value = T.t[now].toFixed(2) + " s";
+  const number = planAt(now), plan = log.plans[number];
+  const values = [
+    ["downrange", T.x[now].toFixed(2) + " m"], ["height", T.z[now].toFixed(2) + " m"],
+    ["airspeed", T.airspeed[now].toFixed(2) + " m/s"], ["pitch", degrees(T.pitch[now]).toFixed(1) + " deg"],
+    ["flight path", degrees(T.flight_path[now]).toFixed(1) + " deg"], ["thrust", T.thrust[now].toFixed(2) + " N"],
+    ["elevator", T.elevator[now].toFixed(2)],
+    ["plan", plan ? `${number + 1} of ${log.plans.length}` : "none"],
+    ["outcome", plan ? OUTCOMES[plan.outcome] || plan.outcome : "-"],
+    ["candidates", plan ? plan.candidates : "-"], ["feasible", plan ? plan.feasible : "-"],
+    ["trees", plan ? plan.tree_runs : "-"],
+    ["cost", plan && plan.cost !== null ? plan.cost.toFixed(2) : "-"],
+    ["violation", plan && plan.violation !== null ? plan.violation.toFixed(3) + " m" : "-"]];
+  $("values").replaceChildren(...values.map(([name, value]) => {
+    const row = document.createElement("div"), dt = document.createElement("dt"), dd = document.createElement("dd");
+    dt.textContent = name; dd.textContent = value; dd.id = "v-" + name.replace(" ", "-");
+    row.append(dt, dd);
+    return row;
+  }));
+  $("link").textContent = $("link").href = "#t=" + T.t[now].toFixed(2);
+  $("link").href = $("link").textContent;
+  drawView();
+  drawCharts();
+}
+
+function title() {
+  const h = log.header, s = log.summary;
+  let line = `seed ${h.seed}, preset ${h.preset}, ${h.obstacles} obstacles, ${h.paths} paths`;
+  if (s) line += `: ${s.outcome.replace(/-/g, " ")} after ${s.t_end.toFixed(2)} s, clearance ` +
+    (s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m") + `, ${s.replans} replans, ` +
+    `${s.candidates} candidates, ${s.feasible} feasible`;
+  if (!live) line += `, log ${DATA.hash}`;
+  $("title").textContent = document.title = line;
+  $("orders").replaceChildren(...(log.orders || []).map(order => {
+    const item = document.createElement("li");
+    const { tick, ...rest } = order;
+    item.textContent = `${(tick / 100).toFixed(2)} s: ` + Object.values(rest).join(" ");
+    return item;
+  }));
+}
+
+function setPlaying(value) {
+  playing = value;
+  started = null;
+  $("play").textContent = playing ? "Pause" : "Play";
+  if (live) control({ pause: playing ? 0 : 1 });
+  else if (!playing) history.replaceState(null, "", "#t=" + T.t[now].toFixed(2));
+}
+
+function go(tick) { now = tick; started = null; if (!live && playing) setPlaying(false); show(); }
+
+function toPlan(direction) {
+  const starts = log.plans.map(plan => plan.used_from_tick);
+  const next = direction > 0 ? starts.find(tick => tick > now) : starts.filter(tick => tick < now).pop();
+  if (next !== undefined) go(next);
+}
+
+function frame(time) {
+  if (changed) { changed = false; show(); }
+  if (playing && !live && T.t.length) {
+    if (started === null) started = { time, now: now === T.t.length - 1 ? 0 : now };
+    now = Math.min(Math.round(started.now + (time - started.time) / 10 * speed), T.t.length - 1);
+    show();
+    if (now === T.t.length - 1) setPlaying(false);
+  }
+  requestAnimationFrame(frame);
+}
+
+function control(values) {
+  fetch("/control?" + new URLSearchParams(values), { method: "POST", headers: { "X-Token": TOKEN } }).catch(() => {});
+}
+
+function fromHash() {
+  const match = /^#t=([\d.]+)$/.exec(location.hash);
+  if (match && T.t.length) { now = Math.round(parseFloat(match[1]) * 100); show(); }
+}
+
+LAYERS.forEach(([name, style], index) => {
+  const label = document.createElement("label"), box = document.createElement("input"), mark = document.createElement("i");
+  box.type = "checkbox"; box.checked = true; box.id = "layer-" + name;
+  box.onchange = () => { on[name] = box.checked; show(); };
+  mark.style.setProperty("--c", `var(--${style})`);
+  label.title = `key ${index + 1}`;
+  label.append(box, mark, name);
+  $("layers").append(label);
+});
+const speeds = live ? [["0.25", "0.25 x"], ["1", "real time"], ["4", "4 x"], ["max", "as fast as possible"]]
+  : [["0.1", "0.1 x"], ["0.25", "0.25 x"], ["1", "real time"], ["4", "4 x"]];
+for (const [value, text] of speeds) $("speed").append(new Option(text, value, false, value === "1"));
+$("speed").onchange = event => { if (live) control({ speed: event.target.value }); else { speed = Number(event.target.value); started = null; } };
+$("time").oninput = event => go(Number(event.target.value));
+$("play").onclick = () => setPlaying(!playing);
+$("back").onclick = () => toPlan(-1);
+$("next").onclick = () => toPlan(1);
+$("follow").onchange = show;
+addEventListener("resize", show);
+addEventListener("hashchange", fromHash);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); show(); });
+addEventListener("keydown", event => {
+  if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
+  const layer = LAYERS[Number(event.key) - 1];
+  const step = event.shiftKey ? 100 : 10;
+  if (event.key === " ") setPlaying(!playing);
+  else if (event.key === "ArrowLeft") go(now - step);
+  else if (event.key === "ArrowRight") go(now + step);
+  else if (event.key === "Home") go(0);
+  else if (event.key === "End") go(T.t.length - 1);
+  else if (event.key === "[") toPlan(-1);
+  else if (event.key === "]") toPlan(1);
+  else if (event.key === "f") { $("follow").checked = !$("follow").checked; show(); }
+  else if (layer) $("layer-" + layer[0]).click();
+  else return;
+  event.preventDefault();
+});
+
+readColours();
+if (live) {
+  $("play").textContent = "Pause";
+  $("title").textContent = "waiting for the flight";
+  const source = new EventSource("/events");
+  source.addEventListener("begin", event => { log.header = JSON.parse(event.data); title(); });
+  source.addEventListener("ticks", event => {
+    const rows = JSON.parse(event.data);
+    const atEnd = now >= T.t.length - 1;
+    for (const name of columns) T[name].push(...rows[name]);
+    if (atEnd) now = T.t.length - 1;
+    changed = true;
+  });
+  source.addEventListener("plan", event => { log.plans.push(JSON.parse(event.data)); });
+  source.addEventListener("detail", event => { const d = JSON.parse(event.data); details.set(d.tick, d); });
+  source.addEventListener("end", event => {
+    log.summary = JSON.parse(event.data);
+    source.close();
+    title();
+    show();
+    $("play").disabled = true;
+  });
+} else {
+  title();
+  if (!details.size)
+    for (const name of ["scan", "occupancy", "candidates", "corridor", "plan"]) $("layer-" + name).disabled = true;
+  fromHash();
+  show();
+}
+requestAnimationFrame(frame);

@@ -1,0 +1,83 @@
+//! One flight on one page.
+
+use super::detail::{Inspector, PlanDetail};
+use super::page::page;
+use mpp_core::vehicle::VehicleState;
+use mpp_node::parameters::Tuning;
+use mpp_sim::flight::fly_with;
+use mpp_sim::log::{FlightLog, LogError};
+use mpp_sim::moment::Moment;
+use mpp_sim::orders::{Again, Ground, Order, Refused};
+use mpp_sim::pipe::PipeLink;
+use serde::Serialize;
+
+/// The data of the page.
+#[derive(Serialize)]
+struct Data<'a> {
+    log: &'a FlightLog,
+    hash: String,
+    details: &'a [PlanDetail],
+}
+
+/// Returns the page of a flight, and whether it shows the details of the planning cycles. To get
+/// the details, the flight is flown again; they count only if the result is the same to the last
+/// byte.
+///
+/// # Errors
+/// [`LogError`] when the log holds a value that cannot be flown or written.
+pub fn replay(log: &FlightLog) -> Result<(String, bool), LogError> {
+    log.header.scenario()?;
+    let details = details(log).unwrap_or_default();
+    let data = Data {
+        log,
+        hash: log.hash()?,
+        details: &details,
+    };
+    Ok((page(&serde_json::to_string(&data)?), !details.is_empty()))
+}
+
+/// The planning cycles of a flight; `None` if the flight cannot be repeated.
+pub fn details(log: &FlightLog) -> Option<Vec<PlanDetail>> {
+    // The page has nothing to show of an oracle's planning.
+    let scenario = log.header.scenario().ok().filter(|asked| !asked.oracle)?;
+    let witness = Witness {
+        inspector: None,
+        tuning: None,
+        details: Vec::new(),
+    };
+    // A flight that lasts longer than its log is not the same flight.
+    let until = u32::try_from(log.ticks.t.len()).ok()?;
+    let mut again = Again::new(Some(log.orders.clone()), witness).until(Some(until));
+    let flown = fly_with(&scenario, &mut PipeLink::new(), &mut again).ok()?;
+    (flown.hash().ok()? == log.hash().ok()?).then_some(again.ground.details)
+}
+
+/// Inspects every cycle of a flight.
+struct Witness {
+    inspector: Option<Inspector>,
+    tuning: Option<Tuning>,
+    details: Vec<PlanDetail>,
+}
+
+impl Ground for Witness {
+    fn begin(&mut self, tuning: &Tuning, _: &VehicleState) {
+        self.tuning = Some(*tuning);
+    }
+
+    fn settled(&mut self, _: &Order, _: Result<(), Refused>, tuning: &Tuning) {
+        self.tuning = Some(*tuning);
+    }
+
+    fn watch(&mut self, moment: &Moment<'_>) {
+        let Some(tuning) = &self.tuning else {
+            return;
+        };
+        // The inspector does not exist before the first tick: until then any parameter may change.
+        if self.inspector.is_none() {
+            self.inspector = Inspector::new(tuning).ok();
+        }
+        let inspector = self.inspector.as_mut();
+        self.details
+            .extend(inspector.and_then(|inspector| inspector.look(moment, tuning)));
+    }
+}

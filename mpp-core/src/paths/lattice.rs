@@ -1,0 +1,354 @@
+//! Smooth paths over a lattice of stations, heights and slopes, by dynamic programming. The lattice is
+//! the deterministic counterpart of RRT*-AR.
+//!
+//! From one station to the next the slope of a path changes by at most one step, because the aircraft
+//! cannot turn more. The height follows from the slopes. One pass from the aircraft and one pass from the
+//! far end meet at the *via* station. There the search then knows the cost of the best path through every
+//! height. Each minimum of this cost gives a path. These paths differ in the way they pass the obstacles,
+//! or in their heights.
+
+use crate::map::{ClearanceField, split};
+use crate::tuning::lattice::{
+    ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE, SLOPE_PRICE,
+    SPACING, STRETCH, TURN_PRICE,
+};
+use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_PRICE};
+
+/// Number of stations, the station at the aircraft included.
+pub const STATIONS: usize = 17;
+/// Greatest number of paths from one search.
+pub const MAX_LATTICE_PATHS: usize = 6;
+
+/// The station at which the two passes meet.
+const VIA: usize = 6;
+/// Number of heights at a station.
+const HEIGHTS: usize = 97;
+/// Number of slopes at a station.
+const SLOPES: usize = 9;
+const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
+const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
+/// Number of points of an edge at which the search takes prices.
+const QUARTERS: usize = 4;
+/// Number of heights of these points, in steps of half of [`RISE`].
+const POINTS: usize = 2 * HEIGHTS - 1;
+
+/// Costs are whole numbers of sixteenths, so that sums do not depend on the order of their terms.
+const COST_UNIT: f64 = 16.0;
+const NEVER: u32 = 1 << 28;
+
+type Layer = [[u32; SLOPES]; HEIGHTS];
+type Choice = [[u8; SLOPES]; HEIGHTS];
+
+/// A path: its height at each station \[m\].
+pub type LatticePath = [f64; STATIONS];
+
+/// Start of the paths, and the limits that they keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeTask {
+    /// Downrange position of the start \[m\].
+    pub x: f64,
+    /// Height of the start \[m\].
+    pub z: f64,
+    /// Slope at the start [-].
+    pub slope: f64,
+    /// Height to which the paths return \[m\].
+    pub altitude: f64,
+    /// Greatest distance of a path from `altitude` \[m\].
+    pub band: f64,
+    /// Greatest curvature of a path [1/m].
+    pub curvature: f64,
+    /// Price of the squared lack of [`ROOM`] [1/m^2].
+    pub room_price: f64,
+}
+
+/// The search and its tables.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    task: LatticeTask,
+    spacing: f64,
+    slope_step: f64,
+    station: usize,
+    /// Costs between the start and the present station, or between the present station and the far end.
+    layer: Layer,
+    /// Costs from the start to the via station.
+    to_via: Layer,
+    /// Best previous slope for each height and slope, at each station up to the via station.
+    before: [Choice; VIA + 1],
+    /// Best next slope for each height and slope, at each station from the via station on.
+    after: [Choice; STATIONS - VIA],
+}
+
+impl Lattice {
+    /// A lattice before its first search.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            task: LatticeTask {
+                x: 0.0,
+                z: 0.0,
+                slope: 0.0,
+                altitude: 0.0,
+                band: 0.0,
+                curvature: 0.0,
+                room_price: 0.0,
+            },
+            spacing: SPACING,
+            slope_step: 0.0,
+            station: STATIONS,
+            layer: [[NEVER; SLOPES]; HEIGHTS],
+            to_via: [[NEVER; SLOPES]; HEIGHTS],
+            before: [[[0; SLOPES]; HEIGHTS]; VIA + 1],
+            after: [[[0; SLOPES]; HEIGHTS]; STATIONS - VIA],
+        }
+    }
+
+    /// Starts a search. For an aircraft that turns less, the stations are farther apart and the slopes finer.
+    pub fn start(&mut self, task: &LatticeTask) {
+        self.task = *task;
+        // One step of slope over one spacing is the curvature. RISE = spacing * step / 2 holds at every
+        // spacing.
+        let full = 2.0 * RISE / (SPACING * SPACING);
+        let stretch = libm::sqrt(full / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
+        self.spacing = SPACING * stretch;
+        self.slope_step = 2.0 * RISE / self.spacing;
+        self.station = 0;
+        self.layer = [[NEVER; SLOPES]; HEIGHTS];
+        let steps =
+            libm::round(task.slope / self.slope_step).clamp(-f64::from(LEVEL), LEVEL.into());
+        let slope = (steps as i32 + LEVEL) as usize;
+        if let Some(cost) = self.layer[MIDDLE as usize].get_mut(slope) {
+            *cost = 0;
+        }
+    }
+
+    /// Distance between stations \[m\].
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Evaluates the edges of one station. Returns true while the search goes on.
+    pub fn advance(&mut self, field: &ClearanceField) -> bool {
+        const LAST: usize = STATIONS - 1;
+        match self.station {
+            station @ 0..VIA => self.forward(field, station),
+            station @ VIA..LAST => {
+                if station == VIA {
+                    self.to_via = self.layer;
+                    self.layer = [[0; SLOPES]; HEIGHTS];
+                }
+                // The second pass runs from the far end back to the via station.
+                self.backward(field, LAST - 1 - (station - VIA));
+            }
+            _ => return false,
+        }
+        self.station += 1;
+        self.station < LAST
+    }
+
+    // The function holds a layer on the stack, so it is not inlined.
+    #[inline(never)]
+    fn forward(&mut self, field: &ClearanceField, station: usize) {
+        let mut points = [[0; POINTS]; QUARTERS];
+        self.write_prices(field, station, &mut points);
+        let mut next: Layer = [[NEVER; SLOPES]; HEIGHTS];
+        for (height, costs) in (0..).zip(&self.layer) {
+            for (slope, cost) in (0..).zip(costs).filter(|(_, cost)| **cost < NEVER) {
+                for edge in edges(height, slope) {
+                    let cost = cost + edge.price(&points);
+                    if let Some(place) = entry(&mut next, edge.to)
+                        && cost < *place
+                    {
+                        *place = cost;
+                        let before = self.before.get_mut(station + 1);
+                        if let Some(choice) = before.and_then(|choice| entry(choice, edge.to)) {
+                            *choice = slope as u8;
+                        }
+                    }
+                }
+            }
+        }
+        self.layer = next;
+    }
+
+    // The function holds a layer on the stack, so it is not inlined.
+    #[inline(never)]
+    fn backward(&mut self, field: &ClearanceField, station: usize) {
+        let mut points = [[0; POINTS]; QUARTERS];
+        self.write_prices(field, station, &mut points);
+        let mut previous: Layer = [[NEVER; SLOPES]; HEIGHTS];
+        for (height, costs) in (0..).zip(&mut previous) {
+            for (slope, cost) in (0..).zip(costs.iter_mut()) {
+                for edge in edges(height, slope) {
+                    let onward = entry(&mut self.layer, edge.to).map_or(NEVER, |cost| *cost);
+                    let through = onward.saturating_add(edge.price(&points));
+                    if onward < NEVER && through < *cost {
+                        *cost = through;
+                        let after = self.after.get_mut(station - VIA);
+                        if let Some(choice) =
+                            after.and_then(|choice| entry(choice, (height, slope)))
+                        {
+                            *choice = edge.to.1 as u8;
+                        }
+                    }
+                }
+            }
+        }
+        self.layer = previous;
+    }
+
+    /// Writes the prices of the points on the edges of a station, by quarter and by height in halves of
+    /// [`RISE`]. The last quarter also contains the price of the height itself.
+    fn write_prices(
+        &self,
+        field: &ClearanceField,
+        station: usize,
+        prices: &mut [[u32; POINTS]; QUARTERS],
+    ) {
+        let task = &self.task;
+        for (quarter, prices) in prices.iter_mut().enumerate() {
+            let share = (quarter + 1) as f64 / QUARTERS as f64;
+            let ahead = self.spacing * (station as f64 + share);
+            for (point, price) in prices.iter_mut().enumerate() {
+                let z = task.z + 0.5 * RISE * (point as f64 - f64::from(2 * MIDDLE));
+                let from_altitude = z - task.altitude;
+                let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
+                let distance = field.distance(task.x + ahead, z);
+                let lack = (MARGIN - distance).max(0.0) + outside;
+                let crowded = (ROOM - distance).max(0.0);
+                let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
+                if ahead < UNKNOWN_AHEAD && field.is_unknown(task.x + ahead, z) {
+                    cost += UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                }
+                if quarter + 1 == QUARTERS {
+                    cost += ALTITUDE_PRICE * from_altitude * from_altitude;
+                }
+                *price = (COST_UNIT * cost).min(DEAREST) as u32;
+            }
+        }
+    }
+
+    /// Downrange position of the via station \[m\].
+    #[must_use]
+    pub fn via(&self) -> f64 {
+        self.task.x + self.spacing * VIA as f64
+    }
+
+    /// Cost of the best path from a height \[m\] and a slope at the via station to the far end. It is linear
+    /// between lattice points, and at most 2,000. It is valid only after the search.
+    #[must_use]
+    pub fn onward(&self, z: f64, slope: f64) -> f64 {
+        let (height, up) = split((z - self.task.z) / RISE + f64::from(MIDDLE), HEIGHTS);
+        let (slope, steeper) = split(slope / self.slope_step + f64::from(LEVEL), SLOPES);
+        let at = |height: usize, slope: usize| {
+            let costs = self.layer.get(height);
+            let cost = costs.and_then(|costs| costs.get(slope)).copied();
+            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(DEAREST_ONWARD)
+        };
+        let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
+        along(height) * (1.0 - up) + along(height + 1) * up
+    }
+
+    /// Writes the paths through the best heights of the via station, the best path first. The call is valid
+    /// only after the search.
+    pub fn paths(&mut self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
+        paths.clear();
+        let mut through = [(NEVER, 0); HEIGHTS];
+        let passes = self.to_via.iter().zip(&self.layer);
+        for (best, (to, from)) in through.iter_mut().zip(passes) {
+            for (slope, (to, from)) in (0..).zip(to.iter().zip(from)) {
+                *best = (*best).min((to.saturating_add(*from), slope));
+            }
+        }
+        let mut minima: heapless::Vec<(u32, i32, i32), HEIGHTS> = heapless::Vec::new();
+        for (height, cost) in (0..).zip(through.iter()) {
+            let at = |height: i32| {
+                let place = usize::try_from(height).ok();
+                place
+                    .and_then(|place| through.get(place))
+                    .map_or(NEVER, |cost| cost.0)
+            };
+            if cost.0 < NEVER && cost.0 <= at(height - 1) && cost.0 < at(height + 1) {
+                let _ = minima.push((cost.0, height, cost.1));
+            }
+        }
+        while !paths.is_full()
+            && let Some(best) = minima.iter_mut().min()
+            && best.0 < NEVER
+        {
+            let (_, height, slope) = *best;
+            best.0 = NEVER;
+            let _ = paths.push(self.path(height, slope));
+        }
+    }
+
+    /// The best path through a height and a slope at the via station.
+    fn path(&mut self, height: i32, slope: i32) -> LatticePath {
+        let z = |height: i32| self.task.z + RISE * f64::from(height - MIDDLE);
+        let mut path = [z(height); STATIONS];
+        let (before, onward) = path.split_at_mut(VIA);
+        let mut at = (height, slope);
+        for (place, choice) in before.iter_mut().zip(&mut self.before[1..]).rev() {
+            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+            at = (at.0 - (slope - LEVEL) - (at.1 - LEVEL), slope);
+            *place = z(at.0);
+        }
+        let mut at = (height, slope);
+        for (place, choice) in onward.iter_mut().skip(1).zip(&mut self.after) {
+            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+            at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
+            *place = z(at.0);
+        }
+        path
+    }
+}
+
+impl Default for Lattice {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Connection from a height and a slope at one station to a height and a slope at the next.
+struct Edge {
+    from: (i32, i32),
+    to: (i32, i32),
+}
+
+/// The edges from a height and a slope. The edge without a turn comes first.
+fn edges(height: i32, slope: i32) -> impl Iterator<Item = Edge> {
+    [slope, slope - 1, slope + 1]
+        .into_iter()
+        .filter(|next| (0..SLOPES as i32).contains(next))
+        .map(move |next| Edge {
+            from: (height, slope),
+            to: (height + (slope - LEVEL) + (next - LEVEL), next),
+        })
+        .filter(|edge| (0..HEIGHTS as i32).contains(&edge.to.0))
+}
+
+impl Edge {
+    /// The price of the edge: that of its points, its slope and its turn.
+    fn price(&self, points: &[[u32; POINTS]; QUARTERS]) -> u32 {
+        const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
+        let (slope, turn) = (self.from.1 - LEVEL, self.to.1 - self.from.1);
+        let mut price = if turn == 0 { 0 } else { TURN };
+        let next = self.to.1 - LEVEL;
+        price += (COST_UNIT * SLOPE_PRICE * f64::from(next * next)) as u32;
+        for (quarter, points) in (1..).zip(points) {
+            // The edge is a parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
+            let height = 2 * self.from.0 + slope * quarter + turn * (quarter * quarter / 8);
+            let place = usize::try_from(height).ok();
+            price += place
+                .and_then(|place| points.get(place))
+                .copied()
+                .unwrap_or(0);
+        }
+        price
+    }
+}
+
+fn entry<T>(layer: &mut [[T; SLOPES]; HEIGHTS], (height, slope): (i32, i32)) -> Option<&mut T> {
+    let row = layer.get_mut(usize::try_from(height).ok()?)?;
+    row.get_mut(usize::try_from(slope).ok()?)
+}

@@ -1,0 +1,139 @@
+//! The roll-out of a candidate, its linearisation, and the comparison of candidates.
+
+use super::limits::Limits;
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::ClearanceField;
+use crate::qp::{Dynamics, Solution, StageState};
+use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
+use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
+
+/// Angles of the program are in tenths of a radian, so that they have about the same weight as metres.
+pub(super) const ANGLE_SCALE: f64 = 10.0;
+/// Number of integration steps for one stage of a roll-out.
+const STEPS: u8 = 2;
+
+/// A trajectory as the aircraft would fly it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) knots: [PathState; KNOTS],
+    pub(super) controls: [PathControl; STAGES],
+    /// The price that ranks the candidate. It is infinite before the first improvement.
+    pub(super) price: f64,
+}
+
+impl Candidate {
+    /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
+    /// attack and the thrust.
+    pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
+        let most = limits.rolled_out;
+        let trim = &frame.trim;
+        let level = trim.state.angle_of_attack();
+        let [first, later @ ..] = &mut self.knots;
+        let mut state = *first;
+        let stages = self.controls.iter_mut().zip(later).zip(&solution.controls);
+        for ((control, knot), [rate, thrust]) in stages {
+            let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
+            let allowed = aimed.max(level - most).min(level + most);
+            let turn = limits.turn_rate * STAGE_PERIOD;
+            let slowest = state.angle_of_attack - turn;
+            let reached = allowed.max(slowest).min(state.angle_of_attack + turn);
+            *control = PathControl {
+                angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
+                thrust: (trim.control.thrust + thrust)
+                    .min(limits.thrust_max)
+                    .max(0.0),
+            };
+            state = frame.after(&state, control);
+            *knot = state;
+        }
+    }
+}
+
+/// Whether two trajectories pass every obstacle on the same side.
+pub(super) fn same_signature(
+    field: &ClearanceField,
+    one: &[PathState; KNOTS],
+    other: &[PathState; KNOTS],
+) -> bool {
+    const STEP: f64 = 0.5;
+    const STEPS: usize = 64;
+    one.iter().zip(other).all(|(a, b)| {
+        let rise = b.z - a.z;
+        (0..STEPS)
+            .map(|step| STEP * step as f64)
+            .take_while(|passed| *passed <= rise.abs())
+            .all(|passed| !field.is_occupied(a.x, a.z + passed * rise.signum()))
+    })
+}
+
+/// The origin of the program's deviations: level flight at trim that starts at the aircraft.
+pub(super) struct Frame {
+    pub(super) airframe: Airframe,
+    pub(super) trim: Trim,
+    pub(super) wind: Wind,
+    pub(super) start: PathState,
+}
+
+impl Frame {
+    /// The state one stage after a knot.
+    fn after(&self, knot: &PathState, control: &PathControl) -> PathState {
+        knot.after_in(&self.wind, &self.airframe, control, STAGE_PERIOD, STEPS)
+    }
+
+    /// The program's state: deviations in position and speed, and in pitch and flight path in tenths of a
+    /// radian. The pitch rate is not used and is zero.
+    pub(super) fn deviation(&self, state: &PathState, stage: usize) -> Vector6<f64> {
+        let trim = &self.trim.state;
+        let level = self.start.x + trim.airspeed * STAGE_PERIOD * stage as f64;
+        Vector6::new(
+            state.x - level,
+            state.z - self.start.z,
+            state.airspeed - trim.airspeed,
+            ANGLE_SCALE * (state.flight_path + state.angle_of_attack - trim.pitch),
+            0.0,
+            ANGLE_SCALE * (state.flight_path - trim.flight_path),
+        )
+    }
+
+    /// Writes the dynamics of each stage, linearised about a candidate.
+    pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
+        let stages = candidate.knots.iter().zip(&candidate.controls);
+        for (stage, (dynamics, (knot, control))) in dynamics.iter_mut().zip(stages).enumerate() {
+            let (state, input) = knot.sensitivity(&self.airframe, control, STAGE_PERIOD);
+            // These columns convert between the program's (pitch, path) and the point mass's (path, angle
+            // of attack).
+            let mut a = Matrix6::zeros();
+            let mut b = Matrix6x2::zeros();
+            let columns: [[f64; 5]; 6] = {
+                let column = |index: usize| -> [f64; 5] { state.column(index).into_owned().into() };
+                let [x, z, v, path, alpha] =
+                    [column(0), column(1), column(2), column(3), column(4)];
+                let mut turning = path;
+                for (turning, alpha) in turning.iter_mut().zip(&alpha) {
+                    *turning -= alpha;
+                }
+                let scaled = |column: [f64; 5]| column.map(|entry| entry / ANGLE_SCALE);
+                [x, z, v, scaled(alpha), [0.0; 5], scaled(turning)]
+            };
+            for (index, column) in columns.iter().enumerate() {
+                a.set_column(index, &outputs(column));
+            }
+            for index in 0..2 {
+                let column: [f64; 5] = input.column(index).into_owned().into();
+                b.set_column(index, &outputs(&column));
+            }
+            let next = self.after(knot, control);
+            let thrust = control.thrust - self.trim.control.thrust;
+            let offset = self.deviation(&next, stage + 1)
+                - a * self.deviation(knot, stage)
+                - b * Vector2::new(control.angle_of_attack_rate, thrust);
+            *dynamics = Dynamics { a, b, offset };
+        }
+    }
+}
+
+/// Converts deviations of the point mass to the program's state.
+fn outputs([x, z, v, path, alpha]: &[f64; 5]) -> Vector6<f64> {
+    let pitch = ANGLE_SCALE * (path + alpha);
+    StageState::into([*x, *z, *v, pitch, 0.0, ANGLE_SCALE * path])
+}

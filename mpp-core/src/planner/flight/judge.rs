@@ -1,0 +1,78 @@
+//! The price of a roll-out: its clearance in the map itself, the unknown cells on its way, its effort,
+//! and the cost of the way on from the via station.
+
+use super::FlightPlanner;
+use super::candidate::Candidate;
+use crate::config::{KNOTS, STAGES};
+use crate::tuning::UNKNOWN_PRICE;
+use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
+use crate::tuning::{ROOM, UNKNOWN_AHEAD};
+
+/// Worst lack of clearance \[m\], effort, and the price that ranks candidates.
+pub(super) struct Judgement {
+    pub(super) lack: f64,
+    pub(super) effort: f64,
+    pub(super) price: f64,
+}
+
+impl FlightPlanner {
+    /// Computes lack of clearance, effort and price of a roll-out.
+    pub(super) fn judge(&self, flown: &Candidate) -> Judgement {
+        let (field, lattice, own) = (&self.field, &self.lattice, &self.settings);
+        let via = lattice.via();
+        let (mut lack, mut price) = (0.0_f64, 0.0);
+        for (stage, pair) in flown.knots.windows(2).enumerate() {
+            let [from, to] = pair else { continue };
+            let discount = 1.0 - LAST_STAGE * stage as f64 / STAGES as f64;
+            let (run, rise) = (to.x - from.x, to.z - from.z);
+            if from.x <= via && via < to.x {
+                let slope = rise / run;
+                price += lattice.onward(from.z + slope * (via - from.x), slope);
+            }
+            for sample in 1..=SAMPLES {
+                let share = sample as f64 / SAMPLES as f64;
+                let (x, z) = (from.x + run * share, from.z + rise * share);
+                let weight = if x > via { FAR_SHARE } else { 1.0 };
+                let outside = ((z - self.altitude).abs() - own.band).max(0.0);
+                let distance = field.distance(x, z);
+                let missing = (own.margin - distance).max(0.0) + outside;
+                let crowded = (ROOM - distance).max(0.0);
+                lack = lack.max(missing);
+                price += weight * LACK_PRICE * discount * missing * missing;
+                price += weight * self.limits.room_price * discount * crowded * crowded;
+                let ahead = x - self.state.x;
+                if ahead < UNKNOWN_AHEAD && field.is_unknown(x, z) {
+                    price += weight * UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                }
+            }
+        }
+        let effort = self.effort(flown);
+        Judgement {
+            lack,
+            effort,
+            price: price + effort,
+        }
+    }
+
+    /// The program's cost function, applied to a roll-out with angles in radians.
+    fn effort(&self, flown: &Candidate) -> f64 {
+        let weights = &self.weights;
+        let trim = &self.trim;
+        let efforts = flown.controls.iter().map(|control| {
+            let (rate, thrust) = (
+                control.angle_of_attack_rate,
+                control.thrust - trim.control.thrust,
+            );
+            weights.control[0] * (rate * rate) + weights.control[1] * (thrust * thrust)
+        });
+        let end = &flown.knots[KNOTS - 1];
+        let missing = [
+            end.z - self.altitude,
+            end.airspeed - trim.state.airspeed,
+            end.flight_path,
+            end.angle_of_attack - trim.state.angle_of_attack(),
+        ];
+        let terminal: f64 = missing.iter().map(|missing| missing * missing).sum();
+        0.5 * (efforts.sum::<f64>() + weights.terminal * terminal)
+    }
+}

@@ -1,0 +1,65 @@
+//! Limits of the plans of one cycle.
+
+use crate::settings::FlightSettings;
+use crate::tuning::{faces, judgement, limits};
+use crate::vehicle::{ActuatorLimits, Airframe};
+
+/// Limits of plans. They follow from the settings, the actuators and the estimated airframe.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Greatest distance of the angle of attack from trim in a program \[rad\].
+    pub(super) angle_of_attack: f64,
+    /// Greatest distance of the angle of attack from trim in a roll-out \[rad\]. It is larger than in a
+    /// program, because soft rows may exceed their limit.
+    pub(super) rolled_out: f64,
+    /// Greatest rate of the angle of attack of a roll-out [rad/s].
+    pub(super) turn_rate: f64,
+    /// Greatest flight path angle \[rad\].
+    pub(super) flight_path: f64,
+    /// Greatest thrust \[N\].
+    pub(super) thrust_max: f64,
+    /// Greatest curvature of a path in level flight at cruise [1/m].
+    pub(super) curvature: f64,
+    /// Price of the squared lack of room [1/m^2].
+    pub(super) room_price: f64,
+    /// Distance that a program keeps where its candidate already has that much room \[m\].
+    pub(super) room: f64,
+}
+
+impl Limits {
+    pub(super) const NONE: Self = Self {
+        angle_of_attack: 0.0,
+        rolled_out: 0.0,
+        turn_rate: 0.0,
+        flight_path: 0.0,
+        thrust_max: 0.0,
+        curvature: 0.0,
+        room_price: 0.0,
+        room: 0.0,
+    };
+
+    pub(super) fn new(own: &FlightSettings, actuators: &ActuatorLimits, a: &Airframe) -> Self {
+        let allowed = own.attitude.angle_of_attack;
+        let rate = actuators.angle_of_attack_rate(a);
+        let held = actuators.angle_of_attack(a).min(rate * limits::REACH_TIME);
+        // Angle of attack that the elevator balances for plans. The regulator needs the rest of the range.
+        let balanced = limits::PLANNED_SHARE * held;
+        // Share of the allowed angle of attack that the elevator balances for plans; at most 1.
+        let agility = (balanced / allowed).min(1.0);
+        let angle_of_attack = allowed.min(balanced);
+        Self {
+            angle_of_attack,
+            rolled_out: (limits::SOFT_SHARE * angle_of_attack + limits::SOFT_EXTRA).min(held),
+            turn_rate: limits::PLANNED_RATE_SHARE * rate,
+            flight_path: own.attitude.flight_path,
+            thrust_max: own
+                .thrust_max
+                .min(actuators.thrust_max.unwrap_or(f64::INFINITY)),
+            curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * angle_of_attack / a.mass,
+            // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
+            // some room in reserve.
+            room_price: judgement::ROOM_PRICE * (1.0 - agility),
+            room: own.margin * (1.0 / agility).min(faces::MOST_MARGINS),
+        }
+    }
+}

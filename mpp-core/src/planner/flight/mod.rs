@@ -1,0 +1,357 @@
+//! The flight planner: a map with memory, few but distinct candidates, and rounds of linearisation about
+//! the motion that the aircraft would really fly. Preset `flight` uses it; `docs/planner.md` explains it
+//! in full.
+//!
+//! ```text
+//!                                            +--------- next candidate ---------+
+//!                                            v                                  |
+//! begin --> Map --> Lattice --> Tree --> Faces --> Linearise --> Improve --------+--> Done
+//!           map     paths       paths    corridor  program       solved, flown out, judged
+//! ```
+//!
+//! The planner improves every candidate once, and then the best few in further rounds. It judges the
+//! nonlinear roll-out of the controls against the map itself, and the vehicle flies this roll-out.
+//!
+//! | file | content |
+//! |---|---|
+//! | `setup` | the set-up of the planner and the checks of its settings |
+//! | `limits` | the limits of the plans of a cycle |
+//! | `perceive` | Map, Lattice: from the scan to the lattice's paths |
+//! | `propose` | the candidates: previous plan, lattice, tree |
+//! | `refine` | Faces, Linearise, Improve |
+//! | `candidate` | roll-out, linearisation and comparison of candidates |
+//! | `judge` | the price of a roll-out |
+
+mod candidate;
+mod judge;
+mod limits;
+mod perceive;
+mod propose;
+mod refine;
+mod setup;
+
+use super::shared::{NO_TRIM, STILL};
+use super::summary::{PlanSummary, Verdict};
+use crate::config::{KNOTS, STAGES};
+use crate::corridor::Corridor;
+use crate::estimate::Conditions;
+use crate::map::{ClearanceField, MemoryMap, OccupancyGrid, Pose};
+use crate::paths::{Lattice, MAX_LATTICE_PATHS, Path, Search};
+use crate::qp::{Bounds, Condensed, Dynamics, Problem, Solution, Solver, Weights};
+use crate::sense::LidarScan;
+use crate::settings::FlightSettings;
+use crate::trajectory::Trajectory;
+use crate::tuning::candidates::TREE_PATHS;
+use crate::vehicle::{
+    ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
+};
+use candidate::{Candidate, Frame};
+use limits::Limits;
+use rand_pcg::Pcg64Mcg;
+
+/// Greatest number of candidates in a cycle: the previous plan, the paths of the lattice, and the paths
+/// of the tree.
+pub const MAX_CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + TREE_PATHS;
+
+/// Steps of integration over the latency of a plan when no earlier one is flown.
+const FLOWN_ON_STEPS: u8 = 4;
+
+/// The work of the next slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The slice does nothing, because no cycle is under way.
+    Idle,
+    /// Takes some beams of the scan into the map with memory. The last slice builds the clearance field.
+    Map,
+    /// Searches one station of the lattice.
+    Lattice,
+    /// Grows the tree.
+    Tree,
+    /// Sets the faces between a candidate and the obstacles around it.
+    Faces,
+    /// Sets up a candidate's program.
+    Linearise,
+    /// Solves the program, and at the end computes and judges its roll-out.
+    Improve,
+    /// The slice does nothing, because the cycle has ended.
+    Done,
+}
+
+/// The flight planner and all its workspaces. Large: place it in a `static` or a box.
+#[derive(Clone, Debug)]
+pub struct FlightPlanner {
+    // Values of the set-up.
+    settings: FlightSettings,
+    paths: usize,
+    altitude: f64,
+    weights: Weights,
+    known: (Airframe, Trim),
+    actuators: ActuatorLimits,
+    /// Random numbers of the tree; `None` until the planner is set up.
+    random: Option<Pcg64Mcg>,
+
+    // Values of the present cycle.
+    phase: Phase,
+    /// Where the scan was made.
+    pose: Pose,
+    /// When the plan is taken over, and the state that the aircraft will have then.
+    time: f64,
+    state: VehicleState,
+    wind: Wind,
+    airframe: Airframe,
+    trim: Trim,
+    limits: Limits,
+    scan: LidarScan,
+    /// Number of beams of the scan that the map has taken in.
+    beams: usize,
+
+    // From the scan to paths. The map outlives the cycle.
+    map: MemoryMap,
+    field: ClearanceField,
+    lattice: Lattice,
+    grid: OccupancyGrid,
+    search: Search,
+    path: Path,
+
+    // From paths to trajectories.
+    candidates: heapless::Vec<Candidate, MAX_CANDIDATES>,
+    /// Number of improvements so far.
+    improvements: usize,
+    /// Indices of the candidates, ordered by their price after the first improvement.
+    order: [usize; MAX_CANDIDATES],
+    /// Index of the candidate that the planner improves now.
+    at_hand: usize,
+    corridor: Corridor,
+    shared: Condensed,
+    problem: Problem,
+    solver: Solver,
+    solution: Solution,
+
+    // Results of the cycle. The best trajectory outlives the cycle.
+    best: Trajectory,
+    best_price: f64,
+    summary: PlanSummary,
+}
+
+impl FlightPlanner {
+    /// An idle planner that is not set up.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            settings: FlightSettings::PRESET,
+            paths: 0,
+            altitude: 0.0,
+            weights: Weights::PAPER,
+            known: (Airframe::REFERENCE, NO_TRIM),
+            actuators: ActuatorLimits::NONE,
+            random: None,
+            phase: Phase::Idle,
+            pose: Pose {
+                x: 0.0,
+                z: 0.0,
+                pitch: 0.0,
+            },
+            time: 0.0,
+            state: VehicleState {
+                x: 0.0,
+                z: 0.0,
+                air: STILL,
+            },
+            wind: Wind::STILL,
+            airframe: Airframe::REFERENCE,
+            trim: NO_TRIM,
+            limits: Limits::NONE,
+            scan: LidarScan::new(),
+            beams: 0,
+            map: MemoryMap::new(),
+            field: ClearanceField::new(),
+            lattice: Lattice::new(),
+            grid: OccupancyGrid::new(),
+            search: Search::new(),
+            path: Path::new(),
+            candidates: heapless::Vec::new(),
+            improvements: 0,
+            order: [0; MAX_CANDIDATES],
+            at_hand: 0,
+            corridor: Corridor::new(),
+            shared: Condensed::new(),
+            problem: Problem {
+                initial: [0.0; 6],
+                target: [0.0; 6],
+                bounds: Bounds::none(),
+                penalty: None,
+                cost_limit: f64::INFINITY,
+            },
+            solver: Solver::new(),
+            solution: Solution::new(),
+            best: Trajectory::new(),
+            best_price: f64::INFINITY,
+            summary: PlanSummary::NOTHING,
+        }
+    }
+
+    /// Starts a cycle; see [`super::Planner::begin`].
+    pub fn begin(
+        &mut self,
+        time: f64,
+        state: &VehicleState,
+        conditions: &Conditions,
+        scan: &LidarScan,
+    ) {
+        self.reckon_with(conditions);
+        self.pose = Pose::of(state);
+        self.state = self.taken_over(time, state);
+        self.time = time + self.settings.latency;
+        self.scan.clone_from(scan);
+        self.beams = 0;
+        self.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
+        self.problem.penalty = Some(self.settings.penalty);
+        self.problem.bounds.set_thrust(self.trim.control.thrust);
+        self.candidates.clear();
+        self.improvements = 0;
+        self.best_price = f64::INFINITY;
+        self.summary = PlanSummary::NOTHING;
+        // No plan starts from a state that is not finite; the map stays as it is.
+        let starts = self.random.is_some() && state.is_finite() && self.state.is_finite();
+        self.phase = if starts { Phase::Map } else { Phase::Done };
+    }
+
+    /// Takes over the estimated wind and airframe. Cruise keeps the angle of attack of the set-up, so that
+    /// the elevator keeps the same range to either side; the airspeed of cruise changes instead.
+    fn reckon_with(&mut self, conditions: &Conditions) {
+        let (airframe, trim) = &self.known;
+        self.wind = conditions.wind;
+        self.airframe = conditions.airframe(airframe);
+        let alpha = trim.state.angle_of_attack();
+        self.trim = Trim::at_angle_of_attack(&self.airframe, alpha).unwrap_or(*trim);
+        self.limits = Limits::new(&self.settings, &self.actuators, &self.airframe);
+    }
+
+    /// The state in which the step takes over the plan of a scan at this time \[s\]. The aircraft flies its
+    /// last plan until then, and keeps its present distance from it. Without a last plan it flies on at its
+    /// present angle of attack.
+    fn taken_over(&self, time: f64, state: &VehicleState) -> VehicleState {
+        let latency = self.settings.latency;
+        if let (Some(now), Some(then)) = (self.best.sample(time), self.best.sample(time + latency))
+        {
+            let air =
+                then.state.air.to_vector() + state.air.to_vector() - now.state.air.to_vector();
+            return VehicleState {
+                x: then.state.x + state.x - now.state.x,
+                z: then.state.z + state.z - now.state.z,
+                air: AirState::from_vector(&air),
+            };
+        }
+        let control = PathControl {
+            angle_of_attack_rate: 0.0,
+            thrust: self.trim.control.thrust,
+        };
+        let flown = PathState::of(state).after_in(
+            &self.wind,
+            &self.airframe,
+            &control,
+            latency,
+            FLOWN_ON_STEPS,
+        );
+        flown.reference(&self.airframe, &control).0
+    }
+
+    /// The work of the next slice.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Whether a cycle is under way.
+    #[must_use]
+    pub fn is_working(&self) -> bool {
+        !matches!(self.phase, Phase::Idle | Phase::Done)
+    }
+
+    /// Does one bounded slice of work. Returns true while the cycle goes on.
+    // The phases that need much stack are never inlined. Otherwise this function would need the sum of
+    // their stacks.
+    pub fn advance(&mut self) -> bool {
+        if self.is_working() {
+            self.summary.slices += 1;
+        }
+        match self.phase {
+            Phase::Idle | Phase::Done => {}
+            Phase::Map => self.remember(),
+            Phase::Lattice => self.search_lattice(),
+            Phase::Tree => self.grow_tree(),
+            Phase::Faces => self.separate(),
+            Phase::Linearise => self.linearise(),
+            Phase::Improve => self.improve(),
+        }
+        self.is_working()
+    }
+
+    /// Ends the cycle and returns its verdict.
+    pub fn finish(&mut self) -> Verdict {
+        self.summary.complete = self.phase == Phase::Done;
+        self.phase = Phase::Idle;
+        self.summary.verdict()
+    }
+
+    /// The best trajectory of the cycle.
+    #[must_use]
+    pub fn best(&self) -> &Trajectory {
+        &self.best
+    }
+
+    /// The results of the cycle so far.
+    #[must_use]
+    pub fn summary(&self) -> &PlanSummary {
+        &self.summary
+    }
+
+    /// Level trim of the present cycle's airframe. Plans are deviations from it.
+    #[must_use]
+    pub fn trim(&self) -> &Trim {
+        &self.trim
+    }
+
+    /// Distances to the obstacles in the map.
+    #[must_use]
+    pub fn clearance(&self) -> &ClearanceField {
+        &self.field
+    }
+
+    /// The map with memory, for a caller who knows the obstacles better than the lidar.
+    pub fn map_mut(&mut self) -> &mut MemoryMap {
+        &mut self.map
+    }
+
+    /// The path of the present candidate and its program; see [`super::Planner::candidate`].
+    #[must_use]
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+        if self.phase != Phase::Improve {
+            return None;
+        }
+        let candidate = self.candidates.get(self.at_hand)?;
+        let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
+        Some((path, &self.problem))
+    }
+
+    /// The dynamics of every stage in the program of [`Self::candidate`].
+    #[must_use]
+    pub fn stages(&self) -> &[Dynamics; STAGES] {
+        self.shared.stages()
+    }
+
+    fn frame(&self) -> Frame {
+        Frame {
+            airframe: self.airframe,
+            trim: self.trim,
+            wind: self.wind,
+            start: PathState::of(&self.state),
+        }
+    }
+}
+
+impl Default for FlightPlanner {
+    fn default() -> Self {
+        Self::new()
+    }
+}

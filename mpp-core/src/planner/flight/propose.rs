@@ -1,0 +1,142 @@
+//! The candidates of a cycle before the first program: the previous plan, the paths of the lattice, and
+//! paths of the tree that pass some obstacle on another side.
+
+use super::super::shared::{SAMPLES_PER_SLICE, unit_interval};
+use super::candidate::{Candidate, same_signature};
+use super::{FlightPlanner, Phase};
+use crate::Rules;
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::GridPoint;
+use crate::paths::{Extension, LatticePath, resample};
+use crate::tuning::candidates::TREE_PATHS;
+use crate::vehicle::{PathControl, PathState};
+
+impl FlightPlanner {
+    /// Proposes the rest of the previous plan as a candidate.
+    pub(super) fn take_up_previous(&mut self) {
+        if self.best.sample(self.time).is_none() {
+            return;
+        }
+        let cruise = self.trim.state.airspeed;
+        let mut candidate = self.cruising();
+        let mut last = PathState::of(&self.state);
+        for (stage, knot) in candidate.knots.iter_mut().enumerate().skip(1) {
+            let time = self.time + STAGE_PERIOD * stage as f64;
+            *knot = match self.best.sample(time) {
+                Some(reference) => PathState::of(&reference.state),
+                None => PathState {
+                    x: last.x + (cruise + self.wind.x) * STAGE_PERIOD,
+                    z: last.z,
+                    airspeed: cruise,
+                    flight_path: 0.0,
+                    angle_of_attack: self.trim.state.angle_of_attack(),
+                },
+            };
+            last = *knot;
+        }
+        self.propose(candidate);
+    }
+
+    /// Adds a candidate, if the settings allow one more.
+    pub(super) fn propose(&mut self, candidate: Candidate) {
+        if self.candidates.len() < self.paths {
+            // The list has as many places as there are proposals, so the push cannot fail.
+            let _ = self.candidates.push(candidate);
+        }
+    }
+
+    /// A candidate with the aircraft's present state at every knot and the thrust of cruise.
+    pub(super) fn cruising(&self) -> Candidate {
+        let thrust = self.trim.control.thrust;
+        Candidate {
+            knots: [PathState::of(&self.state); KNOTS],
+            controls: [PathControl {
+                angle_of_attack_rate: 0.0,
+                thrust,
+            }; STAGES],
+            price: f64::INFINITY,
+        }
+    }
+
+    /// The candidate that follows a path of the lattice at cruise speed.
+    pub(super) fn along(&self, path: &LatticePath) -> Candidate {
+        let start = PathState::of(&self.state);
+        let spacing = self.lattice.spacing();
+        let at = |x: f64| {
+            let stations = ((x - start.x) / spacing).clamp(0.0, (path.len() - 2) as f64);
+            let station = stations as usize;
+            let height = |station: usize| path.get(station).copied().unwrap_or(start.z);
+            let (from, to) = (height(station), height(station + 1));
+            let share = (x - start.x) / spacing - station as f64;
+            (from + (to - from) * share, (to - from) / spacing)
+        };
+        let mut candidate = self.cruising();
+        let cruise = self.trim.state.airspeed;
+        let mut x = start.x;
+        for knot in candidate.knots.iter_mut().skip(1) {
+            let slope = at(x).1;
+            x += (cruise / libm::sqrt(1.0 + slope * slope) + self.wind.x) * STAGE_PERIOD;
+            let (z, slope) = at(x);
+            *knot = self.steady(x, z, libm::atan(slope));
+        }
+        candidate
+    }
+
+    /// A knot at cruise speed with the angle `course` over ground \[rad\].
+    fn steady(&self, x: f64, z: f64, course: f64) -> PathState {
+        PathState {
+            x,
+            z,
+            airspeed: self.trim.state.airspeed,
+            flight_path: course - self.wind.z / self.trim.state.airspeed,
+            angle_of_attack: self.trim.state.angle_of_attack(),
+        }
+    }
+
+    /// Draws some samples of the tree. When the tree is complete, it proposes paths of the tree.
+    pub(super) fn grow_tree(&mut self) {
+        let Some(random) = &mut self.random else {
+            self.phase = Phase::Done;
+            return;
+        };
+        for _ in 0..SAMPLES_PER_SLICE {
+            if self.search.extend(&self.grid, || unit_interval(random)) == Extension::Complete {
+                self.take_tree_paths();
+                return;
+            }
+        }
+    }
+
+    /// Proposes paths of the tree that differ from each candidate so far by the side on which they pass some
+    /// obstacle.
+    #[inline(never)]
+    fn take_tree_paths(&mut self) {
+        let mut from = 0;
+        let mut taken = 0;
+        while taken < TREE_PATHS {
+            let Some(next) = self.search.next_path(from, &mut self.path) else {
+                break;
+            };
+            from = next;
+            let points = resample(&self.path, Rules::Corrected);
+            let mut candidate = self.cruising();
+            let mut before = points[0];
+            for (knot, point) in candidate.knots.iter_mut().zip(&points).skip(1) {
+                let slope = libm::atan2(point.row - before.row, point.col - before.col);
+                *knot = self.steady(
+                    self.state.x + point.col - GridPoint::AIRCRAFT.col,
+                    self.state.z + point.row - GridPoint::AIRCRAFT.row,
+                    slope,
+                );
+                before = *point;
+            }
+            let known =
+                |other: &Candidate| same_signature(&self.field, &candidate.knots, &other.knots);
+            if !self.candidates.iter().any(known) {
+                taken += 1;
+                self.propose(candidate);
+            }
+        }
+        self.phase = Phase::Faces;
+    }
+}

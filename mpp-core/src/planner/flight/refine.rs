@@ -1,0 +1,140 @@
+//! The phases from candidates to trajectories: faces, program and roll-out, for one candidate after the
+//! other.
+
+use super::super::shared::STEPS_PER_SLICE;
+use super::super::summary::FEASIBLE;
+use super::candidate::{ANGLE_SCALE, Candidate};
+use super::{FlightPlanner, MAX_CANDIDATES, Phase};
+use crate::corridor::Keep;
+use crate::qp::Status;
+use crate::tuning::faces::ROUNDING;
+
+impl FlightPlanner {
+    /// Selects the next candidate, and sets the faces between it and the obstacles around it.
+    #[inline(never)]
+    pub(super) fn separate(&mut self) {
+        if self.improvements == self.candidates.len() {
+            self.order = order(&self.candidates);
+        }
+        let next = self.turn();
+        let Some((index, candidate)) = next.and_then(|it| Some((it, self.candidates.get(it)?)))
+        else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let own = &self.settings;
+        let keep = Keep {
+            margin: own.margin + ROUNDING,
+            room: self.limits.room,
+            floor: self.altitude - own.band,
+            ceiling: self.altitude + own.band,
+        };
+        let cruise = self.trim.state.airspeed;
+        self.corridor
+            .separate(&self.field, &candidate.knots, cruise, &keep);
+        self.at_hand = index;
+        self.phase = Phase::Linearise;
+    }
+
+    /// Index of the candidate to improve next. Each candidate gets one round; then each of the best few gets
+    /// all its further rounds before the next one.
+    fn turn(&self) -> Option<usize> {
+        let Some(further) = self.improvements.checked_sub(self.candidates.len()) else {
+            return Some(self.improvements);
+        };
+        let rounds = usize::from(self.settings.rounds).saturating_sub(1);
+        let deepened = self.settings.deepened.min(self.candidates.len());
+        let best = (0..deepened).find(|place| further < rounds * (place + 1))?;
+        self.order.get(best).copied()
+    }
+
+    /// Sets up the program of the candidate, linearised about the candidate itself.
+    #[inline(never)]
+    pub(super) fn linearise(&mut self) {
+        let frame = self.frame();
+        let Some(candidate) = self.candidates.get(self.at_hand) else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let condensed = self.shared.condense_varying(&self.weights, |dynamics| {
+            frame.linearise(candidate, dynamics);
+        });
+        if condensed.is_err() {
+            // The planner skips a candidate whose model cannot be condensed.
+            self.improvements += 1;
+            self.phase = Phase::Faces;
+            return;
+        }
+        self.problem.bounds.set_corridor(&self.corridor);
+        let side = [self.limits.angle_of_attack, self.limits.flight_path];
+        let side = side.map(|limit| ANGLE_SCALE * limit);
+        self.problem
+            .bounds
+            .set_attitude(side, side.map(|limit| -limit));
+        self.problem.initial = frame.deviation(&frame.start, 0).into();
+        self.solver.start(&self.shared, &self.problem);
+        self.phase = Phase::Improve;
+    }
+
+    /// Makes some steps of the solver. After an optimal solution the roll-out replaces the candidate.
+    #[inline(never)]
+    pub(super) fn improve(&mut self) {
+        let before = self.solver.iterations();
+        let status = self.solver.advance(&self.shared, STEPS_PER_SLICE);
+        self.summary.solver_steps += self.solver.iterations() - before;
+        let Some(status) = status else {
+            return;
+        };
+        self.summary.candidates += 1;
+        let solved = status == Status::Optimal
+            && self.solver.solution(&self.shared, &mut self.solution) == Status::Optimal;
+        if solved {
+            self.fly_out();
+        }
+        self.improvements += 1;
+        self.phase = Phase::Faces;
+    }
+
+    /// Computes the roll-out of the solution, judges it, and keeps it if it is the best.
+    fn fly_out(&mut self) {
+        let mut flown = self.cruising();
+        flown.roll_out(&self.solution, &self.frame(), &self.limits);
+        let judgement = self.judge(&flown);
+        flown.price = judgement.price;
+        self.summary.feasible += usize::from(judgement.lack <= FEASIBLE);
+        if judgement.price < self.best_price {
+            self.best_price = judgement.price;
+            self.summary.cost = judgement.effort;
+            self.summary.violation = judgement.lack;
+            self.best.fly_out(
+                &flown.knots,
+                &flown.controls,
+                &self.airframe,
+                &self.wind,
+                self.time,
+            );
+        }
+        if let Some(place) = self.candidates.get_mut(self.at_hand) {
+            *place = flown;
+        }
+    }
+}
+
+/// Indices of the candidates from the lowest to the highest price.
+fn order(candidates: &[Candidate]) -> [usize; MAX_CANDIDATES] {
+    let mut order = [0; MAX_CANDIDATES];
+    for (index, candidate) in candidates.iter().enumerate() {
+        let before = |(other, price): (usize, f64)| {
+            price
+                .total_cmp(&candidate.price)
+                .then(other.cmp(&index))
+                .is_lt()
+        };
+        let prices = candidates.iter().map(|other| other.price).enumerate();
+        let place = prices.filter(|other| before(*other)).count();
+        if let Some(place) = order.get_mut(place) {
+            *place = index;
+        }
+    }
+    order
+}

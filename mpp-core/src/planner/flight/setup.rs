@@ -1,0 +1,111 @@
+//! The set-up of the flight planner and the checks of its settings.
+
+use super::super::error::{SetupError, check_shared, check_vehicle, positive};
+use super::{FlightPlanner, Phase};
+use crate::qp::ModelError;
+use crate::settings::{FlightSettings, PlannerSettings, Settings};
+use crate::vehicle::VehicleState;
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+impl FlightPlanner {
+    /// Sets the planner up; see [`crate::planner::Planner::set_up`].
+    ///
+    /// # Errors
+    /// [`SetupError`]: the planner then plans nothing.
+    pub fn set_up(&mut self, settings: &Settings, own: &FlightSettings) -> Result<(), SetupError> {
+        // If a check below fails, the planner is not set up completely and must plan nothing.
+        self.random = None;
+        self.phase = Phase::Idle;
+        let planner = &settings.planner;
+        check_shared(planner)?;
+        check(planner, own)?;
+        let airframe = &settings.airframe;
+        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        check_vehicle(settings, &trim)?;
+        if !airframe
+            .angle_of_attack_for(trim.control.elevator)
+            .is_finite()
+        {
+            return Err(SetupError::Model(ModelError));
+        }
+        self.known = (*airframe, trim);
+        (self.airframe, self.trim) = self.known;
+        self.actuators = settings.actuators;
+        self.weights = planner.weights;
+        self.adopt(planner, own);
+        self.try_program()?;
+        // A flight computer hands over zeroed memory, so the code must not rely on the values of `new`.
+        self.problem.bounds.clear();
+        self.problem.cost_limit = f64::INFINITY;
+        self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
+        self.map.clear();
+        self.best.clear();
+        Ok(())
+    }
+
+    /// Takes over number of paths, altitude, penalty, attitude limits and latency.
+    pub(in crate::planner) fn retune(
+        &mut self,
+        planner: &PlannerSettings,
+        own: &FlightSettings,
+    ) -> Result<(), SetupError> {
+        let own = FlightSettings {
+            penalty: own.penalty,
+            attitude: own.attitude,
+            latency: own.latency,
+            ..self.settings
+        };
+        check_shared(planner)?;
+        check(planner, &own)?;
+        self.adopt(planner, &own);
+        Ok(())
+    }
+
+    fn adopt(&mut self, planner: &PlannerSettings, own: &FlightSettings) {
+        self.paths = planner.paths;
+        self.altitude = planner.altitude;
+        self.settings = *own;
+    }
+
+    /// Checks that the program of level cruise has an optimum with this airframe and these weights.
+    fn try_program(&mut self) -> Result<(), SetupError> {
+        self.state = VehicleState {
+            x: 0.0,
+            z: self.altitude,
+            air: self.trim.state,
+        };
+        let cruising = self.cruising();
+        let frame = self.frame();
+        self.shared
+            .condense_varying(&self.weights, |dynamics| {
+                frame.linearise(&cruising, dynamics);
+            })
+            .map_err(SetupError::Condense)
+    }
+}
+
+/// Checks the settings that only the flight planner reads.
+fn check(planner: &PlannerSettings, own: &FlightSettings) -> Result<(), SetupError> {
+    if planner.paths == 0 {
+        return Err(SetupError::NoPaths);
+    }
+    if !(own.latency >= 0.0 && own.latency.is_finite()) {
+        return Err(SetupError::Latency);
+    }
+    for (number, error) in [
+        (own.sight, SetupError::Sight),
+        (own.penalty.linear, SetupError::Penalty),
+        (own.penalty.quadratic, SetupError::Penalty),
+        (own.attitude.angle_of_attack, SetupError::AngleOfAttackLimit),
+        (own.attitude.flight_path, SetupError::FlightPathLimit),
+        (own.margin, SetupError::Margin),
+        (own.band, SetupError::Band),
+        (own.thrust_max, SetupError::ThrustMax),
+    ] {
+        if !positive(number) {
+            return Err(error);
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,278 @@
+//! The paper's method: every path of every tree gives a corridor and a program, and the feasible solution
+//! with the lowest cost wins. The presets `reference` (the authors' code with its faults) and `paper` use
+//! it.
+//!
+//! ```text
+//! begin --> Map --> Tree --> Corridor --> Program --+--> Done
+//!                    ^  ^                  |        |
+//!                    |  +-- next path -----+        |
+//!                    +----- tree read out ----------+
+//! ```
+
+mod refine;
+
+use super::error::{SetupError, check_shared, check_vehicle};
+use super::shared::{NO_TRIM, STILL};
+use super::summary::{PlanSummary, Verdict};
+use crate::Rules;
+use crate::config::KNOTS;
+use crate::corridor::{Corridor, Padding};
+use crate::map::{GridPoint, OccupancyGrid};
+use crate::paths::{CollocationPoints, Path, Search};
+use crate::qp::{Bounds, Condensed, Problem, Solution, Solver, StageModel};
+use crate::sense::LidarScan;
+use crate::settings::{PaperSettings, PlannerSettings, Settings};
+use crate::trajectory::Trajectory;
+use crate::vehicle::{Airframe, Trim, VehicleState, linearize};
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+/// The work of the next slice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Phase {
+    /// The slice does nothing, because no cycle is under way.
+    Idle,
+    /// Builds the occupancy grid from the scan.
+    Map,
+    /// Grows a tree.
+    Tree,
+    /// Traces the corridor of a path.
+    Corridor,
+    /// Solves the program of a corridor.
+    Program,
+    /// The slice does nothing, because the cycle has ended.
+    Done,
+}
+
+/// The paper's planner and all its workspaces. Large: place it in a `static` or a box.
+#[derive(Clone, Debug)]
+pub struct PaperPlanner {
+    paths: usize,
+    altitude: f64,
+    rules: Rules,
+    padding: Padding,
+    airframe: Airframe,
+    trim: Trim,
+    shared: Condensed,
+    /// Random numbers of the tree; `None` until the planner is set up.
+    random: Option<Pcg64Mcg>,
+    phase: Phase,
+    time: f64,
+    state: VehicleState,
+    scan: LidarScan,
+    grid: OccupancyGrid,
+    search: Search,
+    next_node: usize,
+    path: Path,
+    points: CollocationPoints,
+    corridor: Corridor,
+    problem: Problem,
+    solver: Solver,
+    solution: Solution,
+    best_length: f64,
+    best: Trajectory,
+    summary: PlanSummary,
+}
+
+impl PaperPlanner {
+    /// An idle planner that is not set up.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            paths: 0,
+            altitude: 0.0,
+            rules: Rules::Corrected,
+            padding: Padding::AUTHORS,
+            airframe: Airframe::REFERENCE,
+            trim: NO_TRIM,
+            shared: Condensed::new(),
+            random: None,
+            phase: Phase::Idle,
+            time: 0.0,
+            state: VehicleState {
+                x: 0.0,
+                z: 0.0,
+                air: STILL,
+            },
+            scan: LidarScan::new(),
+            grid: OccupancyGrid::new(),
+            search: Search::new(),
+            next_node: 0,
+            path: Path::new(),
+            points: [GridPoint::AIRCRAFT; KNOTS],
+            corridor: Corridor::new(),
+            problem: Problem {
+                initial: [0.0; 6],
+                target: [0.0; 6],
+                bounds: Bounds::none(),
+                penalty: None,
+                cost_limit: f64::INFINITY,
+            },
+            solver: Solver::new(),
+            solution: Solution::new(),
+            best_length: f64::INFINITY,
+            best: Trajectory::new(),
+            summary: PlanSummary::NOTHING,
+        }
+    }
+
+    /// Sets up the model about level trim.
+    pub(super) fn set_up(
+        &mut self,
+        settings: &Settings,
+        own: &PaperSettings,
+    ) -> Result<(), SetupError> {
+        // If a check below fails, the planner is not set up completely and must plan nothing.
+        self.random = None;
+        self.phase = Phase::Idle;
+        let planner = &settings.planner;
+        check_shared(planner)?;
+        let airframe = &settings.airframe;
+        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
+        check_vehicle(settings, &trim)?;
+        let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
+        let model = StageModel::new(&trim, &linear, own.initial).map_err(SetupError::Model)?;
+        self.shared
+            .condense(&model, &planner.weights)
+            .map_err(SetupError::Condense)?;
+        self.paths = planner.paths;
+        self.altitude = planner.altitude;
+        self.rules = own.rules;
+        self.padding = own.padding;
+        self.trim = trim;
+        self.airframe = *airframe;
+        // A flight computer hands over zeroed memory, so the code must not rely on the values of `new`.
+        self.problem.bounds.clear();
+        self.problem.penalty = None;
+        self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
+        self.best.clear();
+        Ok(())
+    }
+
+    /// Takes over number of paths, altitude and padding.
+    pub(super) fn retune(
+        &mut self,
+        planner: &PlannerSettings,
+        own: &PaperSettings,
+    ) -> Result<(), SetupError> {
+        check_shared(planner)?;
+        self.paths = planner.paths;
+        self.altitude = planner.altitude;
+        self.padding = own.padding;
+        Ok(())
+    }
+
+    /// Starts a cycle; see [`super::Planner::begin`].
+    pub fn begin(&mut self, time: f64, state: &VehicleState, scan: &LidarScan) {
+        self.time = time;
+        self.state = *state;
+        self.scan.clone_from(scan);
+        self.problem.initial = self.shared.initial_state(&self.trim, &state.air);
+        self.problem.target = [0.0, self.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
+        self.problem.bounds.set_thrust(self.trim.control.thrust);
+        self.summary = PlanSummary::NOTHING;
+        self.best_length = f64::INFINITY;
+        self.phase = if state.is_finite() {
+            Phase::Map
+        } else {
+            // No plan starts there.
+            Phase::Done
+        };
+    }
+
+    /// The work of the next slice.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// Whether a cycle is under way.
+    #[must_use]
+    pub fn is_working(&self) -> bool {
+        !matches!(self.phase, Phase::Idle | Phase::Done)
+    }
+
+    /// Does one bounded slice of work. Returns true while the cycle goes on.
+    pub fn advance(&mut self) -> bool {
+        if self.is_working() {
+            self.summary.slices += 1;
+        }
+        match self.phase {
+            Phase::Idle | Phase::Done => {}
+            Phase::Map => {
+                self.grid
+                    .rebuild(&self.scan, self.state.air.pitch, self.rules);
+                self.start_tree();
+            }
+            Phase::Tree => self.grow_tree(),
+            Phase::Corridor => self.trace_corridor(),
+            Phase::Program => self.solve(),
+        }
+        self.is_working()
+    }
+
+    /// Ends the cycle and returns its verdict.
+    pub fn finish(&mut self) -> Verdict {
+        self.summary.complete = self.phase == Phase::Done;
+        self.phase = Phase::Idle;
+        self.summary.verdict()
+    }
+
+    /// The best trajectory of the cycle.
+    #[must_use]
+    pub fn best(&self) -> &Trajectory {
+        &self.best
+    }
+
+    /// The results of the cycle so far.
+    #[must_use]
+    pub fn summary(&self) -> &PlanSummary {
+        &self.summary
+    }
+
+    /// Level trim. Plans are deviations from it.
+    #[must_use]
+    pub fn trim(&self) -> &Trim {
+        &self.trim
+    }
+
+    /// The grid of the cycle.
+    #[must_use]
+    pub fn grid(&self) -> &OccupancyGrid {
+        &self.grid
+    }
+
+    /// The linear model of the programs.
+    #[must_use]
+    pub fn model(&self) -> &StageModel {
+        self.shared.model()
+    }
+
+    /// Collocation points of the present candidate.
+    #[must_use]
+    pub fn points(&self) -> &CollocationPoints {
+        &self.points
+    }
+
+    /// The program of the present candidate, while the solver works on it.
+    #[must_use]
+    pub fn program(&self) -> Option<&Problem> {
+        (self.phase == Phase::Program).then_some(&self.problem)
+    }
+
+    /// The path of the present candidate and its program; see [`super::Planner::candidate`].
+    #[must_use]
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+        let origin = GridPoint::AIRCRAFT;
+        let VehicleState { x, z, .. } = self.state;
+        let place = |point: GridPoint| (x + point.col - origin.col, z + point.row - origin.row);
+        self.program()
+            .map(|problem| (self.points.map(place), problem))
+    }
+}
+
+impl Default for PaperPlanner {
+    fn default() -> Self {
+        Self::new()
+    }
+}

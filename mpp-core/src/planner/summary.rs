@@ -1,0 +1,64 @@
+//! The result of a planning cycle: its summary and its verdict.
+
+/// Greatest violation [m or rad] of a feasible trajectory.
+pub(super) const FEASIBLE: f64 = 1e-6;
+
+/// The summary of a finished or interrupted cycle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PlanSummary {
+    /// Number of programs solved: one for each candidate, and the further rounds of the best candidates.
+    pub candidates: usize,
+    /// Number of programs that gave a feasible trajectory. The trajectory of a dominated candidate is not
+    /// known, so it does not count.
+    pub feasible: usize,
+    /// Number of trees.
+    pub tree_runs: usize,
+    /// Number of slices.
+    pub slices: usize,
+    /// Number of solver steps.
+    pub solver_steps: usize,
+    /// Whether the cycle finished all its work.
+    pub complete: bool,
+    /// Cost of the best trajectory. It is infinite if there is no trajectory.
+    pub cost: f64,
+    /// Worst violation of the best trajectory [m or rad]. It is infinite if there is no trajectory.
+    pub violation: f64,
+}
+
+impl PlanSummary {
+    /// The summary of a cycle that has no trajectory yet.
+    pub const NOTHING: Self = Self {
+        candidates: 0,
+        feasible: 0,
+        tree_runs: 0,
+        slices: 0,
+        solver_steps: 0,
+        complete: false,
+        cost: f64::INFINITY,
+        violation: f64::INFINITY,
+    };
+
+    /// The verdict on the best trajectory of the cycle.
+    pub(super) fn verdict(&self) -> Verdict {
+        if self.cost == f64::INFINITY {
+            Verdict::Nothing
+        } else if self.violation <= FEASIBLE {
+            Verdict::Feasible
+        } else {
+            Verdict::LeastViolating
+        }
+    }
+}
+
+/// The verdict on the best trajectory of a cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// A trajectory that keeps every row (the paper's method), or its margin in the map (the flight
+    /// planner).
+    Feasible,
+    /// A trajectory that violates its rows or its margin. The paper's method offers it if no candidate is
+    /// feasible. The flight planner also offers it if every feasible candidate has a higher price.
+    LeastViolating,
+    /// No candidate gave any trajectory.
+    Nothing,
+}

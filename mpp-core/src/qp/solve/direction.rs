@@ -1,0 +1,25 @@
+//! The direction of a step, and the relation of the entering row to the active rows.
+
+use crate::qp::factor::CAPACITY;
+
+/// Change of the active rows' multipliers with the multiplier of the entering row.
+pub(super) struct Direction {
+    /// The vector `L^-1 C_A K c_p`.
+    pub(super) products: [f64; CAPACITY],
+    /// Decrease of the multipliers of the active rows: `L^-T products`.
+    pub(super) rates: [f64; CAPACITY],
+    /// Schur complement of the entering row against the active rows. It is 0 if the row depends on them.
+    pub(super) complement: f64,
+}
+
+/// Relation of an entering row to active rows on which it depends.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Stand {
+    /// The active rows leave at least a little room. The number is the length of the step that makes the
+    /// entering row tight.
+    Apart(f64),
+    /// The entering row touches the active rows: its violation may be rounding.
+    Touches,
+    /// No solution with a sensible cost keeps all these rows.
+    Contradicts,
+}

@@ -1,0 +1,57 @@
+//! Settings of the flight planner.
+
+use crate::qp::Penalty;
+
+/// Limits of the attitude rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AttitudeLimits {
+    /// Greatest distance of the angle of attack from trim, to either side \[rad\]. It bounds the lift, and
+    /// therefore the curvature of a path.
+    pub angle_of_attack: f64,
+    /// Greatest flight path angle, climbing or descending \[rad\].
+    pub flight_path: f64,
+}
+
+/// Settings that only the flight planner reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlightSettings {
+    /// Range of the lidar \[m\]. A beam without a return shows that its way is free up to this range.
+    pub sight: f64,
+    /// Time from a scan until its plan is taken over \[s\]. A plan starts where the aircraft will be then.
+    pub latency: f64,
+    /// Price of violating corridor and attitude rows. These rows are soft.
+    pub penalty: Penalty,
+    /// Limits of the attitude rows.
+    pub attitude: AttitudeLimits,
+    /// Rounds of linearisation that the best candidates get; every other candidate gets one.
+    pub rounds: u8,
+    /// Number of candidates that get all rounds.
+    pub deepened: usize,
+    /// Distance that a plan keeps from the centres of occupied cells \[m\].
+    pub margin: f64,
+    /// Greatest distance of a plan from the altitude \[m\].
+    pub band: f64,
+    /// Greatest thrust of a plan \[N\].
+    pub thrust_max: f64,
+}
+
+impl FlightSettings {
+    /// The settings of preset `flight`.
+    pub(crate) const PRESET: Self = Self {
+        sight: 45.0,
+        latency: 0.0,
+        penalty: Penalty {
+            linear: 1e3,
+            quadratic: 1e3,
+        },
+        attitude: AttitudeLimits {
+            angle_of_attack: 0.2,
+            flight_path: 0.6,
+        },
+        rounds: 3,
+        deepened: 2,
+        margin: 0.8,
+        band: 10.3,
+        thrust_max: 20.0,
+    };
+}

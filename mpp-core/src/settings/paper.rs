@@ -1,0 +1,37 @@
+//! Settings of the paper's method.
+
+use crate::Rules;
+use crate::corridor::Padding;
+use crate::qp::Initial;
+use crate::vehicle::JacobianForm;
+
+/// Settings that only the paper's method reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PaperSettings {
+    /// Rules of map, path search and raytracing.
+    pub rules: Rules,
+    /// Form of the Jacobian in the plan's model.
+    pub jacobian: JacobianForm,
+    /// Rule for the first state of the plan.
+    pub initial: Initial,
+    /// Distance that the corridor keeps from obstacles.
+    pub padding: Padding,
+}
+
+impl PaperSettings {
+    /// The settings of the authors' code.
+    pub(super) const AUTHORS: Self = Self {
+        rules: Rules::Authors,
+        jacobian: JacobianForm::Authors,
+        initial: Initial::ThroughSteadyState,
+        padding: Padding::AUTHORS,
+    };
+
+    /// The settings of the paper's text with its errors corrected.
+    pub(super) const CORRECTED: Self = Self {
+        rules: Rules::Corrected,
+        jacobian: JacobianForm::Exact,
+        initial: Initial::Estimate,
+        ..Self::AUTHORS
+    };
+}

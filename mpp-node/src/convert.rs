@@ -1,0 +1,286 @@
+//! Conversion between the messages of the link and the types of the core.
+
+use crate::time;
+use hil_protocol::{
+    ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
+    LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
+    SensorFrame as WireFrame, StepReport,
+};
+use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
+use mpp_core::control::RiccatiError;
+use mpp_core::estimate::Measurement;
+use mpp_core::flight::{Adoption, Mode, StepOutput};
+use mpp_core::planner::SetupError;
+use mpp_core::qp::{CondenseError, ModelError};
+use mpp_core::sense::{LidarScan, ScanError, SensorFrame};
+use mpp_core::settings::Settings;
+use mpp_core::trajectory::{Reference, Trajectory};
+use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, TrimError};
+
+/// The settings that a configuration asks for, or the first fault of the configuration.
+pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
+    let mut settings = preset(configure.preset)?;
+    settings.airframe = match configure.airframe {
+        AirframeId::Paper => Airframe::PAPER,
+        AirframeId::Reference => Airframe::REFERENCE,
+    };
+    settings.planner.paths = usize::from(configure.paths);
+    settings.planner.altitude = configure.altitude;
+    settings.planner.seed = configure.seed;
+    // The paper's method stays as published: it uses neither the lidar's range nor limits.
+    if let Some(own) = settings.planner.flight_mut() {
+        own.sight = f64::from(configure.range_max);
+        own.latency = time(configure.latency_ticks);
+        settings.actuators = actuators(&configure.actuators);
+    }
+
+    if settings.planner.paths > MAX_PATHS {
+        return Err(ConfigureVerdict::TooManyPaths {
+            max: MAX_PATHS as u16,
+        });
+    }
+    check(configure)?;
+    Ok(settings)
+}
+
+/// The settings of a preset, if this build contains its planner.
+fn preset(preset: Preset) -> Result<Settings, ConfigureVerdict> {
+    match preset {
+        Preset::Flight => Ok(Settings::flight()),
+        #[cfg(feature = "paper")]
+        Preset::Reference => Ok(Settings::reference()),
+        #[cfg(feature = "paper")]
+        Preset::Paper => Ok(Settings::paper()),
+        #[cfg(not(feature = "paper"))]
+        Preset::Reference | Preset::Paper => Err(ConfigureVerdict::PresetNotBuilt),
+    }
+}
+
+/// Checks the values of a configuration.
+pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
+    if configure.replan_period_ticks == 0 {
+        return Err(ConfigureVerdict::ReplanPeriod);
+    }
+    if configure.latency_ticks == 0 || configure.latency_ticks > configure.replan_period_ticks {
+        return Err(ConfigureVerdict::Latency);
+    }
+    if configure.slices_per_tick == 0 {
+        return Err(ConfigureVerdict::SlicesPerTick);
+    }
+    if configure.beams == 0 || usize::from(configure.beams) > MAX_BEAMS {
+        return Err(ConfigureVerdict::Beams {
+            max: MAX_BEAMS as u16,
+        });
+    }
+    if !configure.range_max.is_finite() || configure.range_max <= 0.0 {
+        return Err(ConfigureVerdict::RangeMax);
+    }
+    if !configure.altitude.is_finite() {
+        return Err(ConfigureVerdict::NonFinite);
+    }
+    if !actuators(&configure.actuators).is_valid() {
+        return Err(ConfigureVerdict::Actuators);
+    }
+    Ok(())
+}
+
+fn actuators(wire: &WireLimits) -> ActuatorLimits {
+    ActuatorLimits {
+        thrust_max: wire.thrust_max.map(f64::from),
+        thrust_lag: wire.thrust_lag.map(f64::from),
+        elevator_range: wire.elevator_range.map(f64::from),
+        elevator_rate: wire.elevator_rate.map(f64::from),
+    }
+}
+
+/// The verdict on a failed set-up. The match has no catch-all arm, so that each new cause needs a verdict.
+pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
+    match error {
+        SetupError::Trim(error) => trim_verdict(error),
+        SetupError::Regulator(error) => match error {
+            RiccatiError::NotFinite => ConfigureVerdict::RegulatorNotFinite,
+            RiccatiError::Singular => ConfigureVerdict::RegulatorSingular,
+            RiccatiError::NotConverged => ConfigureVerdict::RegulatorNotConverged,
+            RiccatiError::NotStabilising => ConfigureVerdict::RegulatorNotStabilising,
+        },
+        SetupError::Model(ModelError) => ConfigureVerdict::PlanModel,
+        SetupError::Condense(CondenseError) => ConfigureVerdict::PlanWeights,
+        SetupError::TooManyPaths => ConfigureVerdict::TooManyPaths {
+            max: MAX_PATHS as u16,
+        },
+        SetupError::Altitude => ConfigureVerdict::NonFinite,
+        SetupError::Sight => ConfigureVerdict::RangeMax,
+        SetupError::Penalty => ConfigureVerdict::Penalty,
+        SetupError::Margin => ConfigureVerdict::Margin,
+        SetupError::Band => ConfigureVerdict::Band,
+        SetupError::ThrustMax => ConfigureVerdict::PlanThrust,
+        SetupError::AngleOfAttackLimit => ConfigureVerdict::AngleOfAttackLimit,
+        SetupError::FlightPathLimit => ConfigureVerdict::FlightPathLimit,
+        SetupError::NoPaths => ConfigureVerdict::PathsZero,
+        SetupError::Latency => ConfigureVerdict::Latency,
+        SetupError::OtherMethod => ConfigureVerdict::OtherPreset,
+        SetupError::WindTimeConstant => ConfigureVerdict::WindTimeConstant,
+        SetupError::ActuatorLimit => ConfigureVerdict::Actuators,
+        SetupError::ThrustTooLow => ConfigureVerdict::ThrustTooLow,
+    }
+}
+
+fn trim_verdict(error: TrimError) -> ConfigureVerdict {
+    match error {
+        TrimError::Airspeed => ConfigureVerdict::CruiseAirspeed,
+        TrimError::Airframe => ConfigureVerdict::AirframeNotFinite,
+        TrimError::NotCarried => ConfigureVerdict::NotCarried,
+        TrimError::NoElevator => ConfigureVerdict::NoElevator,
+        // `Angle` cannot occur here, because the angle of level flight is 0.
+        TrimError::Angle | TrimError::NotConverged => ConfigureVerdict::NotTrimmable,
+    }
+}
+
+pub(crate) fn sensor_frame(frame: &WireFrame) -> SensorFrame {
+    SensorFrame {
+        measurement: Measurement {
+            airspeed: frame.airspeed,
+            pitch: frame.pitch,
+        },
+        x: frame.x,
+        z: frame.z,
+    }
+}
+
+/// Copies a scan. Both types have room for the same number of beams.
+pub(crate) fn scan(wire: &WireScan, scan: &mut LidarScan) {
+    scan.angle_min = f64::from(wire.angle_min);
+    scan.angle_increment = f64::from(wire.angle_increment);
+    scan.ranges.clone_from(&wire.ranges);
+}
+
+const _: () = assert!(hil_protocol::MAX_BEAMS == MAX_BEAMS);
+
+pub(crate) fn scan_rejection(error: ScanError) -> RejectionCause {
+    match error {
+        ScanError::Length { expected, found } => RejectionCause::ScanLength {
+            expected: expected as u16,
+            found: found as u16,
+        },
+        ScanError::NotFinite { beam } => RejectionCause::ScanNotFinite { beam: beam as u16 },
+        ScanError::OutOfRange { beam } => RejectionCause::ScanRange { beam: beam as u16 },
+        ScanError::AngleNotFinite => RejectionCause::ScanAngle,
+    }
+}
+
+pub(crate) fn outcome(adoption: Adoption) -> PlanOutcome {
+    match adoption {
+        Adoption::Feasible => PlanOutcome::Adopted,
+        Adoption::LeastViolating => PlanOutcome::LeastViolating,
+        Adoption::Kept => PlanOutcome::KeptPrevious,
+        Adoption::TrimHold => PlanOutcome::TrimHold,
+    }
+}
+
+pub(crate) fn trajectory(scan_tick: u32, trajectory: &Trajectory) -> PlanTrajectory {
+    let knot = |reference: &Reference| {
+        let state = &reference.state;
+        [state.x, state.z, state.air.flight_path].map(|value| value as f32)
+    };
+    PlanTrajectory {
+        scan_tick,
+        period: STAGE_PERIOD as f32,
+        knots: trajectory.knots.iter().map(knot).collect(),
+    }
+}
+
+const _: () = assert!(hil_protocol::MAX_KNOTS == KNOTS);
+
+pub(crate) fn mode(mode: Mode) -> ControlMode {
+    match mode {
+        Mode::TrimHold => ControlMode::TrimHold,
+        Mode::Tracking => ControlMode::Tracking,
+    }
+}
+
+pub(crate) fn step_report(
+    tick: u32,
+    plan_age_ticks: u32,
+    estimate: &AirState,
+    output: &StepOutput,
+) -> StepReport {
+    let state = &output.reference.state;
+    let air = state.air.to_vector();
+    StepReport {
+        tick,
+        estimate: estimate.to_vector().into(),
+        reference: [state.x, state.z, air.x, air.y, air.z, air.w],
+        plan_age_ticks,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_failed_set_up_has_a_verdict_of_its_own() {
+        let errors = [
+            SetupError::Trim(TrimError::Airspeed),
+            SetupError::Trim(TrimError::Airframe),
+            SetupError::Trim(TrimError::NotCarried),
+            SetupError::Trim(TrimError::NoElevator),
+            SetupError::Trim(TrimError::NotConverged),
+            SetupError::Regulator(RiccatiError::NotFinite),
+            SetupError::Regulator(RiccatiError::Singular),
+            SetupError::Regulator(RiccatiError::NotConverged),
+            SetupError::Regulator(RiccatiError::NotStabilising),
+            SetupError::Model(ModelError),
+            SetupError::Condense(CondenseError),
+            SetupError::TooManyPaths,
+            SetupError::Altitude,
+            SetupError::Sight,
+            SetupError::Penalty,
+            SetupError::Margin,
+            SetupError::Band,
+            SetupError::ThrustMax,
+            SetupError::AngleOfAttackLimit,
+            SetupError::FlightPathLimit,
+            SetupError::WindTimeConstant,
+            SetupError::ActuatorLimit,
+            SetupError::ThrustTooLow,
+            SetupError::NoPaths,
+            SetupError::Latency,
+            SetupError::OtherMethod,
+        ];
+        let verdicts = errors.map(setup_verdict);
+        for (index, verdict) in verdicts.iter().enumerate() {
+            let earlier = verdicts.iter().take(index);
+            assert!(
+                !earlier.into_iter().any(|other| other == verdict),
+                "{verdict}"
+            );
+        }
+    }
+
+    #[test]
+    fn every_fault_of_a_scan_has_a_cause_of_its_own() {
+        let causes = [
+            ScanError::Length {
+                expected: 2,
+                found: 1,
+            },
+            ScanError::AngleNotFinite,
+            ScanError::NotFinite { beam: 0 },
+            ScanError::OutOfRange { beam: 0 },
+        ]
+        .map(scan_rejection);
+        assert_eq!(
+            causes,
+            [
+                RejectionCause::ScanLength {
+                    expected: 2,
+                    found: 1
+                },
+                RejectionCause::ScanAngle,
+                RejectionCause::ScanNotFinite { beam: 0 },
+                RejectionCause::ScanRange { beam: 0 },
+            ]
+        );
+    }
+}

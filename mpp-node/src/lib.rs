@@ -1,0 +1,49 @@
+//! The flight core behind its link: frames in, frames out.
+//!
+//! `mpp-core` knows no wire format, and `hil-protocol` knows no planner. This crate joins them for every
+//! place where the core runs: in the process of the harness, in a separate process, and on a flight
+//! computer. It has no clock, no I/O and no heap. The owner of the link feeds received bytes in and sends
+//! the bytes that come out.
+//!
+//! # One tick
+//!
+//! ```text
+//! LidarScan k      kept until the sensor frame of the same tick
+//! SensorFrame k    1. a cycle whose latency has passed is finished and taken over -> PlanReport
+//!                  2. estimate, reference, control          -> StepReport, ActuatorCommand
+//!                  3. a scan, if it is time to replan, starts a cycle
+//!                  4. the planner runs its slices of this tick
+//! ```
+//!
+//! The step uses a plan `latency_ticks` after its scan and not earlier, even if the planner was faster.
+//! The flight therefore does not depend on the speed of the machine.
+//!
+//! # Two tasks
+//!
+//! ```text
+//! bytes -> StepTask --- Order ----> PlanTask     1, 2, 3 | 4
+//! bytes <-          <-- Answer ---
+//! ```
+//!
+//! [`StepTask`] has the link and the 100 Hz step, and [`PlanTask`] has the planner. They share no data and
+//! send each other values. [`FlightNode`] runs both in one thread. A flight computer runs the step in an
+//! interrupt, which may come at any instruction of the planner; the result is the same.
+#![no_std]
+#![forbid(unsafe_code)]
+
+mod convert;
+mod mail;
+mod node;
+pub mod parameters;
+mod plan_task;
+mod step_task;
+
+pub use mail::{Answer, Order, Plan};
+pub use node::FlightNode;
+pub use plan_task::{PlanTask, Progress};
+pub use step_task::{Pace, StepTask};
+
+/// Time of a tick \[s\].
+fn time(tick: u32) -> f64 {
+    f64::from(tick) * mpp_core::config::TICK_PERIOD
+}

@@ -1,0 +1,69 @@
+//! The messages between step and planner.
+
+use crate::parameters::Tuning;
+use mpp_core::estimate::Conditions;
+use mpp_core::planner::{PlanSummary, SetupError, Verdict};
+use mpp_core::sense::LidarScan;
+use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::VehicleState;
+
+/// A message from the step to the planner.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the scan on"
+)]
+#[derive(Clone, Debug)]
+pub enum Order {
+    /// Sets the planner up and drops its present work. The answer is [`Answer::SetUp`].
+    SetUp {
+        /// Number of the set-up. It comes back with the answer, and the step drops an answer to an earlier
+        /// set-up.
+        number: u32,
+        /// The values in force.
+        tuning: Tuning,
+    },
+    /// Starts a cycle. The answer is [`Answer::Plan`].
+    Begin {
+        /// The tick of the scan.
+        tick: u32,
+        /// State of the aircraft at that tick.
+        state: VehicleState,
+        /// Estimated wind and lift at that tick.
+        conditions: Conditions,
+        /// The scan.
+        scan: LidarScan,
+        /// The values in force.
+        tuning: Tuning,
+    },
+}
+
+/// A message from the planner to the step.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the trajectory on"
+)]
+#[derive(Clone, Debug)]
+pub enum Answer {
+    /// The result of a set-up.
+    SetUp {
+        /// The number of the order.
+        number: u32,
+        /// The cause if the set-up failed.
+        result: Result<(), SetupError>,
+    },
+    /// The result of a cycle.
+    Plan(Plan),
+}
+
+/// The result of a cycle.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The tick of the scan from which the cycle planned.
+    pub scan_tick: u32,
+    /// The verdict on the best trajectory.
+    pub verdict: Verdict,
+    /// The summary of the cycle.
+    pub summary: PlanSummary,
+    /// The best trajectory, if there is one.
+    pub trajectory: Trajectory,
+}

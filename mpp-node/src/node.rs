@@ -1,0 +1,86 @@
+//! The node that runs both tasks in one thread.
+
+use crate::mail::Order;
+use crate::plan_task::{PlanTask, Progress};
+use crate::step_task::{Pace, StepTask};
+use mpp_core::health::Health;
+use mpp_core::planner::Planner;
+
+/// The core and its side of the link. The value is large: place it in a `static` or a box.
+pub struct FlightNode {
+    step: StepTask,
+    plan: PlanTask,
+}
+
+impl FlightNode {
+    /// A node that waits for a hello.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            step: StepTask::new(Pace::Lockstep),
+            plan: PlanTask::new(),
+        }
+    }
+
+    /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function
+    /// returns, the planner has used all slices granted so far.
+    pub fn receive(&mut self, bytes: &[u8], send: impl FnMut(&[u8])) {
+        self.receive_advised(bytes, send, |_, _| {});
+    }
+
+    /// Does the work of [`FlightNode::receive`] for a caller that knows more than the link tells. `advise`
+    /// may change each order, and the planner's map, before the planner takes the order.
+    pub fn receive_advised(
+        &mut self,
+        bytes: &[u8],
+        mut send: impl FnMut(&[u8]),
+        mut advise: impl FnMut(&mut Order, &mut Planner),
+    ) {
+        for byte in bytes {
+            self.step.receive(*byte, &mut send);
+            self.run_planner(&mut send, &mut advise);
+        }
+    }
+
+    /// The counters of this flight; `None` before the configuration.
+    #[must_use]
+    pub fn health(&self) -> Option<&Health> {
+        self.step.health()
+    }
+
+    /// The planner, for inspection between ticks.
+    #[must_use]
+    pub fn planner(&self) -> &Planner {
+        self.plan.planner()
+    }
+
+    /// Runs the planner until it waits. The loop ends, because a cycle has a bounded number of slices, and
+    /// an answer starts at most one more tick.
+    fn run_planner(
+        &mut self,
+        send: &mut impl FnMut(&[u8]),
+        advise: &mut impl FnMut(&mut Order, &mut Planner),
+    ) {
+        loop {
+            if let Some(mut order) = self.step.order() {
+                advise(&mut order, self.plan.planner_mut());
+                self.plan.take(&order);
+            }
+            match self.plan.advance(self.step.clock()) {
+                Progress::Waiting => return,
+                Progress::Working => {}
+                Progress::Answered => {
+                    if let Some(answer) = self.plan.answer() {
+                        self.step.answer(answer, &mut *send);
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Default for FlightNode {
+    fn default() -> Self {
+        Self::new()
+    }
+}

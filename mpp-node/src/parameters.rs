@@ -1,0 +1,347 @@
+//! The parameters of planner and regulator: their names, their ranges, and whether they can change in
+//! flight.
+//!
+//! The number of a parameter on the link is its place in [`PARAMETERS`]. New parameters therefore go to
+//! the end.
+
+use crate::convert;
+use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict, Preset};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::corridor::Padding;
+use mpp_core::settings::{Cruise, FlightSettings, Settings};
+
+/// A configuration, and the settings that follow from it and from later changes of parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuning {
+    /// The configuration, with the rates and times of the session.
+    pub configure: Configure,
+    /// The settings of the flight core.
+    pub settings: Settings,
+}
+
+impl Tuning {
+    /// The values that a configuration asks for.
+    ///
+    /// # Errors
+    /// The first fault of the configuration.
+    pub fn new(configure: &Configure) -> Result<Self, ConfigureVerdict> {
+        Ok(Self {
+            configure: *configure,
+            settings: convert::settings(configure)?,
+        })
+    }
+
+    /// The value of a parameter. It is `None` if there is no such parameter, or if the preset does not have
+    /// it.
+    #[must_use]
+    pub fn value(&self, parameter: u8) -> Option<f64> {
+        let parameter = PARAMETERS.get(usize::from(parameter))?;
+        get(parameter.name, self)
+    }
+
+    /// These values with one parameter changed.
+    ///
+    /// # Errors
+    /// The reason why the parameter cannot take this value.
+    pub fn with(
+        mut self,
+        number: u8,
+        value: f64,
+        in_flight: bool,
+    ) -> Result<Self, ParameterVerdict> {
+        let parameter = PARAMETERS
+            .get(usize::from(number))
+            .ok_or(ParameterVerdict::Unknown)?;
+        if get(parameter.name, &self).is_none() {
+            return Err(ParameterVerdict::NotInPreset);
+        }
+        let [least, most] = parameter.range;
+        // The range test also refuses NaN.
+        if !(least..=most).contains(&value) {
+            return Err(ParameterVerdict::Range);
+        }
+        let steps = value / parameter.step.unwrap_or(value);
+        if parameter.step.is_some() && libm::fabs(steps - libm::round(steps)) > 1e-4 {
+            return Err(ParameterVerdict::NotWhole);
+        }
+        if in_flight && !parameter.in_flight {
+            return Err(ParameterVerdict::InFlight);
+        }
+        let tracked = self.settings.planner.paths == 0;
+        let cruise = self.settings.cruise;
+        set(parameter.name, &mut self, value);
+        let planner = &self.settings.planner;
+        if planner.paths == 0 && planner.flight().is_some() {
+            return Err(ParameterVerdict::SetUp(ConfigureVerdict::PathsZero));
+        }
+        // A cycle that tracks a path differs from a cycle that refines paths, so the number of paths
+        // cannot change from or to zero in flight.
+        if in_flight && tracked != (planner.paths == 0) {
+            return Err(ParameterVerdict::PathsInFlight);
+        }
+        // The range of the elevator is relative to the trim of the cruise with which it was set.
+        if self.settings.actuators.elevator_range.is_some() && self.settings.cruise != cruise {
+            return Err(ParameterVerdict::CruiseFixed);
+        }
+        convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
+        Ok(self)
+    }
+}
+
+/// One parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Parameter {
+    /// Name, of at most 16 characters as in MAVLink.
+    pub name: &'static str,
+    /// Unit of the value, or a description of its values.
+    pub unit: &'static str,
+    /// Least and greatest value.
+    pub range: [f64; 2],
+    /// Step of the values: each value is a whole multiple of it.
+    pub step: Option<f64>,
+    /// Whether the value can change between two ticks of a flight. The next planning cycle then uses it. The
+    /// other parameters are built into the regulator, the estimator or the planner's model before the
+    /// flight.
+    pub in_flight: bool,
+}
+
+/// The number of the parameter with this name: its place in [`PARAMETERS`]. It is `None` if there is no
+/// such parameter.
+#[must_use]
+pub fn number(name: &str) -> Option<u8> {
+    let place = PARAMETERS
+        .iter()
+        .position(|parameter| parameter.name == name)?;
+    u8::try_from(place).ok()
+}
+
+/// The table of parameters, with code to read and to write each of them. The code selects a parameter by
+/// its name and calls no function pointer, so that the bound of the stack is known.
+macro_rules! parameters {
+    ($count:literal: $(
+        $name:literal, $unit:literal, $range:expr, $step:expr, $in_flight:expr,
+        |$of:ident| $get:expr, |$to:ident, $value:ident| $set:expr;
+    )*) => {
+        /// All parameters. A preset has only some of them.
+        pub const PARAMETERS: [Parameter; $count] = [$(Parameter {
+            name: $name,
+            unit: $unit,
+            range: $range,
+            step: $step,
+            in_flight: $in_flight,
+        }),*];
+
+        fn get(name: &str, tuning: &Tuning) -> Option<f64> {
+            match name {
+                $($name => {
+                    let $of = tuning;
+                    $get
+                })*
+                _ => None,
+            }
+        }
+
+        fn set(name: &str, tuning: &mut Tuning, value: f64) {
+            match name {
+                $($name => {
+                    let ($to, $value) = (tuning, value);
+                    $set;
+                })*
+                _ => {}
+            }
+        }
+    };
+}
+
+const BEFORE: bool = false;
+const ANY_TIME: bool = true;
+
+/// Duration of a number of ticks \[s\].
+fn seconds(ticks: u32) -> Option<f64> {
+    // The division gives the floating-point number that is nearest to the decimal number.
+    Some(f64::from(ticks) / 100.0)
+}
+
+/// The number of ticks nearest to a duration \[s\].
+fn ticks(seconds: f64) -> u32 {
+    libm::round(seconds / TICK_PERIOD) as u32
+}
+
+/// A value from the settings of the flight planner, if it is the chosen method.
+fn flight(tuning: &Tuning, get: impl FnOnce(&FlightSettings) -> f64) -> Option<f64> {
+    tuning.settings.planner.flight().map(get)
+}
+
+fn set_flight(tuning: &mut Tuning, set: impl FnOnce(&mut FlightSettings)) {
+    if let Some(own) = tuning.settings.planner.flight_mut() {
+        set(own);
+    }
+}
+
+/// A value from the padding of the paper's method, if it is the chosen method.
+#[cfg(feature = "paper")]
+fn padding(tuning: &Tuning, get: impl FnOnce(&Padding) -> f64) -> Option<f64> {
+    tuning.settings.planner.paper().map(|own| get(&own.padding))
+}
+
+#[cfg(not(feature = "paper"))]
+fn padding(_: &Tuning, _: impl FnOnce(&Padding) -> f64) -> Option<f64> {
+    None
+}
+
+#[cfg(feature = "paper")]
+fn set_padding(tuning: &mut Tuning, set: impl FnOnce(&mut Padding)) {
+    if let Some(own) = tuning.settings.planner.paper_mut() {
+        set(&mut own.padding);
+    }
+}
+
+#[cfg(not(feature = "paper"))]
+fn set_padding(_: &mut Tuning, _: impl FnOnce(&mut Padding)) {}
+
+/// A limit of an actuator, if the preset uses limits. 0 means no limit.
+fn limit(tuning: &Tuning, limit: Option<f64>) -> Option<f64> {
+    (tuning.configure.preset == Preset::Flight).then_some(limit.unwrap_or(0.0))
+}
+
+fn positive(value: f64) -> Option<f64> {
+    (value > 0.0).then_some(value)
+}
+
+parameters! { 41:
+    "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
+        |tuning| Some(tuning.settings.planner.paths as f64),
+        |tuning, value| tuning.settings.planner.paths = value as usize;
+    "MPP_REPLAN_S", "s", [0.1, 60.0], Some(TICK_PERIOD), ANY_TIME,
+        |tuning| seconds(tuning.configure.replan_period_ticks),
+        |tuning, value| tuning.configure.replan_period_ticks = ticks(value);
+    "MPP_LATENCY_S", "s", [0.01, 60.0], Some(TICK_PERIOD), ANY_TIME,
+        |tuning| seconds(tuning.configure.latency_ticks),
+        |tuning, value| {
+            tuning.configure.latency_ticks = ticks(value);
+            let latency = crate::time(tuning.configure.latency_ticks);
+            set_flight(tuning, |own| own.latency = latency);
+        };
+    "MPP_SLICES", "slices a tick; 0: all", [0.0, 1e6], Some(1.0), ANY_TIME,
+        |tuning| match tuning.configure.slices_per_tick {
+            u32::MAX => Some(0.0),
+            slices => Some(f64::from(slices)),
+        },
+        |tuning, value| {
+            tuning.configure.slices_per_tick = match value as u32 {
+                0 => u32::MAX,
+                slices => slices,
+            };
+        };
+    "MPP_ALT_M", "m", [0.0, 1000.0], None, ANY_TIME,
+        |tuning| Some(tuning.settings.planner.altitude),
+        |tuning, value| tuning.settings.planner.altitude = value;
+    "MPP_PAD_NEAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+        |tuning| padding(tuning, |padding| padding.near),
+        |tuning, value| set_padding(tuning, |padding| padding.near = value);
+    "MPP_PAD_FAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+        |tuning| padding(tuning, |padding| padding.far),
+        |tuning, value| set_padding(tuning, |padding| padding.far = value);
+    "MPP_ALPHA_LIM", "rad", [0.02, 0.5], None, ANY_TIME,
+        |tuning| flight(tuning, |own| own.attitude.angle_of_attack),
+        |tuning, value| set_flight(tuning, |own| own.attitude.angle_of_attack = value);
+    "MPP_GAMMA_LIM", "rad", [0.05, 0.78], None, ANY_TIME,
+        |tuning| flight(tuning, |own| own.attitude.flight_path),
+        |tuning, value| set_flight(tuning, |own| own.attitude.flight_path = value);
+    "MPP_PEN_LIN", "1/m", [1e-3, 1e8], None, ANY_TIME,
+        |tuning| flight(tuning, |own| own.penalty.linear),
+        |tuning, value| set_flight(tuning, |own| own.penalty.linear = value);
+    "MPP_PEN_QUAD", "1/m^2", [1e-3, 1e8], None, ANY_TIME,
+        |tuning| flight(tuning, |own| own.penalty.quadratic),
+        |tuning, value| set_flight(tuning, |own| own.penalty.quadratic = value);
+    "MPP_W_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.control[0]),
+        |tuning, value| tuning.settings.planner.weights.control[0] = value;
+    "MPP_W_THRUST", "1/N^2", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.control[1]),
+        |tuning, value| tuning.settings.planner.weights.control[1] = value;
+    "MPP_W_TERMINAL", "1", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.planner.weights.terminal),
+        |tuning, value| tuning.settings.planner.weights.terminal = value;
+    "MPP_CRUISE_MS", "m/s", [8.0, 20.0], None, BEFORE,
+        |tuning| tuning.settings.cruise.airspeed(),
+        |tuning, value| tuning.settings.cruise = Cruise::Airspeed(value);
+    "LQR_THRUST_N", "N", [0.0, 50.0], None, BEFORE,
+        |tuning| tuning.settings.design_thrust,
+        |tuning, value| tuning.settings.design_thrust = Some(value);
+    "LQR_Q_SPEED", "s^2/m^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[0]),
+        |tuning, value| tuning.settings.regulator.state[0] = value;
+    "LQR_Q_PITCH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[1]),
+        |tuning, value| tuning.settings.regulator.state[1] = value;
+    "LQR_Q_RATE", "s^2/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[2]),
+        |tuning, value| tuning.settings.regulator.state[2] = value;
+    "LQR_Q_PATH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.state[3]),
+        |tuning, value| tuning.settings.regulator.state[3] = value;
+    "LQR_R_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+        |tuning| Some(tuning.settings.regulator.elevator),
+        |tuning, value| tuning.settings.regulator.elevator = value;
+    "EKF_Q_SPEED", "m^2/s^2", [0.0, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[0]),
+        |tuning, value| tuning.settings.estimator.process_noise[0] = value;
+    "EKF_Q_PITCH", "rad^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[1]),
+        |tuning, value| tuning.settings.estimator.process_noise[1] = value;
+    "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[2]),
+        |tuning, value| tuning.settings.estimator.process_noise[2] = value;
+    "EKF_Q_PATH", "rad^2", [0.0, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.process_noise[3]),
+        |tuning, value| tuning.settings.estimator.process_noise[3] = value;
+    "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.airspeed_variance),
+        |tuning, value| tuning.settings.estimator.airspeed_variance = value;
+    "EKF_R_PITCH", "rad^2", [1e-9, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.pitch_variance),
+        |tuning, value| tuning.settings.estimator.pitch_variance = value;
+    "EKF_P_START", "-", [1e-9, 10.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.initial_variance),
+        |tuning, value| tuning.settings.estimator.initial_variance = value;
+    "EKF_GATE", "standard deviations", [1.0, 1000.0], None, BEFORE,
+        |tuning| Some(tuning.settings.estimator.gate),
+        |tuning, value| tuning.settings.estimator.gate = value;
+    "LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], None, BEFORE,
+        |tuning| Some(tuning.settings.cross_track),
+        |tuning, value| tuning.settings.cross_track = value;
+    "MPP_ROUNDS", "rounds of linearisation", [1.0, 20.0], Some(1.0), BEFORE,
+        |tuning| flight(tuning, |own| f64::from(own.rounds)),
+        |tuning, value| set_flight(tuning, |own| own.rounds = value as u8);
+    "MPP_DEEPENED", "candidates", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), BEFORE,
+        |tuning| flight(tuning, |own| own.deepened as f64),
+        |tuning, value| set_flight(tuning, |own| own.deepened = value as usize);
+    "MPP_MARGIN_M", "m", [0.1, 5.0], None, BEFORE,
+        |tuning| flight(tuning, |own| own.margin),
+        |tuning, value| set_flight(tuning, |own| own.margin = value);
+    "MPP_BAND_M", "m", [2.0, 100.0], None, BEFORE,
+        |tuning| flight(tuning, |own| own.band),
+        |tuning, value| set_flight(tuning, |own| own.band = value);
+    "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
+        |tuning| flight(tuning, |own| own.thrust_max),
+        |tuning, value| set_flight(tuning, |own| own.thrust_max = value);
+    "WIND_TC_S", "s", [0.01, 60.0], None, BEFORE,
+        |tuning| tuning.settings.wind,
+        |tuning, value| tuning.settings.wind = Some(value);
+    "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.thrust_max),
+        |tuning, value| tuning.settings.actuators.thrust_max = positive(value);
+    "ACT_THRUST_LAG_S", "s; 0: none", [0.0, 10.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.thrust_lag),
+        |tuning, value| tuning.settings.actuators.thrust_lag = positive(value);
+    "ACT_ELEV_RANGE", "either side of trim; 0: no limit", [0.0, 100.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.elevator_range),
+        |tuning, value| tuning.settings.actuators.elevator_range = positive(value);
+    "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
+        |tuning| limit(tuning, tuning.settings.actuators.elevator_rate),
+        |tuning, value| tuning.settings.actuators.elevator_rate = positive(value);
+    "THR_SPEED_GAIN", "N s/m", [0.0, 100.0], None, BEFORE,
+        |tuning| Some(tuning.settings.airspeed_hold),
+        |tuning, value| tuning.settings.airspeed_hold = value;
+}

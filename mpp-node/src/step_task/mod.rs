@@ -1,0 +1,395 @@
+//! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
+
+mod asker;
+mod tick;
+mod tune;
+
+use crate::convert;
+use crate::mail::{Answer, Order, Plan};
+use crate::parameters::Tuning;
+use asker::Asker;
+use hil_protocol::{
+    Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, LidarScan as WireScan, MAX_FRAME,
+    Message, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode,
+};
+use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
+use mpp_core::flight::FlightLoop;
+use mpp_core::health::Health;
+use mpp_core::planner::{PlanSummary, Verdict};
+use mpp_core::sense::LidarScan;
+use mpp_core::trajectory::Trajectory;
+
+/// The behaviour at the tick at which a plan is due but the planner has not answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// The tick waits until the planner has done all its slices. The harness sets the time, so the time
+    /// stands still meanwhile.
+    Lockstep,
+    /// The step goes on with the present trajectory. The planner ends its cycle at its next slice, and the
+    /// step takes over the plan at the following tick.
+    RealTime,
+}
+
+/// The cycle that the planner works on.
+#[derive(Clone, Copy)]
+struct Cycle {
+    /// The tick of the scan.
+    scan: u32,
+    /// The tick at which the plan is due.
+    due: u32,
+}
+
+/// A flight under way.
+struct Flight {
+    tuning: Tuning,
+    /// The cause of the last set-up of the planner.
+    asker: Asker,
+    /// Whether the planner is set up with the present values.
+    ready: bool,
+    control: FlightLoop,
+    last_tick: Option<u32>,
+    cycle: Option<Cycle>,
+    /// The tick of the last scan that started a cycle.
+    last_cycle: Option<u32>,
+    /// The tick of the scan from which the present trajectory was planned.
+    plan_tick: Option<u32>,
+    /// The tick of a checked scan that waits for its sensor frame.
+    scan_tick: Option<u32>,
+}
+
+/// The link and the 100 Hz step. It shares no data with the planner: the caller passes orders from
+/// [`StepTask::order`] to the [`crate::PlanTask`], and answers back to [`StepTask::answer`].
+///
+/// # Example
+///
+/// A hello, a configuration, and one sensor frame, which an actuator command answers.
+///
+/// ```
+/// use hil_protocol::{
+///     ActuatorLimits, AirframeId, Configure, Decoder, EncodeError, Hello, MAX_FRAME, Message, Preset,
+///     Role, SensorFrame, encode,
+/// };
+/// use mpp_node::{Pace, PlanTask, Progress, StepTask};
+///
+/// let mut step = StepTask::new(Pace::Lockstep);
+/// let mut plan = Box::new(PlanTask::new());
+/// let mut decoder = Decoder::new();
+/// // Gives the last message of the answer.
+/// let mut ask = |question: Message| -> Result<Option<Message>, EncodeError> {
+///     let (mut buffer, mut sent) = ([0; MAX_FRAME], Vec::new());
+///     for byte in encode(&question, &mut buffer)? {
+///         step.receive(*byte, |frame| sent.extend_from_slice(frame));
+///     }
+///     if let Some(order) = step.order() {
+///         plan.take(&order);
+///     }
+///     while plan.advance(step.clock()) == Progress::Working {}
+///     if let Some(answer) = plan.answer() {
+///         step.answer(answer, |frame| sent.extend_from_slice(frame));
+///     }
+///     Ok(sent.iter().filter_map(|byte| decoder.push(*byte)).flatten().last())
+/// };
+///
+/// let (role, software) = (Role::Harness, [0, 1, 0]);
+/// ask(Message::Hello(Hello { role, software, tick_period_us: 10_000, beams_max: 128, stages: 0 }))?;
+/// ask(Message::Configure(Configure {
+///     preset: Preset::Flight, airframe: AirframeId::Reference, paths: 25, seed: 0,
+///     replan_period_ticks: 100, latency_ticks: 50, slices_per_tick: 100,
+///     beams: 100, range_max: 45.0, altitude: 50.0, actuators: ActuatorLimits::default(),
+/// }))?;
+/// let frame = SensorFrame { tick: 0, airspeed: 12.0, pitch: 0.156, x: 0.0, z: 50.0 };
+/// let Some(Message::ActuatorCommand(command)) = ask(Message::SensorFrame(frame))? else {
+///     panic!("a sensor frame is answered by an actuator command");
+/// };
+/// // Level trim of the reference airframe.
+/// assert!(command.tick == 0 && (command.elevator - 3.749).abs() < 0.1);
+/// # Ok::<(), EncodeError>(())
+/// ```
+pub struct StepTask {
+    pace: Pace,
+    decoder: Decoder,
+    buffer: [u8; MAX_FRAME],
+    scan: LidarScan,
+    flight: Option<Flight>,
+    order: Option<Order>,
+    /// Number of the last set-up that the step ordered.
+    set_ups: u32,
+    /// A plan that is not due yet.
+    plan: Option<Plan>,
+    /// The sensor frame that waits for a plan.
+    held: Option<WireFrame>,
+    clock: u32,
+}
+
+impl StepTask {
+    /// A task that waits for a hello.
+    #[must_use]
+    pub const fn new(pace: Pace) -> Self {
+        Self {
+            pace,
+            decoder: Decoder::new(),
+            buffer: [0; MAX_FRAME],
+            scan: LidarScan::new(),
+            flight: None,
+            order: None,
+            set_ups: 0,
+            plan: None,
+            held: None,
+            clock: 0,
+        }
+    }
+
+    /// Sends a hello without being asked. By this hello a harness notices that a core has started during a
+    /// flight.
+    pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
+        self.greet(&mut send);
+    }
+
+    /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller must not give
+    /// bytes to a task that [waits](StepTask::waits).
+    pub fn receive(&mut self, byte: u8, mut send: impl FnMut(&[u8])) {
+        match self.decoder.push(byte) {
+            None => {}
+            Some(Ok(message)) => self.handle(&message, &mut send),
+            Some(Err(fault)) => self.reject(RejectionCause::Frame(fault), &mut send),
+        }
+    }
+
+    /// Whether the next byte of the link has to wait for an answer of the planner.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        self.held.is_some() || self.flight.as_ref().is_some_and(|flight| !flight.ready)
+    }
+
+    /// Takes the order for the planner, if there is one.
+    pub fn order(&mut self) -> Option<Order> {
+        self.order.take()
+    }
+
+    /// Takes an answer of the planner.
+    pub fn answer(&mut self, answer: Answer, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        match answer {
+            Answer::Plan(plan) => {
+                // The step drops a plan that does not belong to the present cycle, for example one from a
+                // session that has ended.
+                let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
+                if cycle.is_some_and(|cycle| cycle.scan == plan.scan_tick) {
+                    self.plan = Some(plan);
+                }
+            }
+            Answer::SetUp { number, result } if number == self.set_ups => {
+                self.set_up_done(result.map_err(convert::setup_verdict), send);
+            }
+            // The step drops an answer to an earlier set-up.
+            Answer::SetUp { .. } => {}
+        }
+        if let Some(frame) = self.held.take() {
+            self.tick(&frame, send);
+        }
+    }
+
+    /// Handles a restart of the planner: orders its set-up, and ends its cycle without a trajectory.
+    pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        let Some(flight) = &self.flight else {
+            return;
+        };
+        let (tuning, ready, cycle) = (flight.tuning, flight.ready, flight.cycle);
+        self.order_set_up(tuning);
+        if !ready {
+            return;
+        }
+        self.reject(RejectionCause::PlannerRestarted, send);
+        if let Some(Cycle {
+            scan: scan_tick, ..
+        }) = cycle
+            && self.plan.is_none()
+        {
+            self.plan = Some(Plan {
+                scan_tick,
+                verdict: Verdict::Nothing,
+                summary: PlanSummary {
+                    cost: f64::INFINITY,
+                    violation: f64::INFINITY,
+                    ..PlanSummary::default()
+                },
+                trajectory: Trajectory::new(),
+            });
+        }
+        if let Some(frame) = self.held.take() {
+            self.tick(&frame, send);
+        }
+    }
+
+    /// Reports that bytes of the link were lost before they reached this task.
+    pub fn bytes_lost(&mut self, count: u32, mut send: impl FnMut(&[u8])) {
+        self.reject(RejectionCause::BytesLost { count }, &mut send);
+    }
+
+    /// The tick of the last step of this flight, if there was one.
+    #[must_use]
+    pub fn last_tick(&self) -> Option<u32> {
+        self.flight.as_ref().and_then(|flight| flight.last_tick)
+    }
+
+    /// The tick up to which the planner may use its slices: the clock of [`crate::PlanTask::advance`].
+    #[must_use]
+    pub fn clock(&self) -> u32 {
+        self.clock
+    }
+
+    /// The counters of this flight; `None` before the configuration.
+    #[must_use]
+    pub fn health(&self) -> Option<&Health> {
+        self.flight.as_ref().map(|flight| flight.control.health())
+    }
+
+    fn handle(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
+        match message {
+            Message::Hello(_) => self.greet(send),
+            Message::Configure(configure) => self.configure(configure, send),
+            Message::SetParameter(set) => self.set_parameter(set, send),
+            Message::LidarScan(scan) => self.take_scan(scan, send),
+            Message::SensorFrame(frame) => self.sensor_frame(frame, send),
+            other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
+        }
+    }
+
+    fn emit(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
+        // The buffer holds the longest message, so this cannot fail.
+        if let Ok(frame) = encode(message, &mut self.buffer) {
+            send(frame);
+        }
+    }
+
+    fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
+        let tick = self.last_tick().unwrap_or(0);
+        self.emit(&Message::Rejection(Rejection { tick, cause }), send);
+    }
+
+    /// Answers a hello. It starts a new session, whatever the state of the last one.
+    fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
+        self.flight = None;
+        self.plan = None;
+        let hello = Hello {
+            role: Role::Core,
+            software: software(),
+            tick_period_us: (TICK_PERIOD * 1e6) as u32,
+            beams_max: MAX_BEAMS as u16,
+            stages: STAGES as u16,
+        };
+        self.emit(&Message::Hello(hello), send);
+    }
+
+    fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
+        match self.prepare(configure) {
+            Ok(flight) => {
+                self.order_set_up(flight.tuning);
+                self.flight = Some(flight);
+            }
+            Err(verdict) => self.reply(verdict, send),
+        }
+    }
+
+    /// Orders the set-up of the planner. It replaces an order that still waits.
+    fn order_set_up(&mut self, tuning: Tuning) {
+        self.set_ups = self.set_ups.wrapping_add(1);
+        self.order = Some(Order::SetUp {
+            number: self.set_ups,
+            tuning,
+        });
+    }
+
+    /// A flight that waits for the planner to be set up.
+    fn prepare(&self, configure: &Configure) -> Result<Flight, ConfigureVerdict> {
+        if self.flight.is_some() {
+            return Err(ConfigureVerdict::AlreadyConfigured);
+        }
+        let tuning = Tuning::new(configure)?;
+        Ok(Flight {
+            tuning,
+            asker: Asker::Configure,
+            ready: false,
+            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
+            last_tick: None,
+            cycle: None,
+            last_cycle: None,
+            plan_tick: None,
+            scan_tick: None,
+        })
+    }
+
+    fn set_up_done(&mut self, result: Result<(), ConfigureVerdict>, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        if flight.ready {
+            // The planner was restarted in flight, so no sender waits for a reply.
+            return;
+        }
+        if flight.asker != Asker::Configure {
+            return self.tuned(result, send);
+        }
+        match result {
+            Ok(()) => {
+                flight.ready = true;
+                self.reply(ConfigureVerdict::Accepted, send);
+            }
+            Err(verdict) => {
+                self.flight = None;
+                self.reply(verdict, send);
+            }
+        }
+    }
+
+    fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
+        self.emit(&Message::ConfigureReply(ConfigureReply { verdict }), send);
+    }
+
+    fn take_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let (beams, range_max) = {
+            let configure = &flight.tuning.configure;
+            (configure.beams, configure.range_max)
+        };
+        convert::scan(wire, &mut self.scan);
+        match self.scan.check(usize::from(beams), f64::from(range_max)) {
+            Ok(()) => flight.scan_tick = Some(wire.tick),
+            Err(error) => {
+                flight.scan_tick = None;
+                self.reject(convert::scan_rejection(error), send);
+            }
+        }
+    }
+
+    fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let expected = flight
+            .last_tick
+            .map_or(frame.tick, |last| last.saturating_add(1));
+        if frame.tick != expected {
+            let found = frame.tick;
+            self.reject(RejectionCause::TickOrder { expected, found }, send);
+            if found < expected {
+                // The frame is old: the step for its tick is already done.
+                return;
+            }
+        }
+        self.tick(frame, send);
+    }
+}
+
+/// The version of this crate.
+fn software() -> [u8; 3] {
+    let part = |text: &str| text.parse().unwrap_or(0);
+    [
+        part(env!("CARGO_PKG_VERSION_MAJOR")),
+        part(env!("CARGO_PKG_VERSION_MINOR")),
+        part(env!("CARGO_PKG_VERSION_PATCH")),
+    ]
+}

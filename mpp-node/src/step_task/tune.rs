@@ -1,0 +1,81 @@
+//! Changes of parameters. Before the flight the core is set up anew; in flight the next cycle takes the
+//! new value.
+
+use super::StepTask;
+use super::asker::Asker;
+use crate::convert;
+use hil_protocol::{ConfigureVerdict, Message, ParameterReply, ParameterVerdict, SetParameter};
+use mpp_core::flight::FlightLoop;
+
+impl StepTask {
+    pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
+        if let Err(verdict) = self.tune(set) {
+            self.reply_to_parameter(set.parameter, verdict, send);
+        } else if self.flight.as_ref().is_some_and(|flight| flight.ready) {
+            self.reply_to_parameter(set.parameter, ParameterVerdict::Accepted, send);
+        }
+    }
+
+    /// Takes over a value. Before the flight the reply waits for the planner.
+    fn tune(&mut self, set: &SetParameter) -> Result<(), ParameterVerdict> {
+        let Some(flight) = &mut self.flight else {
+            return Err(ParameterVerdict::NotConfigured);
+        };
+        let before = flight.tuning;
+        let in_flight = flight.last_tick.is_some();
+        let tuning = before.with(set.parameter, set.value, in_flight)?;
+        if !in_flight {
+            let failed = |error| ParameterVerdict::SetUp(convert::setup_verdict(error));
+            flight.control = FlightLoop::new(&tuning.settings).map_err(failed)?;
+            flight.ready = false;
+            flight.asker = Asker::Parameter(set.parameter, before);
+        }
+        flight.tuning = tuning;
+        if !in_flight {
+            self.order_set_up(tuning);
+        }
+        Ok(())
+    }
+
+    /// Handles the result of a set-up with a new value of a parameter, or with the previous values again.
+    pub(super) fn tuned(
+        &mut self,
+        result: Result<(), ConfigureVerdict>,
+        send: &mut impl FnMut(&[u8]),
+    ) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        let Asker::Parameter(number, before) = flight.asker else {
+            // The previous values have worked before, so their result needs no check.
+            flight.ready = true;
+            return;
+        };
+        let verdict = match result {
+            Ok(()) => {
+                flight.ready = true;
+                ParameterVerdict::Accepted
+            }
+            Err(verdict) => {
+                flight.tuning = before;
+                if let Ok(control) = FlightLoop::new(&before.settings) {
+                    flight.control = control;
+                }
+                flight.asker = Asker::Nobody;
+                self.order_set_up(before);
+                ParameterVerdict::SetUp(verdict)
+            }
+        };
+        self.reply_to_parameter(number, verdict, send);
+    }
+
+    fn reply_to_parameter(
+        &mut self,
+        parameter: u8,
+        verdict: ParameterVerdict,
+        send: &mut impl FnMut(&[u8]),
+    ) {
+        let reply = ParameterReply { parameter, verdict };
+        self.emit(&Message::ParameterReply(reply), send);
+    }
+}

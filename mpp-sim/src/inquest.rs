@@ -1,0 +1,273 @@
+//! The cause of a failed flight. Rules that use measured values give each failure one cause.
+//!
+//! For a collision the inquest checks the obstacle that was hit and the plan flown at impact. The
+//! first rule that applies gives the cause:
+//!
+//! 1. no plan was flown ([`Class::NoPlan`]): [`Cause::NoPlan`];
+//! 2. the plan passes the true circle at [`KEPT`] or more: [`Cause::Tracking`];
+//! 3. no beam had met the obstacle when the plan was made, or the first plan that could know it was
+//!    taken over less than [`REACTION`] before impact: [`Cause::Hidden`];
+//! 4. a candidate of the plan's cycle kept every margin in the map: [`Cause::Misjudged`];
+//! 5. the last plan before whose cycle had such a candidate passes an obstacle that no beam had met
+//! 5. the last earlier plan whose cycle had such a candidate passes nearer than [`MARGIN`] to an
+//!    obstacle that no beam had met then and that stands within [`ALLEY`] of the one that was hit:
+//!    [`Cause::BlindAlley`];
+//!
+//! For other failures the cause is the class.
+
+use crate::field::{Field, Obstacle, Point};
+use crate::lidar::RANGE_MIN;
+use crate::moment::Moment;
+use crate::outcome::Class;
+use crate::scenario::Scenario;
+use hil_protocol::LidarScan;
+use mpp_core::vehicle::VehicleState;
+use serde::{Deserialize, Serialize};
+
+/// Least distance from a true circle at which a plan counts as one that kept its margin \[m\]. The
+/// value allows for the coarseness of cells and knots.
+pub const KEPT: f64 = 0.2;
+/// Distance from a true circle that every plan keeps if it knows the circle \[m\].
+pub const MARGIN: f64 = 0.8;
+/// Distance along the track, in both directions, within which an obstacle can close the way past
+/// another \[m\]. It is one second of flight.
+pub const ALLEY: f64 = 12.0;
+/// Time that the aircraft needs to avoid a circle straight ahead \[s\].
+pub const REACTION: f64 = 0.7;
+
+/// Largest distance between a return and the obstacle that it came from: the sum of a length \[m\]
+/// and a share of the range.
+const DOUBT: (f64, f64) = (2.0, 0.05);
+
+/// The cause of a failed flight.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Cause {
+    /// Collision with an obstacle that no beam met, or that a beam met too late.
+    Hidden,
+    /// Collision with a known obstacle, on a way that was open until a hidden obstacle closed it.
+    BlindAlley,
+    /// Collision with a known obstacle: no candidate kept its margin, and no hidden obstacle is the
+    /// cause.
+    NoWay,
+    /// Collision with a known obstacle that the plan leads into, although candidates kept their
+    /// margin.
+    Misjudged,
+    /// Collision although the plan kept its margin: the aircraft was off the plan.
+    Tracking,
+    /// The cause of the class [`Class::NoPlan`].
+    NoPlan,
+    /// The cause of the class [`Class::Pitch`].
+    Pitch,
+    /// The cause of the class [`Class::FlightPath`].
+    FlightPath,
+    /// The cause of the class [`Class::LeftBand`].
+    LeftBand,
+}
+
+impl Cause {
+    /// Its name in rows and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hidden => "hidden",
+            Self::BlindAlley => "blind-alley",
+            Self::NoWay => "no-way",
+            Self::Misjudged => "misjudged",
+            Self::Tracking => "tracking",
+            Self::NoPlan => "no-plan",
+            Self::Pitch => "pitch",
+            Self::FlightPath => "flight-path",
+            Self::LeftBand => "left-band",
+        }
+    }
+}
+
+/// A failure and the values that were measured for it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Failure {
+    /// Cause of the failure.
+    pub cause: Cause,
+    /// Time from the first scan that met the obstacle until impact \[s\]; null without such a scan.
+    pub seen_before: Option<f64>,
+    /// Least distance of the plan flown at impact from the obstacle's edge \[m\]. It is negative
+    /// inside, and null without a plan or an obstacle.
+    pub plan_clearance: Option<f64>,
+    /// Distance of the aircraft from that plan \[m\]; null without a collision or a plan.
+    pub off_plan: Option<f64>,
+}
+
+/// A scan with its time and the true state.
+struct Sight {
+    t: f64,
+    state: VehicleState,
+    scan: LidarScan,
+}
+
+/// A plan that was flown.
+struct Plan {
+    /// Time of its scan \[s\].
+    made: f64,
+    /// Time at which it was taken over \[s\].
+    used: f64,
+    /// Whether a candidate of its cycle kept every margin.
+    feasible: bool,
+    /// Positions along the plan.
+    path: Vec<Point>,
+}
+
+/// Collects evidence while a flight goes on.
+#[derive(Default)]
+pub(crate) struct Inquest {
+    sights: Vec<Sight>,
+    plans: Vec<Plan>,
+}
+
+impl Inquest {
+    /// Records one tick.
+    pub(crate) fn watch(&mut self, moment: &Moment<'_>) {
+        let (t, state) = (moment.tick.t, moment.tick.state);
+        if let Some(scan) = moment.scan {
+            let scan = scan.clone();
+            self.sights.push(Sight { t, state, scan });
+        }
+        if let (Some(report), Some(trajectory)) = (moment.report, moment.trajectory) {
+            let knots = trajectory.knots.iter();
+            self.plans.push(Plan {
+                made: Scenario::time(report.scan_tick),
+                used: Scenario::time(report.used_from_tick),
+                feasible: report.feasible > 0,
+                path: knots
+                    .map(|[x, z, _]| (f64::from(*x), f64::from(*z)))
+                    .collect(),
+            });
+        }
+    }
+
+    /// The failure of a flight that ended at `t_end` \[s\]. `last` holds the positions before and
+    /// after the last tick. Returns `None` if the flight did not fail by itself.
+    pub(crate) fn conclude(
+        &self,
+        class: Class,
+        field: &dyn Field,
+        last: (Point, Point),
+        t_end: f64,
+    ) -> Option<Failure> {
+        let cause = match class {
+            Class::Success | Class::Terminated | Class::Interrupted => return None,
+            Class::Collision => return Some(self.collision(field.obstacles(), last, t_end)),
+            Class::LeftBand => Cause::LeftBand,
+            Class::Pitch => Cause::Pitch,
+            Class::FlightPath => Cause::FlightPath,
+            Class::NoPlan => Cause::NoPlan,
+        };
+        Some(Failure {
+            cause,
+            seen_before: None,
+            plan_clearance: None,
+            off_plan: None,
+        })
+    }
+
+    fn collision(&self, field: &[Obstacle], last: (Point, Point), t_end: f64) -> Failure {
+        let seen = self.first_seen(field);
+        let clearance = |index: &usize| field[*index].clearance_of_segment(last.0, last.1);
+        let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)));
+        // A field that does not consist of circles may have none. Then no beam has met the obstacle
+        // that was hit.
+        let first_met = hit.and_then(|hit| seen[hit]);
+        let mut failure = Failure {
+            cause: Cause::NoPlan,
+            seen_before: first_met.map(|t| t_end - t),
+            plan_clearance: None,
+            off_plan: None,
+        };
+        let Some((flown, earlier)) = self.plans.split_last() else {
+            return failure;
+        };
+        let (x, z) = last.1;
+        let aircraft = Obstacle { x, z, radius: 0.0 };
+        let clearance = hit.map(|hit| passes(&field[hit], &flown.path));
+        failure.plan_clearance = clearance;
+        failure.off_plan = Some(passes(&aircraft, &flown.path));
+        let knowing = |plan: &&Plan| first_met.is_some_and(|t| t <= plan.made);
+        let first_knowing = self.plans.iter().find(knowing);
+        let in_time = first_knowing.is_some_and(|plan| t_end - plan.used >= REACTION);
+        failure.cause = if clearance.is_some_and(|clearance| clearance >= KEPT) {
+            Cause::Tracking
+        } else if !in_time {
+            Cause::Hidden
+        } else if flown.feasible {
+            Cause::Misjudged
+        } else if earlier
+            .iter()
+            .rfind(|plan| plan.feasible)
+            .zip(hit)
+            .is_some_and(|(plan, hit)| leads_into_the_dark(plan, field, &seen, &field[hit]))
+        {
+            Cause::BlindAlley
+        } else {
+            Cause::NoWay
+        };
+        failure
+    }
+
+    /// Time at which a beam first met each obstacle \[s\].
+    fn first_seen(&self, field: &[Obstacle]) -> Vec<Option<f64>> {
+        let mut seen = vec![None; field.len()];
+        for sight in &self.sights {
+            for index in met(sight, field) {
+                seen[index].get_or_insert(sight.t);
+            }
+        }
+        seen
+    }
+}
+
+/// The obstacles from which a scan's returns come.
+fn met(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
+    let Sight { state, scan, .. } = sight;
+    let obstacle_of = |(beam, range): (usize, &f32)| {
+        let range = f64::from(*range);
+        let increment = f64::from(scan.angle_increment) * beam as f64;
+        let angle = state.air.pitch + f64::from(scan.angle_min) + increment;
+        let (up, ahead) = libm::sincos(angle);
+        let entries = field.iter().enumerate().filter_map(|(index, obstacle)| {
+            let entry = obstacle.range((state.x, state.z), (ahead, up))?;
+            Some((index, entry.max(RANGE_MIN)))
+        });
+        let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let told = range > 0.0 && (range - entry).abs() <= DOUBT.0 + DOUBT.1 * entry;
+        told.then_some(nearest)
+    };
+    scan.ranges
+        .iter()
+        .enumerate()
+        .filter_map(obstacle_of)
+        .collect()
+}
+
+/// Whether a plan passes nearer than [`MARGIN`] to an obstacle that no beam had met yet and that
+/// stands within [`ALLEY`] of the one that was hit.
+fn leads_into_the_dark(
+    plan: &Plan,
+    field: &[Obstacle],
+    seen: &[Option<f64>],
+    hit: &Obstacle,
+) -> bool {
+    let obstacles = field.iter().zip(seen);
+    obstacles
+        .filter(|(_, seen)| seen.is_none_or(|t| t > plan.made))
+        .filter(|(obstacle, _)| (obstacle.x - hit.x).abs() <= ALLEY)
+        .any(|(obstacle, _)| passes(obstacle, &plan.path) < MARGIN)
+}
+
+/// Least distance of a path from a circle \[m\].
+fn passes(circle: &Obstacle, path: &[Point]) -> f64 {
+    let legs = path.iter().zip(path.iter().skip(1));
+    legs.map(|(from, to)| circle.clearance_of_segment(*from, *to))
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests;

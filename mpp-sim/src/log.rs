@@ -1,0 +1,244 @@
+//! One flight as JSON.
+//!
+//! A log holds what happened in the flight and nothing about the link, the machine or the wall
+//! clock: a seed gives the same bytes in process, over TCP and on other machines. The bytes are
+//! compact JSON in the order of the fields here; a log's file is exactly the bytes that are hashed,
+//! so `sha256sum flight.json` begins with [`FlightLog::hash`].
+
+mod summary;
+
+pub use summary::Summary;
+
+use crate::entries::{Columns, ObstacleEntry, PlanEntry, RejectionEntry};
+use crate::faults::Faults;
+use crate::field::{Field, Obstacle};
+use crate::lidar::LidarConfig;
+use crate::names::UnknownName;
+use crate::orders::OrderEntry;
+use crate::scenario::{Scenario, ScenarioError, Times};
+use crate::scene::Scene;
+use crate::sensors::AirDataNoise;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt;
+
+/// Version of the log's layout.
+pub const SCHEMA: u32 = 2;
+
+/// One flight from its parameters to its outcome.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlightLog {
+    /// [`SCHEMA`].
+    pub schema: u32,
+    /// The flight's parameters.
+    pub header: Header,
+    /// The ticks of the flight, at 100 Hz.
+    pub ticks: Columns,
+    /// Every plan that the core delivered.
+    pub plans: Vec<PlanEntry>,
+    /// Every input that the core refused.
+    pub rejections: Vec<RejectionEntry>,
+    /// Every order from the ground that took effect; not written if there was no such order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub orders: Vec<OrderEntry>,
+    /// The end of the flight and its totals.
+    pub summary: Summary,
+}
+
+/// The flight's parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Header {
+    /// Version of `mpp-sim`.
+    pub package_version: String,
+    /// Seed of the field and of all noise.
+    pub seed: u64,
+    /// Number of obstacles.
+    pub obstacles: usize,
+    /// Number of candidate paths that the planner asks for.
+    pub paths: usize,
+    /// Name of the planner's preset.
+    pub preset: String,
+    /// Name of the airframe.
+    pub airframe: String,
+    /// Replanning rate \[Hz\].
+    pub replan_hz: f64,
+    /// Time from a scan until its plan is flown \[s\].
+    pub latency: f64,
+    /// Slices of planning work done in each tick; not written if each tick does all of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slices_per_tick: Option<u32>,
+    /// Planned duration of the flight \[s\].
+    pub duration: f64,
+    /// The lidar.
+    pub lidar: LidarConfig,
+    /// Errors of the airspeed and pitch sensors.
+    pub air_data: AirDataNoise,
+    /// Faults and disturbances.
+    pub faults: Faults,
+    /// The challenge scene, if any.
+    pub scene: Option<Scene>,
+    /// Whether an oracle flew; not written if this is false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub oracle: bool,
+    /// The obstacles.
+    pub field: Vec<ObstacleEntry>,
+}
+
+impl Header {
+    /// The header of a flight of this scenario in this field.
+    #[must_use]
+    pub fn of(scenario: &Scenario, field: &dyn Field) -> Self {
+        Self {
+            package_version: env!("CARGO_PKG_VERSION").to_owned(),
+            seed: scenario.seed,
+            obstacles: scenario.obstacles,
+            paths: usize::from(scenario.paths),
+            preset: scenario.preset.name().to_owned(),
+            airframe: scenario.airframe.name().to_owned(),
+            replan_hz: scenario.replan_hz(),
+            latency: Scenario::time(scenario.latency_ticks),
+            slices_per_tick: Some(scenario.slices_per_tick).filter(|slices| *slices != u32::MAX),
+            duration: Scenario::time(scenario.ticks),
+            lidar: scenario.lidar,
+            air_data: scenario.air_data,
+            faults: scenario.faults,
+            scene: scenario.scene,
+            oracle: scenario.oracle,
+            field: field.obstacles().iter().map(ObstacleEntry::from).collect(),
+        }
+    }
+
+    /// The scenario that was flown, unless the flight had a world of its own.
+    ///
+    /// # Errors
+    /// [`LogError::Header`] when no scenario file could ask for it.
+    pub fn scenario(&self) -> Result<Scenario, LogError> {
+        let unknown = |key, error: UnknownName| {
+            LogError::Header(ScenarioError::Value(key, error.to_string()))
+        };
+        let preset = self
+            .preset
+            .parse()
+            .map_err(|error| unknown("preset", error))?;
+        let scenario = Scenario {
+            obstacles: self.obstacles,
+            scene: self.scene,
+            airframe: (self.airframe.parse()).map_err(|error| unknown("airframe", error))?,
+            // Too many for the type are too many for a scenario.
+            paths: u16::try_from(self.paths).unwrap_or(u16::MAX),
+            slices_per_tick: self.slices_per_tick.unwrap_or(u32::MAX),
+            lidar: self.lidar,
+            air_data: self.air_data,
+            faults: self.faults,
+            oracle: self.oracle,
+            ..Scenario::new(preset, self.seed)
+        };
+        let times = Times {
+            replan_hz: self.replan_hz,
+            latency: self.latency,
+            duration: self.duration,
+        };
+        let field = self.field.iter();
+        let field = field.map(|&ObstacleEntry { x, z, radius }| Obstacle { x, z, radius });
+        scenario.recorded(times, field).map_err(LogError::Header)
+    }
+}
+
+impl FlightLog {
+    /// The log of a flight that is about to begin.
+    #[must_use]
+    pub fn begin(header: Header) -> Self {
+        Self {
+            schema: SCHEMA,
+            header,
+            ticks: Columns::default(),
+            plans: Vec::new(),
+            rejections: Vec::new(),
+            orders: Vec::new(),
+            summary: Summary::default(),
+        }
+    }
+
+    /// The log's bytes.
+    ///
+    /// # Errors
+    /// [`LogError::Json`].
+    pub fn to_json(&self) -> Result<Vec<u8>, LogError> {
+        Ok(serde_json::to_vec(self)?)
+    }
+
+    /// Reads a log from its bytes.
+    ///
+    /// # Errors
+    /// [`LogError::Json`], or [`LogError::Schema`] for another version's log.
+    pub fn from_json(bytes: &[u8]) -> Result<Self, LogError> {
+        #[derive(Deserialize)]
+        struct Version {
+            schema: u32,
+        }
+        // The version is read first. The fields of another version's log would only cause an error
+        // about a missing field.
+        let version: Version = serde_json::from_slice(bytes)?;
+        if version.schema != SCHEMA {
+            return Err(LogError::Schema(version.schema));
+        }
+        Ok(serde_json::from_slice(bytes)?)
+    }
+
+    /// First 16 hexadecimal digits of the SHA-256 of the log's bytes.
+    ///
+    /// # Errors
+    /// [`LogError::Json`].
+    pub fn hash(&self) -> Result<String, LogError> {
+        let digest = Sha256::digest(self.to_json()?);
+        Ok(digest[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect())
+    }
+}
+
+/// The reason why bytes are no log, or why a log cannot be written.
+#[derive(Debug)]
+pub enum LogError {
+    /// The bytes are not a log, or a value cannot be written.
+    Json(serde_json::Error),
+    /// The log has the layout of another version; holds that version.
+    Schema(u32),
+    /// The header says what cannot be flown.
+    Header(ScenarioError),
+}
+
+impl fmt::Display for LogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Json(error) => write!(f, "flight log: {error}"),
+            Self::Header(error) => write!(f, "flight log: header.{error}"),
+            Self::Schema(found) => {
+                write!(
+                    f,
+                    "flight log has schema {found}, this program reads {SCHEMA}"
+                )
+            }
+        }
+    }
+}
+
+impl core::error::Error for LogError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Json(error) => Some(error),
+            Self::Header(error) => Some(error),
+            Self::Schema(_) => None,
+        }
+    }
+}
+
+impl From<serde_json::Error> for LogError {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Json(error)
+    }
+}
+
+#[cfg(test)]
+mod tests;

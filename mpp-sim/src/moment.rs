@@ -1,0 +1,20 @@
+//! The data of one tick, for an observer of a flight.
+
+use crate::entries::{PlanEntry, Tick};
+use hil_protocol::{LidarScan, PlanReport, PlanTrajectory};
+
+/// The data of one tick.
+pub struct Moment<'a> {
+    /// The tick as logged.
+    pub tick: &'a Tick,
+    /// The scan taken at this tick, if one was.
+    pub scan: Option<&'a LidarScan>,
+    /// The plan taken over at this tick, if one was.
+    pub plan: Option<&'a PlanEntry>,
+    /// The core's report on this plan.
+    pub report: Option<&'a PlanReport>,
+    /// The plan's trajectory.
+    pub trajectory: Option<&'a PlanTrajectory>,
+    /// Inputs refused so far.
+    pub rejections: usize,
+}

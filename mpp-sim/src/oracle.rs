@@ -1,0 +1,148 @@
+//! An upper bound with full information: preset `flight` as it would fly if it knew everything.
+//!
+//! Plant, field, gusts and actuators are the same, from the same seed. The core is the same too,
+//! with these differences:
+//!
+//! * its planner starts from the true position with the true velocity over ground; its map holds
+//!   every circle of the field, and everything else is free, so that nothing is hidden or unknown;
+//! * its sensors are exact, so that the regulator tracks by an estimate without noise;
+//! * it replans at [`crate::scenario::ORACLE_REPLAN_HZ`], its plans are flown a tick later, and
+//!   every candidate gets all rounds of linearisation.
+//!
+//! The oracle knows no future gust and no fault of the actuators. A flight that the oracle fails is
+//! not proven to be impossible: the planner's horizon, window and margin limit the oracle.
+
+use crate::field::{Field, Obstacle};
+use crate::scenario::ALTITUDE;
+use mpp_core::planner::Planner;
+use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_node::Order;
+
+/// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
+const REACH: f64 = 80.0;
+
+/// The knowledge of an oracle.
+pub struct Oracle {
+    obstacles: Vec<Obstacle>,
+    /// True state and wind; `None` before the first tick.
+    truth: Option<(VehicleState, Wind)>,
+}
+
+impl Oracle {
+    /// An oracle that knows this field, before its first tick.
+    pub(crate) fn new(field: &dyn Field) -> Self {
+        Self {
+            obstacles: field.obstacles().to_vec(),
+            truth: None,
+        }
+    }
+
+    /// Takes the true state of the aircraft and the motion of the air.
+    pub(crate) fn see(&mut self, truth: &VehicleState, wind: Wind) {
+        self.truth = Some((*truth, wind));
+    }
+
+    /// Replaces the core's estimates and its map by the truth.
+    pub(crate) fn advise(&self, order: &mut Order, planner: &mut Planner) {
+        match order {
+            Order::SetUp { tuning, .. } => {
+                if let Some(own) = tuning.settings.planner.flight_mut() {
+                    own.deepened = usize::MAX;
+                }
+            }
+            Order::Begin {
+                state,
+                conditions,
+                scan,
+                ..
+            } => {
+                if let Some((truth, wind)) = &self.truth {
+                    // The regulator tracks with the estimated motion. The error of this estimate
+                    // counts as wind.
+                    let (x, z) = wind.ground_velocity(&truth.air);
+                    let (ahead, up) = Wind::STILL.ground_velocity(&state.air);
+                    conditions.wind = Wind {
+                        x: x - ahead,
+                        z: z - up,
+                    };
+                    (state.x, state.z) = (truth.x, truth.z);
+                }
+                // Beams would clear occupied cells that they graze.
+                scan.ranges.clear();
+                let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH;
+                let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
+                if let Some(planner) = planner.flight_mut() {
+                    let map = planner.map_mut();
+                    map.roll(state.x, ALTITUDE);
+                    map.know(|x, z| {
+                        near.iter()
+                            .any(|obstacle| obstacle.clearance((x, z)) <= 0.0)
+                    });
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::field::Obstacle;
+    use crate::flight::{FlyError, fly};
+    use crate::link::LinkError;
+    use crate::outcome::Outcome;
+    use crate::pipe::PipeLink;
+    use crate::scenario::{Preset, Scenario};
+
+    /// A flight with a lidar that sees two metres and with obstacles straight ahead.
+    fn in_the_dark() -> Scenario {
+        let mut scenario = Scenario {
+            obstacles: 0,
+            ticks: 1000,
+            ..Scenario::new(Preset::Flight, 1)
+        };
+        scenario.lidar.range_max = 2.0;
+        for x in [40.0, 70.0] {
+            let (z, radius) = (50.0, 2.0);
+            scenario.placed.push(Obstacle { x, z, radius });
+        }
+        scenario
+    }
+
+    #[test]
+    fn an_oracle_flies_around_what_the_lidar_does_not_see() {
+        let blind = fly(&in_the_dark(), &mut PipeLink::new(), |_| {}).unwrap();
+        assert_eq!(blind.summary.outcome, Outcome::Collision);
+        let scenario = in_the_dark().informed();
+        let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert_eq!(log.summary.outcome, Outcome::Survived);
+        assert!(log.header.oracle && log.summary.min_clearance.unwrap() > 0.2);
+        assert_eq!(log.plans.len(), 100);
+    }
+
+    /// The oracle knows more but cannot do more. A wall fills the band, so the oracle flies into
+    /// the wall, or it leaves the band to fly around the wall.
+    #[test]
+    fn an_oracle_does_not_fly_through_walls() {
+        let mut scenario = in_the_dark();
+        scenario.placed = (0..30)
+            .map(|row| Obstacle {
+                x: 40.0,
+                z: 35.5 + f64::from(row),
+                radius: 1.0,
+            })
+            .collect();
+        let scenario = scenario.informed();
+        let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert!(!log.summary.strict);
+    }
+
+    #[test]
+    fn a_core_that_is_no_oracle_says_so() {
+        let scenario = in_the_dark().informed();
+        let error = fly(&scenario, &mut PipeLink::new(), |_| {}).unwrap_err();
+        assert!(
+            matches!(error, FlyError::Link(LinkError::NoOracle)),
+            "{error}"
+        );
+    }
+}

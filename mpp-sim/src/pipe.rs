@@ -1,0 +1,103 @@
+//! The core in the harness's own process, behind a pipe of bytes.
+
+use crate::field::Field;
+use crate::link::{Link, LinkError};
+use crate::oracle::Oracle;
+use crate::scenario::Scenario;
+use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
+use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_node::FlightNode;
+use std::collections::VecDeque;
+
+/// A core in this process. Bytes go in and come out as they would over a wire.
+pub struct PipeLink {
+    node: Box<FlightNode>,
+    oracle: Option<Oracle>,
+    to_harness: VecDeque<u8>,
+    decoder: Decoder,
+}
+
+impl PipeLink {
+    /// A fresh core.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            node: Box::new(FlightNode::new()),
+            oracle: None,
+            to_harness: VecDeque::new(),
+            decoder: Decoder::new(),
+        }
+    }
+
+    /// A fresh core for a scenario, with its oracle if it has one.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self::in_field(scenario, &scenario.field())
+    }
+
+    /// A fresh core for a scenario in a field that is not the scenario's.
+    #[must_use]
+    pub fn in_field(scenario: &Scenario, field: &dyn Field) -> Self {
+        Self {
+            oracle: scenario.oracle.then(|| Oracle::new(field)),
+            ..Self::new()
+        }
+    }
+
+    /// Sends bytes as they are, without a check.
+    pub fn send_bytes(&mut self, bytes: &[u8]) {
+        let send = |frame: &[u8]| self.to_harness.extend(frame);
+        match &self.oracle {
+            None => self.node.receive(bytes, send),
+            Some(oracle) => self.node.receive_advised(bytes, send, |order, planner| {
+                oracle.advise(order, planner);
+            }),
+        }
+    }
+
+    /// The core, for inspection.
+    #[must_use]
+    pub fn node(&self) -> &FlightNode {
+        &self.node
+    }
+}
+
+impl Default for PipeLink {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Link for PipeLink {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        let mut buffer = [0; MAX_FRAME];
+        let frame = encode(message, &mut buffer)?;
+        self.send_bytes(frame);
+        Ok(())
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        while let Some(byte) = self.to_harness.pop_front() {
+            match self.decoder.push(byte) {
+                None => {}
+                Some(Ok(message)) => return Ok(message),
+                Some(Err(error)) => return Err(LinkError::Frame(error)),
+            }
+        }
+        Err(LinkError::Silent {
+            waiting: "harness",
+            awaited: format!("{awaited} from the core"),
+            patience: None,
+        })
+    }
+
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        match &mut self.oracle {
+            Some(oracle) => {
+                oracle.see(truth, wind);
+                Ok(())
+            }
+            None => Err(LinkError::NoOracle),
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The plant: the interface of a flight's true aircraft.
+
+use mpp_core::vehicle::{Control, VehicleState};
+
+/// The reason why the plant did not step. Its state is unchanged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlantError {
+    /// Thrust or elevator is not a number: the controller is broken, and the flight ends.
+    NonFiniteControl,
+    /// The equations left their domain (an airspeed of zero): the flight ends.
+    NonFiniteState,
+}
+
+impl core::fmt::Display for PlantError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str(match self {
+            Self::NonFiniteControl => "thrust or elevator command is not a finite number",
+            Self::NonFiniteState => "the aircraft's state is no longer a finite number",
+        })
+    }
+}
+
+impl core::error::Error for PlantError {}
+
+/// The true aircraft, and the air that it flies in.
+pub trait Plant {
+    /// Position over ground and motion through the air.
+    fn state(&self) -> &VehicleState;
+
+    /// Motion of the air, downrange and up [m/s].
+    fn wind(&self) -> (f64, f64);
+
+    /// Flies one tick of the flight loop. Returns the control that the actuators gave.
+    ///
+    /// # Errors
+    /// [`PlantError`] when the plant cannot step; the flight then ends.
+    fn step(&mut self, command: Control) -> Result<Control, PlantError>;
+}

@@ -1,0 +1,147 @@
+//! Seeded random numbers, the same on every machine.
+//!
+//! Each subsystem draws from its own stream of the flight's seed. Another number of lidar beams
+//! therefore does not change the airspeed noise.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+/// The subsystems that draw random numbers. The number selects the generator's stream. It is part
+/// of the meaning of a seed, so it never changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stream {
+    /// Heights of the obstacles.
+    Field = 1,
+    /// Airspeed sensor noise.
+    AirspeedSensor = 2,
+    /// Pitch sensor noise.
+    PitchSensor = 3,
+    /// Lidar range noise.
+    Lidar = 4,
+    /// Signs of the airframe's errors.
+    ModelError = 5,
+    /// Motion of the air.
+    Gusts = 6,
+    /// Lidar dropouts and false hits.
+    LidarFaults = 7,
+    /// Place of a challenge scene.
+    Scene = 8,
+}
+
+/// The generator of one subsystem in the flight with this seed.
+#[must_use]
+pub fn generator(seed: u64, stream: Stream) -> ChaCha8Rng {
+    let mut generator = ChaCha8Rng::seed_from_u64(seed);
+    generator.set_stream(stream as u64);
+    generator
+}
+
+/// A uniform random number in `[0, 1)`, on the grid of `2^-53`.
+#[must_use]
+pub fn uniform(generator: &mut ChaCha8Rng) -> f64 {
+    const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
+    (generator.next_u64() >> 11) as f64 * STEP
+}
+
+/// A standard normal random number, by Box and Muller's transform.
+///
+/// The transform is written out over `libm`, because `rand_distr` may call the platform's
+/// logarithm, whose bits differ between machines. The second value of the pair is thrown away, so
+/// that the generator's position is the only state.
+#[must_use]
+pub fn gaussian(generator: &mut ChaCha8Rng) -> f64 {
+    // 1 - u is in (0, 1]: its logarithm is finite.
+    let radius = (-2.0 * libm::log(1.0 - uniform(generator))).sqrt();
+    radius * libm::cos(core::f64::consts::TAU * uniform(generator))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [Stream; 8] = [
+        Stream::Field,
+        Stream::AirspeedSensor,
+        Stream::PitchSensor,
+        Stream::Lidar,
+        Stream::ModelError,
+        Stream::Gusts,
+        Stream::LidarFaults,
+        Stream::Scene,
+    ];
+
+    #[test]
+    fn a_seed_means_the_same_numbers_for_ever() {
+        let first = ALL.map(|stream| generator(7, stream).next_u64());
+        assert_eq!(
+            first,
+            [
+                18_301_176_669_829_311_175,
+                5_536_391_431_806_027_785,
+                3_348_856_302_973_006_449,
+                18_244_131_744_192_737_788,
+                12_716_886_768_273_581_270,
+                6_788_621_307_340_148_322,
+                12_947_559_667_725_341_916,
+                18_116_008_155_350_138_704,
+            ]
+        );
+    }
+
+    #[test]
+    fn streams_of_one_seed_are_uncorrelated() {
+        const COUNT: usize = 20_000;
+        let draws = ALL.map(|stream| {
+            let mut generator = generator(3, stream);
+            (0..COUNT)
+                .map(|_| gaussian(&mut generator))
+                .collect::<Vec<_>>()
+        });
+        for a in 0..ALL.len() {
+            for b in 0..a {
+                let product: f64 = draws[a].iter().zip(&draws[b]).map(|(x, y)| x * y).sum();
+                let correlation = product / COUNT as f64;
+                // Four standard errors.
+                assert!(correlation.abs() < 4.0 / (COUNT as f64).sqrt());
+            }
+        }
+    }
+
+    #[test]
+    fn gaussian_has_the_moments_of_a_standard_normal() {
+        const COUNT: usize = 200_000;
+        let mut generator = generator(0, Stream::Lidar);
+        let mut sums = [0.0; 4];
+        let mut beyond_two_sigma = 0;
+        for _ in 0..COUNT {
+            let value = gaussian(&mut generator);
+            let square = value * value;
+            for (sum, power) in
+                sums.iter_mut()
+                    .zip([value, square, square * value, square * square])
+            {
+                *sum += power / COUNT as f64;
+            }
+            beyond_two_sigma += usize::from(value.abs() > 2.0);
+        }
+        for (sum, (expected, tolerance)) in
+            sums.into_iter()
+                .zip([(0.0, 0.01), (1.0, 0.015), (0.0, 0.04), (3.0, 0.1)])
+        {
+            assert!(
+                (sum - expected).abs() < tolerance,
+                "{sum} instead of {expected}"
+            );
+        }
+        let share = beyond_two_sigma as f64 / COUNT as f64;
+        assert!((share - 0.0455).abs() < 0.002, "{share}");
+    }
+
+    #[test]
+    fn uniform_stays_below_one() {
+        let mut generator = generator(1, Stream::Field);
+        for _ in 0..100_000 {
+            assert!((0.0..1.0).contains(&uniform(&mut generator)));
+        }
+    }
+}

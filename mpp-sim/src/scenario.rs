@@ -1,0 +1,290 @@
+//! The parameters of a flight: the presets, and everything that a scenario file or a flag may
+//! change.
+
+mod file;
+mod recorded;
+
+use crate::faults::Faults;
+use crate::field::{Obstacle, ObstacleField};
+use crate::lidar::{LidarConfig, LidarRule};
+use crate::names::{self, UnknownName};
+use crate::scene::Scene;
+use crate::sensors::AirDataNoise;
+use core::fmt;
+use core::str::FromStr;
+use hil_protocol::{AirframeId, Configure};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::{Airframe, Trim, TrimError, VehicleState};
+use serde::{Deserialize, Serialize};
+
+pub(crate) use recorded::Times;
+
+pub use file::{AirDataTable, LidarTable, ScenarioError, ScenarioFile};
+
+/// The height at which flights start and which the planner returns to \[m\].
+pub const ALTITUDE: f64 = 50.0;
+
+/// Ticks in a second: the flight loop's rate \[Hz\].
+pub const TICKS_PER_SECOND: u32 = (1.0 / TICK_PERIOD) as u32;
+
+/// Length of a tick \[ms\].
+pub const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
+
+/// Length of a tick \[us\].
+pub const TICK_US: u32 = 1000 * TICK_MS;
+
+/// Replanning rate of an oracle \[Hz\]; see [`crate::oracle`].
+pub const ORACLE_REPLAN_HZ: f64 = 10.0;
+
+/// The named sets of parameters and rules.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The rules of the authors' code, including its faults, for comparison with it.
+    Reference,
+    /// The paper's text, with its slips corrected.
+    Paper,
+    /// The best parameters and rules that we know.
+    Flight,
+}
+
+impl Preset {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Reference, Self::Paper, Self::Flight];
+
+    /// Its name on the command line and in logs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reference => "reference",
+            Self::Paper => "paper",
+            Self::Flight => "flight",
+        }
+    }
+
+    /// The core's settings if nobody changes a parameter.
+    #[must_use]
+    pub fn settings(self) -> Settings {
+        match self {
+            Self::Reference => Settings::reference(),
+            Self::Paper => Settings::paper(),
+            Self::Flight => Settings::flight(),
+        }
+    }
+}
+
+impl fmt::Display for Preset {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Preset {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        names::find("preset", &Self::ALL, Self::name, text)
+    }
+}
+
+/// The named airframes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AirframeName {
+    /// The airframe of the paper's appendix: with chord, `I_yy` = 0.17 kg m^2.
+    Paper,
+    /// The airframe of the authors' code: without chord.
+    Reference,
+}
+
+impl AirframeName {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Paper, Self::Reference];
+
+    /// Its name on the command line and in logs.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Reference => "reference",
+        }
+    }
+
+    /// Its parameters.
+    #[must_use]
+    pub fn airframe(self) -> Airframe {
+        match self {
+            Self::Paper => Airframe::PAPER,
+            Self::Reference => Airframe::REFERENCE,
+        }
+    }
+}
+
+impl fmt::Display for AirframeName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for AirframeName {
+    type Err = UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, UnknownName> {
+        names::find("airframe", &Self::ALL, Self::name, text)
+    }
+}
+
+/// One flight, in full.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Seed of the field, of all noise and of the planner.
+    pub seed: u64,
+    /// Number of random obstacles in the field.
+    pub obstacles: usize,
+    /// Challenge scene in the field.
+    pub scene: Option<Scene>,
+    /// Further obstacles in the field, placed one by one.
+    pub placed: Vec<Obstacle>,
+    /// The core's preset.
+    pub preset: Preset,
+    /// The airframe that the core knows. The true airframe differs from it only by its model error.
+    pub airframe: AirframeName,
+    /// Number of candidate paths of a cycle. With 0 the core tracks the shortest path itself.
+    pub paths: u16,
+    /// Ticks from one plan to the next.
+    pub replan_ticks: u32,
+    /// Ticks from a scan until its plan is flown.
+    pub latency_ticks: u32,
+    /// Planner slices that run between two ticks.
+    pub slices_per_tick: u32,
+    /// Length of the flight \[ticks\].
+    pub ticks: u32,
+    /// The lidar.
+    pub lidar: LidarConfig,
+    /// Errors of the airspeed and pitch sensors.
+    pub air_data: AirDataNoise,
+    /// Faults and disturbances.
+    pub faults: Faults,
+    /// Whether the core knows the field and the true state, as [`crate::oracle`] says.
+    pub oracle: bool,
+}
+
+impl Scenario {
+    /// The paper's flight in a preset: 20 s, 20 obstacles, 25 paths, replanned every second.
+    #[must_use]
+    pub fn new(preset: Preset, seed: u64) -> Self {
+        let lidar = match preset {
+            Preset::Reference => LidarConfig::AUTHORS,
+            Preset::Paper | Preset::Flight => LidarConfig::PAPER,
+        };
+        Self {
+            seed,
+            obstacles: 20,
+            scene: None,
+            placed: Vec::new(),
+            preset,
+            airframe: AirframeName::Reference,
+            paths: 25,
+            replan_ticks: TICKS_PER_SECOND,
+            latency_ticks: 1,
+            slices_per_tick: u32::MAX,
+            ticks: 20 * TICKS_PER_SECOND,
+            lidar,
+            air_data: AirDataNoise::PAPER,
+            faults: Faults::default(),
+            oracle: false,
+        }
+    }
+
+    /// The same flight with an oracle as its core.
+    #[must_use]
+    pub fn informed(self) -> Self {
+        Self {
+            preset: Preset::Flight,
+            replan_ticks: (f64::from(TICKS_PER_SECOND) / ORACLE_REPLAN_HZ) as u32,
+            latency_ticks: 1,
+            slices_per_tick: u32::MAX,
+            air_data: AirDataNoise::NONE,
+            oracle: true,
+            ..self
+        }
+    }
+
+    /// The core's level trim.
+    ///
+    /// # Errors
+    /// [`TrimError`] when the airframe has no level flight.
+    pub fn trim(&self) -> Result<Trim, TrimError> {
+        let cruise = self.preset.settings().cruise;
+        cruise.trim(&self.airframe.airframe())
+    }
+
+    /// The state at the start of the flight: level flight in the core's trim.
+    ///
+    /// # Errors
+    /// [`TrimError`] when the airframe has no level flight.
+    pub fn start(&self) -> Result<VehicleState, TrimError> {
+        Ok(VehicleState {
+            x: 0.0,
+            z: ALTITUDE,
+            air: self.trim()?.state,
+        })
+    }
+
+    /// Every obstacle: the random ones, the scene's, the placed ones.
+    #[must_use]
+    pub fn field(&self) -> ObstacleField {
+        let mut field = ObstacleField::generate(self.seed, self.obstacles, 0.0, ALTITUDE);
+        if let Some(scene) = self.scene {
+            field
+                .obstacles
+                .extend(scene.obstacles(self.seed, 0.0, ALTITUDE));
+        }
+        field.obstacles.extend(&self.placed);
+        field
+    }
+
+    /// Replanning rate \[Hz\].
+    #[must_use]
+    pub fn replan_hz(&self) -> f64 {
+        f64::from(TICKS_PER_SECOND) / f64::from(self.replan_ticks)
+    }
+
+    /// The configuration that the core gets.
+    #[must_use]
+    pub fn configure(&self) -> Configure {
+        // The authors' lidar may return the far side of an obstacle whose centre is at the greatest
+        // range.
+        let beyond = match self.lidar.rule {
+            LidarRule::Authors => 1.0,
+            LidarRule::Nearest => 0.0,
+        };
+        Configure {
+            preset: match self.preset {
+                Preset::Reference => hil_protocol::Preset::Reference,
+                Preset::Paper => hil_protocol::Preset::Paper,
+                Preset::Flight => hil_protocol::Preset::Flight,
+            },
+            airframe: match self.airframe {
+                AirframeName::Paper => AirframeId::Paper,
+                AirframeName::Reference => AirframeId::Reference,
+            },
+            paths: self.paths,
+            replan_period_ticks: self.replan_ticks,
+            latency_ticks: self.latency_ticks,
+            slices_per_tick: self.slices_per_tick,
+            seed: self.seed,
+            beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
+            range_max: (self.lidar.range_max + beyond) as f32,
+            altitude: ALTITUDE,
+            actuators: self.faults.actuators.told(),
+        }
+    }
+
+    /// Time of a tick \[s\].
+    #[must_use]
+    pub fn time(tick: u32) -> f64 {
+        f64::from(tick) * TICK_PERIOD
+    }
+}

@@ -1,0 +1,306 @@
+//! A scenario as text in TOML. Every key may be absent; the preset's flight then gives its value
+//! (20 s, 20 obstacles, 25 paths, replanned at 1 Hz). An unknown key gives an error with its name.
+//! `docs/scenarios/example.toml` holds every key with its unit.
+
+use super::{AirframeName, Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
+use crate::faults::Faults;
+use crate::field::Obstacle;
+use crate::lidar::{LidarConfig, LidarRule};
+use crate::scene::Scene;
+use crate::sensors::AirDataNoise;
+use mpp_core::config::{MAX_BEAMS, MAX_PATHS};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Greatest number of random obstacles in a field, and of placed ones.
+const MAX_OBSTACLES: usize = 1000;
+/// Longest flight \[s\].
+pub(super) const MAX_DURATION: u32 = 3600;
+
+/// The content of a scenario file. Command-line flags replace its values.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct ScenarioFile {
+    /// The core's preset; by default `flight`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Preset>,
+    /// The aircraft; by default `reference`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub airframe: Option<AirframeName>,
+    /// Seed of the field, of all noise and of the planner; by default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub seed: Option<u64>,
+    /// Number of random obstacles; by default 20, or 0 if there is a scene or a placed obstacle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub obstacles: Option<usize>,
+    /// Challenge scene; by default there is no scene.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub scene: Option<Scene>,
+    /// Candidate paths of a cycle; by default 25.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub paths: Option<u16>,
+    /// Replanning rate \[Hz\]; by default 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub replan_hz: Option<f64>,
+    /// Simulated time from a scan until its plan is flown \[ms\]; by default 10.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub latency_ms: Option<u32>,
+    /// Planner slices that run between two ticks; by default all that the cycle needs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slices_per_tick: Option<u32>,
+    /// Length of the flight \[s\]; by default 20.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub duration: Option<u32>,
+    /// Whether an oracle flies, as [`crate::oracle`] describes; by default `false`. An oracle needs
+    /// preset `flight`. It flies with 10 Hz and exact sensors, whatever the other keys say.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub oracle: Option<bool>,
+    /// The lidar.
+    pub lidar: LidarTable,
+    /// Errors of the airspeed and pitch sensors.
+    pub air_data: AirDataTable,
+    /// Faults and disturbances.
+    pub faults: Faults,
+    /// Obstacles placed one by one.
+    #[serde(rename = "obstacle", skip_serializing_if = "Vec::is_empty")]
+    pub placed: Vec<Obstacle>,
+}
+
+/// The lidar's keys. An absent key takes the preset's value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LidarTable {
+    /// Number of beams.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beams: Option<usize>,
+    /// Field of view \[deg\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field_of_view_deg: Option<f64>,
+    /// Greatest range \[m\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range_max: Option<f64>,
+    /// Standard deviation of the range error, as a share of the range [-].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub range_error: Option<f64>,
+    /// Rule by which a beam returns a range.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rule: Option<LidarRule>,
+}
+
+/// The air data sensors' keys. An absent key takes the preset's value.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct AirDataTable {
+    /// Standard deviation of the airspeed [m/s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub airspeed_sigma: Option<f64>,
+    /// Standard deviation of the pitch \[deg\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_sigma_deg: Option<f64>,
+}
+
+/// The reason why there is no scenario.
+#[derive(Debug)]
+pub enum ScenarioError {
+    /// The text with this name is no scenario; the message names line and key.
+    Toml(String, Box<toml::de::Error>),
+    /// A value is invalid. Holds the key and what to give instead.
+    Value(&'static str, String),
+}
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Toml(path, error) => {
+                write!(f, "scenario {path}: {}", error.to_string().trim_end())
+            }
+            Self::Value(key, advice) => write!(f, "{key}: {advice}"),
+        }
+    }
+}
+
+impl core::error::Error for ScenarioError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Toml(_, error) => Some(error),
+            Self::Value(..) => None,
+        }
+    }
+}
+
+pub(super) fn ensure(
+    sound: bool,
+    key: &'static str,
+    advice: impl Into<String>,
+) -> Result<(), ScenarioError> {
+    if sound {
+        Ok(())
+    } else {
+        Err(ScenarioError::Value(key, advice.into()))
+    }
+}
+
+impl ScenarioFile {
+    /// Reads a scenario file from text. An error shows `name` as the name of the text.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Toml`].
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+        toml::from_str(text).map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))
+    }
+
+    /// Builds the complete scenario.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Value`].
+    pub fn build(&self) -> Result<Scenario, ScenarioError> {
+        let preset = self.preset.unwrap_or(Preset::Flight);
+        let base = Scenario::new(preset, self.seed.unwrap_or(1));
+        let alone = self.scene.is_none() && self.placed.is_empty();
+        let replan_ticks = match self.replan_hz {
+            Some(rate) => replan_ticks(rate)?,
+            None => base.replan_ticks,
+        };
+        let duration = self.duration.unwrap_or(base.ticks / TICKS_PER_SECOND);
+        ensure(
+            (1..=MAX_DURATION).contains(&duration),
+            "duration",
+            format!("give 1 to {MAX_DURATION} s"),
+        )?;
+        let scenario = Scenario {
+            obstacles: self
+                .obstacles
+                .unwrap_or(if alone { base.obstacles } else { 0 }),
+            scene: self.scene,
+            placed: self.placed.clone(),
+            airframe: self.airframe.unwrap_or(base.airframe),
+            paths: self.paths.unwrap_or(base.paths),
+            replan_ticks,
+            latency_ticks: match self.latency_ms {
+                Some(latency) => latency_ticks(latency, replan_ticks)?,
+                None => base.latency_ticks,
+            },
+            slices_per_tick: self.slices_per_tick.unwrap_or(base.slices_per_tick),
+            ticks: duration * TICKS_PER_SECOND,
+            lidar: self.lidar.over(base.lidar),
+            air_data: self.air_data.over(base.air_data),
+            faults: self.faults,
+            ..base
+        };
+        check(&scenario)?;
+        let oracle = self.oracle.unwrap_or(false);
+        let advice = "only preset flight has an oracle";
+        ensure(!oracle || preset == Preset::Flight, "oracle", advice)?;
+        Ok(if oracle {
+            scenario.informed()
+        } else {
+            scenario
+        })
+    }
+}
+
+fn replan_ticks(rate: f64) -> Result<u32, ScenarioError> {
+    let period = f64::from(TICKS_PER_SECOND) / rate;
+    let whole = (1.0..=f64::from(u16::MAX)).contains(&period) && period.fract() == 0.0;
+    let advice = format!(
+        "give a rate of which {TICKS_PER_SECOND} Hz is a whole multiple, such as 0.5, 1, 2, 4, 5 or 10"
+    );
+    ensure(whole, "replan_hz", advice)?;
+    Ok(period as u32)
+}
+
+fn latency_ticks(latency_ms: u32, replan_ticks: u32) -> Result<u32, ScenarioError> {
+    let ticks = latency_ms / TICK_MS;
+    let sound = latency_ms.is_multiple_of(TICK_MS) && (1..=replan_ticks).contains(&ticks);
+    let advice = format!(
+        "give a multiple of {TICK_MS} ms, at least {TICK_MS} and no longer than the time between two plans"
+    );
+    ensure(sound, "latency_ms", advice)?;
+    Ok(ticks)
+}
+
+/// Whether a scenario's values, its times apart, keep to the limits.
+pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
+    let Scenario {
+        lidar, air_data, ..
+    } = scenario;
+    ensure(
+        scenario.obstacles <= MAX_OBSTACLES,
+        "obstacles",
+        format!("give at most {MAX_OBSTACLES}"),
+    )?;
+    ensure(
+        usize::from(scenario.paths) <= MAX_PATHS,
+        "paths",
+        format!("give at most {MAX_PATHS}"),
+    )?;
+    ensure(
+        scenario.slices_per_tick > 0,
+        "slices_per_tick",
+        "give at least 1",
+    )?;
+    ensure(
+        (1..=MAX_BEAMS).contains(&lidar.beams),
+        "lidar.beams",
+        format!("give 1 to {MAX_BEAMS}"),
+    )?;
+    let view = lidar.field_of_view > 0.0 && lidar.field_of_view <= core::f64::consts::TAU;
+    ensure(
+        view,
+        "lidar.field_of_view_deg",
+        "give more than 0 and at most 360 deg",
+    )?;
+    let range = lidar.range_max > 0.0 && lidar.range_max.is_finite();
+    ensure(range, "lidar.range_max", "give a range above 0 m")?;
+    let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+    for (value, key) in [
+        (lidar.range_error, "lidar.range_error"),
+        (air_data.airspeed_sigma, "air_data.airspeed_sigma"),
+        (air_data.pitch_sigma, "air_data.pitch_sigma_deg"),
+    ] {
+        ensure(not_negative(value), key, "give 0 or more")?;
+    }
+    ensure(
+        scenario.placed.len() <= MAX_OBSTACLES,
+        "obstacle",
+        format!("give at most {MAX_OBSTACLES}"),
+    )?;
+    for obstacle in &scenario.placed {
+        let finite =
+            obstacle.x.is_finite() && obstacle.z.is_finite() && obstacle.radius.is_finite();
+        let advice = "give finite x and z, and a radius above 0 m";
+        ensure(finite && obstacle.radius > 0.0, "obstacle", advice)?;
+    }
+    match scenario.faults.flaw() {
+        Some((key, advice)) => ensure(false, key, advice),
+        None => Ok(()),
+    }
+}
+
+impl LidarTable {
+    fn over(&self, base: LidarConfig) -> LidarConfig {
+        LidarConfig {
+            beams: self.beams.unwrap_or(base.beams),
+            field_of_view: self
+                .field_of_view_deg
+                .map_or(base.field_of_view, f64::to_radians),
+            range_max: self.range_max.unwrap_or(base.range_max),
+            range_error: self.range_error.unwrap_or(base.range_error),
+            rule: self.rule.unwrap_or(base.rule),
+        }
+    }
+}
+
+impl AirDataTable {
+    fn over(&self, base: AirDataNoise) -> AirDataNoise {
+        AirDataNoise {
+            airspeed_sigma: self.airspeed_sigma.unwrap_or(base.airspeed_sigma),
+            pitch_sigma: self
+                .pitch_sigma_deg
+                .map_or(base.pitch_sigma, f64::to_radians),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

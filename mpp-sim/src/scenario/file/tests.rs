@@ -1,0 +1,106 @@
+//! Tests scenario files: their keys and the errors.
+
+use super::*;
+
+fn parse(text: &str) -> Result<Scenario, ScenarioError> {
+    ScenarioFile::parse("test.toml", text)?.build()
+}
+
+fn refused(text: &str) -> String {
+    parse(text).unwrap_err().to_string()
+}
+
+#[test]
+fn an_empty_file_is_the_default_flight() {
+    assert_eq!(parse("").unwrap(), Scenario::new(Preset::Flight, 1));
+    let reference = parse("preset = \"reference\"\nseed = 7").unwrap();
+    assert_eq!(reference, Scenario::new(Preset::Reference, 7));
+}
+
+#[test]
+fn the_documented_example_holds_every_key() {
+    let text = include_str!("../../../../docs/scenarios/example.toml");
+    let file = ScenarioFile::parse("example.toml", text).unwrap();
+    let scenario = file.build().unwrap();
+    assert_eq!(scenario.obstacles, 40);
+    assert_eq!(scenario.replan_ticks, 25);
+    assert_eq!(scenario.placed.len(), 1);
+    assert!((scenario.lidar.field_of_view - 100_f64.to_radians()).abs() < 1e-15);
+    // The example leaves no key to its default, so a key that is added later must be documented
+    // too.
+    let json = serde_json::to_value(&file).unwrap();
+    let keys = |value: &serde_json::Value| value.as_object().unwrap().len();
+    assert_eq!(keys(&json), 15);
+    assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
+    assert_eq!(keys(&json["faults"]["actuators"]), 4);
+    assert!(file.faults != Faults::default());
+}
+
+#[test]
+fn unknown_keys_are_refused_by_name() {
+    for (text, key) in [
+        ("obstcles = 20", "obstcles"),
+        ("[lidar]\nbeam = 3", "beam"),
+        ("[air_data]\npitch_sigma = 1.0", "pitch_sigma"),
+        ("[faults]\nwind = 1.0", "wind"),
+        ("[faults.gusts]\nstrength = 1.0", "strength"),
+        ("[faults.actuators]\nthrust = 1.0", "thrust"),
+        ("[faults.model_error]\nweight = 0.1", "weight"),
+        ("[faults.lidar]\nghosts = 0.1", "ghosts"),
+        (
+            "[[obstacle]]\nx = 1.0\nz = 1.0\nradius = 1.0\ncolour = 2",
+            "colour",
+        ),
+    ] {
+        let error = refused(text);
+        assert!(error.contains(&format!("unknown field `{key}`")), "{error}");
+        assert!(error.contains("test.toml"), "{error}");
+    }
+}
+
+#[test]
+fn nonsense_is_refused_by_key() {
+    for (text, key) in [
+        ("replan_hz = 3.0", "replan_hz"),
+        ("replan_hz = 0.0", "replan_hz"),
+        ("latency_ms = 15", "latency_ms"),
+        ("replan_hz = 10.0\nlatency_ms = 110", "latency_ms"),
+        ("duration = 0", "duration"),
+        ("obstacles = 1001", "obstacles"),
+        ("paths = 51", "paths"),
+        ("slices_per_tick = 0", "slices_per_tick"),
+        ("[lidar]\nbeams = 0", "lidar.beams"),
+        ("[lidar]\nbeams = 129", "lidar.beams"),
+        (
+            "[lidar]\nfield_of_view_deg = nan",
+            "lidar.field_of_view_deg",
+        ),
+        ("[lidar]\nrange_max = -1.0", "lidar.range_max"),
+        ("[lidar]\nrange_error = -0.1", "lidar.range_error"),
+        (
+            "[air_data]\nairspeed_sigma = inf",
+            "air_data.airspeed_sigma",
+        ),
+        ("[faults.gusts]\nintensity = -1.0", "faults.gusts.intensity"),
+        ("[faults.lidar]\ndropouts = 1.5", "faults.lidar.dropouts"),
+        ("[[obstacle]]\nx = 1.0\nz = 1.0\nradius = 0.0", "obstacle"),
+    ] {
+        let error = refused(text);
+        assert!(error.starts_with(&format!("{key}: give ")), "{error}");
+    }
+    assert!(refused("preset = \"best\"").contains("unknown variant `best`"));
+}
+
+#[test]
+fn a_scene_stands_alone_unless_obstacles_are_asked_for() {
+    let scene = parse("scene = \"flytrap\"").unwrap();
+    assert_eq!(scene.obstacles, 0);
+    assert!(scene.field().obstacles.len() > 10);
+    let both = parse("scene = \"flytrap\"\nobstacles = 20").unwrap();
+    assert_eq!(
+        both.field().obstacles.len(),
+        scene.field().obstacles.len() + 20
+    );
+    let placed = parse("[[obstacle]]\nx = 30.0\nz = 50.0\nradius = 2.0").unwrap();
+    assert_eq!(placed.field().obstacles.len(), 1);
+}

@@ -1,0 +1,101 @@
+//! Flies a campaign on all cores.
+
+use super::error::CampaignError;
+use hil_protocol::Message;
+use mpp_analysis::campaign::{Campaign, Cell, Row};
+use mpp_core::vehicle::{VehicleState, Wind};
+use mpp_sim::flight::fly;
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::pipe::PipeLink;
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// Stack of a thread [bytes]. The core is built on the stack before it moves to its box.
+const STACK: usize = 8 << 20;
+
+/// Log hashes of a campaign's first seconds, one for each planner. They show which program flew the
+/// rows, because rows of different programs must not be mixed.
+///
+/// # Errors
+/// [`CampaignError`] of the first flight that fails.
+pub fn fingerprint(campaign: &Campaign) -> Result<String, CampaignError> {
+    const SECONDS: u32 = 2;
+    let mut start = campaign.clone();
+    start.scenario.duration = Some(SECONDS);
+    let mut cells = campaign.cells();
+    cells.dedup_by_key(|cell| (cell.preset, cell.oracle));
+    let hashes = cells
+        .iter()
+        .map(|cell| Ok(flown(&start, *cell, campaign.seed, false)?.log_hash));
+    Ok(hashes
+        .collect::<Result<Vec<String>, CampaignError>>()?
+        .join("-"))
+}
+
+/// Flies these flights on this number of threads; 0 means as many as there are cores. Each thread
+/// gives its row to `keep` as soon as the row is flown. With `timed` rows also hold the core's wall
+/// time.
+///
+/// # Errors
+/// [`CampaignError`] of the first flight or row that fails; the rows kept so far are valid.
+pub fn run(
+    campaign: &Campaign,
+    jobs: &[(Cell, u64)],
+    threads: usize,
+    timed: bool,
+    keep: impl Fn(Row) -> Result<(), CampaignError> + Sync,
+) -> Result<(), CampaignError> {
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .stack_size(STACK)
+        .build()
+        .map_err(CampaignError::Threads)?;
+    pool.install(|| {
+        // With `par_bridge` the flights start in order, and no flight runs on a stack of half-split
+        // lists.
+        jobs.iter()
+            .par_bridge()
+            .try_for_each(|&(cell, seed)| keep(flown(campaign, cell, seed, timed)?))
+    })
+}
+
+/// Flies one row.
+fn flown(campaign: &Campaign, cell: Cell, seed: u64, timed: bool) -> Result<Row, CampaignError> {
+    let scenario = campaign
+        .scenario(&cell, seed)
+        .map_err(CampaignError::Scenario)?;
+    let mut link = Stopwatch {
+        link: PipeLink::of(&scenario),
+        elapsed: Duration::ZERO,
+    };
+    let log = fly(&scenario, &mut link, |_| {})
+        .map_err(|error| CampaignError::Flight(cell, seed, error))?;
+    let hash = log
+        .hash()
+        .map_err(|error| CampaignError::Log(cell, seed, error))?;
+    let core_ms = timed.then_some(link.elapsed.as_secs_f64() * 1e3);
+    Ok(Row::new(cell, &log, hash, core_ms))
+}
+
+/// A link that measures how long the core works. In this process the core works during `send`.
+struct Stopwatch {
+    link: PipeLink,
+    elapsed: Duration,
+}
+
+impl Link for Stopwatch {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        let begin = Instant::now();
+        let sent = self.link.send(message);
+        self.elapsed += begin.elapsed();
+        sent
+    }
+
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        self.link.reveal(truth, wind)
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.link.receive(awaited)
+    }
+}

@@ -1,0 +1,44 @@
+//! The answers of the command line: data on stdout, messages on stderr, an exit code.
+
+use std::io::{ErrorKind, Write};
+
+/// Exit code: the harness cannot do something, or it found an error.
+pub(super) const FAILURE: u8 = 1;
+/// Exit code: the command line is invalid.
+pub(super) const USAGE: u8 = 2;
+/// Exit code: the link to the core failed.
+pub(super) const LINK: u8 = 6;
+
+/// Prints a line for people. A flight does not depend on its readers, so a closed pipe is not an
+/// error (`eprintln!` would panic).
+pub(super) fn talk(line: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// Prints a line of data. A reader that closes the pipe is no error; any other error, for instance a
+/// full disk, is a failure.
+pub(super) fn data(line: impl std::fmt::Display) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            let what = format!("cannot write the result to the standard output: {error}");
+            Err(Failure::new(FAILURE, what))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The reason why a command failed.
+pub(super) struct Failure {
+    pub(super) code: u8,
+    pub(super) message: String,
+}
+
+impl Failure {
+    pub(super) fn new(code: u8, message: impl std::fmt::Display) -> Self {
+        Self {
+            code,
+            message: message.to_string(),
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! What the files of a flight are called: two flights that differ in their scenario never share one.
+
+use mpp_sim::scenario::{Scenario, TICK_MS, TICKS_PER_SECOND};
+
+/// Preset and seed, then whatever differs from that preset's flight: scene, `o` obstacles, `p` paths,
+/// replanning rate, latency, slices per tick, duration, airframe; what has no short name (lidar,
+/// sensors, faults, placed obstacles) as a number that stands for it.
+pub(super) fn file_name(scenario: &Scenario) -> String {
+    let mut usual = Scenario::new(scenario.preset, scenario.seed);
+    let mut name = format!("{}-seed{}", scenario.preset, scenario.seed);
+    if scenario.oracle {
+        usual = usual.informed();
+        name += "-oracle";
+    }
+    if let Some(scene) = scenario.scene {
+        name += &format!("-{scene}");
+    }
+    if scenario.scene.is_some() || !scenario.placed.is_empty() {
+        usual.obstacles = 0;
+    }
+    let seconds = f64::from(scenario.ticks) / f64::from(TICKS_PER_SECOND);
+    let latency = scenario.latency_ticks * TICK_MS;
+    for (differs, part) in [
+        (
+            scenario.obstacles != usual.obstacles,
+            format!("o{}", scenario.obstacles),
+        ),
+        (
+            scenario.paths != usual.paths,
+            format!("p{}", scenario.paths),
+        ),
+        (
+            scenario.replan_ticks != usual.replan_ticks,
+            format!("{}hz", scenario.replan_hz()),
+        ),
+        (
+            scenario.latency_ticks != usual.latency_ticks,
+            format!("{latency}ms"),
+        ),
+        (
+            scenario.slices_per_tick != usual.slices_per_tick,
+            format!("{}slices", scenario.slices_per_tick),
+        ),
+        (scenario.ticks != usual.ticks, format!("{seconds}s")),
+        (
+            scenario.airframe != usual.airframe,
+            format!("{}-airframe", scenario.airframe),
+        ),
+    ] {
+        if differs {
+            name += &format!("-{part}");
+        }
+    }
+    let (rest, usual) = (rest(scenario), rest(&usual));
+    if rest != usual {
+        name += &format!("-{:08x}", fnv(&rest));
+    }
+    name
+}
+
+/// What has no short name.
+fn rest(scenario: &Scenario) -> Vec<u8> {
+    let Scenario {
+        lidar,
+        air_data,
+        faults,
+        placed,
+        ..
+    } = scenario;
+    serde_json::to_vec(&(lidar, air_data, faults, placed)).unwrap_or_default()
+}
+
+/// FNV-1a, 32 bits: the same on every machine.
+fn fnv(bytes: &[u8]) -> u32 {
+    bytes.iter().fold(0x811c_9dc5, |hash, byte| {
+        (hash ^ u32::from(*byte)).wrapping_mul(0x0100_0193)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mpp_sim::scenario::ScenarioFile;
+
+    fn name(text: &str) -> String {
+        file_name(&ScenarioFile::parse("", text).unwrap().build().unwrap())
+    }
+
+    #[test]
+    fn what_differs_stands_in_the_name() {
+        let rest = "obstacles = 40\npaths = 5\nreplan_hz = 2\nlatency_ms = 200\nslices_per_tick = 37\nduration = 9\nairframe = \"paper\"";
+        for (text, expected) in [
+            ("", "flight-seed1"),
+            ("preset = \"paper\"\nseed = 7", "paper-seed7"),
+            (
+                "obstacles = 20\npaths = 25\nduration = 20\nlatency_ms = 10",
+                "flight-seed1",
+            ),
+            ("scene = \"long-way\"", "flight-seed1-long-way"),
+            (
+                "scene = \"flytrap\"\nobstacles = 20",
+                "flight-seed1-flytrap-o20",
+            ),
+            ("oracle = true", "flight-seed1-oracle"),
+            ("replan_hz = 0.5", "flight-seed1-0.5hz"),
+            (
+                rest,
+                "flight-seed1-o40-p5-2hz-200ms-37slices-9s-paper-airframe",
+            ),
+        ] {
+            assert_eq!(name(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_short_name_is_told_apart_too() {
+        let gusts = |intensity| format!("[faults.gusts]\nintensity = {intensity}\n");
+        let texts = [
+            gusts("1.0"),
+            gusts("2.0"),
+            "[lidar]\nbeams = 31\n".to_owned(),
+            "[air_data]\nairspeed_sigma = 0.1\n".to_owned(),
+            "[[obstacle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n".to_owned(),
+            "[[obstacle]]\nx = 61.0\nz = 50.0\nradius = 2.0\n".to_owned(),
+        ];
+        let names: std::collections::BTreeSet<String> = texts.iter().map(|t| name(t)).collect();
+        assert_eq!(names.len(), texts.len(), "{names:?}");
+        assert!(
+            names
+                .iter()
+                .all(|name| name.len() == "flight-seed1-01234567".len()),
+            "{names:?}"
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! Named values of flags: their help texts and their parsers.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mpp_sim::scenario::{AirframeName, Preset};
+use mpp_sim::scene::Scene;
+use std::error::Error;
+use std::str::FromStr;
+
+/// Reads one of these names.
+fn named<T>(names: impl IntoIterator<Item = PossibleValue>) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    PossibleValuesParser::new(names).try_map(|name| name.parse())
+}
+
+/// Reads a preset.
+pub(super) fn preset() -> impl TypedValueParser<Value = Preset> {
+    let help = |preset| match preset {
+        Preset::Reference => "The rules of the authors' code, with its faults, to compare with it",
+        Preset::Paper => "The paper's text, with its slips corrected",
+        Preset::Flight => "The best parameters and rules that we know",
+    };
+    named(Preset::ALL.map(|preset| PossibleValue::new(preset.name()).help(help(preset))))
+}
+
+/// Reads an airframe.
+pub(super) fn airframe() -> impl TypedValueParser<Value = AirframeName> {
+    let help = |airframe| match airframe {
+        AirframeName::Paper => "The paper's appendix: with chord, `I_yy` = 0.17 kg m^2",
+        AirframeName::Reference => "The authors' code: without chord",
+    };
+    named(
+        AirframeName::ALL.map(|airframe| PossibleValue::new(airframe.name()).help(help(airframe))),
+    )
+}
+
+/// Reads a challenge scene.
+pub(super) fn scene() -> impl TypedValueParser<Value = Scene> {
+    let help = |scene| match scene {
+        Scene::Flytrap => {
+            "A bowl of 5 m radius that opens towards the aircraft. Inside the bowl, the way to the \
+             goal leads into the wall. The ways round pass above and below"
+        }
+        Scene::Dynamics => {
+            "A plate, 9 m high, at a right angle to the way. Every normal of its face points \
+             straight against the flight, which cannot slow down. The ways round pass above and below"
+        }
+        Scene::LongWay => {
+            "A wall that leans towards the aircraft. It reaches from 4 m on one side of the way to \
+             15 m on the other; the seed decides which side is up. Its face leads along the long way \
+             round, out of the band. The short way passes over its near edge"
+        }
+    };
+    named(Scene::ALL.map(|scene| PossibleValue::new(scene.name()).help(help(scene))))
+}

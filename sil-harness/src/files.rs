@@ -1,0 +1,234 @@
+//! Files: scenarios, logs, programs for solvers, recorded data.
+
+use mpp_analysis::check_reference::{Report, check, recorded_instances};
+use mpp_analysis::instance::{Instance, InstanceError};
+use mpp_sim::log::{FlightLog, LogError};
+use mpp_sim::scenario::{ScenarioError, ScenarioFile};
+use std::fmt;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// The reason why a file cannot be used. The message names the file.
+#[derive(Debug)]
+pub enum FileError {
+    /// The file cannot be read.
+    Read(PathBuf, io::Error),
+    /// The file cannot be written.
+    Write(PathBuf, io::Error),
+    /// The file is no scenario; the error names the file.
+    Scenario(ScenarioError),
+    /// The file is no flight log, or the log cannot be written.
+    Log(PathBuf, LogError),
+    /// The file holds no programs.
+    Instances(PathBuf, InstanceError),
+    /// The directory holds no programs.
+    NoInstances(PathBuf),
+    /// The directory holds no recorded data.
+    NoRecords(PathBuf),
+}
+
+impl fmt::Display for FileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Read(path, error) => write!(f, "cannot read {}: {error}", path.display()),
+            Self::Write(path, error) => write!(f, "cannot write {}: {error}", path.display()),
+            Self::Scenario(error) => write!(f, "{error}"),
+            Self::Log(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::Instances(path, error) => write!(f, "{}: {error}", path.display()),
+            Self::NoInstances(path) => write!(
+                f,
+                "{}: no programs: give a file of instances or a directory with case_*.json",
+                path.display()
+            ),
+            Self::NoRecords(path) => write!(
+                f,
+                "{} holds no .json files: give the directory of the recorded reference",
+                path.display()
+            ),
+        }
+    }
+}
+
+impl std::error::Error for FileError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        match self {
+            Self::Read(_, error) | Self::Write(_, error) => Some(error),
+            Self::Scenario(error) => Some(error),
+            Self::Log(_, error) => Some(error),
+            Self::Instances(_, error) => Some(error),
+            Self::NoInstances(_) | Self::NoRecords(_) => None,
+        }
+    }
+}
+
+fn read(path: &Path) -> Result<String, FileError> {
+    std::fs::read_to_string(path).map_err(|error| FileError::Read(path.to_owned(), error))
+}
+
+/// The files of a directory, in the order of their names.
+fn list(directory: &Path) -> Result<Vec<PathBuf>, FileError> {
+    let failed = |error| FileError::Read(directory.to_owned(), error);
+    let entries = std::fs::read_dir(directory).map_err(failed)?;
+    let paths = entries.map(|entry| Ok(entry.map_err(failed)?.path()));
+    let mut paths = paths.collect::<Result<Vec<PathBuf>, FileError>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem()
+        .map(|stem| stem.to_string_lossy().into_owned())
+        .unwrap_or_default()
+}
+
+fn is_json(path: &Path) -> bool {
+    path.extension()
+        .is_some_and(|extension| extension == "json")
+}
+
+/// Reads a scenario.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Scenario`].
+pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
+    ScenarioFile::parse(&path.display().to_string(), &read(path)?).map_err(FileError::Scenario)
+}
+
+/// Reads a flight's log.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Log`].
+pub fn read_log(path: &Path) -> Result<FlightLog, FileError> {
+    let bytes = std::fs::read(path).map_err(|error| FileError::Read(path.to_owned(), error))?;
+    FlightLog::from_json(&bytes).map_err(|error| FileError::Log(path.to_owned(), error))
+}
+
+/// Writes a flight's log: exactly the bytes that are hashed.
+///
+/// # Errors
+/// [`FileError::Log`] or [`FileError::Write`].
+pub fn write_log(path: &Path, log: &FlightLog) -> Result<(), FileError> {
+    let bytes = log
+        .to_json()
+        .map_err(|error| FileError::Log(path.to_owned(), error))?;
+    write_whole(path, &bytes)
+}
+
+/// Writes a file whole or not at all: beside its place first, and then into it. What was there
+/// stays until then. A device or a pipe is written to as it is.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    write_beside(path, bytes, std::fs::File::sync_all)
+}
+
+/// The same, but the disk may have the bytes later: for what is written in flight.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn write_soon(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    write_beside(path, bytes, |_| Ok(()))
+}
+
+fn write_beside(
+    path: &Path,
+    bytes: &[u8],
+    settle: fn(&std::fs::File) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let failed = |error| FileError::Write(path.to_owned(), error);
+    if path.metadata().is_ok_and(|found| !found.is_file()) {
+        return std::fs::write(path, bytes).map_err(failed);
+    }
+    // A link stays one: what it leads to is written.
+    let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let beside = beside(&place);
+    let written =
+        write_through(&beside, bytes, settle).and_then(|()| std::fs::rename(&beside, &place));
+    written.map_err(|error| {
+        let _ = std::fs::remove_file(&beside);
+        failed(error)
+    })
+}
+
+/// A name in the same directory that nobody else writes to.
+fn beside(path: &Path) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.{}.part", std::process::id()))
+}
+
+/// A new file; the disk has its bytes when this returns, if `settle` sees to it.
+fn write_through(
+    path: &Path,
+    bytes: &[u8],
+    settle: fn(&std::fs::File) -> io::Result<()>,
+) -> io::Result<()> {
+    let mut file = std::fs::File::create(path)?;
+    file.write_all(bytes)?;
+    settle(&file)
+}
+
+/// Reads programs from a directory of recorded cases (`case_*.json`), from one such file, or from a
+/// file of instances with one JSON object per line.
+///
+/// # Errors
+/// [`FileError`]; also when there are no programs.
+pub fn read_instances(path: &Path) -> Result<Vec<Instance>, FileError> {
+    let files = if path.is_dir() {
+        let mut files = list(path)?;
+        files.retain(|file| is_recorded_case(file));
+        files
+    } else {
+        vec![path.to_owned()]
+    };
+    let mut instances = Vec::new();
+    for file in files {
+        let text = read(&file)?;
+        let found = if is_recorded_case(&file) {
+            recorded_instances(&stem(&file), &text)
+        } else {
+            Instance::of_lines(&text)
+        };
+        instances.extend(found.map_err(|error| FileError::Instances(file, error))?);
+    }
+    if instances.is_empty() {
+        return Err(FileError::NoInstances(path.to_owned()));
+    }
+    Ok(instances)
+}
+
+fn is_recorded_case(path: &Path) -> bool {
+    is_json(path) && stem(path).starts_with("case_")
+}
+
+/// Writes programs, one JSON object per line.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn write_instances(path: &Path, instances: &[Instance]) -> Result<(), FileError> {
+    let failed = |error: serde_json::Error| FileError::Write(path.to_owned(), error.into());
+    let mut bytes = Vec::new();
+    for instance in instances {
+        serde_json::to_writer(&mut bytes, instance).map_err(failed)?;
+        bytes.push(b'\n');
+    }
+    write_whole(path, &bytes)
+}
+
+/// Checks every recorded file of a directory.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::NoRecords`]. A file of a known kind that does not parse is a
+/// failure in the report.
+pub fn check_directory(directory: &Path) -> Result<Report, FileError> {
+    let mut files = list(directory)?;
+    files.retain(|path| is_json(path));
+    if files.is_empty() {
+        return Err(FileError::NoRecords(directory.to_owned()));
+    }
+    let texts = files.iter().map(|path| Ok((stem(path), read(path)?)));
+    Ok(check(texts.collect::<Result<Vec<_>, FileError>>()?))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! The server of a live flight, among pages that are not its own.
+
+use crate::{harness, talk};
+use mpp_sim::log::Header;
+use mpp_sim::scenario::{Preset, Scenario};
+use sil_harness::live::{Live, Wish};
+use sil_harness::pace::Speed;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+
+const AS_STARTED: Wish = Wish {
+    pause: false,
+    speed: None,
+};
+
+fn open() -> Live {
+    let scenario = Scenario::new(Preset::Flight, 1);
+    let header = Header::of(&scenario, &scenario.field());
+    Live::open("127.0.0.1:0", &header).unwrap()
+}
+
+/// Sends a request with these lines in its head.
+fn ask(live: &Live, request: &str, lines: &str) -> TcpStream {
+    let mut stream = TcpStream::connect(live.address()).unwrap();
+    let host = live.address();
+    let lines = if lines.contains("Host:") {
+        lines.to_owned()
+    } else {
+        format!("Host: {host}\r\n{lines}")
+    };
+    let head = format!("{request} HTTP/1.1\r\n{lines}\r\n");
+    stream.write_all(head.as_bytes()).unwrap();
+    stream
+}
+
+fn answer(mut stream: TcpStream) -> String {
+    let mut text = String::new();
+    stream.read_to_string(&mut text).unwrap();
+    text
+}
+
+fn status(answer: &str) -> &str {
+    answer.split(' ').nth(1).unwrap()
+}
+
+fn token(live: &Live) -> String {
+    let page = answer(ask(live, "GET /", ""));
+    assert_eq!(status(&page), "200");
+    let (_, rest) = page.split_once("TOKEN = \"").unwrap();
+    rest.split('"').next().unwrap().to_owned()
+}
+
+#[test]
+fn only_the_flights_own_page_changes_its_pace() {
+    let live = open();
+    let token = token(&live);
+    let pause = "POST /control?pause=1";
+    for (lines, why) in [
+        (String::new(), "no token"),
+        (
+            "X-Token: 0123456789abcdef0123456789abcdef\r\n".to_owned(),
+            "no token",
+        ),
+        (
+            format!("X-Token: {token}\r\nOrigin: http://evil.example\r\n"),
+            "not the flight's own",
+        ),
+        (
+            format!("X-Token: {token}\r\nOrigin: null\r\n"),
+            "not the flight's own",
+        ),
+        (
+            format!("X-Token: {token}\r\nHost: evil.example:8088\r\n"),
+            "not the flight's own",
+        ),
+    ] {
+        let answer = answer(ask(&live, pause, &lines));
+        assert_eq!(status(&answer), "403", "{lines}: {answer}");
+        assert!(answer.contains(why), "{lines}: {answer}");
+        assert_eq!(live.wish(), AS_STARTED, "{lines}");
+    }
+    // Nor does a foreign page see anything.
+    for path in ["GET /", "GET /events"] {
+        let answer = answer(ask(&live, path, "Origin: http://evil.example\r\n"));
+        assert_eq!(status(&answer), "403", "{path}");
+    }
+    let port = live.address().port();
+    let lines = format!(
+        "X-Token: {token}\r\nHost: localhost:{port}\r\nOrigin: http://localhost:{port}\r\n"
+    );
+    assert_eq!(status(&answer(ask(&live, pause, &lines))), "204");
+    assert!(live.wish().pause);
+}
+
+#[test]
+fn a_speed_out_of_range_is_refused_with_the_range() {
+    let live = open();
+    let token = format!("X-Token: {}\r\n", token(&live));
+    for speed in ["1e-300", "1e-4", "0", "-1", "NaN", "1e9"] {
+        let request = format!("POST /control?speed={speed}");
+        let answer = answer(ask(&live, &request, &token));
+        assert_eq!(status(&answer), "400", "{speed}");
+        assert!(answer.contains("from 0.01 to 1000, or max"), "{answer}");
+        assert_eq!(live.wish(), AS_STARTED, "{speed}");
+    }
+    let answer = answer(ask(&live, "POST /control?speed=0.01", &token));
+    assert_eq!(status(&answer), "204");
+    assert_eq!(live.wish().speed, Some(Speed::Times(0.01)));
+    for speed in ["1e-300", "1e-4", "1001"] {
+        let output = harness().args(["fly", "--speed", speed]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{speed}");
+        assert!(
+            talk(&output).contains("from 0.01 to 1000, or max"),
+            "{}",
+            talk(&output)
+        );
+    }
+}
+
+#[test]
+fn who_comes_when_all_places_are_taken_is_told_so() {
+    let live = open();
+    // Places come back.
+    for _ in 0..100 {
+        assert_eq!(status(&answer(ask(&live, "GET /", ""))), "200");
+    }
+    let lookers: Vec<TcpStream> = (0..32).map(|_| ask(&live, "GET /events", "")).collect();
+    // Nothing is asked: what is not read might take the answer with it.
+    let late = TcpStream::connect(live.address()).unwrap();
+    let answer = answer(late);
+    assert_eq!(status(&answer), "503", "{answer}");
+    // Those who look are served.
+    for mut looker in lookers {
+        let mut head = [0; 15];
+        looker.read_exact(&mut head).unwrap();
+        assert_eq!(&head, b"HTTP/1.1 200 OK");
+    }
+}

@@ -1,0 +1,263 @@
+//! Tests the structure of the workspace: the allowed dependencies of each crate, and no circle of
+//! imports inside a crate.
+
+mod imports;
+
+use imports::{circles, edges};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::Command;
+
+/// The allowed dependencies of a crate.
+struct Rule {
+    name: &'static str,
+    /// Our own crates that this crate may need.
+    ours: &'static [&'static str],
+    /// Crates of others that this crate must not need.
+    not: &'static [&'static str],
+}
+
+/// Crates that draw, compute in parallel, or speak to a person. They do not belong on a flight
+/// computer.
+const HOST: &[&str] = &[
+    "clap",
+    "clarabel",
+    "indicatif",
+    "plotters",
+    "rayon",
+    "serde_json",
+    "toml",
+];
+
+/// One entry for each crate of the workspace, the lowest first. An entry may exist before its
+/// crate.
+const RULES: [Rule; 8] = [
+    Rule {
+        name: "mpp-core",
+        ours: &[],
+        not: HOST,
+    },
+    Rule {
+        name: "hil-protocol",
+        ours: &[],
+        not: HOST,
+    },
+    Rule {
+        name: "mpp-node",
+        ours: &["mpp-core", "hil-protocol"],
+        not: HOST,
+    },
+    Rule {
+        name: "mpp-sim",
+        ours: &["mpp-core", "hil-protocol", "mpp-node"],
+        not: &["clap", "rayon", "indicatif", "clarabel", "plotters"],
+    },
+    Rule {
+        name: "mpp-analysis",
+        ours: &["mpp-core", "hil-protocol", "mpp-node", "mpp-sim"],
+        not: &["clap", "rayon", "indicatif"],
+    },
+    Rule {
+        name: "sil-harness",
+        ours: &[
+            "mpp-core",
+            "hil-protocol",
+            "mpp-node",
+            "mpp-sim",
+            "mpp-analysis",
+        ],
+        not: &["clarabel", "plotters"],
+    },
+    Rule {
+        name: "mpp-tests",
+        ours: &[
+            "mpp-core",
+            "hil-protocol",
+            "mpp-node",
+            "mpp-sim",
+            "mpp-analysis",
+            "sil-harness",
+        ],
+        not: &[],
+    },
+    Rule {
+        name: "xtask",
+        ours: &["hil-protocol"],
+        not: &[],
+    },
+];
+
+/// Finds the offences in the dependencies, and returns a sentence for each.
+fn offences(metadata: &serde_json::Value) -> Vec<String> {
+    let list = |value: &serde_json::Value| value.as_array().cloned().unwrap_or_default();
+    let text = |value: &serde_json::Value| value.as_str().unwrap_or_default().to_owned();
+    let packages = list(&metadata["packages"]);
+    let ours: Vec<_> = packages
+        .iter()
+        .map(|package| text(&package["name"]))
+        .collect();
+    let mut offences = Vec::new();
+    for package in &packages {
+        let name = text(&package["name"]);
+        let Some(rule) = RULES.iter().find(|rule| rule.name == name) else {
+            offences.push(format!("{name} has no rule: say in RULES what it may need"));
+            continue;
+        };
+        for dependency in list(&package["dependencies"]) {
+            let needed = text(&dependency["name"]);
+            // A crate's tests may ask for features of the crate itself.
+            let allowed =
+                !ours.contains(&needed) || needed == name || rule.ours.contains(&needed.as_str());
+            if !allowed || rule.not.contains(&needed.as_str()) {
+                offences.push(format!("{name} must not need {needed}"));
+            }
+        }
+    }
+    offences
+}
+
+#[test]
+fn no_crate_needs_what_it_must_not() {
+    let output = Command::new(env!("CARGO"))
+        .args([
+            "metadata",
+            "--format-version",
+            "1",
+            "--no-deps",
+            "--offline",
+        ])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo runs");
+    let metadata = serde_json::from_slice(&output.stdout).expect("cargo metadata gives JSON");
+    assert_eq!(offences(&metadata), Vec::<String>::new());
+}
+
+#[test]
+fn a_forbidden_dependency_and_a_crate_without_a_rule_are_found() {
+    let package = |name: &str, needed: &[&str]| {
+        let needs = |name: &&str| serde_json::json!({ "name": name });
+        let dependencies: Vec<_> = needed.iter().map(needs).collect();
+        serde_json::json!({ "name": name, "dependencies": dependencies })
+    };
+    let metadata = serde_json::json!({ "packages": [
+        package("mpp-core", &["libm", "hil-protocol", "rayon"]),
+        package("hil-protocol", &["serde"]),
+        package("mpp-node", &["mpp-core", "hil-protocol"]),
+        package("stranger", &[]),
+    ]});
+    let found = offences(&metadata);
+    assert_eq!(
+        found,
+        [
+            "mpp-core must not need hil-protocol",
+            "mpp-core must not need rayon",
+            "stranger has no rule: say in RULES what it may need",
+        ]
+    );
+}
+
+/// The crates whose files must not import each other in a circle, with their first file.
+const COVERED: [(&str, &str); 7] = [
+    ("hil-protocol", "lib.rs"),
+    ("mpp-core", "lib.rs"),
+    ("mpp-node", "lib.rs"),
+    ("mpp-sim", "lib.rs"),
+    ("mpp-analysis", "lib.rs"),
+    ("sil-harness", "lib.rs"),
+    ("xtask", "main.rs"),
+];
+
+#[test]
+fn no_files_import_each_other_in_a_circle() {
+    for (name, first) in COVERED {
+        let source = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("..")
+            .join(name)
+            .join("src");
+        let read = |file: &str| std::fs::read_to_string(source.join(file)).ok();
+        let edges = edges(first, &read);
+        assert!(edges.len() > 5, "{name} was not read");
+        let circles = circles(&edges);
+        assert!(
+            circles.is_empty(),
+            "{name} has circles of imports; move what both sides need to a file of its own:\n{}",
+            circles.join("\n")
+        );
+    }
+}
+
+/// The circles of a crate with the given files.
+fn circles_of(files: &[(&str, &str)]) -> Vec<String> {
+    let files: BTreeMap<_, _> = files.iter().copied().collect();
+    circles(&edges("lib.rs", &|file| {
+        files.get(file).map(|source| (*source).to_owned())
+    }))
+}
+
+#[test]
+fn a_circle_is_told_by_its_files_and_names() {
+    let two = [
+        ("lib.rs", "mod a; mod b; pub use a::A; pub use b::B;"),
+        ("a.rs", "use crate::B; pub struct A(B);"),
+        (
+            "b.rs",
+            "pub struct B; fn f() { let _ = super::a::A::new(); }",
+        ),
+    ];
+    assert_eq!(
+        circles_of(&two),
+        ["a.rs uses B of b.rs; b.rs uses A of a.rs"]
+    );
+    let child = [
+        ("lib.rs", "mod a;"),
+        (
+            "a/mod.rs",
+            "mod b; pub use b::B; struct A; fn f() -> B { B }",
+        ),
+        ("a/b.rs", "use super::A; pub struct B; fn f(_: A) {}"),
+    ];
+    assert_eq!(
+        circles_of(&child),
+        ["a/b.rs uses A of a/mod.rs; a/mod.rs uses B of a/b.rs"]
+    );
+    let three = [
+        ("lib.rs", "mod a; mod b; mod c; fn f() { a::f() }"),
+        ("a.rs", "pub fn f() { crate::b::f() }"),
+        ("b.rs", "use crate::c; pub fn f() { c::f() }"),
+        ("c.rs", "pub fn f() { assert!(crate::a::f() == ()) }"),
+    ];
+    assert_eq!(
+        circles_of(&three),
+        ["a.rs uses f of b.rs; b.rs uses f of c.rs; c.rs uses f of a.rs"]
+    );
+}
+
+#[test]
+fn a_clean_tree_passes() {
+    let clean = [
+        (
+            "lib.rs",
+            "mod a; mod d; pub use a::{B, C}; pub struct Root;",
+        ),
+        (
+            "a/mod.rs",
+            "mod b; mod c; pub use b::B; pub use c::C; pub mod e { pub struct E; }",
+        ),
+        // The edge leads through the parent, which only passes on, to the file that has the name.
+        (
+            "a/b.rs",
+            "use super::C; use crate::Root; pub struct B(C, Root);",
+        ),
+        // In tests everything may be used.
+        (
+            "a/c.rs",
+            "pub struct C; #[cfg(test)] mod tests { use super::super::B; }",
+        ),
+        (
+            "d.rs",
+            "use crate::a::{self, e::E}; fn f(_: a::B, _: E) { use std::fmt; }",
+        ),
+    ];
+    assert_eq!(circles_of(&clean), Vec::<String>::new());
+}
