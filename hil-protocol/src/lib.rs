@@ -75,9 +75,10 @@
 //! # Use
 //!
 //! ```
-//! use hil_protocol::{Decoder, MAX_FRAME, Message, SensorFrame, encode};
+//! use hil_protocol::{AirData, Decoder, MAX_FRAME, Message, SensorFrame, encode};
 //!
-//! let sent = Message::SensorFrame(SensorFrame { tick: 7, airspeed: 9.0, pitch: 0.1, x: 0.0, z: 30.0 });
+//! let air = AirData { tick: 7, airspeed: 9.0, pitch: 0.1 };
+//! let sent = Message::SensorFrame(SensorFrame { tick: 7, air: Some(air), position: None });
 //! let mut buffer = [0; MAX_FRAME];
 //! let frame = encode(&sent, &mut buffer)?;
 //!
@@ -101,7 +102,8 @@ mod version;
 pub use error::{DecodeError, EncodeError};
 pub use frame::{Decoder, MAGIC, MAX_FRAME, encode};
 pub use message::flight::{
-    ActuatorCommand, ControlMode, LidarScan, MAX_BEAMS, SensorFrame, StepReport,
+    ActuatorCommand, AirData, ControlMode, GroundVelocity, LidarScan, MAX_BEAMS, Position,
+    SensorFrame, StepReport,
 };
 pub use message::report::{
     MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,

@@ -132,7 +132,7 @@ fn configure_reply_and_every_verdict() {
         (reply(Margin), "0a4d500203192a4b8ee100"),
         (reply(Band), "0a4d5002031a901a877800"),
         (reply(PlanThrust), "0a4d5002031b062a800f00"),
-        (reply(WindTimeConstant), "0a4d5002031ca5bfe49100"),
+        (reply(WindChange), "0a4d5002031ca5bfe49100"),
         (reply(AngleOfAttackLimit), "0a4d5002031d338fe3e600"),
         (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
@@ -141,17 +141,43 @@ fn configure_reply_and_every_verdict() {
 
 #[test]
 fn sensor_frame() {
-    let message = SensorFrame {
-        tick: 1000,
+    let air = AirData {
+        tick: 998,
         airspeed: 9.1,
         pitch: -0.2,
+    };
+    let position = Position {
+        tick: 990,
         x: 123.456,
         z: 30.0,
+        sigma: 0.02,
+        velocity: Some(GroundVelocity {
+            x: 8.5,
+            z: -0.25,
+            sigma: 0.1,
+        }),
     };
-    check(&[(
-        Message::SensorFrame(message),
-        "1f4d500204e80733333333333322409a9999999999c9bf77be9f1a2fdd5e400101010101073e40b9f9260b00",
-    )]);
+    let frame = |air, position| {
+        Message::SensorFrame(SensorFrame {
+            tick: 1000,
+            air,
+            position,
+        })
+    };
+    check(&[
+        (frame(Some(air), Some(position)), "?"),
+        (
+            frame(
+                None,
+                Some(Position {
+                    velocity: None,
+                    ..position
+                }),
+            ),
+            "?",
+        ),
+        (frame(None, None), "?"),
+    ]);
 }
 
 fn scan(ranges: &[f32]) -> Message {
@@ -202,6 +228,9 @@ fn step_report() {
     let message = StepReport {
         tick: 300,
         estimate: [9.1, 0.1, -0.01, 0.05],
+        position: [49.5, 30.25],
+        wind: [-1.5, 0.25],
+        lift: 0.03,
         reference: [50.0, 30.5, 9.0, 0.2, 0.02, -0.3],
         plan_age_ticks: 40,
     };

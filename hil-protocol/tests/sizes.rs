@@ -71,10 +71,22 @@ fn of_the_session() {
 fn of_a_tick() {
     let sensors = SensorFrame {
         tick: u32::MAX,
-        airspeed: FLOAT,
-        pitch: FLOAT,
-        x: FLOAT,
-        z: FLOAT,
+        air: Some(AirData {
+            tick: u32::MAX,
+            airspeed: FLOAT,
+            pitch: FLOAT,
+        }),
+        position: Some(Position {
+            tick: u32::MAX,
+            x: FLOAT,
+            z: FLOAT,
+            sigma: 1.0,
+            velocity: Some(GroundVelocity {
+                x: 1.0,
+                z: 1.0,
+                sigma: 1.0,
+            }),
+        }),
     };
     assert_eq!(payload(&sensors), SensorFrame::MAX_SIZE);
     assert_eq!(payload(&longest_scan()), LidarScan::MAX_SIZE);
@@ -88,6 +100,9 @@ fn of_a_tick() {
     let report = StepReport {
         tick: u32::MAX,
         estimate: [FLOAT; 4],
+        position: [FLOAT; 2],
+        wind: [FLOAT; 2],
+        lift: FLOAT,
         reference: [FLOAT; 6],
         plan_age_ticks: u32::MAX,
     };

@@ -1,12 +1,11 @@
 //! A recording of a flight's planning cycles, made from outside, and a planner to plan them again.
 
-use mpp_core::estimate::{Conditions, ConditionsEstimator};
-use mpp_core::planner::{Planner, SetupError};
+use mpp_core::estimate::Conditions;
+use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{ActuatorLimits, Control, VehicleState};
+use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
-use mpp_sim::entries::Tick;
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::link::LinkError;
 use mpp_sim::pipe::PipeLink;
@@ -33,18 +32,15 @@ pub struct Inputs {
 /// [`FlyError`].
 pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
     let mut inputs = Vec::new();
-    let mut reckoning = Reckoning::new(&settings(scenario)?).map_err(FlyError::SetUp)?;
     fly(scenario, &mut PipeLink::of(scenario), |moment| {
-        let (truth, air) = (moment.tick.state, moment.tick.estimate);
-        reckoning.update(moment.tick);
         let Some(wire) = moment.scan else {
             return;
         };
         inputs.push(Inputs {
             time: moment.tick.t,
-            truth,
-            state: VehicleState { air, ..truth },
-            conditions: reckoning.conditions(),
+            truth: moment.tick.state,
+            state: moment.tick.estimate,
+            conditions: moment.tick.conditions,
             scan: core_scan(wire),
         });
     })?;
@@ -57,49 +53,6 @@ pub(crate) fn core_scan(wire: &hil_protocol::LidarScan) -> LidarScan {
         angle_min: f64::from(wire.angle_min),
         angle_increment: f64::from(wire.angle_increment),
         ranges: wire.ranges.clone(),
-    }
-}
-
-/// The conditions that the core takes into account besides the state. They are computed again from
-/// the logged ticks.
-pub struct Reckoning {
-    estimator: ConditionsEstimator,
-    limits: ActuatorLimits,
-    /// Control that the actuators gave, as far as the core knows. `last` holds the command since
-    /// then.
-    given: Control,
-    last: Option<(f64, Control)>,
-}
-
-impl Reckoning {
-    /// The conditions of a flight with these settings, before its first tick.
-    ///
-    /// # Errors
-    /// [`SetupError`] when the core could not be set up either.
-    pub fn new(settings: &Settings) -> Result<Self, SetupError> {
-        let trim = settings.cruise.trim(&settings.airframe);
-        Ok(Self {
-            estimator: ConditionsEstimator::new(settings),
-            limits: settings.actuators,
-            given: trim.map_err(SetupError::Trim)?.control,
-            last: None,
-        })
-    }
-
-    /// Updates the conditions with a tick.
-    pub fn update(&mut self, tick: &Tick) {
-        if let Some((before, command)) = self.last.replace((tick.t, tick.control)) {
-            self.given = self.limits.given(command, self.given, tick.t - before);
-        }
-        let position = (tick.state.x, tick.state.z);
-        self.estimator
-            .update(tick.t, position, &tick.estimate, self.given);
-    }
-
-    /// The conditions now.
-    #[must_use]
-    pub fn conditions(&self) -> Conditions {
-        self.estimator.conditions()
     }
 }
 

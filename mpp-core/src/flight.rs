@@ -3,12 +3,13 @@
 use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
 use crate::estimate::{
-    Changes, Conditions, ConditionsEstimator, Ekf, Innovation, Measurement,
-    Verdict as MeasurementVerdict,
+    Changes, Conditions, Ekf, Innovation, LiftEstimator, MOST_AGE, Measurement, Navigation,
+    PositionVerdict, Verdict as MeasurementVerdict,
 };
 use crate::health::Health;
+use crate::map::Pose;
 use crate::planner::{SetupError, Verdict, check_vehicle};
-use crate::sense::SensorFrame;
+use crate::sense::{Position, SensorFrame};
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::sensors::LONGEST_PREDICTION;
@@ -48,10 +49,8 @@ pub struct StepOutput {
     pub mode: Mode,
     /// The filter's verdicts on the measurement.
     pub innovation: Innovation,
-    /// Whether the position was finite and new. The step uses no other.
-    pub position_used: bool,
-    /// Whether the position was finite.
-    pub position_finite: bool,
+    /// The filter's verdict on the position, if there was one.
+    pub position: Option<PositionVerdict>,
 }
 
 /// The state and the parts of the 100 Hz loop.
@@ -59,16 +58,15 @@ pub struct StepOutput {
 pub struct FlightLoop {
     ekf: Ekf,
     airframe: Airframe,
-    conditions: ConditionsEstimator,
+    navigation: Navigation,
+    /// Estimator of the lift. Without it the lift is that of the known airframe.
+    lift: Option<LiftEstimator>,
     lqr: Lqr,
     trim: Trim,
     limits: ActuatorLimits,
     cross_track: f64,
     airspeed_hold: f64,
     trajectory: Option<Trajectory>,
-    /// The position as far as it is known, and as it was delivered last \[m\].
-    position: (f64, f64),
-    delivered: Option<(f64, f64)>,
     /// Time \[s\] of the last step, and its command.
     last: Option<(f64, Control)>,
     /// The controls that the actuators gave up to the last step, by the model of the actuators.
@@ -96,15 +94,17 @@ impl FlightLoop {
         Ok(Self {
             ekf: Ekf::new(*airframe, settings.estimator, trim.state),
             airframe: *airframe,
-            conditions: ConditionsEstimator::new(settings),
+            navigation: Navigation::new(settings.wind_change, settings.planner.altitude),
+            lift: settings
+                .wind_change
+                .is_some()
+                .then(|| LiftEstimator::new(&airframe)),
             lqr,
             trim,
             limits: settings.actuators,
             cross_track: settings.cross_track,
             airspeed_hold: settings.airspeed_hold,
             trajectory: None,
-            position: (0.0, settings.planner.altitude),
-            delivered: None,
             last: None,
             given: trim.control,
             airspeed_changes: Changes::new(),
@@ -116,14 +116,17 @@ impl FlightLoop {
     /// Makes one step at a time \[s\]. It predicts the motion since the last step under the last control,
     /// corrects the estimate by the measurement, and tracks the reference.
     pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
-        let mut elapsed = 0.0;
-        if let Some((before, control)) = self.last {
-            elapsed = self.predict(time - before, control);
-        }
-        let innovation = self.measure(&frame.measurement);
+        let elapsed = match self.last {
+            Some((before, control)) => self.predict(time - before, control),
+            None => {
+                self.navigation.predict(self.ekf.estimate(), 0.0);
+                0.0
+            }
+        };
+        let innovation = self.measure(frame.air.map(|air| air.measurement));
         self.count_verdict(innovation.airspeed);
         self.count_verdict(innovation.pitch);
-        let position_used = self.locate(time, elapsed, (frame.x, frame.z));
+        let position = self.locate(elapsed, frame.position.as_ref());
 
         let tracked = self
             .trajectory
@@ -147,8 +150,7 @@ impl FlightLoop {
             reference,
             mode,
             innovation,
-            position_used,
-            position_finite: frame.x.is_finite() && frame.z.is_finite(),
+            position,
         }
     }
 
@@ -176,44 +178,45 @@ impl FlightLoop {
             if self.ekf.predict(self.given, piece).is_err() {
                 Health::count(&mut self.health.predictions_diverged);
             }
+            self.navigation.predict(self.ekf.estimate(), piece);
         }
         period
     }
 
-    /// Takes a position `(x, z)` \[m\] if it is new. A position that repeats the one before to the last bit is
-    /// held by its source: an aircraft never stands still. Without a new one the last one moves on with the
-    /// estimated motion over ground.
-    fn locate(&mut self, time: f64, elapsed: f64, delivered: (f64, f64)) -> bool {
-        let finite = delivered.0.is_finite() && delivered.1.is_finite();
-        let bits = |(x, z): (f64, f64)| (x.to_bits(), z.to_bits());
-        let held = self
-            .delivered
-            .is_some_and(|last| bits(last) == bits(delivered));
-        if !finite {
-            Health::count(&mut self.health.positions_not_finite);
-        } else if held {
-            Health::count(&mut self.health.positions_held);
+    /// Takes in the position, if there is one, and then estimates the lift.
+    fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
+        let air = *self.ekf.estimate();
+        self.navigation.correct_motion(&air);
+        let verdict = fix.map(|fix| self.navigation.take(fix));
+        let health = &mut self.health;
+        match verdict {
+            Some(PositionVerdict::Accepted) | None => {}
+            Some(PositionVerdict::NotFinite) => Health::count(&mut health.positions_not_finite),
+            Some(PositionVerdict::Held) => Health::count(&mut health.positions_held),
+            Some(PositionVerdict::Late) => Health::count(&mut health.positions_late),
+            Some(PositionVerdict::Gated) => Health::count(&mut health.positions_gated),
+            Some(PositionVerdict::Restarted) => {
+                Health::count(&mut health.positions_restarted);
+            }
         }
-        if !finite || held {
-            let air = self.ekf.estimate();
-            let (ahead, up) = self.conditions.conditions().wind.ground_velocity(air);
-            self.position.0 += ahead * elapsed;
-            self.position.1 += up * elapsed;
-            return false;
-        }
-        self.delivered = Some(delivered);
-        self.position = delivered;
-        let air = self.ekf.estimate();
-        if !self.conditions.update(time, self.position, air, self.given) {
-            Health::count(&mut self.health.winds_refused);
+        let (_, climb) = self.navigation.wind().ground_velocity(&air);
+        if let Some(lift) = &mut self.lift {
+            if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
+                lift.interrupt();
+            } else {
+                lift.update(elapsed, climb, &air, self.given);
+            }
         }
         let airframe = self.conditions().airframe(&self.airframe);
         self.ekf.set_airframe(&airframe);
-        true
+        verdict
     }
 
     /// Corrects the estimate by what was measured, without values that the sensors only repeat.
-    fn measure(&mut self, measured: &Measurement) -> Innovation {
+    fn measure(&mut self, measured: Option<Measurement>) -> Innovation {
+        let Some(measured) = measured else {
+            return Innovation::MISSING;
+        };
         let fresh = Measurement {
             airspeed: self.airspeed_changes.take(measured.airspeed),
             pitch: self.pitch_changes.take(measured.pitch),
@@ -266,20 +269,38 @@ impl FlightLoop {
         self.ekf.estimate()
     }
 
-    /// The first state of a plan: the delivered position and the estimated motion.
+    /// The first state of a plan: the estimated position and motion.
     #[must_use]
     pub fn state(&self) -> VehicleState {
+        let (x, z) = self.navigation.position();
         VehicleState {
-            x: self.position.0,
-            z: self.position.1,
+            x,
+            z,
             air: *self.ekf.estimate(),
         }
+    }
+
+    /// The pose at the tick that was `age` ticks ago. `None` if that was before the first step or more than
+    /// [`crate::estimate::MOST_AGE`] ticks ago.
+    #[must_use]
+    pub fn pose_at(&self, age: u32) -> Option<Pose> {
+        if age == 0 {
+            return Some(Pose::of(&self.state()));
+        }
+        if age > MOST_AGE {
+            return None;
+        }
+        let ((x, z), pitch) = self.navigation.pose_at(age)?;
+        Some(Pose { x, z, pitch })
     }
 
     /// The estimated wind and lift that a plan uses besides the state.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
-        self.conditions.conditions()
+        Conditions {
+            wind: self.navigation.wind(),
+            lift: self.lift.as_ref().map_or(0.0, LiftEstimator::offset),
+        }
     }
 
     /// The last trajectory that the loop took over, if any.
@@ -314,7 +335,7 @@ impl FlightLoop {
 
     /// The motion of the reference, turned towards the path of the reference.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
-        let (x, z) = self.position;
+        let (x, z) = self.navigation.position();
         let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
         let ahead = ahead.max(LEAST_ADVANCE);
         let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
@@ -327,10 +348,11 @@ impl FlightLoop {
     }
 
     fn level_reference(&self) -> Reference {
+        let (x, z) = self.navigation.position();
         Reference {
             state: VehicleState {
-                x: self.position.0,
-                z: self.position.1,
+                x,
+                z,
                 air: self.trim.state,
             },
             feedforward: self.trim.control,
@@ -339,7 +361,7 @@ impl FlightLoop {
 
     fn count_verdict(&mut self, verdict: MeasurementVerdict) {
         match verdict {
-            MeasurementVerdict::Accepted => {}
+            MeasurementVerdict::Accepted | MeasurementVerdict::Missing => {}
             MeasurementVerdict::Gated => Health::count(&mut self.health.measurements_gated),
             MeasurementVerdict::Frozen => Health::count(&mut self.health.measurements_frozen),
             MeasurementVerdict::NotFinite => {

@@ -18,8 +18,12 @@ pub struct Health {
     pub positions_not_finite: u32,
     /// Positions that repeated the one before. The loop moved the last one on.
     pub positions_held: u32,
-    /// Positions that implied more wind than the estimator believes. It kept its last estimate of the wind.
-    pub winds_refused: u32,
+    /// Positions that were older than the history or than the position before. The filter did not use them.
+    pub positions_late: u32,
+    /// Positions beyond the innovation gate. The filter did not use them.
+    pub positions_gated: u32,
+    /// Positions from which the filter started anew, after it had refused all positions for some time.
+    pub positions_restarted: u32,
     /// Commands that were not finite. The step commanded trim instead.
     pub commands_not_finite: u32,
     /// Thrust commands outside the range of the motor. The step limited them to that range.

@@ -4,15 +4,60 @@ use crate::config::MAX_BEAMS;
 use crate::estimate::Measurement;
 use core::fmt;
 
-/// One reading of the 100 Hz sensors.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The measurements that arrived in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SensorFrame {
-    /// Airspeed and pitch.
+    /// New air data, if there are any.
+    pub air: Option<AirData>,
+    /// A new position, if there is one.
+    pub position: Option<Position>,
+}
+
+/// Airspeed and pitch at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AirData {
+    /// Ticks since the measurement.
+    pub age: u32,
+    /// The measured values.
     pub measurement: Measurement,
-    /// Downrange position from the navigation source \[m\].
+}
+
+/// A position from the navigation source.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Ticks since the measurement.
+    pub age: u32,
+    /// Downrange position \[m\].
     pub x: f64,
-    /// Height from the navigation source \[m\].
+    /// Height \[m\].
     pub z: f64,
+    /// Declared standard deviation of the white error along an axis \[m\].
+    pub sigma: f64,
+    /// Velocity over ground at the same time, if the source measures it.
+    pub velocity: Option<GroundVelocity>,
+}
+
+impl Position {
+    /// Whether every value is finite and no declared error is negative.
+    #[must_use]
+    pub fn is_sound(&self) -> bool {
+        let error = |sigma: f64| sigma.is_finite() && sigma >= 0.0;
+        let velocity = self.velocity.is_none_or(|velocity| {
+            velocity.x.is_finite() && velocity.z.is_finite() && error(velocity.sigma)
+        });
+        self.x.is_finite() && self.z.is_finite() && error(self.sigma) && velocity
+    }
+}
+
+/// A measured velocity over ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundVelocity {
+    /// Downrange component [m/s].
+    pub x: f64,
+    /// Upward component [m/s].
+    pub z: f64,
+    /// Declared standard deviation of the error along an axis [m/s].
+    pub sigma: f64,
 }
 
 /// One sweep of the lidar in the vertical plane.

@@ -165,13 +165,24 @@ pub mod sensors {
     pub const LONGEST_PREDICTION: f64 = 0.5;
 }
 
-/// The estimate of the wind.
-pub mod wind {
-    /// Greatest plausible wind along an axis [m/s]. A position that implies more is wrong. Source: D10.
-    pub const MOST: f64 = 10.0;
-    /// Longest time between two positions that an estimator compares \[s\]. The estimators assume a constant
-    /// motion through the air over this time.
-    pub const LONGEST_GAP: f64 = 0.055;
+/// The estimate of position and wind.
+pub mod navigation {
+    /// Greatest accepted innovation of a position, in standard deviations [-]. A healthy source exceeds it
+    /// once in 5e8 positions. Source: derived.
+    pub const GATE: f64 = 6.0;
+    /// Least standard deviation of a position \[m\] and of a velocity over ground [m/s] that the filter
+    /// believes. It keeps the covariance regular. With 1 mm at 100 Hz the wind follows within two ticks.
+    pub const LEAST_SIGMA: f64 = 1e-3;
+    /// Standard deviation of the wind before the first position [m/s]. Source: derived; it covers a fresh
+    /// breeze along and a thermal across.
+    pub const FIRST_WIND: f64 = 3.0;
+    /// Greatest plausible wind along an axis [m/s]. Source: D10.
+    pub const MOST_WIND: f64 = 10.0;
+    /// Standard deviation of the wind below which the estimate of the lift begins [m/s].
+    pub const SETTLED_WIND: f64 = 1.0;
+    /// Time without an accepted position after which the filter starts anew from a refused one \[s\]. Before
+    /// it a jump of the source does no harm; after it the source is believed again.
+    pub const RESTART_TIME: f64 = 1.0;
 }
 
 /// The estimate of the lift.
@@ -184,8 +195,6 @@ pub mod lift {
     /// Greatest plausible offset of the lift coefficient [-]: somewhat more than a quarter of the lift of
     /// level flight.
     pub const MOST: f64 = 0.4;
-    /// Greatest plausible difference in acceleration [m/s^2]. A position that implies more is wrong.
-    pub const MOST_ACCELERATION: f64 = 20.0;
 }
 
 /// Tracking of a trajectory at 100 Hz.

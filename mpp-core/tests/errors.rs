@@ -69,7 +69,7 @@ fn a_failed_set_up_speaks_as_its_cause() {
         SetupError::ThrustMax,
         SetupError::AngleOfAttackLimit,
         SetupError::FlightPathLimit,
-        SetupError::WindTimeConstant,
+        SetupError::WindChange,
         SetupError::ActuatorLimit,
         SetupError::ThrustTooLow,
         SetupError::NoPaths,

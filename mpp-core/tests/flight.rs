@@ -25,8 +25,10 @@ fn flight_loop() -> FlightLoop {
 fn lively(state: &VehicleState, tick: u32) -> SensorFrame {
     let mut frame = frame(state);
     let last_digits = 1e-9 * f64::from(tick % 2);
-    frame.measurement.airspeed += last_digits;
-    frame.measurement.pitch += last_digits;
+    if let Some(air) = &mut frame.air {
+        air.measurement.airspeed += last_digits;
+        air.measurement.pitch += last_digits;
+    }
     frame
 }
 

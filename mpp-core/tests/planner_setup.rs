@@ -42,11 +42,11 @@ fn settings_that_cannot_be_flown_are_refused_with_their_cause() {
     let blind = with_own(FlightSettings { sight: 0.0, ..own });
     assert_eq!(refused(blind), SetupError::Sight);
     let late = Settings {
-        wind: Some(0.0),
+        wind_change: Some(0.0),
         ..flight
     };
     let mut planner = Box::new(Planner::new());
-    assert_eq!(planner.set_up(&late), Err(SetupError::WindTimeConstant));
+    assert_eq!(planner.set_up(&late), Err(SetupError::WindChange));
     for broken in [
         priced(0.0, 1.0),
         priced(1.0, 0.0),

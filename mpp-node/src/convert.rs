@@ -1,6 +1,6 @@
 //! Conversion between the messages of the link and the types of the core.
 
-use crate::time;
+use crate::duration;
 use hil_protocol::{
     ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
     LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
@@ -8,14 +8,14 @@ use hil_protocol::{
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
 use mpp_core::control::RiccatiError;
-use mpp_core::estimate::Measurement;
+use mpp_core::estimate::{Conditions, Measurement};
 use mpp_core::flight::{Adoption, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
-use mpp_core::sense::{LidarScan, ScanError, SensorFrame};
+use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::{Reference, Trajectory};
-use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, TrimError};
+use mpp_core::vehicle::{ActuatorLimits, Airframe, TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
@@ -30,7 +30,7 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
     // The paper's method stays as published: it uses neither the lidar's range nor limits.
     if let Some(own) = settings.planner.flight_mut() {
         own.sight = f64::from(configure.range_max);
-        own.latency = time(configure.latency_ticks);
+        own.latency = duration(configure.latency_ticks);
         settings.actuators = actuators(&configure.actuators);
     }
 
@@ -119,7 +119,7 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
         SetupError::NoPaths => ConfigureVerdict::PathsZero,
         SetupError::Latency => ConfigureVerdict::Latency,
         SetupError::OtherMethod => ConfigureVerdict::OtherPreset,
-        SetupError::WindTimeConstant => ConfigureVerdict::WindTimeConstant,
+        SetupError::WindChange => ConfigureVerdict::WindChange,
         SetupError::ActuatorLimit => ConfigureVerdict::Actuators,
         SetupError::ThrustTooLow => ConfigureVerdict::ThrustTooLow,
     }
@@ -136,14 +136,29 @@ fn trim_verdict(error: TrimError) -> ConfigureVerdict {
     }
 }
 
+/// The measurements with their ages. A measurement from the future gets an age beyond all that the
+/// estimators use.
 pub(crate) fn sensor_frame(frame: &WireFrame) -> SensorFrame {
+    let age = |tick: u32| frame.tick.wrapping_sub(tick);
     SensorFrame {
-        measurement: Measurement {
-            airspeed: frame.airspeed,
-            pitch: frame.pitch,
-        },
-        x: frame.x,
-        z: frame.z,
+        air: frame.air.map(|air| AirData {
+            age: age(air.tick),
+            measurement: Measurement {
+                airspeed: air.airspeed,
+                pitch: air.pitch,
+            },
+        }),
+        position: frame.position.map(|position| Position {
+            age: age(position.tick),
+            x: position.x,
+            z: position.z,
+            sigma: f64::from(position.sigma),
+            velocity: position.velocity.map(|velocity| GroundVelocity {
+                x: f64::from(velocity.x),
+                z: f64::from(velocity.z),
+                sigma: f64::from(velocity.sigma),
+            }),
+        }),
     }
 }
 
@@ -201,14 +216,18 @@ pub(crate) fn mode(mode: Mode) -> ControlMode {
 pub(crate) fn step_report(
     tick: u32,
     plan_age_ticks: u32,
-    estimate: &AirState,
+    estimate: &VehicleState,
+    conditions: &Conditions,
     output: &StepOutput,
 ) -> StepReport {
     let state = &output.reference.state;
     let air = state.air.to_vector();
     StepReport {
         tick,
-        estimate: estimate.to_vector().into(),
+        estimate: estimate.air.to_vector().into(),
+        position: [estimate.x, estimate.z],
+        wind: [conditions.wind.x, conditions.wind.z],
+        lift: conditions.lift,
         reference: [state.x, state.z, air.x, air.y, air.z, air.w],
         plan_age_ticks,
     }
@@ -241,7 +260,7 @@ mod tests {
             SetupError::ThrustMax,
             SetupError::AngleOfAttackLimit,
             SetupError::FlightPathLimit,
-            SetupError::WindTimeConstant,
+            SetupError::WindChange,
             SetupError::ActuatorLimit,
             SetupError::ThrustTooLow,
             SetupError::NoPaths,

@@ -43,7 +43,13 @@ pub use node::FlightNode;
 pub use plan_task::{PlanTask, Progress};
 pub use step_task::{Pace, StepTask};
 
-/// Time of a tick \[s\].
-fn time(tick: u32) -> f64 {
-    f64::from(tick) * mpp_core::config::TICK_PERIOD
+/// Length of a number of ticks \[s\].
+fn duration(ticks: u32) -> f64 {
+    f64::from(ticks) * mpp_core::config::TICK_PERIOD
+}
+
+/// Ticks from one tick to another. It is negative if `to` came before `from`. Ticks count on from 0 after the
+/// greatest number, so two ticks may be at most half of all numbers apart, which is 248 days.
+const fn ticks(from: u32, to: u32) -> i32 {
+    to.wrapping_sub(from).cast_signed()
 }

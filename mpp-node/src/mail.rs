@@ -2,6 +2,7 @@
 
 use crate::parameters::Tuning;
 use mpp_core::estimate::Conditions;
+use mpp_core::map::Pose;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::trajectory::Trajectory;
@@ -24,8 +25,12 @@ pub enum Order {
     },
     /// Starts a cycle. The answer is [`Answer::Plan`].
     Begin {
-        /// The tick of the scan.
+        /// The tick at which the cycle starts.
         tick: u32,
+        /// Time of that tick \[s\].
+        time: f64,
+        /// Pose of the lidar when it took the scan.
+        pose: Pose,
         /// State of the aircraft at that tick.
         state: VehicleState,
         /// Estimated wind and lift at that tick.
@@ -58,8 +63,8 @@ pub enum Answer {
 /// The result of a cycle.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// The tick of the scan from which the cycle planned.
-    pub scan_tick: u32,
+    /// The tick at which the cycle started.
+    pub tick: u32,
     /// The verdict on the best trajectory.
     pub verdict: Verdict,
     /// The summary of the cycle.

@@ -219,7 +219,7 @@ parameters! { 41:
         |tuning| seconds(tuning.configure.latency_ticks),
         |tuning, value| {
             tuning.configure.latency_ticks = ticks(value);
-            let latency = crate::time(tuning.configure.latency_ticks);
+            let latency = crate::duration(tuning.configure.latency_ticks);
             set_flight(tuning, |own| own.latency = latency);
         };
     "MPP_SLICES", "slices a tick; 0: all", [0.0, 1e6], Some(1.0), ANY_TIME,
@@ -326,9 +326,9 @@ parameters! { 41:
     "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
         |tuning| flight(tuning, |own| own.thrust_max),
         |tuning, value| set_flight(tuning, |own| own.thrust_max = value);
-    "WIND_TC_S", "s", [0.01, 60.0], None, BEFORE,
-        |tuning| tuning.settings.wind,
-        |tuning, value| tuning.settings.wind = Some(value);
+    "WIND_CHANGE", "m/s in 1 s", [0.01, 20.0], None, BEFORE,
+        |tuning| tuning.settings.wind_change,
+        |tuning, value| tuning.settings.wind_change = Some(value);
     "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.thrust_max),
         |tuning, value| tuning.settings.actuators.thrust_max = positive(value);

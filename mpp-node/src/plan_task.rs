@@ -1,7 +1,7 @@
 //! The task of the planner, which runs cycles slice by slice.
 
 use crate::mail::{Answer, Order, Plan};
-use crate::time;
+use crate::ticks;
 use mpp_core::planner::Planner;
 
 /// The result of a call of [`PlanTask::advance`].
@@ -80,6 +80,8 @@ impl PlanTask {
             }
             Order::Begin {
                 tick,
+                time,
+                pose,
                 state,
                 conditions,
                 scan,
@@ -89,7 +91,8 @@ impl PlanTask {
                 self.slices_per_tick = tuning.configure.slices_per_tick;
                 // The step checks all values before it orders a cycle, so the planner refuses none of them.
                 let _ = self.planner.retune(&tuning.settings.planner);
-                self.planner.begin(time(*tick), state, conditions, scan);
+                self.planner
+                    .begin_from(*time, pose, state, conditions, scan);
                 self.cycle = Some(Cycle {
                     tick: *tick,
                     slices: 0,
@@ -106,15 +109,17 @@ impl PlanTask {
         let Some(cycle) = &mut self.cycle else {
             return Progress::Waiting;
         };
-        let late = clock >= cycle.tick.saturating_add(self.latency);
+        let elapsed = u32::try_from(ticks(cycle.tick, clock)).ok();
+        let late = elapsed.is_some_and(|elapsed| elapsed >= self.latency);
         let quota = self.latency.saturating_mul(self.slices_per_tick);
         if late || cycle.slices >= quota || !self.planner.is_working() {
             self.answer = Some(Due::Plan(cycle.tick));
             self.cycle = None;
             return Progress::Answered;
         }
-        let ticks = clock.saturating_add(1).saturating_sub(cycle.tick);
-        if cycle.slices >= ticks.saturating_mul(self.slices_per_tick) {
+        // The clock may still show the tick before the cycle.
+        let granted = elapsed.map_or(0, |elapsed| elapsed.saturating_add(1));
+        if cycle.slices >= granted.saturating_mul(self.slices_per_tick) {
             return Progress::Waiting;
         }
         cycle.slices = cycle.slices.saturating_add(1);
@@ -126,8 +131,8 @@ impl PlanTask {
     pub fn answer(&mut self) -> Option<Answer> {
         Some(match self.answer.take()? {
             Due::SetUp(number, result) => Answer::SetUp { number, result },
-            Due::Plan(scan_tick) => Answer::Plan(Plan {
-                scan_tick,
+            Due::Plan(tick) => Answer::Plan(Plan {
+                tick,
                 verdict: self.planner.finish(),
                 summary: *self.planner.summary(),
                 trajectory: self.planner.best().clone(),

@@ -5,7 +5,8 @@
 
 use crate::field::Obstacle;
 use crate::sensors::Measurement;
-use mpp_core::vehicle::{AirState, Control, VehicleState};
+use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::{Control, VehicleState};
 use serde::{Deserialize, Serialize};
 
 /// A circular obstacle.
@@ -36,7 +37,9 @@ pub struct Tick {
     /// The sensors' measurement of this state.
     pub measured: Measurement,
     /// The core's estimate from the measurements.
-    pub estimate: AirState,
+    pub estimate: VehicleState,
+    /// Wind and lift that the core estimates.
+    pub conditions: Conditions,
     /// The state that the core's trajectory asks for at `t`; `None` while the core tracks no plan.
     pub reference: Option<VehicleState>,
     /// The control that the core commanded.
@@ -76,6 +79,16 @@ pub struct Columns {
     pub est_pitch_rate: Vec<f64>,
     /// Estimated flight path angle \[rad\].
     pub est_flight_path: Vec<f64>,
+    /// Estimated downrange distance \[m\].
+    pub est_x: Vec<f64>,
+    /// Estimated height \[m\].
+    pub est_z: Vec<f64>,
+    /// Estimated motion of the air downrange [m/s].
+    pub est_wind_x: Vec<f64>,
+    /// Estimated motion of the air upwards [m/s].
+    pub est_wind_z: Vec<f64>,
+    /// Estimated excess of the lift coefficient over that of the known airframe [-].
+    pub est_lift: Vec<f64>,
     /// Reference downrange distance \[m\]. This and the other references are null without a plan.
     pub ref_x: Vec<Option<f64>>,
     /// Reference height \[m\].
@@ -116,10 +129,15 @@ impl Columns {
         self.flight_path.push(tick.state.air.flight_path);
         self.measured_airspeed.push(tick.measured.airspeed);
         self.measured_pitch.push(tick.measured.pitch);
-        self.est_airspeed.push(tick.estimate.airspeed);
-        self.est_pitch.push(tick.estimate.pitch);
-        self.est_pitch_rate.push(tick.estimate.pitch_rate);
-        self.est_flight_path.push(tick.estimate.flight_path);
+        self.est_airspeed.push(tick.estimate.air.airspeed);
+        self.est_pitch.push(tick.estimate.air.pitch);
+        self.est_pitch_rate.push(tick.estimate.air.pitch_rate);
+        self.est_flight_path.push(tick.estimate.air.flight_path);
+        self.est_x.push(tick.estimate.x);
+        self.est_z.push(tick.estimate.z);
+        self.est_wind_x.push(tick.conditions.wind.x);
+        self.est_wind_z.push(tick.conditions.wind.z);
+        self.est_lift.push(tick.conditions.lift);
         self.ref_x.push(reference(|r| r.x));
         self.ref_z.push(reference(|r| r.z));
         self.ref_airspeed.push(reference(|r| r.air.airspeed));

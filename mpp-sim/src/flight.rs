@@ -10,14 +10,16 @@ use crate::entries::{PlanEntry, Tick, finite};
 use crate::link::Link;
 use crate::log::{FlightLog, Header};
 use crate::moment::Moment;
+use crate::navigation::{GroundTruth, NavigationSensor};
 use crate::orders::Ground;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
 use crate::sensors::{AirDataSensors, Measurement};
 use crate::world::World;
 pub use error::FlyError;
-use hil_protocol::{ControlMode, PlanReport, SensorFrame};
+use hil_protocol::{AirData, ControlMode, PlanReport, SensorFrame};
 use judge::Judge;
+use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 use session::{Answer, Session};
@@ -77,6 +79,7 @@ pub fn fly_in(
     let mut log = FlightLog::begin(Header::of(scenario, field.as_ref()));
     let mut session = Session::open(scenario, link)?;
     let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
+    let mut navigation = NavigationSensor::new(scenario.seed, scenario.navigation);
     let mut judge = Judge::new();
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, plant.state());
@@ -94,21 +97,28 @@ pub fn fly_in(
             break;
         }
         let before = *plant.state();
+        let (x, z) = plant.wind();
+        let air = Wind { x, z };
         if scenario.oracle {
-            let (x, z) = plant.wind();
-            session.reveal(&before, Wind { x, z })?;
+            session.reveal(&before, air)?;
         }
         let measured = sensors.measure(&before);
         let scan = steering.scans(flown).then(|| {
             let ranges = lidar.scan(&before, field.as_ref());
             scenario.lidar.wire_scan(flown, &ranges)
         });
+        let truth = GroundTruth {
+            position: (before.x, before.z),
+            velocity: air.ground_velocity(&before.air),
+        };
         let frame = SensorFrame {
             tick: flown,
-            airspeed: measured.airspeed,
-            pitch: measured.pitch,
-            x: before.x,
-            z: before.z,
+            air: Some(AirData {
+                tick: flown,
+                airspeed: measured.airspeed,
+                pitch: measured.pitch,
+            }),
+            position: navigation.measure(flown, &truth),
         };
         let mut answer = session.fly(scan.as_ref(), frame)?;
         steering.limit(&mut answer.command);
@@ -169,7 +179,18 @@ fn logged(number: u32, state: &VehicleState, measured: Measurement, answer: &Ans
         t: Scenario::time(number),
         state: *state,
         measured,
-        estimate: answer.step.map_or(state.air, |step| air(step.estimate)),
+        estimate: answer.step.map_or(*state, |step| VehicleState {
+            x: step.position[0],
+            z: step.position[1],
+            air: air(step.estimate),
+        }),
+        conditions: answer.step.map_or(Conditions::STILL, |step| Conditions {
+            wind: Wind {
+                x: step.wind[0],
+                z: step.wind[1],
+            },
+            lift: step.lift,
+        }),
         reference,
         control: control(answer),
         applied: control(answer),

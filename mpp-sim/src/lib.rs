@@ -17,7 +17,7 @@
 //! ```text
 //! names, random              named values; the only source of random numbers
 //! field, scene               the obstacles: the paper's circles, the challenge scenes
-//! lidar, sensors             the sensors, with noise from seeded streams
+//! lidar, sensors, navigation the sensors, with noise from seeded streams
 //! plant, dynamics            the interface of an aircraft, and this crate's equations of motion
 //! faults                     faults and disturbances
 //! scenario                   the parameters of a flight, also as TOML
@@ -62,6 +62,8 @@ pub mod scene;
 pub mod lidar;
 
 pub mod sensors;
+
+pub mod navigation;
 
 pub mod plant;
 

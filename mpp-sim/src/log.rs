@@ -14,6 +14,7 @@ use crate::faults::Faults;
 use crate::field::{Field, Obstacle};
 use crate::lidar::LidarConfig;
 use crate::names::UnknownName;
+use crate::navigation::NavigationConfig;
 use crate::orders::OrderEntry;
 use crate::scenario::{Scenario, ScenarioError, Times};
 use crate::scene::Scene;
@@ -23,7 +24,7 @@ use sha2::{Digest, Sha256};
 use std::fmt;
 
 /// Version of the log's layout.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// One flight from its parameters to its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -73,6 +74,9 @@ pub struct Header {
     pub lidar: LidarConfig,
     /// Errors of the airspeed and pitch sensors.
     pub air_data: AirDataNoise,
+    /// The navigation source; not written if it is ideal.
+    #[serde(default = "ideal", skip_serializing_if = "is_ideal")]
+    pub navigation: NavigationConfig,
     /// Faults and disturbances.
     pub faults: Faults,
     /// The challenge scene, if any.
@@ -82,6 +86,14 @@ pub struct Header {
     pub oracle: bool,
     /// The obstacles.
     pub field: Vec<ObstacleEntry>,
+}
+
+fn ideal() -> NavigationConfig {
+    NavigationConfig::IDEAL
+}
+
+fn is_ideal(navigation: &NavigationConfig) -> bool {
+    *navigation == NavigationConfig::IDEAL
 }
 
 impl Header {
@@ -101,6 +113,7 @@ impl Header {
             duration: Scenario::time(scenario.ticks),
             lidar: scenario.lidar,
             air_data: scenario.air_data,
+            navigation: scenario.navigation,
             faults: scenario.faults,
             scene: scenario.scene,
             oracle: scenario.oracle,
@@ -129,6 +142,7 @@ impl Header {
             slices_per_tick: self.slices_per_tick.unwrap_or(u32::MAX),
             lidar: self.lidar,
             air_data: self.air_data,
+            navigation: self.navigation,
             faults: self.faults,
             oracle: self.oracle,
             ..Scenario::new(preset, self.seed)

@@ -51,6 +51,7 @@ impl Oracle {
                 }
             }
             Order::Begin {
+                pose,
                 state,
                 conditions,
                 scan,
@@ -66,6 +67,7 @@ impl Oracle {
                         z: z - up,
                     };
                     (state.x, state.z) = (truth.x, truth.z);
+                    (pose.x, pose.z) = (truth.x, truth.z);
                 }
                 // Beams would clear occupied cells that they graze.
                 scan.ranges.clear();

@@ -26,6 +26,8 @@ pub enum Stream {
     LidarFaults = 7,
     /// Place of a challenge scene.
     Scene = 8,
+    /// Errors of the navigation source.
+    Navigation = 9,
 }
 
 /// The generator of one subsystem in the flight with this seed.
@@ -59,7 +61,7 @@ pub fn gaussian(generator: &mut ChaCha8Rng) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 8] = [
+    const ALL: [Stream; 9] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -68,6 +70,7 @@ mod tests {
         Stream::Gusts,
         Stream::LidarFaults,
         Stream::Scene,
+        Stream::Navigation,
     ];
 
     #[test]

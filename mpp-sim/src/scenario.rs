@@ -8,6 +8,7 @@ use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::names::{self, UnknownName};
+use crate::navigation::NavigationConfig;
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
 use core::fmt;
@@ -20,7 +21,9 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use recorded::Times;
 
-pub use file::{AirDataTable, LidarTable, ScenarioError, ScenarioFile};
+pub use file::{
+    AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioError, ScenarioFile,
+};
 
 /// The height at which flights start and which the planner returns to \[m\].
 pub const ALTITUDE: f64 = 50.0;
@@ -164,6 +167,8 @@ pub struct Scenario {
     pub lidar: LidarConfig,
     /// Errors of the airspeed and pitch sensors.
     pub air_data: AirDataNoise,
+    /// The navigation source.
+    pub navigation: NavigationConfig,
     /// Faults and disturbances.
     pub faults: Faults,
     /// Whether the core knows the field and the true state, as [`crate::oracle`] says.
@@ -192,6 +197,7 @@ impl Scenario {
             ticks: 20 * TICKS_PER_SECOND,
             lidar,
             air_data: AirDataNoise::PAPER,
+            navigation: NavigationConfig::IDEAL,
             faults: Faults::default(),
             oracle: false,
         }
@@ -206,6 +212,7 @@ impl Scenario {
             latency_ticks: 1,
             slices_per_tick: u32::MAX,
             air_data: AirDataNoise::NONE,
+            navigation: NavigationConfig::IDEAL,
             oracle: true,
             ..self
         }

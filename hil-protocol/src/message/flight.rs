@@ -10,24 +10,78 @@ pub const MAX_BEAMS: usize = 128;
 // The length of the list must fit the two bytes that `LidarScan::MAX_SIZE` counts for it.
 const _: () = assert!(MAX_BEAMS < 1 << 14);
 
-/// Harness to core: the measurements of one tick. World frame: x downrange, z up.
+/// Harness to core: the measurements that arrived in one tick. World frame: x downrange, z up.
+///
+/// Each measurement bears the tick at which it was taken. A sensor that is late sends the tick of the
+/// measurement, not the tick of the arrival. A sensor that has nothing new sends nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SensorFrame {
-    /// Number of the tick. The sender chooses the first number, and each following number is one more.
+    /// Number of the tick. The sender chooses the first number, and each following number is one more. After
+    /// the greatest number comes 0.
+    pub tick: u32,
+    /// New air data, if there are any.
+    pub air: Option<AirData>,
+    /// A new position, if there is one.
+    pub position: Option<Position>,
+}
+
+impl SensorFrame {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize =
+        size::U32 + size::BYTE + AirData::MAX_SIZE + size::BYTE + Position::MAX_SIZE;
+}
+
+/// Airspeed and pitch at one time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct AirData {
+    /// The tick at which both values were measured.
     pub tick: u32,
     /// Airspeed \[m/s\].
     pub airspeed: f64,
     /// Pitch, nose-up positive \[rad\].
     pub pitch: f64,
+}
+
+impl AirData {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = size::U32 + 2 * size::F64;
+}
+
+/// A position from the navigation source, with its declared error.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Position {
+    /// The tick at which the position was measured.
+    pub tick: u32,
     /// Position downrange \[m\].
     pub x: f64,
     /// Height, positive up \[m\].
     pub z: f64,
+    /// Standard deviation of the white part of the error along an axis \[m\].
+    pub sigma: f32,
+    /// Velocity over ground at the same time, if the source measures it.
+    pub velocity: Option<GroundVelocity>,
 }
 
-impl SensorFrame {
+impl Position {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = size::U32 + 4 * size::F64;
+    pub const MAX_SIZE: usize =
+        size::U32 + 2 * size::F64 + size::F32 + size::BYTE + GroundVelocity::MAX_SIZE;
+}
+
+/// A measured velocity over ground.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GroundVelocity {
+    /// Downrange \[m/s\].
+    pub x: f32,
+    /// Upwards \[m/s\].
+    pub z: f32,
+    /// Standard deviation of the error along an axis \[m/s\].
+    pub sigma: f32,
+}
+
+impl GroundVelocity {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = 3 * size::F32;
 }
 
 /// Harness to core: one sweep of the lidar in the vertical plane, sent before the
@@ -84,6 +138,12 @@ pub struct StepReport {
     /// Estimate: airspeed \[m/s\], pitch \[rad\], pitch rate \[rad/s\], flight path angle \[rad\];
     /// angles nose-up positive.
     pub estimate: [f64; 4],
+    /// Estimated position: x downrange, z up \[m\].
+    pub position: [f64; 2],
+    /// Estimated velocity of the air over ground: x downrange, z up \[m/s\].
+    pub wind: [f64; 2],
+    /// Estimated amount by which the lift coefficient exceeds that of the known airframe \[-\].
+    pub lift: f64,
     /// Reference: x downrange \[m\], z up \[m\], airspeed \[m/s\], pitch \[rad\],
     /// pitch rate \[rad/s\], flight path angle \[rad\].
     pub reference: [f64; 6],
@@ -93,5 +153,5 @@ pub struct StepReport {
 
 impl StepReport {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = 2 * size::U32 + 10 * size::F64;
+    pub const MAX_SIZE: usize = 2 * size::U32 + 15 * size::F64;
 }

@@ -73,7 +73,7 @@ pub enum ConfigureVerdict {
     /// The greatest thrust of a plan is not a positive, finite number.
     PlanThrust,
     /// The time constant of the wind's estimate is not a positive, finite number.
-    WindTimeConstant,
+    WindChange,
     /// The limit of the angle of attack is not a positive, finite number.
     AngleOfAttackLimit,
     /// The limit of the flight path angle is not a positive, finite number.
@@ -176,8 +176,8 @@ impl fmt::Display for ConfigureVerdict {
             Self::PlanThrust => {
                 "the greatest thrust of a plan is not a positive, finite number: give it in newtons"
             }
-            Self::WindTimeConstant => {
-                "the time constant of the wind is not a positive, finite number: give it in seconds"
+            Self::WindChange => {
+                "the change of the wind is not a positive, finite number: give it in metres per second"
             }
             Self::AngleOfAttackLimit => {
                 "the limit of the angle of attack is not a positive, finite number: give it in radians"

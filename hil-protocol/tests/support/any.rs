@@ -1,7 +1,7 @@
 //! Any message, including floats of every bit pattern.
 
 use hil_protocol::*;
-use proptest::array::{uniform4, uniform6};
+use proptest::array::{uniform3, uniform4, uniform5, uniform6};
 use proptest::collection::vec;
 use proptest::num::{f32, f64};
 use proptest::prelude::*;
@@ -114,7 +114,7 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::Margin,
             ConfigureVerdict::Band,
             ConfigureVerdict::PlanThrust,
-            ConfigureVerdict::WindTimeConstant,
+            ConfigureVerdict::WindChange,
             ConfigureVerdict::AngleOfAttackLimit,
             ConfigureVerdict::FlightPathLimit,
             ConfigureVerdict::OtherPreset,
@@ -151,13 +151,41 @@ fn plan_trajectory() -> impl Strategy<Value = PlanTrajectory> {
 }
 
 fn sensor_frame() -> impl Strategy<Value = SensorFrame> {
-    (any::<u32>(), uniform4(f64::ANY)).prop_map(|(tick, [airspeed, pitch, x, z])| SensorFrame {
+    (
+        any::<u32>(),
+        prop::option::of(air_data()),
+        prop::option::of(position()),
+    )
+        .prop_map(|(tick, air, position)| SensorFrame {
+            tick,
+            air,
+            position,
+        })
+}
+
+fn air_data() -> impl Strategy<Value = AirData> {
+    (any::<u32>(), f64::ANY, f64::ANY).prop_map(|(tick, airspeed, pitch)| AirData {
         tick,
         airspeed,
         pitch,
-        x,
-        z,
     })
+}
+
+fn position() -> impl Strategy<Value = Position> {
+    let velocity = uniform3(f32::ANY).prop_map(|[x, z, sigma]| GroundVelocity { x, z, sigma });
+    (
+        any::<u32>(),
+        (f64::ANY, f64::ANY),
+        f32::ANY,
+        prop::option::of(velocity),
+    )
+        .prop_map(|(tick, (x, z), sigma, velocity)| Position {
+            tick,
+            x,
+            z,
+            sigma,
+            velocity,
+        })
 }
 
 fn lidar_scan() -> impl Strategy<Value = LidarScan> {
@@ -191,15 +219,21 @@ fn step_report() -> impl Strategy<Value = StepReport> {
     (
         any::<u32>(),
         uniform4(f64::ANY),
+        uniform5(f64::ANY),
         uniform6(f64::ANY),
         any::<u32>(),
     )
-        .prop_map(|(tick, estimate, reference, plan_age_ticks)| StepReport {
-            tick,
-            estimate,
-            reference,
-            plan_age_ticks,
-        })
+        .prop_map(
+            |(tick, estimate, [x, z, ahead, up, lift], reference, age)| StepReport {
+                tick,
+                estimate,
+                position: [x, z],
+                wind: [ahead, up],
+                lift,
+                reference,
+                plan_age_ticks: age,
+            },
+        )
 }
 
 fn plan_report() -> impl Strategy<Value = PlanReport> {

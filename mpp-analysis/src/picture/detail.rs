@@ -3,7 +3,7 @@
 //! The core reports only its choice. The same planner gets the same scans and states here, so it
 //! goes through the same candidates, one slice at a time.
 
-use crate::recording::{Reckoning, core_scan};
+use crate::recording::core_scan;
 use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::map::GridPoint;
@@ -68,7 +68,6 @@ pub struct Map {
 /// A planner whose cycles can be inspected.
 pub struct Inspector {
     planner: Box<Planner>,
-    reckoning: Reckoning,
 }
 
 impl Inspector {
@@ -79,25 +78,19 @@ impl Inspector {
     pub fn new(tuning: &Tuning) -> Result<Self, SetupError> {
         let mut planner = Box::new(Planner::new());
         planner.set_up(&tuning.settings)?;
-        let reckoning = Reckoning::new(&tuning.settings)?;
-        Ok(Self { planner, reckoning })
+        Ok(Self { planner })
     }
 
     /// The cycle that begins at this moment, if a scan was taken. `tuning` holds the values in
     /// force.
     pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
-        self.reckoning.update(moment.tick);
         let wire = moment.scan?;
-        let state = VehicleState {
-            air: moment.tick.estimate,
-            ..moment.tick.state
-        };
+        let state = moment.tick.estimate;
         let planner = &mut self.planner;
         // The core does the same: values that it refuses were never in force.
         let _ = planner.retune(&tuning.settings.planner);
-        let conditions = self.reckoning.conditions();
         let scan = core_scan(wire);
-        planner.begin(moment.tick.t, &state, &conditions, &scan);
+        planner.begin(moment.tick.t, &state, &moment.tick.conditions, &scan);
 
         let mut detail = PlanDetail {
             tick: wire.tick,

@@ -1,23 +1,24 @@
 //! Estimate of the lift that the wing gives beyond that of the known airframe.
 
-use crate::tuning::lift::{MEMORY, MOST, MOST_ACCELERATION, TRUST_TIME};
-use crate::tuning::wind::LONGEST_GAP;
+use crate::tuning::lift::{MEMORY, MOST, TRUST_TIME};
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY};
 
 /// Estimator of the offset of the lift coefficient, at the angle of attack that the elevator balances.
 ///
-/// The estimator differentiates the height twice and gets the vertical acceleration over ground. Lift,
-/// drag, thrust and weight cause this acceleration. The estimator averages the difference from the
-/// acceleration of the known airframe at the elevator's angle of attack. Errors of mass, lift slope and
-/// pitch stiffness all appear in this one number; gusts average out.
+/// The estimator differentiates the climb rate over ground. Lift, drag, thrust and weight cause this
+/// acceleration. The estimator averages the difference from the acceleration of the known airframe at the
+/// elevator's angle of attack. Errors of mass, lift slope and pitch stiffness all appear in this one number;
+/// gusts average out. The noise of the climb rate averages out too: the sum of its differences is the
+/// difference between last and first.
 #[derive(Clone, Debug)]
 pub struct LiftEstimator {
     airframe: Airframe,
-    offset: f64,
+    /// Averaged offset of the lift coefficient [-].
+    average: f64,
     /// Time over which the offset was averaged \[s\].
     seen: f64,
-    /// Time \[s\] and height \[m\] of the last position, and the climb rate up to it [m/s].
-    last: Option<(f64, f64, Option<f64>)>,
+    /// Climb rate over ground at the last tick [m/s].
+    last: Option<f64>,
 }
 
 impl LiftEstimator {
@@ -26,7 +27,7 @@ impl LiftEstimator {
     pub const fn new(airframe: &Airframe) -> Self {
         Self {
             airframe: *airframe,
-            offset: 0.0,
+            average: 0.0,
             seen: 0.0,
             last: None,
         }
@@ -35,35 +36,29 @@ impl LiftEstimator {
     /// Offset to add to the lift coefficient of the known airframe [-].
     #[must_use]
     pub fn offset(&self) -> f64 {
-        self.offset
+        self.average.clamp(-MOST, MOST)
     }
 
-    /// Takes in a height \[m\] at a time \[s\], the motion through the air, and the controls that the
-    /// actuators gave until then. It ignores a difference in acceleration that is too large to be lift.
-    pub fn update(&mut self, time: f64, height: f64, air: &AirState, given: Control) {
-        let last = self.last.replace((time, height, None));
-        let Some((before, from, climb)) = last else {
-            return;
-        };
-        let period = time - before;
-        if !(period > 0.0 && period <= LONGEST_GAP) {
-            return;
-        }
-        let climb_now = (height - from) / period;
-        self.last = Some((time, height, Some(climb_now)));
-        let Some(climb) = climb else {
+    /// Takes in the climb rate over ground [m/s] after a further `period` \[s\], the motion through the air,
+    /// and the controls that the actuators gave until then.
+    pub fn update(&mut self, period: f64, climb: f64, air: &AirState, given: Control) {
+        let Some(before) = self.last.replace(climb) else {
             return;
         };
         let (expected, per_lift) = self.acceleration(air, given);
-        let more = (climb_now - climb) / period - expected;
-        // The range test also refuses NaN. Without airspeed there is no lift.
-        if !(-MOST_ACCELERATION..=MOST_ACCELERATION).contains(&more) || per_lift < 1.0 {
+        let more = (climb - before) / period - expected;
+        // Without airspeed there is no lift. Without a period there is no acceleration.
+        if !more.is_finite() || !(per_lift >= 1.0 && period > 0.0) {
             return;
         }
         self.seen = (self.seen + period).min(MEMORY);
         let share = period / (TRUST_TIME + self.seen);
-        let offset = self.offset + share * (more / per_lift - self.offset);
-        self.offset = offset.clamp(-MOST, MOST);
+        self.average += share * (more / per_lift - self.average);
+    }
+
+    /// Forgets the last climb rate. The next one may be another by more than the acceleration.
+    pub fn interrupt(&mut self) {
+        self.last = None;
     }
 
     /// Vertical acceleration of the known airframe, and its derivative with respect to the lift coefficient

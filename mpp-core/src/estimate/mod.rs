@@ -2,16 +2,18 @@
 
 mod changes;
 mod conditions;
+mod history;
 mod lift;
-mod wind;
+mod navigation;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
 pub use changes::Changes;
-pub use conditions::{Conditions, ConditionsEstimator};
+pub use conditions::Conditions;
 use core::fmt;
+pub use history::{History, MOST_AGE};
 pub use lift::LiftEstimator;
 use nalgebra::{Matrix4, SMatrix, Vector4};
-pub use wind::WindEstimator;
+pub use navigation::{Navigation, PositionVerdict};
 
 /// Measured airspeed and pitch. Their errors are independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,8 +86,10 @@ pub enum Verdict {
     Gated,
     /// The value is not a finite number, and the filter did not use it.
     NotFinite,
-    /// Repeated by the sensor to the last bit for some ticks: not used.
+    /// The sensor has repeated the value to the last bit for some ticks. The filter did not use it.
     Frozen,
+    /// There was no value.
+    Missing,
 }
 
 /// The verdicts on the two values of one measurement.
@@ -95,6 +99,14 @@ pub struct Innovation {
     pub airspeed: Verdict,
     /// Verdict on the pitch.
     pub pitch: Verdict,
+}
+
+impl Innovation {
+    /// There were no air data.
+    pub const MISSING: Self = Self {
+        airspeed: Verdict::Missing,
+        pitch: Verdict::Missing,
+    };
 }
 
 /// The prediction is not finite, for instance because the airspeed is zero. The filter keeps its last

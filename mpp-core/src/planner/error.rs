@@ -36,8 +36,8 @@ pub enum SetupError {
     AngleOfAttackLimit,
     /// The limit of the flight path angle is not a positive, finite number.
     FlightPathLimit,
-    /// The time constant of the wind's estimate is not a positive, finite number.
-    WindTimeConstant,
+    /// The change of the wind is not a positive, finite number.
+    WindChange,
     /// A limit of an actuator is not a positive, finite number.
     ActuatorLimit,
     /// The greatest thrust of the motor does not carry level flight.
@@ -83,8 +83,8 @@ impl fmt::Display for SetupError {
             Self::FlightPathLimit => {
                 "the limit of the flight path angle is not a positive, finite number: give it in radians"
             }
-            Self::WindTimeConstant => {
-                "the time constant of the wind is not a positive, finite number: give it in seconds"
+            Self::WindChange => {
+                "the change of the wind is not a positive, finite number: give it in metres per second"
             }
             Self::ActuatorLimit => {
                 "an actuator's limit is not a positive, finite number: correct it, or set no limit"
@@ -118,8 +118,8 @@ pub(crate) fn check_vehicle(settings: &Settings, trim: &Trim) -> Result<(), Setu
     if !carries {
         return Err(SetupError::ThrustTooLow);
     }
-    if !settings.wind.is_none_or(positive) {
-        return Err(SetupError::WindTimeConstant);
+    if !settings.wind_change.is_none_or(positive) {
+        return Err(SetupError::WindChange);
     }
     Ok(())
 }

@@ -20,6 +20,7 @@ mod summary;
 
 use crate::config::KNOTS;
 use crate::estimate::Conditions;
+use crate::map::Pose;
 use crate::qp::Problem;
 use crate::sense::LidarScan;
 use crate::settings::{Method, PlannerSettings, Settings};
@@ -162,8 +163,21 @@ impl Planner {
         conditions: &Conditions,
         scan: &LidarScan,
     ) {
+        self.begin_from(time, &Pose::of(state), state, conditions, scan);
+    }
+
+    /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from another pose. The
+    /// paper's method knows only the present pose.
+    pub fn begin_from(
+        &mut self,
+        time: f64,
+        pose: &Pose,
+        state: &VehicleState,
+        conditions: &Conditions,
+        scan: &LidarScan,
+    ) {
         match self.chosen {
-            Chosen::Flight => self.flight.begin(time, state, conditions, scan),
+            Chosen::Flight => self.flight.begin(time, pose, state, conditions, scan),
             #[cfg(feature = "paper")]
             Chosen::Paper => self.paper.begin(time, state, scan),
         }

@@ -128,9 +128,9 @@ pub struct Settings {
     pub design_jacobian: JacobianForm,
     /// The estimator's tuning.
     pub estimator: EkfTuning,
-    /// Time constant of the wind's estimate \[s\]. Without a value the core assumes still air and the known
-    /// airframe, as the paper does.
-    pub wind: Option<f64>,
+    /// Standard deviation of the change of the wind in one second [m/s]. Without a value the core assumes
+    /// still air and the known airframe and takes each position as it is, as the paper does.
+    pub wind_change: Option<f64>,
     /// The regulator's weights.
     pub regulator: LqrWeights,
     /// Angle by which the regulator's reference turns back, per metre of distance from the trajectory
@@ -154,7 +154,7 @@ impl Settings {
             design_thrust: Some(4.0),
             design_jacobian: JacobianForm::Authors,
             estimator: EkfTuning::AUTHORS,
-            wind: None,
+            wind_change: None,
             cross_track: 0.0,
             airspeed_hold: 0.0,
             planner: PlannerSettings {
@@ -194,7 +194,7 @@ impl Settings {
             design_thrust: None,
             design_jacobian: JacobianForm::Exact,
             estimator: EkfTuning::SENSORS,
-            wind: Some(0.02),
+            wind_change: Some(1.0),
             regulator: LqrWeights::PAPER,
             cross_track: 0.08,
             airspeed_hold: 10.0,

@@ -1,17 +1,31 @@
 //! Sensors without error.
 
 use mpp_core::estimate::Measurement;
-use mpp_core::sense::SensorFrame;
+use mpp_core::sense::{AirData, Position, SensorFrame};
 use mpp_core::vehicle::VehicleState;
 
 /// The frame that the sensors read.
 pub(crate) fn frame(state: &VehicleState) -> SensorFrame {
+    let measurement = Measurement {
+        airspeed: state.air.airspeed,
+        pitch: state.air.pitch,
+    };
+    reading(measurement, (state.x, state.z))
+}
+
+/// The frame of a measurement and an exact position `(x, z)` \[m\], both of this tick.
+pub(crate) fn reading(measurement: Measurement, (x, z): (f64, f64)) -> SensorFrame {
     SensorFrame {
-        measurement: Measurement {
-            airspeed: state.air.airspeed,
-            pitch: state.air.pitch,
-        },
-        x: state.x,
-        z: state.z,
+        air: Some(AirData {
+            age: 0,
+            measurement,
+        }),
+        position: Some(Position {
+            age: 0,
+            x,
+            z,
+            sigma: 0.0,
+            velocity: None,
+        }),
     }
 }

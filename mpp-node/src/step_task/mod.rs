@@ -7,6 +7,7 @@ mod tune;
 use crate::convert;
 use crate::mail::{Answer, Order, Plan};
 use crate::parameters::Tuning;
+use crate::ticks;
 use asker::Asker;
 use hil_protocol::{
     Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, LidarScan as WireScan, MAX_FRAME,
@@ -33,7 +34,9 @@ pub enum Pace {
 /// The cycle that the planner works on.
 #[derive(Clone, Copy)]
 struct Cycle {
-    /// The tick of the scan.
+    /// The tick at which the cycle started.
+    begun: u32,
+    /// The tick at which the scan was taken.
     scan: u32,
     /// The tick at which the plan is due.
     due: u32,
@@ -47,10 +50,14 @@ struct Flight {
     /// Whether the planner is set up with the present values.
     ready: bool,
     control: FlightLoop,
+    /// The tick of the first step. The flight's time counts from it.
+    first_tick: Option<u32>,
     last_tick: Option<u32>,
     cycle: Option<Cycle>,
-    /// The tick of the last scan that started a cycle.
+    /// The tick at which the last cycle started.
     last_cycle: Option<u32>,
+    /// The tick of the last scan that started a cycle.
+    last_scan: Option<u32>,
     /// The tick of the scan from which the present trajectory was planned.
     plan_tick: Option<u32>,
     /// The tick of a checked scan that waits for its sensor frame.
@@ -174,7 +181,7 @@ impl StepTask {
                 // The step drops a plan that does not belong to the present cycle, for example one from a
                 // session that has ended.
                 let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
-                if cycle.is_some_and(|cycle| cycle.scan == plan.scan_tick) {
+                if cycle.is_some_and(|cycle| cycle.begun == plan.tick) {
                     self.plan = Some(plan);
                 }
             }
@@ -201,13 +208,11 @@ impl StepTask {
             return;
         }
         self.reject(RejectionCause::PlannerRestarted, send);
-        if let Some(Cycle {
-            scan: scan_tick, ..
-        }) = cycle
+        if let Some(Cycle { begun, .. }) = cycle
             && self.plan.is_none()
         {
             self.plan = Some(Plan {
-                scan_tick,
+                tick: begun,
                 verdict: Verdict::Nothing,
                 summary: PlanSummary {
                     cost: f64::INFINITY,
@@ -312,9 +317,11 @@ impl StepTask {
             asker: Asker::Configure,
             ready: false,
             control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
+            first_tick: None,
             last_tick: None,
             cycle: None,
             last_cycle: None,
+            last_scan: None,
             plan_tick: None,
             scan_tick: None,
         })
@@ -371,11 +378,11 @@ impl StepTask {
         };
         let expected = flight
             .last_tick
-            .map_or(frame.tick, |last| last.saturating_add(1));
+            .map_or(frame.tick, |last| last.wrapping_add(1));
         if frame.tick != expected {
             let found = frame.tick;
             self.reject(RejectionCause::TickOrder { expected, found }, send);
-            if found < expected {
+            if ticks(expected, found) < 0 {
                 // The frame is old: the step for its tick is already done.
                 return;
             }

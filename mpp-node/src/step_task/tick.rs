@@ -1,12 +1,12 @@
 //! One tick: the step takes over a plan that is due, makes the 100 Hz step, and starts a cycle.
 
-use super::{Cycle, Pace, StepTask};
+use super::{Cycle, Flight, Pace, StepTask};
 use crate::convert;
 use crate::mail::Order;
-use crate::time;
+use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, Message, PlanOutcome, PlanReport, RejectionCause};
-use mpp_core::estimate::{Innovation, Verdict};
+use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
 use mpp_core::flight::Adoption;
 use mpp_core::planner::PlanSummary;
 
@@ -16,7 +16,7 @@ impl StepTask {
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {
                 // The planner may use the slices of all ticks before this one.
-                self.clock = frame.tick.saturating_sub(1);
+                self.clock = frame.tick.wrapping_sub(1);
                 self.held = Some(*frame);
                 return;
             }
@@ -30,7 +30,7 @@ impl StepTask {
     fn plan_is_due(&self, tick: u32) -> bool {
         self.flight
             .as_ref()
-            .is_some_and(|flight| flight.cycle.is_some_and(|cycle| tick >= cycle.due))
+            .is_some_and(|flight| (flight.cycle).is_some_and(|cycle| ticks(cycle.due, tick) >= 0))
     }
 
     /// Takes over the result of a cycle, if it has ended.
@@ -38,11 +38,12 @@ impl StepTask {
         let (Some(flight), Some(plan)) = (&mut self.flight, &self.plan) else {
             return;
         };
-        flight.cycle = None;
-        let scan_tick = plan.scan_tick;
-        let adoption = flight
-            .control
-            .adopt(time(tick), plan.verdict, &plan.trajectory);
+        let Some(cycle) = flight.cycle.take() else {
+            return;
+        };
+        let scan_tick = cycle.scan;
+        let time = flight.time(tick);
+        let adoption = flight.control.adopt(time, plan.verdict, &plan.trajectory);
         let outcome = convert::outcome(adoption);
         if flight.control.trajectory().is_none() {
             flight.plan_tick = None;
@@ -84,21 +85,27 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return;
         };
+        flight.first_tick.get_or_insert(frame.tick);
         flight.last_tick = Some(frame.tick);
-        let output = flight
-            .control
-            .step(time(frame.tick), &convert::sensor_frame(frame));
+        let time = flight.time(frame.tick);
+        let output = flight.control.step(time, &convert::sensor_frame(frame));
         let age = flight
             .plan_tick
-            .map_or(0, |plan| frame.tick.saturating_sub(plan));
-        let report = convert::step_report(frame.tick, age, flight.control.estimate(), &output);
+            .map_or(0, |plan| frame.tick.wrapping_sub(plan));
+        let report = convert::step_report(
+            frame.tick,
+            age,
+            &flight.control.state(),
+            &flight.control.conditions(),
+            &output,
+        );
         let command = ActuatorCommand {
             tick: frame.tick,
             thrust: output.control.thrust,
             elevator: output.control.elevator,
             mode: convert::mode(output.mode),
         };
-        if let Some(cause) = measurement_rejection(output.innovation, output.position_finite) {
+        if let Some(cause) = measurement_rejection(output.innovation, output.position) {
             self.reject(cause, send);
         }
         self.emit(&Message::StepReport(report), send);
@@ -113,17 +120,21 @@ impl StepTask {
         let Some(scan_tick) = flight.scan_tick.take() else {
             return;
         };
-        if scan_tick != tick {
+        let age = tick.wrapping_sub(scan_tick);
+        let again = flight
+            .last_scan
+            .is_some_and(|last| ticks(last, scan_tick) <= 0);
+        let Some(pose) = flight.control.pose_at(age).filter(|_| !again) else {
             let cause = RejectionCause::TickOrder {
                 expected: tick,
                 found: scan_tick,
             };
             return self.reject(cause, send);
-        }
+        };
         let period = flight.tuning.configure.replan_period_ticks;
         if flight
             .last_cycle
-            .is_some_and(|last| tick < last.saturating_add(period))
+            .is_some_and(|last| tick.wrapping_sub(last) < period)
         {
             return;
         }
@@ -132,12 +143,16 @@ impl StepTask {
         }
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
-            scan: tick,
-            due: tick.saturating_add(flight.tuning.configure.latency_ticks),
+            begun: tick,
+            scan: scan_tick,
+            due: tick.wrapping_add(flight.tuning.configure.latency_ticks),
         });
         flight.last_cycle = Some(tick);
+        flight.last_scan = Some(scan_tick);
         self.order = Some(Order::Begin {
             tick,
+            time: flight.time(tick),
+            pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
             scan: self.scan.clone(),
@@ -146,9 +161,23 @@ impl StepTask {
     }
 }
 
-fn measurement_rejection(innovation: Innovation, position_finite: bool) -> Option<RejectionCause> {
+impl Flight {
+    /// Time of a tick since the first step \[s\].
+    fn time(&self, tick: u32) -> f64 {
+        let first = self.first_tick.unwrap_or(tick);
+        duration(tick.wrapping_sub(first))
+    }
+}
+
+fn measurement_rejection(
+    innovation: Innovation,
+    position: Option<PositionVerdict>,
+) -> Option<RejectionCause> {
     let Innovation { airspeed, pitch } = innovation;
-    if !position_finite || airspeed == Verdict::NotFinite || pitch == Verdict::NotFinite {
+    if position == Some(PositionVerdict::NotFinite)
+        || airspeed == Verdict::NotFinite
+        || pitch == Verdict::NotFinite
+    {
         Some(RejectionCause::NonFiniteSensor)
     } else if airspeed == Verdict::Gated || pitch == Verdict::Gated {
         Some(RejectionCause::InnovationGate {

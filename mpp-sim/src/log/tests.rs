@@ -27,7 +27,15 @@ fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
             airspeed: 12.3,
             pitch: 0.11,
         },
-        estimate: air,
+        estimate: VehicleState {
+            x: 12.0 * t + 0.02,
+            z: 49.99,
+            air,
+        },
+        conditions: Conditions {
+            wind: Wind { x: 0.25, z: 0.5 },
+            lift: 0.03,
+        },
         reference,
         control: Control {
             thrust: 4.3,
@@ -72,6 +80,7 @@ fn example() -> FlightLog {
             duration: 20.0,
             lidar: LidarConfig::PAPER,
             air_data: AirDataNoise::PAPER,
+            navigation: NavigationConfig::IDEAL,
             faults: Faults::default(),
             scene: None,
             oracle: false,
@@ -122,7 +131,7 @@ fn a_log_reads_back_as_it_was() {
 fn the_layout_is_frozen() {
     let text = String::from_utf8(example().to_json().unwrap()).unwrap();
     assert!(text.starts_with(
-        r#"{"schema":2,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
+        r#"{"schema":3,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
     ));
     for part in [
         r#""field":[{"x":25.0,"z":47.5,"radius":1.0}]},"ticks":{"t":[0.0,0.01],"#,

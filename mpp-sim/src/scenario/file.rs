@@ -2,6 +2,8 @@
 //! (20 s, 20 obstacles, 25 paths, replanned at 1 Hz). An unknown key gives an error with its name.
 //! `docs/scenarios/example.toml` holds every key with its unit.
 
+mod navigation;
+
 use super::{AirframeName, Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
 use crate::faults::Faults;
 use crate::field::Obstacle;
@@ -9,6 +11,7 @@ use crate::lidar::{LidarConfig, LidarRule};
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
 use mpp_core::config::{MAX_BEAMS, MAX_PATHS};
+pub use navigation::{NavigationSource, NavigationTable};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -59,6 +62,8 @@ pub struct ScenarioFile {
     pub lidar: LidarTable,
     /// Errors of the airspeed and pitch sensors.
     pub air_data: AirDataTable,
+    /// The navigation source.
+    pub navigation: NavigationTable,
     /// Faults and disturbances.
     pub faults: Faults,
     /// Obstacles placed one by one.
@@ -184,6 +189,7 @@ impl ScenarioFile {
             ticks: duration * TICKS_PER_SECOND,
             lidar: self.lidar.over(base.lidar),
             air_data: self.air_data.over(base.air_data),
+            navigation: self.navigation.over(base.navigation)?,
             faults: self.faults,
             ..base
         };
@@ -260,6 +266,7 @@ pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
     ] {
         ensure(not_negative(value), key, "give 0 or more")?;
     }
+    navigation::check(&scenario.navigation)?;
     ensure(
         scenario.placed.len() <= MAX_OBSTACLES,
         "obstacle",

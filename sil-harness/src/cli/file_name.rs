@@ -63,11 +63,12 @@ fn rest(scenario: &Scenario) -> Vec<u8> {
     let Scenario {
         lidar,
         air_data,
+        navigation,
         faults,
         placed,
         ..
     } = scenario;
-    serde_json::to_vec(&(lidar, air_data, faults, placed)).unwrap_or_default()
+    serde_json::to_vec(&(lidar, air_data, navigation, faults, placed)).unwrap_or_default()
 }
 
 /// FNV-1a, 32 bits: the same on every machine.
@@ -120,6 +121,7 @@ mod tests {
             gusts("2.0"),
             "[lidar]\nbeams = 31\n".to_owned(),
             "[air_data]\nairspeed_sigma = 0.1\n".to_owned(),
+            "[navigation]\nsource = \"rtk\"\n".to_owned(),
             "[[obstacle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n".to_owned(),
             "[[obstacle]]\nx = 61.0\nz = 50.0\nradius = 2.0\n".to_owned(),
         ];

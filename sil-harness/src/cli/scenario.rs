@@ -2,9 +2,11 @@
 //! it.
 
 use super::answer::{Failure, USAGE};
-use super::values::{airframe, scene};
+use super::values::{airframe, navigation, scene};
 use crate::files::read_scenario;
-use mpp_sim::scenario::{AirframeName, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND};
+use mpp_sim::scenario::{
+    AirframeName, NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND,
+};
 use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
@@ -19,6 +21,9 @@ pub(super) struct ScenarioArgs {
     /// Airframe, both of the aircraft and of the core's model [default: reference]
     #[arg(long, value_parser = airframe())]
     airframe: Option<AirframeName>,
+    /// Source of positions: their rate, errors and delay [default: ideal]
+    #[arg(long, value_parser = navigation())]
+    navigation: Option<NavigationSource>,
     /// Simulated time from a scan until its plan is flown [ms], a multiple of 10 [default: 10]
     #[arg(long)]
     latency_ms: Option<u32>,
@@ -39,6 +44,7 @@ impl ScenarioArgs {
         };
         replace(&mut file.scene, self.scene);
         replace(&mut file.airframe, self.airframe);
+        replace(&mut file.navigation.source, self.navigation);
         replace(&mut file.latency_ms, self.latency_ms);
         replace(&mut file.slices_per_tick, self.slices_per_tick);
         replace(&mut file.duration, self.duration);
@@ -46,7 +52,7 @@ impl ScenarioArgs {
     }
 
     /// These flags, each with whether it asks for something else than this scenario.
-    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 5] {
+    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 6] {
         let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
         let slices = other(self.slices_per_tick, flown.slices_per_tick);
         let seconds = other(self.duration, flown.ticks / TICKS_PER_SECOND);
@@ -55,6 +61,11 @@ impl ScenarioArgs {
             (
                 "--airframe",
                 self.airframe.is_some_and(|a| a != flown.airframe),
+            ),
+            (
+                "--navigation",
+                self.navigation
+                    .is_some_and(|source| source.config() != flown.navigation),
             ),
             (
                 "--latency-ms",

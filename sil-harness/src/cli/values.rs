@@ -1,7 +1,7 @@
 //! Named values of flags: their help texts and their parsers.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mpp_sim::scenario::{AirframeName, Preset};
+use mpp_sim::scenario::{AirframeName, NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use std::error::Error;
 use std::str::FromStr;
@@ -25,6 +25,19 @@ pub(super) fn preset() -> impl TypedValueParser<Value = Preset> {
 }
 
 /// Reads an airframe.
+/// Reads a navigation source.
+pub(super) fn navigation() -> impl TypedValueParser<Value = NavigationSource> {
+    let help = |source| match source {
+        NavigationSource::Ideal => "The true position, 100 Hz",
+        NavigationSource::Rtk => "10 Hz, 0.02 m white, 0.05 m wandering, 50 ms late",
+        NavigationSource::GnssIns => {
+            "10 Hz, 0.1 m white, 0.5 m wandering, 100 ms late, with velocities"
+        }
+        NavigationSource::LidarOdometry => "20 Hz, 0.03 m white, drift of 1 % of the way",
+    };
+    named(NavigationSource::ALL.map(|source| PossibleValue::new(source.name()).help(help(source))))
+}
+
 pub(super) fn airframe() -> impl TypedValueParser<Value = AirframeName> {
     let help = |airframe| match airframe {
         AirframeName::Paper => "The paper's appendix: with chord, `I_yy` = 0.17 kg m^2",

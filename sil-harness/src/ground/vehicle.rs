@@ -231,7 +231,7 @@ impl Vehicle {
     pub fn observe(&mut self, moment: &Moment<'_>) {
         self.flying = true;
         self.state = moment.tick.state;
-        self.estimate = moment.tick.estimate;
+        self.estimate = moment.tick.estimate.air;
         self.thrust = moment.tick.control.thrust;
         self.rejections = moment.rejections;
         self.report_scan(moment);

@@ -194,12 +194,13 @@ impl FlightPlanner {
     pub fn begin(
         &mut self,
         time: f64,
+        pose: &Pose,
         state: &VehicleState,
         conditions: &Conditions,
         scan: &LidarScan,
     ) {
         self.reckon_with(conditions);
-        self.pose = Pose::of(state);
+        self.pose = *pose;
         self.state = self.taken_over(time, state);
         self.time = time + self.settings.latency;
         self.scan.clone_from(scan);
