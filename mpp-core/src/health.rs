@@ -8,6 +8,10 @@ pub struct Health {
     pub measurements_not_finite: u32,
     /// Measured values that the sensor only repeated.
     pub measurements_frozen: u32,
+    /// Measured values that came later than the ones before.
+    pub measurements_late: u32,
+    /// Measured values of a sensor that was not trusted.
+    pub measurements_distrusted: u32,
     /// Measured values beyond the innovation gate.
     pub measurements_gated: u32,
     /// Steps that came before the previous step, or later after it than the loop believes.
