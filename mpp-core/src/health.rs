@@ -45,6 +45,32 @@ pub struct Health {
 }
 
 impl Health {
+    /// The counters, in the order of the fields.
+    #[must_use]
+    pub const fn counters(&self) -> [u32; 19] {
+        [
+            self.measurements_not_finite,
+            self.measurements_frozen,
+            self.measurements_late,
+            self.measurements_distrusted,
+            self.measurements_gated,
+            self.time_jumps,
+            self.predictions_diverged,
+            self.positions_not_finite,
+            self.positions_held,
+            self.positions_late,
+            self.positions_gated,
+            self.positions_restarted,
+            self.commands_not_finite,
+            self.thrust_limited,
+            self.elevator_limited,
+            self.plans_feasible,
+            self.plans_kept,
+            self.plans_least_violating,
+            self.plans_trim_hold,
+        ]
+    }
+
     /// Adds one to a counter.
     pub(crate) fn count(counter: &mut u32) {
         *counter = counter.saturating_add(1);

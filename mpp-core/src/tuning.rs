@@ -55,6 +55,13 @@ pub mod memory {
     pub const RANGE_DOUBT: f64 = 0.03;
     /// Length before a hit that is no evidence at any range \[m\]: two cells, for beams that graze a rim.
     pub const HIT_DOUBT: f64 = 1.0;
+    /// Number of occupied cells in the fan of a scan without returns at which the lidar counts as blind [-]. One
+    /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. Source:
+    /// derived.
+    pub const BLIND_CELLS: u32 = 8;
+    /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
+    /// pose moves a cell out of sight.
+    pub const BLIND_SHARE: f64 = 0.8;
     /// Share of the lidar's range over which a beam without a return is evidence [-]: 40 m of 45 m.
     pub const UNANSWERED_SHARE: f64 = 8.0 / 9.0;
 }

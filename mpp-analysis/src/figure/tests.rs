@@ -4,6 +4,7 @@ use super::flight::{CANVAS, FIELD_HEIGHT, field_panel};
 use super::panel::{self, Axis};
 use super::*;
 use crate::campaign::{Campaign, Lists, Report};
+use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
 use mpp_sim::dynamics::Dynamics;
 use mpp_sim::entries::{Columns, ObstacleEntry, PlanEntry, Tick};
@@ -11,6 +12,7 @@ use mpp_sim::faults::Faults;
 use mpp_sim::field::ObstacleField;
 use mpp_sim::lidar::LidarConfig;
 use mpp_sim::log::{FlightLog, Header, SCHEMA, Summary};
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::{Class, Outcome, Score};
 use mpp_sim::scenario::{Preset, Scenario, ScenarioFile};
 use mpp_sim::sensors::{AirDataNoise, AirDataSensors};
@@ -93,6 +95,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
+        sensors: Vec::new(),
+        health: Default::default(),
         orders: Vec::new(),
         summary: Summary {
             outcome: Outcome::Survived,
