@@ -7,7 +7,7 @@ use crate::estimate::{
     Verdict as MeasurementVerdict,
 };
 use crate::health::Health;
-use crate::planner::{SetupError, Verdict, check_vehicle};
+use crate::planner::{SetupError, Verdict, check};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
@@ -85,8 +85,7 @@ impl FlightLoop {
     /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
         let airframe = &settings.airframe;
-        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
-        check_vehicle(settings, &trim)?;
+        let trim = check(settings)?;
         let design = Control {
             thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
             ..trim.control

@@ -84,6 +84,9 @@ impl Tuning {
             return Err(ParameterVerdict::CruiseFixed);
         }
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
+        if let Some(setting) = self.settings.out_of_range() {
+            return Err(ParameterVerdict::SetUp(convert::out_of_range(setting)));
+        }
         Ok(self)
     }
 }

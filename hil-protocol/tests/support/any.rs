@@ -118,6 +118,8 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::AngleOfAttackLimit,
             ConfigureVerdict::FlightPathLimit,
             ConfigureVerdict::OtherPreset,
+            ConfigureVerdict::OutOfRange(Setting::Mass),
+            ConfigureVerdict::OutOfRange(Setting::PaddingFar),
         ]),
     ]
 }
