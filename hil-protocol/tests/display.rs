@@ -47,7 +47,7 @@ fn every_verdict_and_cause_speaks() {
             faults.last().copied().unwrap(),
         ),
         (
-            ConfigureVerdict::OutOfRange(Setting::Mass),
+            ConfigureVerdict::Unstable,
             ParameterVerdict::CruiseFixed,
             RejectionCause::ScanAngle,
             DecodeError::TrailingBytes { id: 0 },

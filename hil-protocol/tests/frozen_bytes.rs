@@ -136,6 +136,7 @@ fn configure_reply_and_every_verdict() {
         (reply(AngleOfAttackLimit), "0a4d5002031d338fe3e600"),
         (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
+        (reply(Unstable), "0a4d50020321b4f38cc900"),
     ]);
 }
 

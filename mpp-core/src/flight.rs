@@ -1,7 +1,7 @@
 //! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
 use crate::config::TICK_PERIOD;
-use crate::control::Lqr;
+use crate::control::{Lqr, holds};
 use crate::estimate::{
     Changes, Conditions, ConditionsEstimator, Ekf, Innovation, Measurement,
     Verdict as MeasurementVerdict,
@@ -92,6 +92,9 @@ impl FlightLoop {
         };
         let linear = linearize(airframe, &trim.state, design, settings.design_jacobian);
         let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
+        if !holds(settings, &trim, &lqr) {
+            return Err(SetupError::Unstable);
+        }
         Ok(Self {
             ekf: Ekf::new(*airframe, settings.estimator, trim.state),
             airframe: *airframe,

@@ -61,6 +61,7 @@ fn a_failed_set_up_speaks_as_its_cause() {
     let mut errors = vec![
         SetupError::Model(ModelError),
         SetupError::Condense(CondenseError),
+        SetupError::Unstable,
         SetupError::TooManyPaths,
         SetupError::ThrustTooLow,
         SetupError::NoPaths,

@@ -291,6 +291,27 @@ fn what_no_range_shows_is_refused_too() {
     assert_eq!(refused(&settings), error);
 }
 
+/// The regulator's design is for a controller without pauses. One that acts once in a tick cannot be as
+/// firm, and a design for another aircraft need not hold this one.
+#[test]
+fn a_regulator_that_does_not_hold_the_aircraft_is_refused() {
+    let unstable = |change: fn(&mut Settings)| {
+        let mut settings = Settings::flight();
+        change(&mut settings);
+        assert_eq!(settings.out_of_range(), None);
+        assert_eq!(Planner::new().set_up(&settings), Ok(()));
+        FlightLoop::new(&settings).err() == Some(SetupError::Unstable)
+    };
+    assert!(!unstable(|_| {}));
+    assert!(unstable(|s| s.regulator.state[2] = 1e4));
+    assert!(unstable(|s| s.regulator.elevator = 1e-4));
+    assert!(unstable(|s| s.cross_track = 5.0));
+    assert!(unstable(|s| s.airspeed_hold = 400.0));
+    // Without a turn back to the path nothing holds the height. This is no fault: the paper flies so.
+    assert!(!unstable(|s| s.cross_track = 0.0));
+    assert!(!unstable(|s| s.airspeed_hold = 0.0));
+}
+
 /// A change in flight is checked as the set-up is, and a refused one changes nothing.
 #[test]
 fn a_change_in_flight_is_refused_by_its_name() {
@@ -383,7 +404,7 @@ proptest! {
             (Ok(mut flight), Ok(())) => fly(&settings, &mut flight, planner.trim()),
             // The regulator has more causes to refuse than the planner.
             (Err(step), Err(plan)) => prop_assert_eq!(step, plan),
-            (Err(SetupError::Regulator(_)), Ok(())) | (Ok(_), Err(SetupError::Condense(_))) => {}
+            (Err(SetupError::Regulator(_) | SetupError::Unstable), Ok(())) | (Ok(_), Err(SetupError::Condense(_))) => {}
             (step, plan) => prop_assert!(false, "{:?} {plan:?}", step.err()),
         }
     }

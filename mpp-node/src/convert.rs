@@ -108,6 +108,7 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
         },
         SetupError::Model(ModelError) => ConfigureVerdict::PlanModel,
         SetupError::Condense(CondenseError) => ConfigureVerdict::PlanWeights,
+        SetupError::Unstable => ConfigureVerdict::Unstable,
         SetupError::TooManyPaths => ConfigureVerdict::TooManyPaths {
             max: MAX_PATHS as u16,
         },
@@ -253,6 +254,7 @@ mod tests {
             SetupError::Regulator(RiccatiError::NotStabilising),
             SetupError::Model(ModelError),
             SetupError::Condense(CondenseError),
+            SetupError::Unstable,
             SetupError::TooManyPaths,
             SetupError::ThrustTooLow,
             SetupError::NoPaths,

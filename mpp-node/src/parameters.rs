@@ -296,7 +296,7 @@ parameters! { 41:
     "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[2]),
         |tuning, value| tuning.settings.estimator.process_noise[2] = value;
-    "EKF_Q_PATH", "rad^2", [0.0, 10.0], None, BEFORE,
+    "EKF_Q_PATH", "rad^2", [0.0, 0.1], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[3]),
         |tuning, value| tuning.settings.estimator.process_noise[3] = value;
     "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,

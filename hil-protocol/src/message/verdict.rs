@@ -83,6 +83,8 @@ pub enum ConfigureVerdict {
     OtherPreset,
     /// A number of the core's settings is outside of its range, or is not finite.
     OutOfRange(Setting),
+    /// The regulator does not hold the aircraft, because it acts only once in a tick.
+    Unstable,
 }
 
 impl fmt::Display for ConfigureVerdict {
@@ -195,6 +197,10 @@ impl fmt::Display for ConfigureVerdict {
                     f,
                     "{setting} is not finite, or is far from that of any aircraft: correct it"
                 );
+            }
+            Self::Unstable => {
+                "the regulator is too firm or too soft for a tick of 10 ms: bring its weights and gains \
+                 nearer to those of the preset"
             }
         })
     }

@@ -18,11 +18,13 @@ pub enum SetupError {
     Model(ModelError),
     /// The program's Hessian is not positive definite.
     Condense(CondenseError),
+    /// The regulator does not hold the aircraft, because it acts only once in a tick.
+    Unstable,
     /// The settings ask for more than [`MAX_PATHS`] paths.
     TooManyPaths,
     /// A number of the settings is outside of its range, or is not finite.
     OutOfRange(Setting),
-    /// The greatest thrust of the motor does not carry level flight.
+    /// The greatest thrust of motor or plans does not carry level flight.
     ThrustTooLow,
     /// The settings ask the flight planner for zero paths.
     NoPaths,
@@ -37,6 +39,10 @@ impl fmt::Display for SetupError {
             Self::Regulator(error) => return error.fmt(f),
             Self::Model(error) => return error.fmt(f),
             Self::Condense(error) => return error.fmt(f),
+            Self::Unstable => {
+                "the regulator is too firm or too soft for a tick of 10 ms: bring its weights, \
+                 cross_track, airspeed_hold and the airframe nearer to those of a preset"
+            }
             Self::TooManyPaths => {
                 return write!(
                     f,
@@ -75,8 +81,13 @@ pub(crate) fn check(settings: &Settings) -> Result<Trim, SetupError> {
         .cruise
         .trim(&settings.airframe)
         .map_err(SetupError::Trim)?;
-    let most = settings.actuators.thrust_max;
-    if most.is_some_and(|most| most < trim.control.thrust) {
+    let plans = settings.planner.flight().map(|own| own.thrust_max);
+    let most = [settings.actuators.thrust_max, plans];
+    if most
+        .into_iter()
+        .flatten()
+        .any(|most| most < trim.control.thrust)
+    {
         return Err(SetupError::ThrustTooLow);
     }
     Ok(trim)

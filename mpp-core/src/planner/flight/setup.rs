@@ -63,12 +63,13 @@ impl FlightPlanner {
 
     fn adopt(&mut self, planner: &PlannerSettings, own: &FlightSettings) {
         self.paths = planner.paths;
-        self.altitude = planner.altitude;
+        self.destination = planner.altitude;
         self.settings = *own;
     }
 
     /// Checks that the program of level cruise has an optimum with this airframe and these weights.
     fn try_program(&mut self) -> Result<(), SetupError> {
+        self.altitude = self.destination;
         self.state = VehicleState {
             x: 0.0,
             z: self.altitude,
