@@ -5,6 +5,7 @@
 mod files;
 #[cfg(unix)]
 mod keys;
+mod killed;
 mod live;
 mod orders;
 #[cfg(target_os = "linux")]
