@@ -7,6 +7,7 @@ mod files;
 mod keys;
 mod killed;
 mod live;
+mod mutated;
 mod orders;
 #[cfg(target_os = "linux")]
 mod signals;
