@@ -1,5 +1,7 @@
 //! Tests that each parameter's value, alone, is refused or flown: level flight in still air stays level.
 
+#![expect(clippy::expect_used, reason = "the helpers of tests fail as tests do")]
+
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::settings::Cruise;
 use mpp_core::vehicle::{Control, VehicleState};
