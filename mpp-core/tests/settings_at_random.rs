@@ -66,7 +66,7 @@ proptest! {
             &mut settings.actuators.elevator_range,
             &mut settings.actuators.elevator_rate,
         ];
-        let kept = |place: usize| 10.0_f64.powf(spread * factors[place]);
+        let kept = |place: usize| libm::pow(10.0, spread * factors[place]);
         for ((place, limit), (is, at)) in places.into_iter().zip(limits).zip(limited.into_iter().zip(0..)) {
             *place = is.then(|| limit * kept(at));
         }
