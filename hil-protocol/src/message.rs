@@ -3,6 +3,7 @@
 pub(crate) mod flight;
 pub(crate) mod report;
 pub(crate) mod session;
+pub(crate) mod setting;
 mod size;
 pub(crate) mod verdict;
 

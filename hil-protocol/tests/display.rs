@@ -1,7 +1,9 @@
 //! Tests that every verdict, cause and error says what is wrong and what to do.
 
 use hil_protocol::mavlink::Refusal;
-use hil_protocol::{ConfigureVerdict, DecodeError, EncodeError, ParameterVerdict, RejectionCause};
+use hil_protocol::{
+    ConfigureVerdict, DecodeError, EncodeError, ParameterVerdict, RejectionCause, Setting,
+};
 use serde::de::DeserializeOwned;
 
 /// Every variant, made from its number, which is its first byte on the wire.
@@ -45,7 +47,7 @@ fn every_verdict_and_cause_speaks() {
             faults.last().copied().unwrap(),
         ),
         (
-            ConfigureVerdict::OtherPreset,
+            ConfigureVerdict::Unstable,
             ParameterVerdict::CruiseFixed,
             RejectionCause::ScanAngle,
             DecodeError::TrailingBytes { id: 0 },
@@ -54,6 +56,13 @@ fn every_verdict_and_cause_speaks() {
     let (accepted, refused) = configure.split_first().unwrap();
     sentences(&[*accepted]);
     check(refused);
+    let settings: Vec<Setting> = all();
+    assert_eq!(settings.last(), Some(&Setting::PaddingFar));
+    let named: Vec<_> = settings
+        .into_iter()
+        .map(ConfigureVerdict::OutOfRange)
+        .collect();
+    check(&named);
     let (accepted, refused) = parameter.split_first().unwrap();
     sentences(&[*accepted]);
     check(refused);

@@ -136,7 +136,36 @@ fn configure_reply_and_every_verdict() {
         (reply(AngleOfAttackLimit), "0a4d5002031d338fe3e600"),
         (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
+        (reply(Unstable), "0a4d50020321b4f38cc900"),
     ]);
+}
+
+/// The number of a setting is its place in this list.
+#[test]
+fn every_setting_out_of_range() {
+    use Setting::*;
+    let out_of_range = |setting| reply(ConfigureVerdict::OutOfRange(setting));
+    check(&[
+        (out_of_range(Mass), "064d5002032005aa25dc0700"),
+        (out_of_range(PaddingFar), "0b4d5002032029c6bd6e4500"),
+    ]);
+    #[rustfmt::skip]
+    let places = [
+        Mass, PitchInertia, WingArea, MomentLength, AirDensity, LiftZero, LiftAlpha, DragZero,
+        DragInduced, MomentZero, MomentAlpha, MomentAlphaRate, MomentElevator, MotorThrust, ThrustLag,
+        ElevatorRange, ElevatorRate, DesignThrust, SpeedNoise, PitchNoise, RateNoise, PathNoise,
+        AirspeedVariance, PitchVariance, InitialVariance, Gate, SpeedWeight, PitchWeight, RateWeight,
+        PathWeight, ElevatorWeight, CrossTrack, AirspeedHold, PlanElevatorWeight, PlanThrustWeight,
+        PlanTerminalWeight, Latency, PenaltyQuadratic, Rounds, Deepened, PaddingNear, PaddingFar,
+    ];
+    for (place, setting) in places.into_iter().enumerate() {
+        let mut bytes = [0; 2];
+        assert_eq!(
+            postcard::to_slice(&setting, &mut bytes).unwrap(),
+            [place as u8]
+        );
+    }
+    assert!(postcard::from_bytes::<Setting>(&[places.len() as u8]).is_err());
 }
 
 #[test]

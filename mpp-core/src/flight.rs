@@ -1,11 +1,11 @@
 //! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
 use crate::config::TICK_PERIOD;
-use crate::control::Lqr;
+use crate::control::{Lqr, holds};
 use crate::estimate::{Conditions, Estimator, Innovation, PositionVerdict, Sensors};
 use crate::health::Health;
 use crate::map::Pose;
-use crate::planner::{SetupError, Verdict, check_vehicle};
+use crate::planner::{SetupError, Verdict, check};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
@@ -71,14 +71,16 @@ impl FlightLoop {
     /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
         let airframe = &settings.airframe;
-        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
-        check_vehicle(settings, &trim)?;
+        let trim = check(settings)?;
         let design = Control {
             thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
             ..trim.control
         };
         let linear = linearize(airframe, &trim.state, design, settings.design_jacobian);
         let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
+        if !holds(settings, &trim, &lqr) {
+            return Err(SetupError::Unstable);
+        }
         Ok(Self {
             estimator: Estimator::new(settings, &trim),
             lqr,

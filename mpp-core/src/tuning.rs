@@ -225,3 +225,16 @@ pub mod tracking {
     /// angle reaches this value 1.9 m from the path.
     pub const MOST_TURN: f64 = 0.15;
 }
+
+/// The least stability of the regulator, which is checked before the flight.
+pub mod stability {
+    /// Factor on the gains of the regulator with which the loop must still be stable, with commands that come
+    /// a tick late [-]. It stands for what the check leaves out: the estimator's delay and noise, the lag of
+    /// actuators and errors of the airframe. With 2 the check accepts weights that pitch the aircraft by 45
+    /// degrees in level flight; a greater factor refuses firm regulators that fly. Source: the test
+    /// `flyable.rs`.
+    pub const GAIN_MARGIN: f64 = 2.5;
+    /// Greatest growth of a motion within a tick [-]. It lets slow motions grow e-fold in 10 s, which the
+    /// planner corrects, and a height that nothing holds stand still. Source: derived.
+    pub const MOST_GROWTH: f64 = 1.001;
+}

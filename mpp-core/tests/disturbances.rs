@@ -12,7 +12,7 @@ use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
 use mpp_core::estimate::{Conditions, Ekf, Measurement};
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError, Verdict};
-use mpp_core::settings::Settings;
+use mpp_core::settings::{Setting, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
 use proptest::prelude::*;
@@ -298,7 +298,7 @@ fn limits_that_are_none_are_refused() {
         });
         assert_eq!(
             Planner::new().set_up(&settings),
-            Err(SetupError::ActuatorLimit)
+            Err(SetupError::OutOfRange(Setting::ElevatorRate))
         );
     }
 }

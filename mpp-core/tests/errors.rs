@@ -5,6 +5,7 @@ use mpp_core::estimate::Diverged;
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::ScanError;
+use mpp_core::settings::Setting;
 use mpp_core::vehicle::TrimError;
 
 /// Checks the sentences of errors. Each is different from the others, and tells what to do after a
@@ -60,22 +61,13 @@ fn a_failed_set_up_speaks_as_its_cause() {
     let mut errors = vec![
         SetupError::Model(ModelError),
         SetupError::Condense(CondenseError),
+        SetupError::Unstable,
         SetupError::TooManyPaths,
-        SetupError::Altitude,
-        SetupError::Sight,
-        SetupError::Penalty,
-        SetupError::Margin,
-        SetupError::Band,
-        SetupError::ThrustMax,
-        SetupError::AngleOfAttackLimit,
-        SetupError::FlightPathLimit,
-        SetupError::WindChange,
-        SetupError::ActuatorLimit,
         SetupError::ThrustTooLow,
         SetupError::NoPaths,
-        SetupError::Latency,
         SetupError::OtherMethod,
     ];
+    errors.extend(Setting::ALL.iter().map(|it| SetupError::OutOfRange(*it)));
     errors.extend(TRIM.map(SetupError::Trim));
     errors.extend(RICCATI.map(SetupError::Regulator));
     check(&errors);

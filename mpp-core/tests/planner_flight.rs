@@ -7,7 +7,6 @@ mod common {
     pub(crate) mod dense;
     pub(crate) mod draw;
     pub(crate) mod planning;
-    pub(crate) mod presets;
     pub(crate) mod scattered;
     pub(crate) mod world;
 }
@@ -15,13 +14,12 @@ mod common {
 use common::clearance::clearance;
 use common::dense::dense;
 use common::planning::{level, plan, planner};
-use common::presets::presets;
 use common::scattered::{FEASIBLE, SCATTERED};
 use common::world::scan;
 use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES, TREE_SAMPLES};
 use mpp_core::estimate::Conditions;
 use mpp_core::paths::{MAX_LATTICE_PATHS, STATIONS};
-use mpp_core::planner::{PlanSummary, Planner, SetupError, Verdict};
+use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty};
 use mpp_core::settings::{FlightSettings, Settings};
 use mpp_core::trajectory::Trajectory;
@@ -307,36 +305,4 @@ fn a_new_set_up_forgets_the_map_and_the_plan_of_a_former_flight() {
     let fresh = cycles(&mut planner(&settings));
     assert_eq!(cycles(&mut used), fresh);
     assert_ne!(remembering, fresh, "there was something to forget");
-}
-
-#[test]
-fn settings_that_cannot_be_flown_are_refused() {
-    let mut planner = Box::new(Planner::new());
-    let mut refused = |settings: Settings| planner.set_up(&settings);
-    for settings in presets() {
-        assert_eq!(refused(settings), Ok(()));
-    }
-    type Field = (fn(&mut FlightSettings) -> &mut f64, SetupError);
-    let fields: [Field; 8] = [
-        (|own| &mut own.margin, SetupError::Margin),
-        (|own| &mut own.band, SetupError::Band),
-        (|own| &mut own.thrust_max, SetupError::ThrustMax),
-        (|own| &mut own.sight, SetupError::Sight),
-        (|own| &mut own.penalty.linear, SetupError::Penalty),
-        (|own| &mut own.penalty.quadratic, SetupError::Penalty),
-        (
-            |own| &mut own.attitude.angle_of_attack,
-            SetupError::AngleOfAttackLimit,
-        ),
-        (
-            |own| &mut own.attitude.flight_path,
-            SetupError::FlightPathLimit,
-        ),
-    ];
-    for (field, error) in fields {
-        for number in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            let settings = with_own(|own| *field(own) = number);
-            assert_eq!(refused(settings), Err(error), "{settings:?}");
-        }
-    }
 }

@@ -4,16 +4,16 @@ use crate::duration;
 use hil_protocol::{
     ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
     LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
-    SensorFrame as WireFrame, SensorState, SensorStates, StepReport,
+    SensorFrame as WireFrame, SensorState, SensorStates, Setting as WireSetting, StepReport,
 };
-use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
+use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::control::RiccatiError;
 use mpp_core::estimate::{Conditions, Measurement, Sensors, Trust};
 use mpp_core::flight::{Adoption, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
-use mpp_core::settings::Settings;
+use mpp_core::settings::{Setting, Settings};
 use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::vehicle::{ActuatorLimits, Airframe, TrimError, VehicleState};
 
@@ -64,6 +64,9 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
     if configure.latency_ticks == 0 || configure.latency_ticks > configure.replan_period_ticks {
         return Err(ConfigureVerdict::Latency);
     }
+    if duration(configure.latency_ticks) > STAGES as f64 * STAGE_PERIOD {
+        return Err(ConfigureVerdict::OutOfRange(WireSetting::Latency));
+    }
     if configure.slices_per_tick == 0 {
         return Err(ConfigureVerdict::SlicesPerTick);
     }
@@ -105,23 +108,44 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
         },
         SetupError::Model(ModelError) => ConfigureVerdict::PlanModel,
         SetupError::Condense(CondenseError) => ConfigureVerdict::PlanWeights,
+        SetupError::Unstable => ConfigureVerdict::Unstable,
         SetupError::TooManyPaths => ConfigureVerdict::TooManyPaths {
             max: MAX_PATHS as u16,
         },
-        SetupError::Altitude => ConfigureVerdict::NonFinite,
-        SetupError::Sight => ConfigureVerdict::RangeMax,
-        SetupError::Penalty => ConfigureVerdict::Penalty,
-        SetupError::Margin => ConfigureVerdict::Margin,
-        SetupError::Band => ConfigureVerdict::Band,
-        SetupError::ThrustMax => ConfigureVerdict::PlanThrust,
-        SetupError::AngleOfAttackLimit => ConfigureVerdict::AngleOfAttackLimit,
-        SetupError::FlightPathLimit => ConfigureVerdict::FlightPathLimit,
+        SetupError::OutOfRange(setting) => out_of_range(setting),
         SetupError::NoPaths => ConfigureVerdict::PathsZero,
-        SetupError::Latency => ConfigureVerdict::Latency,
         SetupError::OtherMethod => ConfigureVerdict::OtherPreset,
-        SetupError::WindChange => ConfigureVerdict::WindChange,
-        SetupError::ActuatorLimit => ConfigureVerdict::Actuators,
         SetupError::ThrustTooLow => ConfigureVerdict::ThrustTooLow,
+    }
+}
+
+/// The verdict on a number that is outside of its range. Some numbers have a verdict of their own.
+pub(crate) fn out_of_range(setting: Setting) -> ConfigureVerdict {
+    macro_rules! verdict {
+        ($($own:ident => $verdict:ident),*; $($setting:ident)*) => {
+            match setting {
+                $(Setting::$own => ConfigureVerdict::$verdict,)*
+                $(Setting::$setting => ConfigureVerdict::OutOfRange(WireSetting::$setting),)*
+            }
+        };
+    }
+    verdict! {
+        CruiseAirspeed => CruiseAirspeed,
+        Altitude => NonFinite,
+        Sight => RangeMax,
+        PenaltyLinear => Penalty,
+        Margin => Margin,
+        Band => Band,
+        PlanThrust => PlanThrust,
+        WindChange => WindChange,
+        AngleOfAttackLimit => AngleOfAttackLimit,
+        FlightPathLimit => FlightPathLimit;
+        Mass PitchInertia WingArea MomentLength AirDensity LiftZero LiftAlpha DragZero DragInduced
+        MomentZero MomentAlpha MomentAlphaRate MomentElevator MotorThrust ThrustLag ElevatorRange
+        ElevatorRate DesignThrust SpeedNoise PitchNoise RateNoise PathNoise AirspeedVariance PitchVariance
+        InitialVariance Gate SpeedWeight PitchWeight RateWeight PathWeight ElevatorWeight CrossTrack
+        AirspeedHold PlanElevatorWeight PlanThrustWeight PlanTerminalWeight Latency PenaltyQuadratic Rounds
+        Deepened PaddingNear PaddingFar
     }
 }
 
@@ -257,8 +281,6 @@ mod tests {
     #[test]
     fn every_failed_set_up_has_a_verdict_of_its_own() {
         let errors = [
-            SetupError::Trim(TrimError::Airspeed),
-            SetupError::Trim(TrimError::Airframe),
             SetupError::Trim(TrimError::NotCarried),
             SetupError::Trim(TrimError::NoElevator),
             SetupError::Trim(TrimError::NotConverged),
@@ -268,29 +290,17 @@ mod tests {
             SetupError::Regulator(RiccatiError::NotStabilising),
             SetupError::Model(ModelError),
             SetupError::Condense(CondenseError),
+            SetupError::Unstable,
             SetupError::TooManyPaths,
-            SetupError::Altitude,
-            SetupError::Sight,
-            SetupError::Penalty,
-            SetupError::Margin,
-            SetupError::Band,
-            SetupError::ThrustMax,
-            SetupError::AngleOfAttackLimit,
-            SetupError::FlightPathLimit,
-            SetupError::WindChange,
-            SetupError::ActuatorLimit,
             SetupError::ThrustTooLow,
             SetupError::NoPaths,
-            SetupError::Latency,
             SetupError::OtherMethod,
         ];
-        let verdicts = errors.map(setup_verdict);
-        for (index, verdict) in verdicts.iter().enumerate() {
-            let earlier = verdicts.iter().take(index);
-            assert!(
-                !earlier.into_iter().any(|other| other == verdict),
-                "{verdict}"
-            );
+        let numbers = Setting::ALL.iter().copied().map(SetupError::OutOfRange);
+        let verdicts = errors.into_iter().chain(numbers).map(setup_verdict);
+        for (index, verdict) in verdicts.clone().enumerate() {
+            let mut earlier = verdicts.clone().take(index);
+            assert!(!earlier.any(|other| other == verdict), "{verdict}");
         }
     }
 

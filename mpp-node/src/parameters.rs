@@ -84,6 +84,9 @@ impl Tuning {
             return Err(ParameterVerdict::CruiseFixed);
         }
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
+        if let Some(setting) = self.settings.out_of_range() {
+            return Err(ParameterVerdict::SetUp(convert::out_of_range(setting)));
+        }
         Ok(self)
     }
 }
@@ -293,7 +296,7 @@ parameters! { 41:
     "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[2]),
         |tuning, value| tuning.settings.estimator.process_noise[2] = value;
-    "EKF_Q_PATH", "rad^2", [0.0, 10.0], None, BEFORE,
+    "EKF_Q_PATH", "rad^2", [0.0, 0.1], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[3]),
         |tuning, value| tuning.settings.estimator.process_noise[3] = value;
     "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,

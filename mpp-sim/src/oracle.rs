@@ -14,6 +14,7 @@
 
 use crate::field::{Field, Obstacle};
 use crate::scenario::ALTITUDE;
+use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::Order;
@@ -47,7 +48,7 @@ impl Oracle {
         match order {
             Order::SetUp { tuning, .. } => {
                 if let Some(own) = tuning.settings.planner.flight_mut() {
-                    own.deepened = usize::MAX;
+                    own.deepened = MAX_PATHS;
                 }
             }
             Order::Begin {

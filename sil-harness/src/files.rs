@@ -5,7 +5,7 @@ use mpp_analysis::instance::{Instance, InstanceError};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{ScenarioError, ScenarioFile};
 use std::fmt;
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The reason why a file cannot be used. The message names the file.
@@ -61,8 +61,38 @@ impl std::error::Error for FileError {
     }
 }
 
-fn read(path: &Path) -> Result<String, FileError> {
-    std::fs::read_to_string(path).map_err(|error| FileError::Read(path.to_owned(), error))
+/// Greatest size of a file that people write: scenarios, parameters, keys \[bytes\].
+pub const MOST_WRITTEN: u64 = 1 << 20;
+/// Greatest size of a file that a program writes: logs, rows, programs \[bytes\].
+pub const MOST_RECORDED: u64 = 1 << 30;
+/// Greatest number of bytes from a pipe or a device, which may have no end.
+const MOST_STREAMED: u64 = 64 << 20;
+
+/// Reads a text of at most so many bytes. A pipe or a device gives fewer.
+///
+/// # Errors
+/// The error of the operating system; or the file is longer, or is no text.
+pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
+    let file = std::fs::File::open(path)?;
+    let most = if file.metadata()?.is_file() {
+        most
+    } else {
+        most.min(MOST_STREAMED)
+    };
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let why = format!("it has more than {most} bytes: give another file");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
+    }
+    String::from_utf8(bytes).map_err(|_| {
+        let why = "it is no UTF-8 text: give another file";
+        io::Error::new(io::ErrorKind::InvalidData, why)
+    })
+}
+
+fn read(path: &Path, most: u64) -> Result<String, FileError> {
+    read_text(path, most).map_err(|error| FileError::Read(path.to_owned(), error))
 }
 
 /// The files of a directory, in the order of their names.
@@ -91,7 +121,8 @@ fn is_json(path: &Path) -> bool {
 /// # Errors
 /// [`FileError::Read`] or [`FileError::Scenario`].
 pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
-    ScenarioFile::parse(&path.display().to_string(), &read(path)?).map_err(FileError::Scenario)
+    ScenarioFile::parse(&path.display().to_string(), &read(path, MOST_WRITTEN)?)
+        .map_err(FileError::Scenario)
 }
 
 /// Reads a flight's log.
@@ -99,8 +130,8 @@ pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
 /// # Errors
 /// [`FileError::Read`] or [`FileError::Log`].
 pub fn read_log(path: &Path) -> Result<FlightLog, FileError> {
-    let bytes = std::fs::read(path).map_err(|error| FileError::Read(path.to_owned(), error))?;
-    FlightLog::from_json(&bytes).map_err(|error| FileError::Log(path.to_owned(), error))
+    let text = read(path, MOST_RECORDED)?;
+    FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
 }
 
 /// Writes a flight's log: exactly the bytes that are hashed.
@@ -183,7 +214,7 @@ pub fn read_instances(path: &Path) -> Result<Vec<Instance>, FileError> {
     };
     let mut instances = Vec::new();
     for file in files {
-        let text = read(&file)?;
+        let text = read(&file, MOST_RECORDED)?;
         let found = if is_recorded_case(&file) {
             recorded_instances(&stem(&file), &text)
         } else {
@@ -226,7 +257,9 @@ pub fn check_directory(directory: &Path) -> Result<Report, FileError> {
     if files.is_empty() {
         return Err(FileError::NoRecords(directory.to_owned()));
     }
-    let texts = files.iter().map(|path| Ok((stem(path), read(path)?)));
+    let texts = files
+        .iter()
+        .map(|path| Ok((stem(path), read(path, MOST_RECORDED)?)));
     Ok(check(texts.collect::<Result<Vec<_>, FileError>>()?))
 }
 

@@ -1,8 +1,8 @@
 //! The command line as a user meets it: exit codes, what is printed where, what is written.
 
 use serde_json::Value;
-use std::io::{BufRead, BufReader};
-use std::net::UdpSocket;
+use std::io::{BufRead, BufReader, Write};
+use std::net::{TcpStream, UdpSocket};
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
@@ -300,6 +300,10 @@ fn a_core_in_another_process_flies_the_same_log() {
         .unwrap();
     let link = greeting.split_whitespace().last().unwrap();
     assert!(link.starts_with("tcp:127.0.0.1:"), "{greeting}");
+    // A stranger who configures nothing does not end the core that serves once.
+    let mut stranger = TcpStream::connect(link.trim_start_matches("tcp:")).unwrap();
+    stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
+    drop(stranger);
     let flags = ["--seed", "9", "--duration", "5", "--json"];
     let (apart, out) = run("apart", &[&flags[..], &["--link", link]].concat());
     assert!(core.wait().unwrap().success());

@@ -11,6 +11,7 @@ mod faults;
 mod firmware;
 mod flight;
 mod folders;
+mod fuzz;
 mod golden;
 mod limits;
 mod pil;
@@ -47,6 +48,8 @@ enum Command {
     Faults(faults::FaultsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
+    /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
+    Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
     Golden(golden::GoldenArgs),
 }
@@ -59,6 +62,7 @@ fn main() -> ExitCode {
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
         Command::Wasm => wasm::build(),
+        Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
     };
     match result {

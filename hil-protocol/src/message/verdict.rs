@@ -1,5 +1,6 @@
 //! The core's verdicts on a configuration and on the value of a parameter.
 
+use super::setting::Setting;
 use core::fmt;
 use serde::{Deserialize, Serialize};
 
@@ -26,13 +27,13 @@ pub enum ConfigureVerdict {
         /// The greatest number that the core takes.
         max: u16,
     },
-    /// The altitude is infinite or not a number.
+    /// The altitude is out of range, or is not finite.
     NonFinite,
     /// The core found no steady level flight at the cruise airspeed.
     NotTrimmable,
     /// The number of slices in a tick is zero.
     SlicesPerTick,
-    /// The lidar's range is not a positive, finite number.
+    /// The lidar's range is out of range, or is not finite.
     RangeMax,
     /// A session is already under way. It goes on unchanged.
     AlreadyConfigured,
@@ -44,7 +45,7 @@ pub enum ConfigureVerdict {
     PathsZero,
     /// The greatest thrust does not carry level flight.
     ThrustTooLow,
-    /// The airspeed of level flight is not a positive, finite number.
+    /// The airspeed of level flight is out of range, or is not finite.
     CruiseAirspeed,
     /// A parameter of the airframe is infinite or not a number.
     AirframeNotFinite,
@@ -64,22 +65,26 @@ pub enum ConfigureVerdict {
     PlanModel,
     /// The weights of the plan's cost leave it without a single optimum.
     PlanWeights,
-    /// A price of the soft rows is not positive.
+    /// The linear price of the soft rows is out of range, or is not finite.
     Penalty,
-    /// The margin of the flight planner is not a positive, finite number.
+    /// The margin of the flight planner is out of range, or is not finite.
     Margin,
-    /// The altitude band of the flight planner is not a positive, finite number.
+    /// The altitude band of the flight planner is out of range, or is not finite.
     Band,
-    /// The greatest thrust of a plan is not a positive, finite number.
+    /// The greatest thrust of a plan is out of range, or is not finite.
     PlanThrust,
-    /// The time constant of the wind's estimate is not a positive, finite number.
+    /// The change of the wind is out of range, or is not finite.
     WindChange,
-    /// The limit of the angle of attack is not a positive, finite number.
+    /// The limit of the angle of attack is out of range, or is not finite.
     AngleOfAttackLimit,
-    /// The limit of the flight path angle is not a positive, finite number.
+    /// The limit of the flight path angle is out of range, or is not finite.
     FlightPathLimit,
     /// The planner cannot change from one preset's method to another's in flight.
     OtherPreset,
+    /// A number of the core's settings is outside of its range, or is not finite.
+    OutOfRange(Setting),
+    /// The regulator does not hold the aircraft, because it acts only once in a tick.
+    Unstable,
 }
 
 impl fmt::Display for ConfigureVerdict {
@@ -103,13 +108,13 @@ impl fmt::Display for ConfigureVerdict {
                     "the core cannot take that number of beams: configure a lidar with 1 to {max}"
                 );
             }
-            Self::NonFinite => "the altitude is not a finite number: give it in metres",
+            Self::NonFinite => "the altitude is out of range or not a finite number: give it in metres",
             Self::NotTrimmable => {
                 "no level flight was found at the cruise airspeed: check cruise and airframe"
             }
             Self::SlicesPerTick => "a tick has no planning work: ask for at least one slice",
             Self::RangeMax => {
-                "the lidar's range is not a positive, finite number: give it in metres"
+                "the lidar's range is out of range or not a finite number: give 1 to 10000 metres"
             }
             Self::AlreadyConfigured => {
                 "a flight is configured and goes on as it was: say hello to start another"
@@ -130,7 +135,7 @@ impl fmt::Display for ConfigureVerdict {
                  airframe"
             }
             Self::CruiseAirspeed => {
-                "the airspeed of level flight is not a positive, finite number: check cruise and \
+                "the airspeed of level flight is out of range or not a finite number: check cruise and \
                  airframe"
             }
             Self::AirframeNotFinite => {
@@ -165,28 +170,37 @@ impl fmt::Display for ConfigureVerdict {
                 "the plan's cost has no single optimum: give the controls positive weights, and the \
                  terminal state one that is not negative"
             }
-            Self::Penalty => "a price of the soft rows is not positive: raise it above zero",
+            Self::Penalty => "the linear price of the soft rows is out of range: raise it above zero",
             Self::Margin => {
-                "the distance to keep from obstacles is not a positive, finite number: give it in \
-                 metres"
+                "the distance to keep from obstacles is out of range: give 0.01 to 20 metres"
             }
             Self::Band => {
-                "the band about the altitude is not a positive, finite number: give it in metres"
+                "the band about the altitude is out of range: give 1 to 1000 metres"
             }
             Self::PlanThrust => {
-                "the greatest thrust of a plan is not a positive, finite number: give it in newtons"
+                "the greatest thrust of a plan is out of range: give 0.1 to 10000 newtons"
             }
             Self::WindChange => {
-                "the change of the wind is not a positive, finite number: give it in metres per second"
+                "the change of the wind is out of range: give 0.001 to 100 metres per second"
             }
             Self::AngleOfAttackLimit => {
-                "the limit of the angle of attack is not a positive, finite number: give it in radians"
+                "the limit of the angle of attack is out of range: give 0.001 to 1.5 radians"
             }
             Self::FlightPathLimit => {
-                "the limit of the flight path angle is not a positive, finite number: give it in radians"
+                "the limit of the flight path angle is out of range: give 0.001 to 1.5 radians"
             }
             Self::OtherPreset => {
                 "the planner cannot change its method in flight: say hello and configure it anew"
+            }
+            Self::OutOfRange(setting) => {
+                return write!(
+                    f,
+                    "{setting} is not finite, or is far from that of any aircraft: correct it"
+                );
+            }
+            Self::Unstable => {
+                "the regulator is too firm or too soft for a tick of 10 ms: bring its weights and gains \
+                 nearer to those of the preset"
             }
         })
     }

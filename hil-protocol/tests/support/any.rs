@@ -119,6 +119,9 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::AngleOfAttackLimit,
             ConfigureVerdict::FlightPathLimit,
             ConfigureVerdict::OtherPreset,
+            ConfigureVerdict::Unstable,
+            ConfigureVerdict::OutOfRange(Setting::Mass),
+            ConfigureVerdict::OutOfRange(Setting::PaddingFar),
         ]),
     ]
 }

@@ -1,10 +1,12 @@
 //! Linear quadratic regulator of the flight path by the elevator (paper, II-B).
 
 mod riccati;
+mod sampled;
 
 use crate::vehicle::{AirState, Control, Linearization};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 pub use riccati::{RiccatiError, solve_riccati};
+pub(crate) use sampled::holds;
 
 /// Weights of the regulator: `Q` on `(v, theta, theta', gamma)` and `R` on the elevator.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -27,6 +27,9 @@ const HEIGHTS: usize = 97;
 const SLOPES: usize = 9;
 const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
 const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
+
+/// Greatest distance of a path in height from where it starts \[m\].
+pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
 /// Number of points of an edge at which the search takes prices.
 const QUARTERS: usize = 4;
 /// Number of heights of these points, in steps of half of [`RISE`].

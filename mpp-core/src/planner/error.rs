@@ -3,7 +3,7 @@
 use crate::config::MAX_PATHS;
 use crate::control::RiccatiError;
 use crate::qp::{CondenseError, ModelError};
-use crate::settings::{PlannerSettings, Settings};
+use crate::settings::{PlannerSettings, Setting, Settings};
 use crate::vehicle::{Trim, TrimError};
 use core::fmt;
 
@@ -18,34 +18,16 @@ pub enum SetupError {
     Model(ModelError),
     /// The program's Hessian is not positive definite.
     Condense(CondenseError),
+    /// The regulator does not hold the aircraft, because it acts only once in a tick.
+    Unstable,
     /// The settings ask for more than [`MAX_PATHS`] paths.
     TooManyPaths,
-    /// The altitude is not a finite number.
-    Altitude,
-    /// The lidar's sight is not a positive, finite number.
-    Sight,
-    /// A price of the soft rows is not positive.
-    Penalty,
-    /// The margin is not a positive, finite number.
-    Margin,
-    /// The altitude band is not a positive, finite number.
-    Band,
-    /// The greatest thrust of a plan is not a positive, finite number.
-    ThrustMax,
-    /// The limit of the angle of attack is not a positive, finite number.
-    AngleOfAttackLimit,
-    /// The limit of the flight path angle is not a positive, finite number.
-    FlightPathLimit,
-    /// The change of the wind is not a positive, finite number.
-    WindChange,
-    /// A limit of an actuator is not a positive, finite number.
-    ActuatorLimit,
-    /// The greatest thrust of the motor does not carry level flight.
+    /// A number of the settings is outside of its range, or is not finite.
+    OutOfRange(Setting),
+    /// The greatest thrust of motor or plans does not carry level flight.
     ThrustTooLow,
     /// The settings ask the flight planner for zero paths.
     NoPaths,
-    /// The latency of plans is negative or not a finite number.
-    Latency,
     /// The settings belong to another planning method than the one that is set up.
     OtherMethod,
 }
@@ -57,46 +39,29 @@ impl fmt::Display for SetupError {
             Self::Regulator(error) => return error.fmt(f),
             Self::Model(error) => return error.fmt(f),
             Self::Condense(error) => return error.fmt(f),
+            Self::Unstable => {
+                "the regulator is too firm or too soft for a tick of 10 ms: bring its weights, \
+                 cross_track, airspeed_hold and the airframe nearer to those of a preset"
+            }
             Self::TooManyPaths => {
                 return write!(
                     f,
                     "there is no room for that many paths: ask for at most {MAX_PATHS}"
                 );
             }
-            Self::Altitude => "the altitude is not a finite number: give it in metres",
-            Self::Sight => {
-                "the lidar's sight is not a positive, finite number: give it in metres"
-            }
-            Self::Penalty => "a price of the soft rows is not positive: raise it above zero",
-            Self::Margin => {
-                "the distance to keep from obstacles is not a positive, finite number: give it in metres"
-            }
-            Self::Band => {
-                "the band about the altitude is not a positive, finite number: give it in metres"
-            }
-            Self::ThrustMax => {
-                "the greatest thrust of a plan is not a positive, finite number: give it in newtons"
-            }
-            Self::AngleOfAttackLimit => {
-                "the limit of the angle of attack is not a positive, finite number: give it in radians"
-            }
-            Self::FlightPathLimit => {
-                "the limit of the flight path angle is not a positive, finite number: give it in radians"
-            }
-            Self::WindChange => {
-                "the change of the wind is not a positive, finite number: give it in metres per second"
-            }
-            Self::ActuatorLimit => {
-                "an actuator's limit is not a positive, finite number: correct it, or set no limit"
+            Self::OutOfRange(setting) => {
+                let ([least, most], unit) = (setting.range(), setting.unit());
+                return write!(
+                    f,
+                    "the setting {setting} is out of range: give a number from {least} to {most}, \
+                     unit {unit}"
+                );
             }
             Self::ThrustTooLow => {
                 "the greatest thrust does not carry level flight: raise it, or check cruise and \
                  airframe"
             }
             Self::NoPaths => "the flight planner refines every path: ask for at least one",
-            Self::Latency => {
-                "the latency of plans is negative or not a finite number: give it in seconds"
-            }
             Self::OtherMethod => {
                 "the settings are of another planner than the one that is set up: set it up anew"
             }
@@ -106,36 +71,42 @@ impl fmt::Display for SetupError {
 
 impl core::error::Error for SetupError {}
 
-/// Checks the settings of actuators and wind, which step and planner use.
-pub(crate) fn check_vehicle(settings: &Settings, trim: &Trim) -> Result<(), SetupError> {
-    let limits = &settings.actuators;
-    let carries = limits
-        .thrust_max
-        .is_none_or(|most| most >= trim.control.thrust);
-    if !limits.is_valid() {
-        return Err(SetupError::ActuatorLimit);
+/// Checks all settings that step and planner use, and gives the trim of level flight.
+pub(crate) fn check(settings: &Settings) -> Result<Trim, SetupError> {
+    if let Some(setting) = settings.out_of_range() {
+        return Err(SetupError::OutOfRange(setting));
     }
-    if !carries {
+    check_paths(&settings.planner)?;
+    let trim = settings
+        .cruise
+        .trim(&settings.airframe)
+        .map_err(SetupError::Trim)?;
+    let plans = settings.planner.flight().map(|own| own.thrust_max);
+    let most = [settings.actuators.thrust_max, plans];
+    if most
+        .into_iter()
+        .flatten()
+        .any(|most| most < trim.control.thrust)
+    {
         return Err(SetupError::ThrustTooLow);
     }
-    if !settings.wind_change.is_none_or(positive) {
-        return Err(SetupError::WindChange);
-    }
-    Ok(())
+    Ok(trim)
 }
 
-/// Checks the settings that every planning method reads.
-pub(super) fn check_shared(planner: &PlannerSettings) -> Result<(), SetupError> {
+/// Checks the settings that a planner takes over in flight.
+pub(super) fn check_planner(planner: &PlannerSettings) -> Result<(), SetupError> {
+    if let Some(setting) = planner.out_of_range() {
+        return Err(SetupError::OutOfRange(setting));
+    }
+    check_paths(planner)
+}
+
+fn check_paths(planner: &PlannerSettings) -> Result<(), SetupError> {
     if planner.paths > MAX_PATHS {
         return Err(SetupError::TooManyPaths);
     }
-    if !planner.altitude.is_finite() {
-        return Err(SetupError::Altitude);
+    if planner.paths == 0 && planner.flight().is_some() {
+        return Err(SetupError::NoPaths);
     }
     Ok(())
-}
-
-/// Whether a number is positive and finite.
-pub(super) fn positive(number: f64) -> bool {
-    number > 0.0 && number.is_finite()
 }

@@ -27,7 +27,7 @@ use crate::settings::{Method, PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
 use crate::vehicle::{Trim, VehicleState};
 pub use error::SetupError;
-pub(crate) use error::check_vehicle;
+pub(crate) use error::check;
 use flight::FlightPlanner;
 #[cfg(feature = "paper")]
 use paper::PaperPlanner;

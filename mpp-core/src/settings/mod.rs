@@ -3,6 +3,7 @@
 mod flight;
 #[cfg(feature = "paper")]
 mod paper;
+mod range;
 
 use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
@@ -11,6 +12,7 @@ use crate::vehicle::{ActuatorLimits, Airframe, JacobianForm, Trim, TrimError};
 pub use flight::{AttitudeLimits, FlightSettings};
 #[cfg(feature = "paper")]
 pub use paper::PaperSettings;
+pub use range::Setting;
 
 /// The level flight from which plans deviate.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -113,11 +113,20 @@ pub enum ScenarioError {
     Value(&'static str, String),
 }
 
+/// Greatest length of a message that repeats a line of the file \[bytes\].
+const LONGEST_MESSAGE: usize = 1000;
+
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Toml(path, error) => {
-                write!(f, "scenario {path}: {}", error.to_string().trim_end())
+                let text = error.to_string();
+                // The parser repeats the line, however long it is.
+                if text.len() <= LONGEST_MESSAGE {
+                    return write!(f, "scenario {path}: {}", text.trim_end());
+                }
+                let place = error.span().map_or(0, |span| span.start);
+                write!(f, "scenario {path}, byte {place}: {}", error.message())
             }
             Self::Value(key, advice) => write!(f, "{key}: {advice}"),
         }

@@ -49,7 +49,10 @@ impl fmt::Display for CampaignError {
             Self::Log(cell, seed, why) => {
                 write!(f, "{why}; fly it again with: fly --seed {seed} {cell}")
             }
-            Self::File(path, error) => write!(f, "{path}: {error}"),
+            Self::File(path, error) => write!(
+                f,
+                "cannot open {path}: {error}; give a path that can be read and written"
+            ),
             Self::Full(path, rows, error) => write!(
                 f,
                 "cannot write to {path}: {error}; it holds {rows} whole rows: make room, and give the \
@@ -72,7 +75,10 @@ impl fmt::Display for CampaignError {
                 f,
                 "{path} holds another campaign: {what}; give another file, or the same flags"
             ),
-            Self::Busy(path) => write!(f, "{path} is being written by another process"),
+            Self::Busy(path) => write!(
+                f,
+                "{path} is being written by another process: wait for it, or give another file"
+            ),
             Self::Disagree(error) => write!(f, "{error}"),
             Self::NoRows => f.write_str("--report: give at least one row file"),
             Self::Threads(error) => write!(f, "--threads: {error}"),

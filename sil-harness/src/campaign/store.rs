@@ -7,6 +7,7 @@
 
 use super::engine::fingerprint;
 use super::error::CampaignError;
+use crate::files::{MOST_RECORDED, read_text};
 use mpp_analysis::campaign::{Campaign, Row, Shard};
 use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
@@ -214,7 +215,7 @@ fn known(name: &str, bytes: &[u8], header: &Header) -> Result<(usize, Vec<Row>),
 pub fn read(path: &Path) -> Result<(Header, Vec<Row>), CampaignError> {
     let name = path.display().to_string();
     let text =
-        std::fs::read_to_string(path).map_err(|error| CampaignError::File(name.clone(), error))?;
+        read_text(path, MOST_RECORDED).map_err(|error| CampaignError::File(name.clone(), error))?;
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let found = parse(&name, &text[..whole])?;
     found.ok_or_else(|| CampaignError::Line(name, 1, "no header: this is no row file".to_owned()))

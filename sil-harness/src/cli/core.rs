@@ -10,7 +10,7 @@ pub(super) struct CoreArgs {
     /// Address to listen on, HOST:PORT; port 0 takes a free one
     #[arg(long, default_value = "127.0.0.1:5790")]
     listen: String,
-    /// End after the first harness
+    /// End after the first harness that configured a flight
     #[arg(long)]
     once: bool,
     /// Seconds to wait for a silent harness, but at most 5 for its hello

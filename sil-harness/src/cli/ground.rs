@@ -5,7 +5,7 @@ mod pacer;
 
 use super::answer::{Failure, LINK, USAGE, talk};
 use super::signals::Signals;
-use crate::files::read_log;
+use crate::files::{MOST_WRITTEN, read_log, read_text};
 use crate::ground::param_file;
 use crate::ground::transport::{Transport, address, signing_time, usual_addresses};
 use crate::ground::vehicle::{Vehicle, VehicleConfig};
@@ -42,7 +42,8 @@ pub(super) struct GroundArgs {
     /// keeps the newest signed times, so that nothing recorded is obeyed again
     #[arg(long, value_name = "FILE")]
     mavlink_key: Option<PathBuf>,
-    /// Record the telemetry in this file
+    /// Record the telemetry in this file as it comes, in place of what the file holds. A flight that
+    /// is cut short leaves what came until then
     #[arg(long, value_name = "FILE")]
     tlog: Option<PathBuf>,
     /// Set parameters from a file of NAME,VALUE lines
@@ -172,7 +173,7 @@ impl GroundArgs {
         let Some(path) = &self.mavlink_key else {
             return Ok(None);
         };
-        let text = std::fs::read_to_string(path)
+        let text = read_text(path, MOST_WRITTEN)
             .map_err(|error| unusable("--mavlink-key", path, error))?;
         let passphrase = text.lines().next().unwrap_or_default();
         if passphrase.is_empty() {
@@ -205,7 +206,7 @@ impl GroundArgs {
             return Ok(Vec::new());
         };
         let usage = |why: String| unusable("--params", path, why);
-        let text = std::fs::read_to_string(path).map_err(|error| usage(error.to_string()))?;
+        let text = read_text(path, MOST_WRITTEN).map_err(|error| usage(error.to_string()))?;
         let mut tuning =
             Tuning::new(&scenario.configure()).map_err(|why| usage(why.to_string()))?;
         let mut orders = Vec::new();

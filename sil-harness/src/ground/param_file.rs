@@ -8,7 +8,7 @@ use std::fmt::{self, Write};
 pub struct ParamFileError {
     /// The line, counted from 1.
     pub line: usize,
-    /// Text of the line.
+    /// Text of the line, or its beginning.
     pub text: String,
 }
 
@@ -19,6 +19,10 @@ impl fmt::Display for ParamFileError {
 }
 
 impl std::error::Error for ParamFileError {}
+
+/// Greatest length of a name, and of a line's part in a message \[letters\]. No parameter has a name of
+/// more than 16.
+const LONGEST: usize = 60;
 
 /// Reads names and values from the text of a file. A comma, blanks or both separate a name from its
 /// value; `#` begins a comment.
@@ -37,11 +41,14 @@ pub fn parse(text: &str) -> Result<Vec<(String, f64)>, ParamFileError> {
             .filter(|word| !word.is_empty());
         let error = || ParamFileError {
             line: number + 1,
-            text: line.to_owned(),
+            text: line.chars().take(LONGEST).collect(),
         };
         let (Some(name), Some(value), None) = (words.next(), words.next(), words.next()) else {
             return Err(error());
         };
+        if name.len() > LONGEST {
+            return Err(error());
+        }
         values.push((name.to_owned(), value.parse().map_err(|_| error())?));
     }
     Ok(values)

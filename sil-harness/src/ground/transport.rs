@@ -4,7 +4,7 @@ use super::guests::Guests;
 use super::heard::Heard;
 use super::tlog::TlogWriter;
 use super::vehicle::Vehicle;
-use crate::files::write_soon;
+use crate::files::{MOST_WRITTEN, read_text, write_soon};
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::moment::Moment;
@@ -226,7 +226,7 @@ impl Transport {
 /// The signed times in a file; none if there is none.
 fn kept(path: &Path) -> Result<Heard, String> {
     let named = |why: String| format!("{}: {why}", path.display());
-    match std::fs::read_to_string(path) {
+    match read_text(path, MOST_WRITTEN) {
         Ok(text) => Heard::parse(&text).map_err(named),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Heard::default()),
         Err(error) => Err(named(error.to_string())),

@@ -8,8 +8,9 @@ use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
-/// Serves a core on a listening socket. With `once` it ends after the first session. `report` gets
-/// lines about each session.
+/// Serves a core on a listening socket. With `once` it ends after the first session in which a flight was
+/// configured; who only connects is a stranger, and does not keep the harness from its core. `report`
+/// gets lines about each session.
 ///
 /// # Errors
 /// [`LinkError`] of the socket, and with `once` that of the session.
@@ -24,12 +25,13 @@ pub fn serve(
             .accept()
             .map_err(|error| LinkError::Io("waiting for a harness".to_owned(), error))?;
         report(&format!("harness connected from {peer}"));
-        let result = serve_session(stream, patience);
+        let mut configured = false;
+        let result = serve_session(stream, patience, &mut configured);
         match &result {
             Ok(()) => report("harness closed the link"),
             Err(error) => report(&error.to_string()),
         }
-        if once {
+        if once && configured {
             return result;
         }
     }
@@ -93,8 +95,12 @@ impl Client {
     }
 }
 
-/// Serves one harness until it closes the link.
-fn serve_session(mut stream: TcpStream, patience: Duration) -> Result<(), LinkError> {
+/// Serves one harness until it closes the link. Tells whether it configured a flight.
+fn serve_session(
+    mut stream: TcpStream,
+    patience: Duration,
+    configured: &mut bool,
+) -> Result<(), LinkError> {
     let io = |error| LinkError::Io("preparing the link to the harness".to_owned(), error);
     stream.set_nodelay(true).map_err(io)?;
     stream.set_write_timeout(Some(patience)).map_err(io)?;
@@ -122,6 +128,7 @@ fn serve_session(mut stream: TcpStream, patience: Duration) -> Result<(), LinkEr
                 sent = stream.write_all(frame);
             }
         });
+        *configured |= node.health().is_some();
         // After the core has done its work: that takes nothing of the harness's time.
         client.hear(&bytes[..count]);
         sent.map_err(|error| LinkError::Io("answering the harness".to_owned(), error))?;

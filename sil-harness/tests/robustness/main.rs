@@ -5,7 +5,9 @@
 mod files;
 #[cfg(unix)]
 mod keys;
+mod killed;
 mod live;
+mod mutated;
 mod orders;
 #[cfg(target_os = "linux")]
 mod signals;

@@ -36,7 +36,7 @@ use crate::config::{KNOTS, STAGES};
 use crate::corridor::Corridor;
 use crate::estimate::Conditions;
 use crate::map::{ClearanceField, MemoryMap, OccupancyGrid, Pose};
-use crate::paths::{Lattice, MAX_LATTICE_PATHS, Path, Search};
+use crate::paths::{CLIMB, Lattice, MAX_LATTICE_PATHS, Path, Search};
 use crate::qp::{Bounds, Condensed, Dynamics, Problem, Solution, Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
@@ -83,6 +83,8 @@ pub struct FlightPlanner {
     // Values of the set-up.
     settings: FlightSettings,
     paths: usize,
+    /// The height that the settings ask for, and the height to which this cycle plans \[m\].
+    destination: f64,
     altitude: f64,
     weights: Weights,
     known: (Airframe, Trim),
@@ -140,6 +142,7 @@ impl FlightPlanner {
         Self {
             settings: FlightSettings::PRESET,
             paths: 0,
+            destination: 0.0,
             altitude: 0.0,
             weights: Weights::PAPER,
             known: (Airframe::REFERENCE, NO_TRIM),
@@ -205,6 +208,10 @@ impl FlightPlanner {
         self.time = time + self.settings.latency;
         self.scan.clone_from(scan);
         self.beams = 0;
+        // A height beyond the reach of paths is approached in parts. Programs would climb too steeply.
+        self.altitude = (self.destination)
+            .max(self.state.z - CLIMB)
+            .min(self.state.z + CLIMB);
         self.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.problem.penalty = Some(self.settings.penalty);
         self.problem.bounds.set_thrust(self.trim.control.thrust);

@@ -1,9 +1,9 @@
 //! The set-up of the flight planner and the checks of its settings.
 
-use super::super::error::{SetupError, check_shared, check_vehicle, positive};
+use super::super::error::{SetupError, check, check_planner};
 use super::{FlightPlanner, Phase};
 use crate::qp::ModelError;
-use crate::settings::{FlightSettings, PlannerSettings, Settings};
+use crate::settings::{FlightSettings, Method, PlannerSettings, Settings};
 use crate::vehicle::VehicleState;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -18,11 +18,8 @@ impl FlightPlanner {
         self.random = None;
         self.phase = Phase::Idle;
         let planner = &settings.planner;
-        check_shared(planner)?;
-        check(planner, own)?;
         let airframe = &settings.airframe;
-        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
-        check_vehicle(settings, &trim)?;
+        let trim = check(settings)?;
         if !airframe
             .angle_of_attack_for(trim.control.elevator)
             .is_finite()
@@ -56,20 +53,23 @@ impl FlightPlanner {
             latency: own.latency,
             ..self.settings
         };
-        check_shared(planner)?;
-        check(planner, &own)?;
+        check_planner(&PlannerSettings {
+            method: Method::Flight(own),
+            ..*planner
+        })?;
         self.adopt(planner, &own);
         Ok(())
     }
 
     fn adopt(&mut self, planner: &PlannerSettings, own: &FlightSettings) {
         self.paths = planner.paths;
-        self.altitude = planner.altitude;
+        self.destination = planner.altitude;
         self.settings = *own;
     }
 
     /// Checks that the program of level cruise has an optimum with this airframe and these weights.
     fn try_program(&mut self) -> Result<(), SetupError> {
+        self.altitude = self.destination;
         self.state = VehicleState {
             x: 0.0,
             z: self.altitude,
@@ -83,29 +83,4 @@ impl FlightPlanner {
             })
             .map_err(SetupError::Condense)
     }
-}
-
-/// Checks the settings that only the flight planner reads.
-fn check(planner: &PlannerSettings, own: &FlightSettings) -> Result<(), SetupError> {
-    if planner.paths == 0 {
-        return Err(SetupError::NoPaths);
-    }
-    if !(own.latency >= 0.0 && own.latency.is_finite()) {
-        return Err(SetupError::Latency);
-    }
-    for (number, error) in [
-        (own.sight, SetupError::Sight),
-        (own.penalty.linear, SetupError::Penalty),
-        (own.penalty.quadratic, SetupError::Penalty),
-        (own.attitude.angle_of_attack, SetupError::AngleOfAttackLimit),
-        (own.attitude.flight_path, SetupError::FlightPathLimit),
-        (own.margin, SetupError::Margin),
-        (own.band, SetupError::Band),
-        (own.thrust_max, SetupError::ThrustMax),
-    ] {
-        if !positive(number) {
-            return Err(error);
-        }
-    }
-    Ok(())
 }

@@ -11,7 +11,7 @@
 
 mod refine;
 
-use super::error::{SetupError, check_shared, check_vehicle};
+use super::error::{SetupError, check, check_planner};
 use super::shared::{NO_TRIM, STILL};
 use super::summary::{PlanSummary, Verdict};
 use crate::Rules;
@@ -126,10 +126,8 @@ impl PaperPlanner {
         self.random = None;
         self.phase = Phase::Idle;
         let planner = &settings.planner;
-        check_shared(planner)?;
         let airframe = &settings.airframe;
-        let trim = settings.cruise.trim(airframe).map_err(SetupError::Trim)?;
-        check_vehicle(settings, &trim)?;
+        let trim = check(settings)?;
         let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
         let model = StageModel::new(&trim, &linear, own.initial).map_err(SetupError::Model)?;
         self.shared
@@ -155,7 +153,7 @@ impl PaperPlanner {
         planner: &PlannerSettings,
         own: &PaperSettings,
     ) -> Result<(), SetupError> {
-        check_shared(planner)?;
+        check_planner(planner)?;
         self.paths = planner.paths;
         self.altitude = planner.altitude;
         self.padding = own.padding;
