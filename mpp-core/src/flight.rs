@@ -107,7 +107,15 @@ impl FlightLoop {
                 0.0
             }
         };
+        let expected = self.estimator.state();
         let (innovation, position) = self.estimator.take(elapsed, frame, &mut self.health);
+        if position == Some(PositionVerdict::Restarted)
+            && let Some(trajectory) = &mut self.trajectory
+        {
+            // The origin of the positions has jumped, not the aircraft.
+            let found = self.estimator.state();
+            trajectory.shift((found.x - expected.x, found.z - expected.z));
+        }
 
         let tracked = self
             .trajectory

@@ -71,6 +71,14 @@ impl Trajectory {
         self.start = f64::INFINITY;
     }
 
+    /// Moves the whole trajectory by `(x, z)` \[m\].
+    pub fn shift(&mut self, (x, z): (f64, f64)) {
+        for knot in &mut self.knots {
+            knot.state.x += x;
+            knot.state.z += z;
+        }
+    }
+
     /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages.
     pub fn fly_out(
         &mut self,

@@ -194,6 +194,31 @@ fn an_aircraft_behind_its_window_gets_a_new_one() {
     }
 }
 
+/// The window goes up and down with the altitude. What stays in it keeps its place, and what comes into it is
+/// not known.
+#[test]
+fn the_window_follows_the_altitude() {
+    for altitude in [50.1, 55.0, 43.5, 61.0, 90.0, -500.0, 1e9] {
+        let mut map = MemoryMap::new();
+        map.roll(100.0, 50.0);
+        for height in [40.2, 50.2, 60.2] {
+            map.insert(&beam(20.1), 45.0, &pose(100.2, height, 0.0));
+        }
+        let before = centres(&map);
+        map.roll(100.0, altitude);
+        let low = map.floor();
+        assert!((low + 16.0 - altitude).abs() <= 0.25, "{altitude}: {low}");
+        let kept: Vec<_> = before
+            .into_iter()
+            .filter(|(_, z)| (low..low + 32.0).contains(z))
+            .collect();
+        assert_eq!(centres(&map), kept, "{altitude}");
+        // The map works at its new height.
+        map.insert(&beam(20.1), 45.0, &pose(100.2, low + 3.2, 0.0));
+        assert!(field(&map).is_occupied(120.3, low + 3.2));
+    }
+}
+
 #[test]
 fn a_cleared_map_is_as_new_wherever_it_starts_again() {
     let mut map = random_map(&mut Draw::new(7), 900.0, 3);

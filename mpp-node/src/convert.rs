@@ -276,7 +276,26 @@ pub(crate) fn sensor_states(sensors: Sensors, lidar: Trust) -> SensorStates {
 
 #[cfg(test)]
 mod tests {
+    extern crate std;
+
     use super::*;
+    use std::format;
+    use std::vec::Vec;
+
+    /// The report of the counters has the names of the core's counters, in their order.
+    #[test]
+    fn the_counters_have_their_names() {
+        let text = format!("{:?}", mpp_core::health::Health::default());
+        let fields = text
+            .trim_start_matches("Health {")
+            .split(',')
+            .filter_map(|field| field.split(':').next())
+            .map(str::trim);
+        assert_eq!(
+            fields.collect::<Vec<_>>(),
+            hil_protocol::HealthReport::NAMES
+        );
+    }
 
     #[test]
     fn every_failed_set_up_has_a_verdict_of_its_own() {

@@ -29,6 +29,9 @@ pub enum Order {
         tick: u32,
         /// Time of that tick \[s\].
         time: f64,
+        /// Whether the planner must forget its map and its last plan first, because the origin of the
+        /// positions has jumped.
+        forget: bool,
         /// Pose of the lidar when it took the scan.
         pose: Pose,
         /// State of the aircraft at that tick.

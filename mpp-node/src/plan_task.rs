@@ -81,6 +81,7 @@ impl PlanTask {
             Order::Begin {
                 tick,
                 time,
+                forget,
                 pose,
                 state,
                 conditions,
@@ -91,6 +92,9 @@ impl PlanTask {
                 self.slices_per_tick = tuning.configure.slices_per_tick;
                 // The step checks all values before it orders a cycle, so the planner refuses none of them.
                 let _ = self.planner.retune(&tuning.settings.planner);
+                if *forget {
+                    self.planner.forget();
+                }
                 self.planner
                     .begin_from(*time, pose, state, conditions, scan);
                 self.cycle = Some(Cycle {

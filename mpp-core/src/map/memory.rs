@@ -77,9 +77,9 @@ impl MemoryMap {
         self.started = false;
     }
 
-    /// Moves the window along with an aircraft at `x` \[m\]. At the first call, and when the aircraft is
-    /// behind the window, the function empties the map and centres its height on `altitude` \[m\]. An
-    /// aircraft is behind the window after a position that was far wrong.
+    /// Moves the window along with an aircraft at `x` \[m\], and centres its height on `altitude` \[m\], to
+    /// whole cells. At the first call, and when the aircraft is behind the window, the function empties the
+    /// map. An aircraft is behind the window after a position that was far wrong.
     pub fn roll(&mut self, x: f64, altitude: f64) {
         let first = (libm::floor(x / CELL) as i32).saturating_sub(BEHIND);
         let behind = first < self.first_col.saturating_sub(BEHIND);
@@ -97,6 +97,27 @@ impl MemoryMap {
             }
         }
         self.first_col = first.max(self.first_col);
+        self.roll_rows(altitude);
+    }
+
+    /// Moves the rows of the window to another altitude \[m\]. Rows that come into the window are not known.
+    fn roll_rows(&mut self, altitude: f64) {
+        let floor = altitude - 0.5 * CELL * ROWS as f64;
+        let up = libm::round((floor - self.floor) / CELL);
+        let rows = (libm::fabs(up) as usize).min(ROWS);
+        if rows == 0 {
+            return;
+        }
+        if up > 0.0 {
+            self.evidence.rotate_left(rows);
+        } else {
+            self.evidence.rotate_right(rows);
+        }
+        let fresh = if up > 0.0 { ROWS - rows..ROWS } else { 0..rows };
+        for row in self.evidence.get_mut(fresh).unwrap_or_default() {
+            *row = [0; COLS];
+        }
+        self.floor += CELL * up;
     }
 
     /// Overwrites the memory of the whole window with certain knowledge. `occupied` tells whether the cell

@@ -204,6 +204,12 @@ impl Planner {
         of_chosen!(self, advance())
     }
 
+    /// Forgets the map and the last plan, because positions are now counted from another origin. The paper's
+    /// method remembers neither.
+    pub fn forget(&mut self) {
+        self.flight.forget();
+    }
+
     /// Ends the cycle and returns its verdict; [`Planner::best`] gives the trajectory.
     pub fn finish(&mut self) -> Verdict {
         of_chosen!(self, finish())

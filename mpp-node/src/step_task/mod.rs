@@ -1,17 +1,17 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
+mod input;
 mod tick;
 mod tune;
 
 use crate::convert;
 use crate::mail::{Answer, Order, Plan};
 use crate::parameters::Tuning;
-use crate::ticks;
 use asker::Asker;
 use hil_protocol::{
-    Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, LidarScan as WireScan, MAX_FRAME,
-    Message, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode,
+    Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, MAX_FRAME, Message, Rejection,
+    RejectionCause, Role, SensorFrame as WireFrame, encode,
 };
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::Watch;
@@ -63,7 +63,12 @@ struct Flight {
     plan_tick: Option<u32>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
-    /// The trust in the lidar, and whether a scan since the last tick was good.
+    /// Jumps of the positions' origin that the planner knows of.
+    restarts: u32,
+    /// The tick that follows the last old one, and the number of old ticks in a row.
+    old_ticks: Option<(u32, u32)>,
+    /// The trust in the lidar, and whether a scan that was refused or planned from since the last tick was
+    /// good.
     lidar: Watch,
     lidar_good: Option<bool>,
 }
@@ -316,6 +321,9 @@ impl StepTask {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
         let tuning = Tuning::new(configure)?;
+        let between = configure
+            .replan_period_ticks
+            .saturating_add(configure.latency_ticks);
         Ok(Flight {
             tuning,
             asker: Asker::Configure,
@@ -328,7 +336,9 @@ impl StepTask {
             last_scan: None,
             plan_tick: None,
             scan_tick: None,
-            lidar: Watch::new(u16::try_from(configure.replan_period_ticks).unwrap_or(u16::MAX)),
+            restarts: 0,
+            old_ticks: None,
+            lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,
         })
     }
@@ -359,60 +369,6 @@ impl StepTask {
     fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
         self.emit(&Message::ConfigureReply(ConfigureReply { verdict }), send);
     }
-
-    fn take_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
-            return self.reject(RejectionCause::NotConfigured, send);
-        };
-        let (beams, range_max) = {
-            let configure = &flight.tuning.configure;
-            (configure.beams, configure.range_max)
-        };
-        let frozen = repeats(&self.scan, wire);
-        convert::scan(wire, &mut self.scan);
-        if frozen {
-            flight.scan_tick = None;
-            flight.lidar_good = Some(false);
-            return self.reject(RejectionCause::ScanRepeated, send);
-        }
-        match self.scan.check(usize::from(beams), f64::from(range_max)) {
-            Ok(()) => {
-                flight.scan_tick = Some(wire.tick);
-                flight.lidar_good = Some(true);
-            }
-            Err(error) => {
-                flight.scan_tick = None;
-                flight.lidar_good = Some(false);
-                self.reject(convert::scan_rejection(error), send);
-            }
-        }
-    }
-
-    fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &self.flight else {
-            return self.reject(RejectionCause::NotConfigured, send);
-        };
-        let expected = flight
-            .last_tick
-            .map_or(frame.tick, |last| last.wrapping_add(1));
-        if frame.tick != expected {
-            let found = frame.tick;
-            self.reject(RejectionCause::TickOrder { expected, found }, send);
-            if ticks(expected, found) < 0 {
-                // The frame is old: the step for its tick is already done.
-                return;
-            }
-        }
-        self.tick(frame, send);
-    }
-}
-
-/// Whether a scan has returns and repeats the ranges of the one before to the last bit.
-fn repeats(before: &LidarScan, wire: &WireScan) -> bool {
-    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
-    before.ranges.len() == wire.ranges.len()
-        && wire.ranges.iter().any(|range| *range > 0.0)
-        && before.ranges.iter().zip(&wire.ranges).all(same)
 }
 
 /// The version of this crate.

@@ -66,9 +66,7 @@ impl StepTask {
             violation,
             ..
         } = plan.summary;
-        if blind {
-            flight.lidar_good = Some(false);
-        }
+        flight.lidar_good = Some(!blind);
         let report = PlanReport {
             scan_tick,
             used_from_tick: tick,
@@ -171,6 +169,7 @@ impl StepTask {
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
+        let restarts = flight.control.health().positions_restarted;
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
             begun: tick,
@@ -182,12 +181,14 @@ impl StepTask {
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
+            forget: restarts != flight.restarts,
             pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
             scan: self.scan.clone(),
             tuning: flight.tuning,
         });
+        flight.restarts = restarts;
     }
 }
 

@@ -8,8 +8,10 @@ use hil_protocol::{
 use mpp_sim::flight::fly;
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::Scenario;
 
 #[expect(clippy::unwrap_used, reason = "spoilt input must not stop a flight")]
 fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
@@ -17,11 +19,16 @@ fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
         pipe: PipeLink::new(),
         spoil,
     };
-    fly(&short(2), &mut link, |_| {}).unwrap()
+    // Every frame has a position.
+    let scenario = Scenario {
+        navigation: NavigationConfig::IDEAL,
+        ..short(2)
+    };
+    fly(&scenario, &mut link, |_| {}).unwrap()
 }
 
 /// The sensor frame of level flight at this tick.
-fn level_flight(tick: u32) -> Message {
+pub(crate) fn level_flight(tick: u32) -> Message {
     let air = AirData {
         tick,
         airspeed: 12.0,

@@ -3,6 +3,7 @@
 
 mod input;
 mod restarts;
+mod time;
 
 use hil_protocol::{ConfigureVerdict, DecodeError, Hello, MAX_FRAME, Message, Role, encode};
 use mpp_sim::flight::{FlyError, fly};

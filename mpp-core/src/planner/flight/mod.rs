@@ -295,6 +295,12 @@ impl FlightPlanner {
         self.is_working()
     }
 
+    /// Forgets the map and the last plan; see [`super::Planner::forget`].
+    pub fn forget(&mut self) {
+        self.map.clear();
+        self.best.clear();
+    }
+
     /// Ends the cycle and returns its verdict.
     pub fn finish(&mut self) -> Verdict {
         self.summary.complete = self.phase == Phase::Done;

@@ -1,0 +1,90 @@
+//! Scans and sensor frames as they arrive: which of them are used.
+
+use super::StepTask;
+use crate::{convert, ticks};
+use hil_protocol::{LidarScan as WireScan, RejectionCause, SensorFrame as WireFrame};
+use mpp_core::sense::LidarScan;
+
+/// Old ticks in a row after which the sender counts anew: 0.2 s. A frame that comes twice, or late, is alone.
+const ANEW_AFTER: u32 = 20;
+
+impl StepTask {
+    /// Checks a scan. It waits for its sensor frame.
+    pub(super) fn take_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let (beams, range_max) = {
+            let configure = &flight.tuning.configure;
+            (configure.beams, configure.range_max)
+        };
+        let frozen = repeats(&self.scan, wire);
+        convert::scan(wire, &mut self.scan);
+        if frozen {
+            flight.scan_tick = None;
+            flight.lidar_good = Some(false);
+            return self.reject(RejectionCause::ScanRepeated, send);
+        }
+        match self.scan.check(usize::from(beams), f64::from(range_max)) {
+            Ok(()) => flight.scan_tick = Some(wire.tick),
+            Err(error) => {
+                flight.scan_tick = None;
+                flight.lidar_good = Some(false);
+                self.reject(convert::scan_rejection(error), send);
+            }
+        }
+    }
+
+    /// Makes the tick of a sensor frame, unless the frame is old.
+    pub(super) fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &self.flight else {
+            return self.reject(RejectionCause::NotConfigured, send);
+        };
+        let expected = flight
+            .last_tick
+            .map_or(frame.tick, |last| last.wrapping_add(1));
+        let found = frame.tick;
+        if found != expected {
+            self.reject(RejectionCause::TickOrder { expected, found }, send);
+            if ticks(expected, found) < 0 && !self.counts_anew(found) {
+                // The frame is old: the step for its tick is already done.
+                return;
+            }
+        }
+        self.tick(frame, send);
+    }
+
+    /// Takes note of an old tick. Returns true if so many old ticks came in a row that the sender must count
+    /// anew. The flight's time then goes on from the last step; a cycle under way gives no plan.
+    fn counts_anew(&mut self, tick: u32) -> bool {
+        let Some(flight) = &mut self.flight else {
+            return false;
+        };
+        let (next, row) = flight.old_ticks.unwrap_or((tick, 0));
+        let row = if tick == next { row + 1 } else { 1 };
+        flight.old_ticks = Some((tick.wrapping_add(1), row));
+        if row < ANEW_AFTER {
+            return false;
+        }
+        flight.old_ticks = None;
+        let (first, last) = (flight.first_tick, flight.last_tick);
+        let flown = first
+            .zip(last)
+            .map_or(0, |(first, last)| last.wrapping_sub(first));
+        flight.first_tick = Some(tick.wrapping_sub(flown.wrapping_add(1)));
+        flight.cycle = None;
+        flight.last_cycle = None;
+        flight.last_scan = None;
+        flight.plan_tick = flight.plan_tick.map(|_| tick);
+        self.plan = None;
+        true
+    }
+}
+
+/// Whether a scan has returns and repeats the ranges of the one before to the last bit.
+fn repeats(before: &LidarScan, wire: &WireScan) -> bool {
+    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
+    before.ranges.len() == wire.ranges.len()
+        && wire.ranges.iter().any(|range| *range > 0.0)
+        && before.ranges.iter().zip(&wire.ranges).all(same)
+}

@@ -1,0 +1,253 @@
+//! Ticks that wrap around, jump or go back, and measurements that come late.
+
+use crate::input::level_flight;
+use crate::short;
+use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame, SensorState};
+use mpp_sim::flight::fly;
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::outcome::Outcome;
+use mpp_sim::pipe::PipeLink;
+use std::collections::VecDeque;
+
+/// A link whose core counts ticks from another number than the harness.
+struct Shifted {
+    pipe: PipeLink,
+    offset: u32,
+}
+
+impl Link for Shifted {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        let mut message = message.clone();
+        let offset = self.offset;
+        let shift = |tick: &mut u32| *tick = tick.wrapping_add(offset);
+        match &mut message {
+            Message::SensorFrame(frame) => {
+                shift(&mut frame.tick);
+                if let Some(air) = &mut frame.air {
+                    shift(&mut air.tick);
+                }
+                if let Some(position) = &mut frame.position {
+                    shift(&mut position.tick);
+                }
+            }
+            Message::LidarScan(scan) => shift(&mut scan.tick),
+            _ => {}
+        }
+        self.pipe.send(&message)
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        let mut message = self.pipe.receive(awaited)?;
+        let offset = self.offset;
+        let shift = |tick: &mut u32| *tick = tick.wrapping_sub(offset);
+        match &mut message {
+            Message::ActuatorCommand(command) => shift(&mut command.tick),
+            Message::StepReport(report) => shift(&mut report.tick),
+            Message::PlanReport(report) => {
+                shift(&mut report.scan_tick);
+                shift(&mut report.used_from_tick);
+            }
+            Message::PlanTrajectory(trajectory) => shift(&mut trajectory.scan_tick),
+            Message::HealthReport(report) => shift(&mut report.tick),
+            Message::Rejection(rejection) => shift(&mut rejection.tick),
+            _ => {}
+        }
+        Ok(message)
+    }
+}
+
+/// The number from which ticks are counted does not matter, nor that they pass the greatest number.
+#[test]
+fn a_flight_is_the_same_wherever_its_ticks_start() {
+    let flown = |offset| {
+        let pipe = PipeLink::new();
+        fly(&short(2), &mut Shifted { pipe, offset }, |_| {}).unwrap()
+    };
+    let usual = flown(0);
+    for offset in [7, 1 << 31, u32::MAX - 249, u32::MAX] {
+        let other = flown(offset);
+        assert_eq!(other.ticks, usual.ticks, "{offset}");
+        assert_eq!(other.plans, usual.plans, "{offset}");
+        assert!(other.rejections.is_empty());
+    }
+}
+
+/// The answers to one message.
+fn answers(pipe: &mut PipeLink, message: &Message) -> Vec<Message> {
+    pipe.send(message).unwrap();
+    std::iter::from_fn(|| pipe.receive("anything").ok()).collect()
+}
+
+/// A clock that was set back is followed after 0.2 s; until then its frames count as old. The commands go on
+/// as if nothing had happened.
+#[test]
+fn a_clock_that_was_set_back_is_followed() {
+    let mut pipe = PipeLink::new();
+    let configure = Message::Configure(short(1).configure());
+    assert_eq!(answers(&mut pipe, &configure).len(), 1);
+    let mut refused = 0;
+    let mut last_elevator = f64::NAN;
+    for index in 0..300_u32 {
+        let tick = if index < 150 { 1000 + index } else { index };
+        let Message::SensorFrame(mut frame) = level_flight(index) else {
+            unreachable!("it is a sensor frame");
+        };
+        frame.tick = tick;
+        frame.air.as_mut().unwrap().tick = tick;
+        frame.position.as_mut().unwrap().tick = tick;
+        let answers = answers(&mut pipe, &Message::SensorFrame(frame));
+        let command = answers.iter().find_map(|answer| match answer {
+            Message::ActuatorCommand(command) => Some(*command),
+            _ => None,
+        });
+        match command {
+            Some(command) => {
+                assert_eq!(command.tick, tick);
+                if index > 50 {
+                    assert!((command.elevator - last_elevator).abs() < 0.1, "{index}");
+                }
+                last_elevator = command.elevator;
+            }
+            None => refused += 1,
+        }
+    }
+    assert_eq!(refused, 19);
+}
+
+/// Sends everything later by some ticks, each with the time at which it was measured.
+struct Late {
+    pipe: PipeLink,
+    ticks: usize,
+    frames: VecDeque<SensorFrame>,
+    scans: VecDeque<LidarScan>,
+}
+
+impl Link for Late {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        match message {
+            Message::LidarScan(scan) => {
+                self.scans.push_back(scan.clone());
+                Ok(())
+            }
+            Message::SensorFrame(frame) => {
+                self.frames.push_back(*frame);
+                let due = |tick: u32| tick as usize + self.ticks <= frame.tick as usize;
+                if self.scans.front().is_some_and(|scan| due(scan.tick))
+                    && let Some(scan) = self.scans.pop_front()
+                {
+                    self.pipe.send(&Message::LidarScan(scan))?;
+                }
+                let mut late = SensorFrame {
+                    tick: frame.tick,
+                    air: None,
+                    position: None,
+                };
+                if self.frames.len() > self.ticks
+                    && let Some(old) = self.frames.pop_front()
+                {
+                    (late.air, late.position) = (old.air, old.position);
+                }
+                self.pipe.send(&Message::SensorFrame(late))
+            }
+            _ => self.pipe.send(message),
+        }
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.pipe.receive(awaited)
+    }
+}
+
+/// Air data, positions and scans that are 0.2 s late, with honest times, cost no flight.
+#[test]
+fn measurements_that_are_late_are_used_as_late() {
+    for seed in 1..=6 {
+        let mut link = Late {
+            pipe: PipeLink::new(),
+            ticks: 20,
+            frames: VecDeque::new(),
+            scans: VecDeque::new(),
+        };
+        let mut scenario = short(seed);
+        scenario.ticks = 1500;
+        let log = fly(&scenario, &mut link, |_| {}).unwrap();
+        assert_eq!(log.summary.outcome, Outcome::Survived, "seed {seed}");
+        assert!(log.summary.strict, "seed {seed}");
+        assert!(log.plans.len() >= 14, "{} plans", log.plans.len());
+        assert!(log.rejections.is_empty(), "{:?}", log.rejections);
+    }
+}
+
+/// A lidar that freezes or goes blind is told, is excluded, and comes back.
+#[test]
+fn a_lidar_that_freezes_or_goes_blind_is_told() {
+    let fault: [fn(&mut LidarScan, &LidarScan); 2] = [
+        |scan, last| scan.ranges.clone_from(&last.ranges),
+        |scan, _| scan.ranges.iter_mut().for_each(|range| *range = 0.0),
+    ];
+    for (fault, cause) in fault.into_iter().zip(["ScanRepeated", "ScanBlind"]) {
+        let mut last: Option<LidarScan> = None;
+        let mut link = crate::Spoilt {
+            pipe: PipeLink::new(),
+            spoil: |pipe: &mut PipeLink, message: &Message| {
+                let Message::LidarScan(scan) = message else {
+                    return false;
+                };
+                let mut scan = scan.clone();
+                if let Some(last) = &last
+                    && (400..600).contains(&scan.tick)
+                {
+                    fault(&mut scan, last);
+                } else {
+                    last = Some(scan.clone());
+                }
+                pipe.send(&Message::LidarScan(scan)).is_ok()
+            },
+        };
+        let mut scenario = short(2);
+        scenario.obstacles = 60;
+        scenario.replan_ticks = 25;
+        scenario.ticks = 1000;
+        let log = fly(&scenario, &mut link, |_| {}).unwrap();
+        let causes = crate::causes(&log);
+        assert!(causes.len() >= 6, "{causes:?}");
+        assert!(causes.iter().all(|it| *it == cause), "{causes:?}");
+        let lidar: Vec<_> = log
+            .sensors
+            .iter()
+            .filter(|it| it.sensor == "lidar")
+            .collect();
+        let states: Vec<_> = lidar.iter().map(|it| it.state.clone()).collect();
+        let expected = [
+            SensorState::Suspected,
+            SensorState::Excluded,
+            SensorState::Recovering,
+            SensorState::Healthy,
+        ];
+        assert_eq!(states, expected.map(|state| state.to_string()), "{cause}");
+        assert!(lidar[1].tick < 450, "{lidar:?}");
+    }
+}
+
+/// A frame far in the future is answered, and so is the clock that goes on as before.
+#[test]
+fn a_forged_tick_does_not_end_the_session() {
+    let mut pipe = PipeLink::new();
+    let configure = Message::Configure(short(1).configure());
+    answers(&mut pipe, &configure);
+    for tick in 0..10 {
+        answers(&mut pipe, &level_flight(tick));
+    }
+    let forged = answers(&mut pipe, &level_flight(3_000_000));
+    assert!(forged.iter().any(|it| matches!(it, Message::Rejection(r)
+        if matches!(r.cause, RejectionCause::TickOrder { .. }))));
+    let mut commands = 0;
+    for tick in 10..60 {
+        let answers = answers(&mut pipe, &level_flight(tick));
+        commands += answers
+            .iter()
+            .filter(|it| matches!(it, Message::ActuatorCommand(_)))
+            .count();
+    }
+    assert_eq!(commands, 31);
+}
