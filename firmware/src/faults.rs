@@ -1,5 +1,6 @@
-//! Faults for tests of the emulated image. A test switches a fault on by a change of its word in the
-//! image file. Without such a change the faults have no effect.
+//! Faults for tests of the emulated image, behind the feature `faults`: the flight image has none. A test
+//! switches a fault on by a change of its word in the image file. Without such a change the faults have no
+//! effect.
 
 use crate::uart;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};

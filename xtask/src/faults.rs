@@ -26,7 +26,7 @@ const TICK: u32 = 250_000;
 const HANG: u32 = 410;
 
 pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
-    firmware::build()?;
+    firmware::build(&[Image::Uart, Image::UartFaults, Image::FifoFaults])?;
     let folder = work("faults")?;
     let bench = Bench {
         harness: Harness::build(&folder)?,
@@ -36,6 +36,7 @@ pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
     bench.longest_slice_holds_no_step(args.duration)?;
     bench.stuck_planner_is_restarted()?;
     bench.stuck_step_is_reset()?;
+    bench.late_plans_hold_no_step()?;
     bench.flood_is_counted()
 }
 
@@ -71,14 +72,14 @@ impl Bench {
 
     /// The step comes every 10 ms, whatever the planner does, and the flight is that of the host.
     fn timer_holds(&self, duration: u32) -> Result<()> {
-        self.fly_without_jitter("by the timer", &Image::Fifo.path()?, duration)
+        self.fly_without_jitter("by the timer", &Image::FifoFaults.path()?, duration)
     }
 
     /// Repeats this test with one slice of each cycle longer by the budget of the longest slice.
     fn longest_slice_holds_no_step(&self, duration: u32) -> Result<()> {
         let longest = u32::try_from(limits::longest_slice(&limits::read()?)?)?;
         let image = self.folder.join("long-slices");
-        firmware::patched(Image::Fifo, "FAULT_SLICE_LONGER_BY", longest, &image)?;
+        firmware::patched(Image::FifoFaults, "FAULT_SLICE_LONGER_BY", longest, &image)?;
         let name = format!("a slice of each cycle longer by {longest} instructions");
         self.fly_without_jitter(&name, &image, duration)
     }
@@ -118,7 +119,7 @@ impl Bench {
     /// are planned again.
     fn stuck_planner_is_restarted(&self) -> Result<()> {
         let image = self.folder.join("planner-hangs");
-        firmware::patched(Image::Fifo, "FAULT_PLANNER_HANGS_AFTER", HANG, &image)?;
+        firmware::patched(Image::FifoFaults, "FAULT_PLANNER_HANGS_AFTER", HANG, &image)?;
         let (outcome, report) = self.fly_by_timer(&image, &spread(12))?;
         let plans = outcome.log["plans"]
             .as_array()
@@ -152,7 +153,7 @@ impl Bench {
     /// anew and flies on.
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
-        firmware::patched(Image::Uart, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
+        firmware::patched(Image::UartFaults, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
         let mut emulator = Emulator::uart(&self.run(&image))?;
         let arguments = "--seed 1 --duration 10".split(' ').map(str::to_owned);
         let outcome = self
@@ -178,11 +179,42 @@ impl Bench {
         Ok(())
     }
 
+    /// The flight image over UART, whose ticks come as fast as the host can: far too fast for the planner. The
+    /// step answers each of them and takes over each plan when it comes.
+    fn late_plans_hold_no_step(&self) -> Result<()> {
+        let image = Image::Uart.path()?;
+        let mut emulator = Emulator::uart(&self.run(&image))?;
+        let arguments = "--seed 1 --obstacles 0 --duration 30"
+            .split(' ')
+            .map(str::to_owned);
+        let outcome = self
+            .harness
+            .fly_emulated(&arguments.collect::<Vec<_>>(), &mut emulator)?;
+        let plans = outcome.log["plans"].as_array().cloned().unwrap_or_default();
+        let late = plans.iter().filter(|plan| {
+            let tick = |name: &str| plan[name].as_u64().unwrap_or_default();
+            tick("used_from_tick") > tick("tick") + 1
+        });
+        let late = late.count();
+        println!(
+            "flight image, ticks faster than its planner: {}, {late} of {} plans late; {}",
+            outcome.outcome(),
+            plans.len(),
+            outcome.rejections().join(" "),
+        );
+        ensure!(late > 0, "no plan was late");
+        ensure!(
+            outcome.outcome() == "survived",
+            "the flight did not end well"
+        );
+        Ok(())
+    }
+
     /// More bytes come than fit, while the core cannot take any. The core counts and reports the
     /// lost bytes, and is ready for the next session.
     fn flood_is_counted(&self) -> Result<()> {
         let image = self.folder.join("set-up-awaits-loss");
-        firmware::patched(Image::Uart, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
+        firmware::patched(Image::UartFaults, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
         let emulator = Emulator::uart(&self.run(&image))?;
         let address = emulator.link().trim_start_matches("tcp:").to_owned();
         let mut stream = TcpStream::connect(address)?;

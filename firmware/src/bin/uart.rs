@@ -12,6 +12,13 @@ use mpp_node::Pace;
 /// Greatest number of bytes that one run of the step takes.
 const BYTES_PER_RUN: usize = 2048;
 
+/// The flight image's step never waits for a plan. An image that is compared with the host does.
+const PACE: Pace = if cfg!(feature = "lockstep") {
+    Pace::Lockstep
+} else {
+    Pace::RealTime
+};
+
 /// Number of lost bytes that the step has reported.
 static REPORTED: AtomicU32 = AtomicU32::new(0);
 
@@ -20,7 +27,7 @@ fn main() -> ! {
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
         // SAFETY: no interrupt is enabled yet.
         unsafe {
-            tasks::set_up(Pace::Lockstep);
+            tasks::set_up(PACE);
             tasks::step_side().announce(uart::send);
         }
         board::set_priorities(&mut peripherals);
