@@ -26,9 +26,22 @@ static FAULT_SET_UP_AWAITS_LOSS: u32 = NEVER;
 #[unsafe(no_mangle)]
 static FAULT_SLICE_LONGER_BY: u32 = 0;
 
+/// Tick from which on the planner traps after each slice.
+#[unsafe(no_mangle)]
+static FAULT_PLANNER_TRAPS_AFTER: u32 = NEVER;
+
+/// Tick after whose step the step traps. It traps once.
+#[unsafe(no_mangle)]
+static FAULT_STEP_TRAPS_AFTER: u32 = NEVER;
+
+/// The way in which a task traps. 0: an instruction that does not exist; 1: the stack overflows; 2: a write
+/// to a constant; 3: execution from RAM.
+#[unsafe(no_mangle)]
+static FAULT_TRAP: u32 = 0;
+
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
-/// Whether the step has hung. This memory survives the reset.
+/// Whether the step has hung or trapped. This memory survives the reset.
 #[unsafe(link_section = ".uninit.faults")]
 static STEP_HUNG: AtomicU32 = AtomicU32::new(0);
 const YES: u32 = 0x5EED_F00D;
@@ -44,6 +57,10 @@ pub fn planner(clock: u32) {
     let after = read(&FAULT_PLANNER_HANGS_AFTER);
     if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
         hang();
+    }
+    let after = read(&FAULT_PLANNER_TRAPS_AFTER);
+    if after != NEVER && clock >= after {
+        trap();
     }
 }
 
@@ -66,6 +83,25 @@ pub fn step(clock: u32) {
     if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
         hang();
     }
+    let after = read(&FAULT_STEP_TRAPS_AFTER);
+    if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
+        trap();
+    }
+}
+
+fn trap() -> ! {
+    let data = STEP_HUNG.as_ptr();
+    // SAFETY: each of these traps, and the handler drops or resets everything that runs.
+    unsafe {
+        match read(&FAULT_TRAP) {
+            0 => core::arch::asm!("udf #0", options(noreturn)),
+            1 => core::arch::asm!("1: push {{r0-r7}}", "b 1b", options(noreturn)),
+            2 => (&raw const FAULT_TRAP).cast_mut().write_volatile(0),
+            _ => core::arch::asm!("bx {}", in(reg) data as u32 | 1, options(noreturn)),
+        }
+    }
+    // No trap came: a flight whose planner hangs shows it.
+    hang()
 }
 
 fn hang() -> ! {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! priority   what runs                                    owns
+//! -          traps and the watchdog: restart              the record of faults
 //! 0 highest  UART interrupts: bytes to and from rings     -
 //! 1          SysTick: the 100 Hz step                     the step task, the link
 //! 2 lowest   PendSV: restarts the planner's thread        -
@@ -21,12 +22,15 @@ pub mod board;
 #[cfg_attr(not(feature = "faults"), path = "no_faults.rs")]
 pub mod faults;
 pub mod host;
+pub mod image;
 mod mailbox;
 pub mod mark;
 mod owned;
 pub mod panic_gate;
+pub mod protection;
 pub mod report;
 pub mod restart;
 mod ring;
 pub mod tasks;
+pub mod trap;
 pub mod uart;

@@ -70,7 +70,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`RejectionCause::ScanAngle`]; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on |
+//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`RejectionCause::ScanAngle`], [`RejectionCause::Trapped`], [`RejectionCause::PlannerOff`], [`RejectionCause::ValuesRepaired`]; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on |
 //!
 //! # Use
 //!
@@ -104,7 +104,8 @@ pub use message::flight::{
     ActuatorCommand, ControlMode, LidarScan, MAX_BEAMS, SensorFrame, StepReport,
 };
 pub use message::report::{
-    MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
+    CoreFault, CoreTask, MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection,
+    RejectionCause,
 };
 pub use message::session::{
     ActuatorLimits, AirframeId, Configure, ConfigureReply, Hello, ParameterReply, Preset, Role,

@@ -136,6 +136,7 @@ fn configure_reply_and_every_verdict() {
         (reply(AngleOfAttackLimit), "0a4d5002031d338fe3e600"),
         (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
+        (reply(ImageDamaged), "0a4d5002032022c38bbe00"),
     ]);
 }
 
@@ -298,6 +299,17 @@ fn rejection_and_every_cause() {
         ),
         (rejection(PlannerRestarted), "0c4d500209ac020bd4c070c600"),
         (rejection(ScanAngle), "0c4d500209ac020c7755145800"),
+        (
+            rejection(Trapped {
+                task: CoreTask::Planner,
+                fault: CoreFault::Stack,
+                address: 70_000,
+                count: 2,
+            }),
+            "124d500209ac020d0101f0a2040281a9716c00",
+        ),
+        (rejection(PlannerOff), "0c4d500209ac020e5b341ab600"),
+        (rejection(ValuesRepaired), "0c4d500209ac020fcd041dc100"),
     ]);
 }
 

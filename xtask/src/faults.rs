@@ -1,5 +1,8 @@
-//! `faults`: tests that the firmware survives when something hangs, and that its clock holds.
+//! `faults`: tests that the firmware survives when something hangs or traps, and that its clock holds.
 
+mod traps;
+
+use crate::contents;
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::folders::work;
@@ -37,6 +40,10 @@ pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
     bench.stuck_planner_is_restarted()?;
     bench.stuck_step_is_reset()?;
     bench.late_plans_hold_no_step()?;
+    bench.planner_that_traps_stays_off()?;
+    bench.every_trap_is_told()?;
+    bench.step_that_traps_is_reset()?;
+    bench.damaged_image_refuses_to_fly()?;
     bench.flood_is_counted()
 }
 
@@ -46,8 +53,8 @@ struct Bench {
 }
 
 /// A flight whose cycles take several ticks: 300 ms from scan to plan.
-fn spread(duration: u32) -> Vec<String> {
-    format!("--seed 1 --obstacles 20 --duration {duration} --latency-ms 300 --slices-per-tick 37")
+fn spread(duration: u32, obstacles: u32) -> Vec<String> {
+    format!("--seed 1 --obstacles {obstacles} --duration {duration} --latency-ms 300 --slices-per-tick 37")
         .split(' ')
         .map(str::to_owned)
         .collect()
@@ -79,13 +86,17 @@ impl Bench {
     fn longest_slice_holds_no_step(&self, duration: u32) -> Result<()> {
         let longest = u32::try_from(limits::longest_slice(&limits::read()?)?)?;
         let image = self.folder.join("long-slices");
-        firmware::patched(Image::FifoFaults, "FAULT_SLICE_LONGER_BY", longest, &image)?;
+        contents::patched(
+            Image::FifoFaults,
+            &[("FAULT_SLICE_LONGER_BY", longest)],
+            &image,
+        )?;
         let name = format!("a slice of each cycle longer by {longest} instructions");
         self.fly_without_jitter(&name, &image, duration)
     }
 
     fn fly_without_jitter(&self, name: &str, image: &Path, duration: u32) -> Result<()> {
-        let arguments = spread(duration);
+        let arguments = spread(duration, 20);
         let host = self.harness.fly(&arguments)?;
         let (target, report) = self.fly_by_timer(image, &arguments)?;
         println!(
@@ -119,8 +130,12 @@ impl Bench {
     /// are planned again.
     fn stuck_planner_is_restarted(&self) -> Result<()> {
         let image = self.folder.join("planner-hangs");
-        firmware::patched(Image::FifoFaults, "FAULT_PLANNER_HANGS_AFTER", HANG, &image)?;
-        let (outcome, report) = self.fly_by_timer(&image, &spread(12))?;
+        contents::patched(
+            Image::FifoFaults,
+            &[("FAULT_PLANNER_HANGS_AFTER", HANG)],
+            &image,
+        )?;
+        let (outcome, report) = self.fly_by_timer(&image, &spread(12, 20))?;
         let plans = outcome.log["plans"]
             .as_array()
             .map_or(&[][..], Vec::as_slice);
@@ -153,7 +168,11 @@ impl Bench {
     /// anew and flies on.
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
-        firmware::patched(Image::UartFaults, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
+        contents::patched(
+            Image::UartFaults,
+            &[("FAULT_STEP_HANGS_AFTER", HANG)],
+            &image,
+        )?;
         let mut emulator = Emulator::uart(&self.run(&image))?;
         let arguments = "--seed 1 --duration 10".split(' ').map(str::to_owned);
         let outcome = self
@@ -166,13 +185,10 @@ impl Bench {
             outcome.rejections().join(" ")
         );
         ensure!(
-            outcome
-                .rejections()
-                .iter()
-                .filter(|cause| **cause == "CoreRestarted")
-                .count()
-                == 1,
-            "the core was not restarted once"
+            outcome.rejections().len() == 2
+                && outcome.has("CoreRestarted")
+                && outcome.has("Trapped { task: Step, fault: Hang"),
+            "the core was not restarted once, or did not say why"
         );
         let plans = outcome.log["plans"].as_array().map_or(0, Vec::len);
         ensure!(plans >= 9, "the restarted core does not plan");
@@ -214,7 +230,11 @@ impl Bench {
     /// lost bytes, and is ready for the next session.
     fn flood_is_counted(&self) -> Result<()> {
         let image = self.folder.join("set-up-awaits-loss");
-        firmware::patched(Image::UartFaults, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
+        contents::patched(
+            Image::UartFaults,
+            &[("FAULT_SET_UP_AWAITS_LOSS", 0)],
+            &image,
+        )?;
         let emulator = Emulator::uart(&self.run(&image))?;
         let address = emulator.link().trim_start_matches("tcp:").to_owned();
         let mut stream = TcpStream::connect(address)?;

@@ -1,9 +1,10 @@
 //! Builds the firmware.
 
+use crate::contents;
 use crate::folders::{root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, bail};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 const THUMB: &str = "thumbv7em-none-eabihf";
@@ -111,7 +112,8 @@ pub(crate) fn build(images: &[Image]) -> Result<()> {
             bail!("the firmware does not build; if it does not link, see the panics above");
         }
         // Several images come from the same program, so each of them is put aside.
-        std::fs::copy(release()?.join(program), image.path()?)?;
+        let bytes = std::fs::read(release()?.join(program))?;
+        std::fs::write(image.path()?, contents::sealed(bytes)?)?;
     }
     has_no_faults(Image::Uart)
 }
@@ -140,28 +142,6 @@ fn list_panics(toolchain: &Toolchain, image: Image) -> Result<()> {
     install(&[("/usr/bin/arm-none-eabi-objdump", "binutils-arm-none-eabi")])?;
     eprintln!("calls to panics, once their handler is defined:");
     succeed(Command::new(root().join("firmware/panic-sites")).arg(release()?.join(program)))
-}
-
-/// Copies an image and changes one word, so that `symbol` holds `value`.
-pub(crate) fn patched(image: Image, symbol: &str, value: u32, to: &Path) -> Result<()> {
-    use object::{Object, ObjectSection, ObjectSymbol};
-    let mut bytes = std::fs::read(image.path()?)?;
-    let offset = {
-        let file = object::File::parse(&*bytes)?;
-        let symbol = file
-            .symbol_by_name(symbol)
-            .with_context(|| format!("no symbol {symbol}"))?;
-        let section = symbol.section_index().context("a symbol without section")?;
-        let section = file.section_by_index(section)?;
-        let (start, _) = section.file_range().context("a section without bytes")?;
-        usize::try_from(start + symbol.address() - section.address())?
-    };
-    bytes
-        .get_mut(offset..offset + 4)
-        .context("a symbol beyond the file")?
-        .copy_from_slice(&value.to_le_bytes());
-    std::fs::write(to, bytes)?;
-    Ok(())
 }
 
 /// Versions of compiler and emulator, for reports.

@@ -36,6 +36,13 @@ impl Outcome {
         self.line["outcome"].as_str().unwrap_or_default()
     }
 
+    /// Whether the log has a rejection whose cause begins with a text.
+    pub(crate) fn has(&self, cause: &str) -> bool {
+        self.rejections()
+            .iter()
+            .any(|found| found.starts_with(cause))
+    }
+
     /// Causes of the rejections in the log, in order.
     pub(crate) fn rejections(&self) -> Vec<&str> {
         let entries = self.log["rejections"].as_array();

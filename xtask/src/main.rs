@@ -6,6 +6,7 @@
 
 mod aarch64;
 mod budget;
+mod contents;
 mod counts;
 mod faults;
 mod firmware;

@@ -6,7 +6,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::tasks::{self, StepSide};
-use firmware::{board, uart};
+use firmware::{board, protection, uart};
 use mpp_node::Pace;
 
 /// Greatest number of bytes that one run of the step takes.
@@ -25,6 +25,7 @@ static REPORTED: AtomicU32 = AtomicU32::new(0);
 #[entry]
 fn main() -> ! {
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        protection::start(&mut peripherals.MPU);
         // SAFETY: no interrupt is enabled yet.
         unsafe {
             tasks::set_up(PACE);

@@ -80,6 +80,8 @@ pub enum ConfigureVerdict {
     FlightPathLimit,
     /// The planner cannot change from one preset's method to another's in flight.
     OtherPreset,
+    /// The program in the flight computer's memory is not as it was built.
+    ImageDamaged,
 }
 
 impl fmt::Display for ConfigureVerdict {
@@ -187,6 +189,9 @@ impl fmt::Display for ConfigureVerdict {
             }
             Self::OtherPreset => {
                 "the planner cannot change its method in flight: say hello and configure it anew"
+            }
+            Self::ImageDamaged => {
+                "the program in the flight computer's memory is not as it was built: load it again"
             }
         })
     }

@@ -118,6 +118,7 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::AngleOfAttackLimit,
             ConfigureVerdict::FlightPathLimit,
             ConfigureVerdict::OtherPreset,
+            ConfigureVerdict::ImageDamaged,
         ]),
     ]
 }
@@ -244,9 +245,34 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::PlannerBusy,
             RejectionCause::PlannerRestarted,
             RejectionCause::ScanAngle,
+            RejectionCause::PlannerOff,
+            RejectionCause::ValuesRepaired,
         ]),
+        (
+            select(&[CoreTask::Step, CoreTask::Planner]),
+            core_fault(),
+            any::<u32>(),
+            any::<u8>()
+        )
+            .prop_map(|(task, fault, address, count)| RejectionCause::Trapped {
+                task,
+                fault,
+                address,
+                count,
+            }),
         any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
     ]
+}
+
+fn core_fault() -> impl Strategy<Value = CoreFault> {
+    select(&[
+        CoreFault::Other,
+        CoreFault::Stack,
+        CoreFault::Memory,
+        CoreFault::Bus,
+        CoreFault::Instruction,
+        CoreFault::Hang,
+    ])
 }
 
 fn decode_error() -> impl Strategy<Value = DecodeError> {

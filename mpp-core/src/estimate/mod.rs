@@ -122,6 +122,17 @@ pub struct Ekf {
 }
 
 impl Ekf {
+    /// The filter's tuning.
+    #[must_use]
+    pub fn tuning(&self) -> &EkfTuning {
+        &self.tuning
+    }
+
+    /// Replaces the filter's tuning.
+    pub fn set_tuning(&mut self, tuning: EkfTuning) {
+        self.tuning = tuning;
+    }
+
     /// A filter that starts from an estimate.
     #[must_use]
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {

@@ -1,6 +1,8 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
+mod loss;
+mod spare;
 mod tick;
 mod tune;
 
@@ -15,9 +17,8 @@ use hil_protocol::{
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
-use mpp_core::planner::{PlanSummary, Verdict};
 use mpp_core::sense::LidarScan;
-use mpp_core::trajectory::Trajectory;
+use spare::Spare;
 
 /// The behaviour at the tick at which a plan is due but the planner has not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +43,8 @@ struct Cycle {
 /// A flight under way.
 struct Flight {
     tuning: Tuning,
+    /// Copies of the values that the flight itself does not change.
+    spare: Spare,
     /// The cause of the last set-up of the planner.
     asker: Asker,
     /// Whether the planner is set up with the present values.
@@ -118,6 +121,10 @@ pub struct StepTask {
     plan: Option<Plan>,
     /// The sensor frame that waits for a plan.
     held: Option<WireFrame>,
+    /// Whether the flight goes on without the planner.
+    planner_off: bool,
+    /// The reason why the core accepts no configuration, if there is one.
+    refusal: Option<ConfigureVerdict>,
     clock: u32,
 }
 
@@ -135,6 +142,8 @@ impl StepTask {
             set_ups: 0,
             plan: None,
             held: None,
+            planner_off: false,
+            refusal: None,
             clock: 0,
         }
     }
@@ -143,6 +152,11 @@ impl StepTask {
     /// flight.
     pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
         self.greet(&mut send);
+    }
+
+    /// Refuses every configuration from now on, so that the core does not fly.
+    pub fn refuse(&mut self, reason: ConfigureVerdict) {
+        self.refusal = Some(reason);
     }
 
     /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller must not give
@@ -189,42 +203,9 @@ impl StepTask {
         }
     }
 
-    /// Handles a restart of the planner: orders its set-up, and ends its cycle without a trajectory.
-    pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
-        let send = &mut send;
-        let Some(flight) = &self.flight else {
-            return;
-        };
-        let (tuning, ready, cycle) = (flight.tuning, flight.ready, flight.cycle);
-        self.order_set_up(tuning);
-        if !ready {
-            return;
-        }
-        self.reject(RejectionCause::PlannerRestarted, send);
-        if let Some(Cycle {
-            scan: scan_tick, ..
-        }) = cycle
-            && self.plan.is_none()
-        {
-            self.plan = Some(Plan {
-                scan_tick,
-                verdict: Verdict::Nothing,
-                summary: PlanSummary {
-                    cost: f64::INFINITY,
-                    violation: f64::INFINITY,
-                    ..PlanSummary::default()
-                },
-                trajectory: Trajectory::new(),
-            });
-        }
-        if let Some(frame) = self.held.take() {
-            self.tick(&frame, send);
-        }
-    }
-
-    /// Reports that bytes of the link were lost before they reached this task.
-    pub fn bytes_lost(&mut self, count: u32, mut send: impl FnMut(&[u8])) {
-        self.reject(RejectionCause::BytesLost { count }, &mut send);
+    /// Reports a cause that the owner of the task knows, such as lost bytes of the link.
+    pub fn report(&mut self, cause: RejectionCause, mut send: impl FnMut(&[u8])) {
+        self.reject(cause, &mut send);
     }
 
     /// The tick of the last step of this flight, if there was one.
@@ -254,6 +235,9 @@ impl StepTask {
             Message::SensorFrame(frame) => self.sensor_frame(frame, send),
             other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
         }
+        if self.planner_off {
+            self.go_on_without_planner(send);
+        }
     }
 
     fn emit(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
@@ -280,6 +264,9 @@ impl StepTask {
             stages: STAGES as u16,
         };
         self.emit(&Message::Hello(hello), send);
+        if self.planner_off {
+            self.reject(RejectionCause::PlannerOff, send);
+        }
     }
 
     fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
@@ -306,12 +293,17 @@ impl StepTask {
         if self.flight.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
+        if let Some(refusal) = self.refusal {
+            return Err(refusal);
+        }
         let tuning = Tuning::new(configure)?;
+        let control = FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?;
         Ok(Flight {
             tuning,
+            spare: Spare::new(&tuning, &control),
             asker: Asker::Configure,
             ready: false,
-            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
+            control,
             last_tick: None,
             cycle: None,
             last_cycle: None,

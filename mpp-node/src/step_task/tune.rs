@@ -31,6 +31,7 @@ impl StepTask {
             flight.asker = Asker::Parameter(set.parameter, before);
         }
         flight.tuning = tuning;
+        flight.keep_values();
         if !in_flight {
             self.order_set_up(tuning);
         }
@@ -61,6 +62,7 @@ impl StepTask {
                 if let Ok(control) = FlightLoop::new(&before.settings) {
                     flight.control = control;
                 }
+                flight.keep_values();
                 flight.asker = Asker::Nobody;
                 self.order_set_up(before);
                 ParameterVerdict::SetUp(verdict)

@@ -1,0 +1,45 @@
+//! What a flight loop keeps unchanged from its start, for checks against copies.
+
+use super::FlightLoop;
+use crate::control::Lqr;
+use crate::estimate::EkfTuning;
+use crate::vehicle::{ActuatorLimits, Airframe, Trim};
+
+/// The values of a flight loop that no step changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Design {
+    airframe: Airframe,
+    estimator: EkfTuning,
+    lqr: Lqr,
+    trim: Trim,
+    limits: ActuatorLimits,
+    cross_track: f64,
+    airspeed_hold: f64,
+}
+
+impl FlightLoop {
+    /// The values as they are in memory now.
+    #[must_use]
+    pub fn design(&self) -> Design {
+        Design {
+            airframe: self.airframe,
+            estimator: *self.ekf.tuning(),
+            lqr: self.lqr,
+            trim: self.trim,
+            limits: self.limits,
+            cross_track: self.cross_track,
+            airspeed_hold: self.airspeed_hold,
+        }
+    }
+
+    /// Puts values back that have changed in memory by themselves.
+    pub fn restore(&mut self, design: &Design) {
+        self.airframe = design.airframe;
+        self.ekf.set_tuning(design.estimator);
+        self.lqr = design.lqr;
+        self.trim = design.trim;
+        self.limits = design.limits;
+        self.cross_track = design.cross_track;
+        self.airspeed_hold = design.airspeed_hold;
+    }
+}
