@@ -46,21 +46,24 @@ const CALM: u32 = 3000;
 ///
 /// # Safety
 /// The caller calls this function once, before it enables any interrupt.
+// Not inlined, so that the stack that it needs is free again when the planner runs.
+#[inline(never)]
 pub unsafe fn set_up(pace: Pace) {
-    let mut task = StepTask::new(pace);
-    if !image::is_whole() {
-        task.refuse(ConfigureVerdict::ImageDamaged);
-    }
     // SAFETY: nothing else runs yet.
     unsafe {
         STEP.write(StepSide {
-            task,
+            task: StepTask::new(pace),
             pulse: 0,
             silent_for: 0,
             calm_for: 0,
             planner_off: false,
             restarts: 0,
         });
+    }
+    if !image::is_whole() {
+        // SAFETY: as above.
+        let side = unsafe { STEP.get() };
+        side.task.refuse(ConfigureVerdict::ImageDamaged);
     }
 }
 

@@ -126,7 +126,7 @@ pub fn fly_in(
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
-            rejections: session.rejections.len(),
+            rejections: &session.rejections,
         };
         let holds_trim = answer.command.mode == ControlMode::TrimHold;
         judge.watch(&moment, field.as_ref(), plant.state(), holds_trim);

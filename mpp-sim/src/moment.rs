@@ -1,6 +1,6 @@
 //! The data of one tick, for an observer of a flight.
 
-use crate::entries::{PlanEntry, Tick};
+use crate::entries::{PlanEntry, RejectionEntry, Tick};
 use hil_protocol::{LidarScan, PlanReport, PlanTrajectory};
 
 /// The data of one tick.
@@ -15,6 +15,6 @@ pub struct Moment<'a> {
     pub report: Option<&'a PlanReport>,
     /// The plan's trajectory.
     pub trajectory: Option<&'a PlanTrajectory>,
-    /// Inputs refused so far.
-    pub rejections: usize,
+    /// Inputs refused and faults told so far.
+    pub rejections: &'a [RejectionEntry],
 }

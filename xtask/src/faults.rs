@@ -8,11 +8,10 @@ use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::folders::work;
 use crate::limits;
 use crate::qemu::{Emulator, Report, Run};
-use anyhow::{Context, Result, bail, ensure};
-use hil_protocol::{
-    AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Preset, RejectionCause, Role, encode,
-};
-use std::io::{Read, Write};
+use crate::talk::{CONFIGURE, HELLO, await_message, send};
+use anyhow::{Result, ensure};
+use hil_protocol::{Message, RejectionCause, Role};
+use std::io::Write;
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 
@@ -258,58 +257,5 @@ impl Bench {
         await_message(&mut stream, |message| {
             matches!(message, Message::Hello(hello) if hello.role == Role::Core).then_some(())
         })
-    }
-}
-
-const HELLO: Hello = Hello {
-    role: Role::Harness,
-    software: [0; 3],
-    tick_period_us: 10_000,
-    beams_max: 100,
-    stages: 18,
-};
-
-const CONFIGURE: Configure = Configure {
-    actuators: hil_protocol::ActuatorLimits {
-        thrust_max: None,
-        thrust_lag: None,
-        elevator_range: None,
-        elevator_rate: None,
-    },
-    preset: Preset::Flight,
-    airframe: AirframeId::Reference,
-    paths: 25,
-    replan_period_ticks: 100,
-    latency_ticks: 1,
-    slices_per_tick: 1,
-    seed: 1,
-    beams: 100,
-    range_max: 50.0,
-    altitude: 50.0,
-};
-
-fn send(stream: &mut TcpStream, message: &Message) -> Result<()> {
-    let mut buffer = [0; MAX_FRAME];
-    stream.write_all(encode(message, &mut buffer)?)?;
-    Ok(())
-}
-
-/// Reads messages until `wanted` returns a value.
-fn await_message<T>(stream: &mut TcpStream, wanted: impl Fn(&Message) -> Option<T>) -> Result<T> {
-    let (mut decoder, mut bytes) = (Decoder::new(), [0; 256]);
-    loop {
-        let count = stream
-            .read(&mut bytes)
-            .context("the core says nothing more")?;
-        if count == 0 {
-            bail!("the core closed the link");
-        }
-        for byte in bytes.iter().take(count) {
-            if let Some(Ok(message)) = decoder.push(*byte)
-                && let Some(found) = wanted(&message)
-            {
-                return Ok(found);
-            }
-        }
     }
 }

@@ -11,6 +11,7 @@ mod counts;
 mod faults;
 mod firmware;
 mod flight;
+mod flips;
 mod folders;
 mod golden;
 mod limits;
@@ -18,6 +19,7 @@ mod pil;
 mod qemu;
 mod readme;
 mod stack;
+mod talk;
 mod toolchain;
 mod wasm;
 
@@ -44,8 +46,11 @@ enum Command {
     Aarch64(aarch64::Aarch64Args),
     /// Measure flash, RAM, stack and instructions; check them against docs/budgets.toml
     Budget(budget::BudgetArgs),
-    /// Let the planner or the step hang, let the timer run, and check that the aircraft flies on
+    /// Let the planner or the step hang or trap, damage the image, let the timer run, and check that the aircraft flies on
     Faults(faults::FaultsArgs),
+    /// Flip random bits of the core's memory, in the emulator and in a process of this machine, and say
+    /// what came of it
+    Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
@@ -59,6 +64,7 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
+        Command::Flips(args) => flips::run(&args),
         Command::Wasm => wasm::build(),
         Command::Golden(args) => golden::run(&args),
     };

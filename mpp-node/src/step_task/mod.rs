@@ -1,6 +1,7 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
+mod check;
 mod loss;
 mod spare;
 mod tick;
@@ -43,8 +44,6 @@ struct Cycle {
 /// A flight under way.
 struct Flight {
     tuning: Tuning,
-    /// Copies of the values that the flight itself does not change.
-    spare: Spare,
     /// The cause of the last set-up of the planner.
     asker: Asker,
     /// Whether the planner is set up with the present values.
@@ -114,6 +113,8 @@ pub struct StepTask {
     buffer: [u8; MAX_FRAME],
     scan: LidarScan,
     flight: Option<Flight>,
+    /// Copies of those values of the flight that the flight itself does not change.
+    spare: Option<Spare>,
     order: Option<Order>,
     /// Number of the last set-up that the step ordered.
     set_ups: u32,
@@ -138,6 +139,7 @@ impl StepTask {
             buffer: [0; MAX_FRAME],
             scan: LidarScan::new(),
             flight: None,
+            spare: None,
             order: None,
             set_ups: 0,
             plan: None,
@@ -274,6 +276,7 @@ impl StepTask {
             Ok(flight) => {
                 self.order_set_up(flight.tuning);
                 self.flight = Some(flight);
+                self.keep_values();
             }
             Err(verdict) => self.reply(verdict, send),
         }
@@ -297,13 +300,11 @@ impl StepTask {
             return Err(refusal);
         }
         let tuning = Tuning::new(configure)?;
-        let control = FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?;
         Ok(Flight {
             tuning,
-            spare: Spare::new(&tuning, &control),
             asker: Asker::Configure,
             ready: false,
-            control,
+            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
             last_tick: None,
             cycle: None,
             last_cycle: None,

@@ -31,7 +31,7 @@ impl StepTask {
             flight.asker = Asker::Parameter(set.parameter, before);
         }
         flight.tuning = tuning;
-        flight.keep_values();
+        self.keep_values();
         if !in_flight {
             self.order_set_up(tuning);
         }
@@ -62,8 +62,8 @@ impl StepTask {
                 if let Ok(control) = FlightLoop::new(&before.settings) {
                     flight.control = control;
                 }
-                flight.keep_values();
                 flight.asker = Asker::Nobody;
+                self.keep_values();
                 self.order_set_up(before);
                 ParameterVerdict::SetUp(verdict)
             }

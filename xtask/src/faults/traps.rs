@@ -1,10 +1,11 @@
 //! Traps of the processor, and a damaged image.
 
-use super::{Bench, CONFIGURE, HANG, await_message, send, spread};
+use super::{Bench, HANG, spread};
 use crate::contents;
 use crate::firmware::Image;
 use crate::flight::{Outcome, PATIENCE};
 use crate::qemu::{Emulator, Report};
+use crate::talk::{CONFIGURE, await_message, send};
 use anyhow::{Result, ensure};
 use hil_protocol::{ConfigureVerdict, Message};
 use std::net::TcpStream;
