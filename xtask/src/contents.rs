@@ -1,7 +1,6 @@
 //! The contents of linked images: words that tests change, and the checksum that the image checks at its
 //! start.
 
-use crate::firmware::Image;
 use anyhow::{Context, Result};
 use crc::{CRC_32_ISO_HDLC, Crc};
 use object::elf::PT_LOAD;
@@ -13,8 +12,8 @@ use std::path::Path;
 const CHECKSUM: &str = "IMAGE_CHECKSUM";
 
 /// Copies an image and changes words, so that each symbol holds its value. The checksum is that of the copy.
-pub(crate) fn patched(image: Image, words: &[(&str, u32)], to: &Path) -> Result<()> {
-    let mut bytes = std::fs::read(image.path()?)?;
+pub(crate) fn patched(image: &Path, words: &[(&str, u32)], to: &Path) -> Result<()> {
+    let mut bytes = std::fs::read(image)?;
     for (symbol, value) in words {
         write_word(&mut bytes, symbol, *value)?;
     }
@@ -23,8 +22,8 @@ pub(crate) fn patched(image: Image, words: &[(&str, u32)], to: &Path) -> Result<
 }
 
 /// Copies an image and flips one bit of a word, but leaves the checksum as it was.
-pub(crate) fn damaged(image: Image, symbol: &str, bit: u32, to: &Path) -> Result<()> {
-    let mut bytes = std::fs::read(image.path()?)?;
+pub(crate) fn damaged(image: &Path, symbol: &str, bit: u32, to: &Path) -> Result<()> {
+    let mut bytes = std::fs::read(image)?;
     let place = place(&bytes, symbol)?;
     let byte = bytes.get_mut(place).context("a symbol beyond the file")?;
     *byte ^= 1 << bit;

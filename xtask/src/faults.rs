@@ -86,7 +86,7 @@ impl Bench {
         let longest = u32::try_from(limits::longest_slice(&limits::read()?)?)?;
         let image = self.folder.join("long-slices");
         contents::patched(
-            Image::FifoFaults,
+            &Image::FifoFaults.path()?,
             &[("FAULT_SLICE_LONGER_BY", longest)],
             &image,
         )?;
@@ -130,7 +130,7 @@ impl Bench {
     fn stuck_planner_is_restarted(&self) -> Result<()> {
         let image = self.folder.join("planner-hangs");
         contents::patched(
-            Image::FifoFaults,
+            &Image::FifoFaults.path()?,
             &[("FAULT_PLANNER_HANGS_AFTER", HANG)],
             &image,
         )?;
@@ -168,7 +168,7 @@ impl Bench {
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
         contents::patched(
-            Image::UartFaults,
+            &Image::UartFaults.path()?,
             &[("FAULT_STEP_HANGS_AFTER", HANG)],
             &image,
         )?;
@@ -230,7 +230,7 @@ impl Bench {
     fn flood_is_counted(&self) -> Result<()> {
         let image = self.folder.join("set-up-awaits-loss");
         contents::patched(
-            Image::UartFaults,
+            &Image::UartFaults.path()?,
             &[("FAULT_SET_UP_AWAITS_LOSS", 0)],
             &image,
         )?;

@@ -4,6 +4,7 @@
 //! runs as a process of its own, and this command changes a byte of its memory from outside, while the core
 //! waits for a sensor frame: no rule of the language covers either, as none covers radiation.
 
+mod flip;
 mod process;
 
 use crate::contents;
@@ -12,9 +13,9 @@ use crate::flight::{Harness, Outcome};
 use crate::folders::work;
 use crate::qemu::{Emulator, Run};
 use anyhow::{Context, Result, ensure};
+use flip::{Draw, FLIGHT_SEED, PATIENCE};
 use object::{Object, ObjectSection, ObjectSymbol};
 use std::collections::BTreeMap;
-use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct FlipsArgs {
@@ -29,24 +30,11 @@ pub(crate) struct FlipsArgs {
     seed: u64,
 }
 
-/// Seed of the flights. Its bytes are found again in the memory of a core.
-const FLIGHT_SEED: u64 = 0x0123_4567_89AB_CDEF;
 /// Length of the flights \[s\].
 const DURATION: u32 = 5;
 /// The limits of the commands in these flights: thrust \[N\], and elevator on either side of level trim.
 const THRUST_MAX: f64 = 15.0;
 const ELEVATOR: (f64, f64) = (3.749, 2.0);
-/// The time that a silent core gets.
-const PATIENCE: Duration = Duration::from_secs(10);
-
-/// One bit, and the tick before which it flips.
-#[derive(Clone, Copy, Debug)]
-struct Flip {
-    tick: u32,
-    /// Place among the bytes in question.
-    place: u64,
-    bit: u32,
-}
 
 /// What came of a flip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,27 +51,6 @@ enum Effect {
     Wrong,
     /// A command is outside the limits of the actuators.
     OutsideLimits,
-}
-
-/// A generator of random numbers: SplitMix64.
-struct Draw(u64);
-
-impl Draw {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut word = self.0;
-        word = (word ^ (word >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        word = (word ^ (word >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        word ^ (word >> 31)
-    }
-
-    fn flip(&mut self, bytes: u64) -> Flip {
-        Flip {
-            tick: 50 + (self.next() % 350) as u32,
-            place: self.next() % bytes.max(1),
-            bit: (self.next() % 8) as u32,
-        }
-    }
 }
 
 pub(crate) fn run(args: &FlipsArgs) -> Result<()> {
@@ -182,7 +149,7 @@ impl Bench {
                 ("FAULT_FLIP_ADDRESS", u32::try_from(address)?),
                 ("FAULT_FLIP_BIT", flip.bit),
             ];
-            contents::patched(Image::UartFaults, &words, &image)?;
+            contents::patched(&Image::UartFaults.path()?, &words, &image)?;
             let mut emulator = Emulator::uart(&Run {
                 image: &image,
                 folder: &folder,

@@ -24,7 +24,7 @@ const MOST: u32 = 3;
 impl Bench {
     fn trap(&self, words: &[(&str, u32)], arguments: &[String]) -> Result<(Outcome, Report)> {
         let image = self.folder.join("traps");
-        contents::patched(Image::FifoFaults, words, &image)?;
+        contents::patched(&Image::FifoFaults.path()?, words, &image)?;
         self.fly_by_timer(&image, arguments)
     }
 
@@ -81,7 +81,7 @@ impl Bench {
         for (kind, (what, fault)) in (0_u32..).zip(TRAPS) {
             let image = self.folder.join("step-traps");
             let words = [("FAULT_STEP_TRAPS_AFTER", HANG), ("FAULT_TRAP", kind)];
-            contents::patched(Image::UartFaults, &words, &image)?;
+            contents::patched(&Image::UartFaults.path()?, &words, &image)?;
             let mut emulator = Emulator::uart(&self.run(&image))?;
             let arguments = ["--seed", "1", "--duration", "6"].map(str::to_owned);
             let outcome = self.harness.fly_emulated(&arguments, &mut emulator)?;
@@ -105,7 +105,7 @@ impl Bench {
     pub(super) fn damaged_image_refuses_to_fly(&self) -> Result<()> {
         for (symbol, bit) in [("PendSV", 3), ("HardFault", 0), ("IMAGE_CHECKSUM", 7)] {
             let image = self.folder.join("damaged");
-            contents::damaged(Image::Uart, symbol, bit, &image)?;
+            contents::damaged(&Image::Uart.path()?, symbol, bit, &image)?;
             let emulator = Emulator::uart(&self.run(&image))?;
             let address = emulator.link().trim_start_matches("tcp:").to_owned();
             let mut stream = TcpStream::connect(address)?;

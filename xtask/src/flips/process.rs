@@ -1,6 +1,6 @@
 //! A core in a process of this machine, whose memory is changed from outside. Linux only.
 
-use super::{Draw, FLIGHT_SEED, Flip, PATIENCE};
+use super::flip::{Draw, FLIGHT_SEED, Flip, PATIENCE};
 use crate::flight::{Harness, Outcome};
 use anyhow::{Context, Result, bail};
 use hil_protocol::{Decoder, Message};
