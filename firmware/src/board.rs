@@ -13,9 +13,9 @@ pub const TICK: u32 = CLOCK / 100;
 const TIMER: *mut u32 = 0x4000_0000 as *mut u32;
 /// Address of the CMSDK watchdog.
 const WATCHDOG: *mut u32 = 0x4000_8000 as *mut u32;
-/// Number of counts in half of the watchdog's time. After 50 ms it raises an interrupt, and after 50 ms
-/// more it resets the core.
-const PATIENCE: u32 = 5 * TICK;
+/// Number of counts in half of the watchdog's time. After 100 ms it raises an exception, which records the
+/// place and resets the core. Should that fail, it resets the core itself after 100 ms more.
+const PATIENCE: u32 = 10 * TICK;
 const UNLOCK: u32 = 0x1ACC_E551;
 
 /// Sets the priorities: the UART (at the reset value, 0) is above the step, and the step is above the

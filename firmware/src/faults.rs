@@ -1,5 +1,6 @@
-//! Faults for tests of the emulated image. A test switches a fault on by a change of its word in the
-//! image file. Without such a change the faults have no effect.
+//! Faults for tests of the emulated image, behind the feature `faults`: the flight image has none. A test
+//! switches a fault on by a change of its word in the image file. Without such a change the faults have no
+//! effect.
 
 use crate::uart;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -25,9 +26,34 @@ static FAULT_SET_UP_AWAITS_LOSS: u32 = NEVER;
 #[unsafe(no_mangle)]
 static FAULT_SLICE_LONGER_BY: u32 = 0;
 
+/// Tick from which on the planner traps after each slice.
+#[unsafe(no_mangle)]
+static FAULT_PLANNER_TRAPS_AFTER: u32 = NEVER;
+
+/// Tick after whose step the step traps. It traps once.
+#[unsafe(no_mangle)]
+static FAULT_STEP_TRAPS_AFTER: u32 = NEVER;
+
+/// The way in which a task traps. 0: an instruction that does not exist; 1: the stack overflows; 2: a write
+/// to a constant; 3: execution from RAM.
+#[unsafe(no_mangle)]
+static FAULT_TRAP: u32 = 0;
+
+/// Tick after whose step a bit of RAM flips, the byte's address, and the bit. It flips once.
+#[unsafe(no_mangle)]
+static FAULT_FLIP_AFTER: u32 = NEVER;
+#[unsafe(no_mangle)]
+static FAULT_FLIP_ADDRESS: u32 = 0;
+#[unsafe(no_mangle)]
+static FAULT_FLIP_BIT: u32 = 0;
+
+/// Whether the bit has flipped. This memory survives the reset.
+#[unsafe(link_section = ".uninit.faults")]
+static FLIPPED: AtomicU32 = AtomicU32::new(0);
+
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
-/// Whether the step has hung. This memory survives the reset.
+/// Whether the step has hung or trapped. This memory survives the reset.
 #[unsafe(link_section = ".uninit.faults")]
 static STEP_HUNG: AtomicU32 = AtomicU32::new(0);
 const YES: u32 = 0x5EED_F00D;
@@ -43,6 +69,10 @@ pub fn planner(clock: u32) {
     let after = read(&FAULT_PLANNER_HANGS_AFTER);
     if after != NEVER && clock >= after && !PLANNER_HUNG.swap(true, Ordering::Relaxed) {
         hang();
+    }
+    let after = read(&FAULT_PLANNER_TRAPS_AFTER);
+    if after != NEVER && clock >= after {
+        trap();
     }
 }
 
@@ -65,6 +95,36 @@ pub fn step(clock: u32) {
     if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
         hang();
     }
+    let after = read(&FAULT_FLIP_AFTER);
+    if after != NEVER && clock == after && FLIPPED.swap(YES, Ordering::Relaxed) != YES {
+        flip(read(&FAULT_FLIP_ADDRESS), read(&FAULT_FLIP_BIT));
+    }
+    let after = read(&FAULT_STEP_TRAPS_AFTER);
+    if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
+        trap();
+    }
+}
+
+fn flip(address: u32, bit: u32) {
+    let byte = address as *mut u8;
+    // SAFETY: there is nothing to say for it. The flip stands for one by radiation, which keeps no rule of the
+    // language either; the compiler does not know the address.
+    unsafe { byte.write_volatile(byte.read_volatile() ^ 1_u8.wrapping_shl(bit)) };
+}
+
+fn trap() -> ! {
+    let data = STEP_HUNG.as_ptr();
+    // SAFETY: each of these traps, and the handler drops or resets everything that runs.
+    unsafe {
+        match read(&FAULT_TRAP) {
+            0 => core::arch::asm!("udf #0", options(noreturn)),
+            1 => core::arch::asm!("1: push {{r0-r7}}", "b 1b", options(noreturn)),
+            2 => (&raw const FAULT_TRAP).cast_mut().write_volatile(0),
+            _ => core::arch::asm!("bx {}", in(reg) data as u32 | 1, options(noreturn)),
+        }
+    }
+    // No trap came: a flight whose planner hangs shows it.
+    hang()
 }
 
 fn hang() -> ! {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! priority   what runs                                    owns
+//! -          traps and the watchdog: restart              the record of faults
 //! 0 highest  UART interrupts: bytes to and from rings     -
 //! 1          SysTick: the 100 Hz step                     the step task, the link
 //! 2 lowest   PendSV: restarts the planner's thread        -
@@ -12,19 +13,24 @@
 //! task masks the interrupt of the step, except for a short check before the thread sleeps. A plan goes to
 //! the step as a value, and the step takes it over at a tick boundary.
 //!
-//! There are two images. `uart` flies over a serial line, with timer, watchdog and restart of a stuck
-//! planner. `fifo` flies over semihosting, for campaigns and measurements.
+//! There are two programs. `uart` flies over a serial line, with timer, watchdog and restart of a stuck
+//! planner. `fifo` flies over semihosting, for campaigns and measurements. The image that flies is `uart`
+//! without any feature; `Cargo.toml` says what the features add for tests and comparisons.
 #![no_std]
 
 pub mod board;
+#[cfg_attr(not(feature = "faults"), path = "no_faults.rs")]
 pub mod faults;
 pub mod host;
+pub mod image;
 mod mailbox;
 pub mod mark;
 mod owned;
 pub mod panic_gate;
+pub mod protection;
 pub mod report;
 pub mod restart;
 mod ring;
 pub mod tasks;
+pub mod trap;
 pub mod uart;

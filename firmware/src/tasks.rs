@@ -2,8 +2,9 @@
 
 use crate::mailbox::Mailbox;
 use crate::owned::{self, Owned};
-use crate::{faults, mark, restart};
+use crate::{faults, image, mark, restart, trap};
 use core::sync::atomic::{AtomicU32, Ordering};
+use hil_protocol::{ConfigureVerdict, RejectionCause};
 use mark::Region;
 use mpp_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
 
@@ -27,6 +28,9 @@ pub struct StepSide {
     task: StepTask,
     pulse: u32,
     silent_for: u32,
+    /// Number of calls of [`StepSide::watch_planner`] since the last fault.
+    calm_for: u32,
+    planner_off: bool,
     /// Number of restarts of the planner.
     pub restarts: u32,
 }
@@ -34,11 +38,16 @@ pub struct StepSide {
 /// Number of calls of [`StepSide::watch_planner`], one in each 10 ms, after which a planner without a pulse
 /// counts as stuck. The longest slice of the planner takes a tenth of this time.
 const SILENCE_LIMIT: u32 = 10;
+/// Number of calls of [`StepSide::watch_planner`], 30 s of them, after which the next fault counts as the first.
+/// A fault that comes in each cycle comes within seconds.
+const CALM: u32 = 3000;
 
 /// Prepares the step's side.
 ///
 /// # Safety
 /// The caller calls this function once, before it enables any interrupt.
+// Not inlined, so that the stack that it needs is free again when the planner runs.
+#[inline(never)]
 pub unsafe fn set_up(pace: Pace) {
     // SAFETY: nothing else runs yet.
     unsafe {
@@ -46,8 +55,15 @@ pub unsafe fn set_up(pace: Pace) {
             task: StepTask::new(pace),
             pulse: 0,
             silent_for: 0,
+            calm_for: 0,
+            planner_off: false,
             restarts: 0,
         });
+    }
+    if !image::is_whole() {
+        // SAFETY: as above.
+        let side = unsafe { STEP.get() };
+        side.task.refuse(ConfigureVerdict::ImageDamaged);
     }
 }
 
@@ -61,9 +77,16 @@ pub unsafe fn step_side() -> &'static mut StepSide {
 }
 
 impl StepSide {
-    /// Sends a hello without being asked.
-    pub fn announce(&mut self, send: impl FnMut(&[u8])) {
-        self.task.announce(send);
+    /// Sends a hello without being asked, and tells the fault that made the core restart.
+    pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
+        self.task.announce(&mut send);
+        if let Some(fault) = trap::untold() {
+            self.task.report(fault, &mut send);
+        }
+        if trap::planner_stays_off() {
+            self.planner_off = true;
+            self.task.planner_off(send);
+        }
     }
 
     /// Whether bytes of the link have to wait for the planner.
@@ -101,27 +124,50 @@ impl StepSide {
 
     /// Reports lost bytes of the link.
     pub fn bytes_lost(&mut self, count: u32, send: impl FnMut(&[u8])) {
-        self.task.bytes_lost(count, send);
+        self.task.report(RejectionCause::BytesLost { count }, send);
     }
 
-    /// Restarts the planner if it is stuck. The step calls this function every 10 ms.
-    pub fn watch_planner(&mut self, send: impl FnMut(&[u8])) {
-        let pulse = PULSE.load(Ordering::Relaxed);
-        if pulse != self.pulse {
-            self.pulse = pulse;
-            self.silent_for = 0;
+    /// Handles a trap of the planner, which is restarted already, and restarts a planner that is stuck. The
+    /// step calls this function every 10 ms.
+    pub fn watch_planner(&mut self, mut send: impl FnMut(&[u8])) {
+        if self.planner_off {
             return;
         }
-        self.silent_for = self.silent_for.saturating_add(1);
-        if self.silent_for >= SILENCE_LIMIT {
-            self.silent_for = 0;
-            self.restarts = self.restarts.saturating_add(1);
-            // SAFETY: the step is the consumer. It drops an answer from before the restart.
-            drop(unsafe { ANSWERS.take() });
-            self.task.planner_lost(send);
-            self.post();
-            restart::planner();
+        self.calm_for = self.calm_for.saturating_add(1);
+        if self.calm_for == CALM {
+            trap::forget();
         }
+        let pulse = PULSE.load(Ordering::Relaxed);
+        if let Some(fault) = trap::untold() {
+            self.task.report(fault, &mut send);
+            self.planner_dropped(send);
+        } else if pulse != self.pulse {
+            self.pulse = pulse;
+            self.silent_for = 0;
+        } else {
+            self.silent_for = self.silent_for.saturating_add(1);
+            if self.silent_for >= SILENCE_LIMIT {
+                trap::record_hang();
+                self.planner_dropped(send);
+                restart::planner();
+            }
+        }
+    }
+
+    /// Handles the loss of the planner: it starts anew, or stays off after too many faults in a row.
+    fn planner_dropped(&mut self, send: impl FnMut(&[u8])) {
+        self.silent_for = 0;
+        self.calm_for = 0;
+        self.restarts = self.restarts.saturating_add(1);
+        // SAFETY: the step is the consumer. It drops an answer from before the restart.
+        drop(unsafe { ANSWERS.take() });
+        if trap::planner_stays_off() {
+            self.planner_off = true;
+            self.task.planner_off(send);
+        } else {
+            self.task.planner_lost(send);
+        }
+        self.post();
     }
 
     /// Sends the orders and the time to the planner.
@@ -163,6 +209,10 @@ fn pulse() {
 /// Only the thread may call this function, and the thread never runs twice at a time: it starts from
 /// `main`, or anew after [`restart::planner`] has dropped it.
 pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
+    trap::planner_runs();
+    while trap::planner_stays_off() {
+        idle();
+    }
     // SAFETY: the thread is the only user, and there is only one thread. Zeros are a valid task, as the
     // constant beside `PLAN` proves. `PlanTask::new()` would lie on the stack, which is smaller.
     let task = unsafe {

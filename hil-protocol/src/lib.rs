@@ -107,7 +107,8 @@ pub use message::flight::{
     SensorFrame, SensorState, SensorStates, StepReport,
 };
 pub use message::report::{
-    HealthReport, MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
+    CoreFault, CoreTask, HealthReport, MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory,
+    Rejection, RejectionCause,
 };
 pub use message::session::{
     ActuatorLimits, AirframeId, Configure, ConfigureReply, Hello, ParameterReply, Preset, Role,

@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 /// Every variant, made from its number, which is its first byte on the wire.
 fn all<T: DeserializeOwned>() -> Vec<T> {
     (0..128)
-        .map_while(|number| Some(postcard::take_from_bytes(&[number, 0, 0, 0]).ok()?.0))
+        .map_while(|number| Some(postcard::take_from_bytes(&[number, 0, 0, 0, 0]).ok()?.0))
         .collect()
 }
 
@@ -48,8 +48,9 @@ fn every_verdict_and_cause_speaks() {
         ),
         (
             ConfigureVerdict::Unstable,
+            ConfigureVerdict::ImageDamaged,
             ParameterVerdict::CruiseFixed,
-            RejectionCause::ScanAngle,
+            RejectionCause::ValuesRepaired,
             DecodeError::TrailingBytes { id: 0 },
         )
     );

@@ -137,6 +137,7 @@ fn configure_reply_and_every_verdict() {
         (reply(FlightPathLimit), "0a4d5002031e89deea7f00"),
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
         (reply(Unstable), "0a4d50020321b4f38cc900"),
+        (reply(ImageDamaged), "0a4d500203220ea2855000"),
     ]);
 }
 
@@ -367,6 +368,17 @@ fn rejection_and_every_cause() {
         (rejection(ScanAngle), "0c4d500209ac020c7755145800"),
         (rejection(ScanRepeated), "0c4d500209ac020de165132f00"),
         (rejection(ScanBlind), "0c4d500209ac020e5b341ab600"),
+        (
+            rejection(Trapped {
+                task: CoreTask::Planner,
+                fault: CoreFault::Stack,
+                address: 70_000,
+                count: 2,
+            }),
+            "124d500209ac020f0101f0a20402a8b8eefb00",
+        ),
+        (rejection(PlannerOff), "0c4d500209ac02103809154c00"),
+        (rejection(ValuesRepaired), "0c4d500209ac0211ae39123b00"),
     ]);
 }
 

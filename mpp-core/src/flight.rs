@@ -1,5 +1,7 @@
 //! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
+mod design;
+
 use crate::config::TICK_PERIOD;
 use crate::control::{Lqr, holds};
 use crate::estimate::{Conditions, Estimator, Innovation, PositionVerdict, Sensors};
@@ -11,6 +13,7 @@ use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, linearize};
+pub use design::Design;
 
 /// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

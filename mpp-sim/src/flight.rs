@@ -140,7 +140,7 @@ pub fn fly_in(
             trajectory: answer.trajectory.as_ref(),
             sensors: answer.step.map_or(trust, |step| step.sensors),
             health: answer.health.as_ref(),
-            rejections: session.rejections.len(),
+            rejections: &session.rejections,
         };
         let holds_trim = answer.command.mode == ControlMode::TrimHold;
         judge.watch(&moment, field.as_ref(), plant.state(), holds_trim);

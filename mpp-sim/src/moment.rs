@@ -1,6 +1,6 @@
 //! The data of one tick, for an observer of a flight.
 
-use crate::entries::{PlanEntry, Tick};
+use crate::entries::{PlanEntry, RejectionEntry, Tick};
 use hil_protocol::{HealthReport, LidarScan, PlanReport, PlanTrajectory, SensorStates};
 
 /// The data of one tick.
@@ -19,6 +19,6 @@ pub struct Moment<'a> {
     pub sensors: SensorStates,
     /// The core's counters, if it reported them at this tick.
     pub health: Option<&'a HealthReport>,
-    /// Inputs refused so far.
-    pub rejections: usize,
+    /// Inputs refused and faults told so far.
+    pub rejections: &'a [RejectionEntry],
 }

@@ -246,6 +246,75 @@ fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
 }
 
 #[test]
+fn without_its_planner_the_step_flies_on_and_later_sessions_are_accepted() {
+    let input = flight(3);
+    let mut tasks = Tasks::new(Pace::RealTime);
+    let mut bytes = &input[..];
+    while tasks.step.last_tick() != Some(150) {
+        tasks.step(&mut bytes, 1);
+        tasks.plan(200);
+    }
+    let sent = &mut tasks.sent;
+    tasks
+        .step
+        .planner_off(|frame| sent.extend_from_slice(frame));
+    // The planner never runs again.
+    while !bytes.is_empty() {
+        tasks.step(&mut bytes, 1);
+        assert!(tasks.orders.is_none());
+    }
+    let mut rest = &input[..];
+    while !rest.is_empty() {
+        tasks.step(&mut rest, 1);
+        assert!(tasks.orders.is_none());
+    }
+    let messages = tasks.messages();
+    assert_eq!(commands(&messages), 600);
+    let accepted = messages.iter().filter(|message| {
+        matches!(message, Message::ConfigureReply(reply)
+            if reply.verdict == hil_protocol::ConfigureVerdict::Accepted)
+    });
+    assert_eq!(accepted.count(), 2);
+    let causes: Vec<_> = messages
+        .iter()
+        .filter_map(|message| match message {
+            Message::Rejection(rejection) => Some(rejection.cause),
+            _ => None,
+        })
+        .collect();
+    // When it happens, and after the hello of the second session.
+    assert_eq!(causes, [RejectionCause::PlannerOff; 2]);
+    // The cycles of ticks 0 and 100, and nothing in the second session.
+    let plans = messages
+        .iter()
+        .filter(|message| matches!(message, Message::PlanReport(_)));
+    assert_eq!(plans.count(), 2);
+}
+
+#[test]
+fn a_core_that_refuses_says_why_and_flies_nothing() {
+    let mut step = StepTask::new(Pace::RealTime);
+    step.refuse(hil_protocol::ConfigureVerdict::ImageDamaged);
+    let (mut decoder, mut messages) = (Decoder::new(), Vec::new());
+    for byte in flight(1) {
+        step.receive(byte, |frame| {
+            messages.extend(
+                frame
+                    .iter()
+                    .filter_map(|byte| decoder.push(*byte))
+                    .flatten(),
+            );
+        });
+        assert!(step.order().is_none());
+    }
+    assert!(messages.iter().any(|message| {
+        matches!(message, Message::ConfigureReply(reply)
+            if reply.verdict == hil_protocol::ConfigureVerdict::ImageDamaged)
+    }));
+    assert_eq!(commands(&messages), 0);
+}
+
+#[test]
 fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
     let input = flight(1);
     let mut tasks = Tasks::new(Pace::RealTime);

@@ -3,7 +3,8 @@
 //! What an inner region took does not count for the outer one.
 //!
 //! Writes one line a region to the file given as `out=FILE`, in the order in which they ended: kind
-//! and instructions; kinds in `skip=` are summed up only. Last comes a line `total`.
+//! and instructions; kinds in `skip=` are summed up only. Last come a line `unpaired`, the number of
+//! marks without their other mark, and a line `total`.
 //!
 //! Built by `cargo xtask`: `rustc --crate-type cdylib`. The functions are those of version 1 of
 //! QEMU's plugin interface, which the emulator exports.
@@ -52,12 +53,15 @@ struct State {
     skipped: Vec<usize>,
     /// Of each open region: the count at its beginning, and what inner regions took.
     open: Vec<(u64, u64)>,
+    /// Ends without a beginning.
+    unpaired: usize,
 }
 
 static STATE: Mutex<State> = Mutex::new(State {
     out: None,
     skipped: Vec::new(),
     open: Vec::new(),
+    unpaired: 0,
 });
 
 extern "C" fn mark(_: c_uint, kind: *mut c_void) {
@@ -69,6 +73,7 @@ extern "C" fn mark(_: c_uint, kind: *mut c_void) {
         return;
     }
     let Some((begin, inner)) = state.open.pop() else {
+        state.unpaired += 1;
         return;
     };
     let all = executed - begin;
@@ -86,7 +91,9 @@ extern "C" fn translate(_: u64, block: *mut c_void) {
     unsafe {
         for index in 0..qemu_plugin_tb_n_insns(block) {
             let instruction = qemu_plugin_tb_get_insn(block, index);
-            if qemu_plugin_insn_size(instruction) == 4 {
+            // Not `== 4`: an instruction that ends two bytes before a page of 1 kB has the first half of
+            // the next one behind it, because the emulator looks ahead there.
+            if qemu_plugin_insn_size(instruction) >= 4 {
                 let data = qemu_plugin_insn_data(instruction) as *const [u8; 4];
                 // `dbg #n`: 0xF3AF 0x80Fn, each half little endian.
                 if let [0xAF, 0xF3, low, 0x80] = data.read_unaligned()
@@ -102,9 +109,10 @@ extern "C" fn translate(_: u64, block: *mut c_void) {
 }
 
 extern "C" fn finish(_: u64, _: *mut c_void) {
-    if let Ok(mut state) = STATE.lock()
-        && let Some(out) = &mut state.out
-    {
+    let Ok(mut state) = STATE.lock() else { return };
+    let unpaired = state.unpaired + state.open.len();
+    if let Some(out) = &mut state.out {
+        let _ = writeln!(out, "unpaired {unpaired}");
         let _ = writeln!(out, "total {}", unsafe { EXECUTED });
         let _ = out.flush();
     }

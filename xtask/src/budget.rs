@@ -6,9 +6,12 @@ use crate::flight::Harness;
 use crate::folders::work;
 use crate::limits::{self, budget};
 use crate::qemu::{Emulator, Report, Run};
+use crate::talk::{CONFIGURE, await_message, level, send};
 use crate::{readme, stack};
 use anyhow::{Result, bail, ensure};
+use hil_protocol::Message;
 use object::{Object, ObjectSection};
+use std::fs::File;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct BudgetArgs {
@@ -65,7 +68,7 @@ fn with_air(value: u64) -> u64 {
 }
 
 fn measure() -> Result<Vec<Figure>> {
-    firmware::build()?;
+    firmware::build(&[Image::Uart, Image::Fifo, Image::Comparison])?;
     let mut figures = Vec::new();
     let mut add = |table, name, value| figures.push(Figure { table, name, value });
 
@@ -74,6 +77,11 @@ fn measure() -> Result<Vec<Figure>> {
     let reference = fly(Image::Comparison, "--preset reference --obstacles 20")?;
     let dense = fly(Image::Fifo, "--preset flight --obstacles 40")?;
     let bound = stack::bound(&Image::Uart.path()?)?;
+    let room = stack::room(&Image::Uart.path()?)?;
+    ensure!(
+        bound <= room,
+        "the stack may need {bound} bytes, but memory.x gives it {room}"
+    );
     let painted = [&flight, &dense].map(|flown| u64::from(flown.report.stack));
     let painted = painted.into_iter().max().unwrap_or_default();
     ensure!(
@@ -89,6 +97,7 @@ fn measure() -> Result<Vec<Figure>> {
     add("step", "mean", flight.counts.step_mean());
     let worst = [&flight, &dense].map(|flown| flown.counts.step_worst());
     add("step", "worst", worst.into_iter().max().unwrap_or_default());
+    add("step", "after_gap", step_after_gap()?);
     for (name, value) in flight.counts.stages_mean() {
         add("stage_mean_flight", name, value);
     }
@@ -130,6 +139,47 @@ fn sizes() -> Result<(u64, u64)> {
     ))
 }
 
+/// Number of frames that are lost before the step that is measured: the longest time that the estimator
+/// predicts over, `LONGEST_PREDICTION` in mpp-core/src/tuning.rs.
+const LOST_FRAMES: u32 = 49;
+
+/// The count of the step after lost frames, whose predictions it makes up for. There is no plan, so no other
+/// step of this session is as long.
+fn step_after_gap() -> Result<u64> {
+    let folder = work("budget")?;
+    let counter = plugin()?;
+    let emulator = Emulator::fifo(
+        &Run {
+            image: &Image::Fifo.path()?,
+            folder: &folder,
+            shift: 0,
+            counter: Some(&counter),
+        },
+        false,
+    )?;
+    // The image opens its input first.
+    let mut to_core = File::create(folder.join("to-core"))?;
+    let mut to_harness = File::open(folder.join("to-harness"))?;
+    send(&mut to_core, &Message::Configure(CONFIGURE))?;
+    await_message(&mut to_harness, |message| {
+        matches!(message, Message::ConfigureReply(_)).then_some(())
+    })?;
+    for tick in (0..20).chain([20 + LOST_FRAMES]) {
+        send(&mut to_core, &level(tick))?;
+        await_message(&mut to_harness, |message| {
+            matches!(message, Message::ActuatorCommand(_)).then_some(())
+        })?;
+    }
+    drop((to_core, to_harness));
+    emulator.report()?;
+    let counts = Counts::read(&folder)?;
+    ensure!(
+        counts.step_worst() > 2 * counts.step_mean(),
+        "the step after a gap took no longer than others"
+    );
+    Ok(counts.step_worst())
+}
+
 struct Flown {
     counts: Counts,
     report: Report,
@@ -151,8 +201,7 @@ fn fly(image: Image, scenario: &str) -> Result<Flown> {
     let arguments: Vec<String> = scenario.split(' ').map(str::to_owned).collect();
     harness.fly_emulated(&arguments, &mut emulator)?;
     let report = emulator.report()?;
-    Ok(Flown {
-        counts: Counts::read(&folder)?,
-        report,
-    })
+    let counts = Counts::read(&folder)?;
+    counts.check()?;
+    Ok(Flown { counts, report })
 }

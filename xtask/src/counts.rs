@@ -2,7 +2,7 @@
 
 use crate::folders::{root, work};
 use crate::toolchain::succeed;
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -47,6 +47,8 @@ pub(crate) fn plugin() -> Result<PathBuf> {
 #[derive(Debug)]
 pub(crate) struct Counts {
     regions: Vec<(u64, u64)>,
+    /// Number of marks without their other mark.
+    unpaired: u64,
     /// All instructions of the run.
     pub(crate) total: u64,
 }
@@ -55,19 +57,34 @@ impl Counts {
     /// Reads the file that the plugin wrote to a folder.
     pub(crate) fn read(folder: &Path) -> Result<Self> {
         let text = std::fs::read_to_string(folder.join("counts"))?;
-        let (mut regions, mut total) = (Vec::new(), None);
+        let (mut regions, mut unpaired, mut total) = (Vec::new(), None, None);
         for line in text.lines() {
             let (kind, count) = line.split_once(' ').context("a line of counts")?;
             let count = count.parse()?;
-            match kind.parse() {
-                Ok(kind) => regions.push((kind, count)),
-                Err(_) => total = Some(count),
+            match kind {
+                "unpaired" => unpaired = Some(count),
+                "total" => total = Some(count),
+                kind => regions.push((kind.parse()?, count)),
             }
         }
         Ok(Self {
             regions,
+            unpaired: unpaired.context("the emulator counted no unpaired marks")?,
             total: total.context("the emulator wrote no total")?,
         })
+    }
+
+    /// Checks that no mark was lost, and that there are steps and cycles to measure. A lost mark would make
+    /// figures too small, which a budget cannot notice.
+    pub(crate) fn check(&self) -> Result<()> {
+        ensure!(
+            self.unpaired == 0,
+            "{} marks of firmware/src/mark.rs have no other mark: the counting plugin loses marks",
+            self.unpaired
+        );
+        ensure!(self.of(STEP).count() > 0, "no step was counted");
+        ensure!(!self.cycles().is_empty(), "no planning cycle was counted");
+        Ok(())
     }
 
     fn of(&self, wanted: u64) -> impl Iterator<Item = u64> {
@@ -147,10 +164,31 @@ mod tests {
         let second = [(ORDER, 1), (PROGRAM, 8), (ANSWER, 1)];
         let counts = Counts {
             regions: [&set_up[..], &first, &second].concat(),
+            unpaired: 0,
             total: 0,
         };
+        assert!(counts.check().is_ok());
         assert_eq!(counts.cycles(), [10, 10]);
         assert_eq!((counts.step_mean(), counts.step_worst()), (500, 500));
         assert_eq!(median(&[1, 2, 9]), 2);
+    }
+    #[test]
+    fn lost_marks_are_noticed() {
+        let whole = [(ORDER, 1), (MAP, 2), (STEP, 500), (ANSWER, 4)];
+        for lost in [ORDER, ANSWER, STEP, MAP] {
+            let regions = whole.into_iter().filter(|(kind, _)| *kind != lost);
+            let counts = Counts {
+                regions: regions.collect(),
+                unpaired: 0,
+                total: 0,
+            };
+            assert!(counts.check().is_err(), "{lost}");
+        }
+        let counts = Counts {
+            regions: whole.to_vec(),
+            unpaired: 1,
+            total: 0,
+        };
+        assert!(counts.check().is_err());
     }
 }

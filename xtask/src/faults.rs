@@ -1,15 +1,17 @@
-//! `faults`: tests that the firmware survives when something hangs, and that its clock holds.
+//! `faults`: tests that the firmware survives when something hangs or traps, and that its clock holds.
 
+mod traps;
+
+use crate::contents;
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::folders::work;
 use crate::limits;
 use crate::qemu::{Emulator, Report, Run};
-use anyhow::{Context, Result, bail, ensure};
-use hil_protocol::{
-    AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Preset, RejectionCause, Role, encode,
-};
-use std::io::{Read, Write};
+use crate::talk::{CONFIGURE, HELLO, await_message, send};
+use anyhow::{Result, ensure};
+use hil_protocol::{Message, RejectionCause, Role};
+use std::io::Write;
 use std::net::TcpStream;
 use std::path::{Path, PathBuf};
 
@@ -26,7 +28,7 @@ const TICK: u32 = 250_000;
 const HANG: u32 = 410;
 
 pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
-    firmware::build()?;
+    firmware::build(&[Image::Uart, Image::UartFaults, Image::FifoFaults])?;
     let folder = work("faults")?;
     let bench = Bench {
         harness: Harness::build(&folder)?,
@@ -36,6 +38,11 @@ pub(crate) fn run(args: &FaultsArgs) -> Result<()> {
     bench.longest_slice_holds_no_step(args.duration)?;
     bench.stuck_planner_is_restarted()?;
     bench.stuck_step_is_reset()?;
+    bench.late_plans_hold_no_step()?;
+    bench.planner_that_traps_stays_off()?;
+    bench.every_trap_is_told()?;
+    bench.step_that_traps_is_reset()?;
+    bench.damaged_image_refuses_to_fly()?;
     bench.flood_is_counted()
 }
 
@@ -45,8 +52,8 @@ struct Bench {
 }
 
 /// A flight whose cycles take several ticks: 300 ms from scan to plan.
-fn spread(duration: u32) -> Vec<String> {
-    format!("--seed 1 --obstacles 20 --duration {duration} --latency-ms 300 --slices-per-tick 37")
+fn spread(duration: u32, obstacles: u32) -> Vec<String> {
+    format!("--seed 1 --obstacles {obstacles} --duration {duration} --latency-ms 300 --slices-per-tick 37")
         .split(' ')
         .map(str::to_owned)
         .collect()
@@ -71,20 +78,24 @@ impl Bench {
 
     /// The step comes every 10 ms, whatever the planner does, and the flight is that of the host.
     fn timer_holds(&self, duration: u32) -> Result<()> {
-        self.fly_without_jitter("by the timer", &Image::Fifo.path()?, duration)
+        self.fly_without_jitter("by the timer", &Image::FifoFaults.path()?, duration)
     }
 
     /// Repeats this test with one slice of each cycle longer by the budget of the longest slice.
     fn longest_slice_holds_no_step(&self, duration: u32) -> Result<()> {
         let longest = u32::try_from(limits::longest_slice(&limits::read()?)?)?;
         let image = self.folder.join("long-slices");
-        firmware::patched(Image::Fifo, "FAULT_SLICE_LONGER_BY", longest, &image)?;
+        contents::patched(
+            &Image::FifoFaults.path()?,
+            &[("FAULT_SLICE_LONGER_BY", longest)],
+            &image,
+        )?;
         let name = format!("a slice of each cycle longer by {longest} instructions");
         self.fly_without_jitter(&name, &image, duration)
     }
 
     fn fly_without_jitter(&self, name: &str, image: &Path, duration: u32) -> Result<()> {
-        let arguments = spread(duration);
+        let arguments = spread(duration, 20);
         let host = self.harness.fly(&arguments)?;
         let (target, report) = self.fly_by_timer(image, &arguments)?;
         println!(
@@ -118,8 +129,12 @@ impl Bench {
     /// are planned again.
     fn stuck_planner_is_restarted(&self) -> Result<()> {
         let image = self.folder.join("planner-hangs");
-        firmware::patched(Image::Fifo, "FAULT_PLANNER_HANGS_AFTER", HANG, &image)?;
-        let (outcome, report) = self.fly_by_timer(&image, &spread(12))?;
+        contents::patched(
+            &Image::FifoFaults.path()?,
+            &[("FAULT_PLANNER_HANGS_AFTER", HANG)],
+            &image,
+        )?;
+        let (outcome, report) = self.fly_by_timer(&image, &spread(12, 20))?;
         let plans = outcome.log["plans"]
             .as_array()
             .map_or(&[][..], Vec::as_slice);
@@ -152,7 +167,11 @@ impl Bench {
     /// anew and flies on.
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
-        firmware::patched(Image::Uart, "FAULT_STEP_HANGS_AFTER", HANG, &image)?;
+        contents::patched(
+            &Image::UartFaults.path()?,
+            &[("FAULT_STEP_HANGS_AFTER", HANG)],
+            &image,
+        )?;
         let mut emulator = Emulator::uart(&self.run(&image))?;
         let arguments = "--seed 1 --duration 10".split(' ').map(str::to_owned);
         let outcome = self
@@ -165,16 +184,44 @@ impl Bench {
             outcome.rejections().join(" ")
         );
         ensure!(
-            outcome
-                .rejections()
-                .iter()
-                .filter(|cause| **cause == "CoreRestarted")
-                .count()
-                == 1,
-            "the core was not restarted once"
+            outcome.rejections().len() == 2
+                && outcome.has("CoreRestarted")
+                && outcome.has("Trapped { task: Step, fault: Hang"),
+            "the core was not restarted once, or did not say why"
         );
         let plans = outcome.log["plans"].as_array().map_or(0, Vec::len);
         ensure!(plans >= 9, "the restarted core does not plan");
+        Ok(())
+    }
+
+    /// The flight image over UART, whose ticks come as fast as the host can: far too fast for the planner. The
+    /// step answers each of them and takes over each plan when it comes.
+    fn late_plans_hold_no_step(&self) -> Result<()> {
+        let image = Image::Uart.path()?;
+        let mut emulator = Emulator::uart(&self.run(&image))?;
+        let arguments = "--seed 1 --obstacles 0 --duration 30"
+            .split(' ')
+            .map(str::to_owned);
+        let outcome = self
+            .harness
+            .fly_emulated(&arguments.collect::<Vec<_>>(), &mut emulator)?;
+        let plans = outcome.log["plans"].as_array().cloned().unwrap_or_default();
+        let late = plans.iter().filter(|plan| {
+            let tick = |name: &str| plan[name].as_u64().unwrap_or_default();
+            tick("used_from_tick") > tick("tick") + 1
+        });
+        let late = late.count();
+        println!(
+            "flight image, ticks faster than its planner: {}, {late} of {} plans late; {}",
+            outcome.outcome(),
+            plans.len(),
+            outcome.rejections().join(" "),
+        );
+        ensure!(late > 0, "no plan was late");
+        ensure!(
+            outcome.outcome() == "survived",
+            "the flight did not end well"
+        );
         Ok(())
     }
 
@@ -182,7 +229,11 @@ impl Bench {
     /// lost bytes, and is ready for the next session.
     fn flood_is_counted(&self) -> Result<()> {
         let image = self.folder.join("set-up-awaits-loss");
-        firmware::patched(Image::Uart, "FAULT_SET_UP_AWAITS_LOSS", 0, &image)?;
+        contents::patched(
+            &Image::UartFaults.path()?,
+            &[("FAULT_SET_UP_AWAITS_LOSS", 0)],
+            &image,
+        )?;
         let emulator = Emulator::uart(&self.run(&image))?;
         let address = emulator.link().trim_start_matches("tcp:").to_owned();
         let mut stream = TcpStream::connect(address)?;
@@ -206,58 +257,5 @@ impl Bench {
         await_message(&mut stream, |message| {
             matches!(message, Message::Hello(hello) if hello.role == Role::Core).then_some(())
         })
-    }
-}
-
-const HELLO: Hello = Hello {
-    role: Role::Harness,
-    software: [0; 3],
-    tick_period_us: 10_000,
-    beams_max: 100,
-    stages: 18,
-};
-
-const CONFIGURE: Configure = Configure {
-    actuators: hil_protocol::ActuatorLimits {
-        thrust_max: None,
-        thrust_lag: None,
-        elevator_range: None,
-        elevator_rate: None,
-    },
-    preset: Preset::Flight,
-    airframe: AirframeId::Reference,
-    paths: 25,
-    replan_period_ticks: 100,
-    latency_ticks: 1,
-    slices_per_tick: 1,
-    seed: 1,
-    beams: 100,
-    range_max: 50.0,
-    altitude: 50.0,
-};
-
-fn send(stream: &mut TcpStream, message: &Message) -> Result<()> {
-    let mut buffer = [0; MAX_FRAME];
-    stream.write_all(encode(message, &mut buffer)?)?;
-    Ok(())
-}
-
-/// Reads messages until `wanted` returns a value.
-fn await_message<T>(stream: &mut TcpStream, wanted: impl Fn(&Message) -> Option<T>) -> Result<T> {
-    let (mut decoder, mut bytes) = (Decoder::new(), [0; 256]);
-    loop {
-        let count = stream
-            .read(&mut bytes)
-            .context("the core says nothing more")?;
-        if count == 0 {
-            bail!("the core closed the link");
-        }
-        for byte in bytes.iter().take(count) {
-            if let Some(Ok(message)) = decoder.push(*byte)
-                && let Some(found) = wanted(&message)
-            {
-                return Ok(found);
-            }
-        }
     }
 }

@@ -1,9 +1,10 @@
 //! Builds the firmware.
 
+use crate::contents;
 use crate::folders::{root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, bail};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 
 const THUMB: &str = "thumbv7em-none-eabihf";
@@ -11,20 +12,39 @@ const THUMB: &str = "thumbv7em-none-eabihf";
 /// The images of the firmware.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Image {
-    /// Flies over a serial line, with the flight planner alone.
+    /// The flight image: flies over a serial line in real time, with the flight planner alone.
     Uart,
+    /// The flight image in lockstep, to compare its bytes with the host's.
+    Lockstep,
     /// Flies over semihosting, with the flight planner alone.
     Fifo,
     /// Flies over semihosting, with the paper's method beside the flight planner, to compare them.
     Comparison,
+    /// The image [`Image::Lockstep`] with faults for tests.
+    UartFaults,
+    /// The image [`Image::Fifo`] with faults for tests.
+    FifoFaults,
 }
+
+/// All images.
+const ALL: [Image; 6] = [
+    Image::Uart,
+    Image::Lockstep,
+    Image::Fifo,
+    Image::Comparison,
+    Image::UartFaults,
+    Image::FifoFaults,
+];
 
 impl Image {
     fn name(self) -> &'static str {
         match self {
-            Self::Uart => "uart",
-            Self::Fifo => "fifo",
+            Self::Uart => "flight",
+            Self::Lockstep => "lockstep",
+            Self::Fifo => "semihosting",
             Self::Comparison => "comparison",
+            Self::UartFaults => "flight-faults",
+            Self::FifoFaults => "semihosting-faults",
         }
     }
 
@@ -32,8 +52,11 @@ impl Image {
     fn program(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Self::Uart => ("uart", &[]),
+            Self::Lockstep => ("uart", &["--features", "lockstep"]),
             Self::Fifo => ("fifo", &[]),
             Self::Comparison => ("fifo", &["--features", "paper"]),
+            Self::UartFaults => ("uart", &["--features", "lockstep,faults"]),
+            Self::FifoFaults => ("fifo", &["--features", "faults"]),
         }
     }
 
@@ -50,7 +73,7 @@ fn release() -> Result<PathBuf> {
 
 /// Builds all images and the libraries for a bare 64-bit ARM.
 pub(crate) fn build_all() -> Result<()> {
-    build()?;
+    build(&ALL)?;
     let toolchain = Toolchain::find("aarch64-unknown-none")?;
     succeed(toolchain.cargo("build", "")?.args([
         "--release",
@@ -64,8 +87,8 @@ pub(crate) fn build_all() -> Result<()> {
     ]))
 }
 
-/// Builds all images. An image links only if nothing in it can panic.
-pub(crate) fn build() -> Result<()> {
+/// Builds images. An image links only if nothing in it can panic.
+pub(crate) fn build(images: &[Image]) -> Result<()> {
     // The workspace's versions are used for everything. This is not --locked: cargo drops the
     // packages that are not used here.
     std::fs::copy(
@@ -73,9 +96,7 @@ pub(crate) fn build() -> Result<()> {
         root().join("firmware/Cargo.lock"),
     )?;
     let toolchain = Toolchain::find(THUMB)?;
-    // The comparison is built first and moved away, because another image comes from the same
-    // program.
-    for image in [Image::Comparison, Image::Uart, Image::Fifo] {
+    for image in images {
         let (program, features) = image.program();
         // Stack sizes are not loaded: the image is the same with and without them.
         let stack_sizes = ["-Z", "emit-stack-sizes", "-C", "link-arg=-Tstack_sizes.x"];
@@ -87,12 +108,26 @@ pub(crate) fn build() -> Result<()> {
             .arg("--")
             .args(stack_sizes);
         if !command.status().context("running cargo")?.success() {
-            list_panics(&toolchain, image)?;
+            list_panics(&toolchain, *image)?;
             bail!("the firmware does not build; if it does not link, see the panics above");
         }
-        if program != image.name() {
-            std::fs::copy(release()?.join(program), image.path()?)?;
-        }
+        // Several images come from the same program, so each of them is put aside.
+        let bytes = std::fs::read(release()?.join(program))?;
+        std::fs::write(image.path()?, contents::sealed(bytes)?)?;
+    }
+    has_no_faults(Image::Uart)
+}
+
+/// Checks that an image contains no fault of `firmware/src/faults.rs`, if it is built.
+fn has_no_faults(image: Image) -> Result<()> {
+    use object::{Object, ObjectSymbol};
+    let Ok(bytes) = std::fs::read(image.path()?) else {
+        return Ok(());
+    };
+    let file = object::File::parse(&*bytes)?;
+    let mut names = file.symbols().filter_map(|symbol| symbol.name().ok());
+    if let Some(name) = names.find(|name| name.starts_with("FAULT_")) {
+        bail!("the flight image contains a fault for tests: {name}");
     }
     Ok(())
 }
@@ -107,28 +142,6 @@ fn list_panics(toolchain: &Toolchain, image: Image) -> Result<()> {
     install(&[("/usr/bin/arm-none-eabi-objdump", "binutils-arm-none-eabi")])?;
     eprintln!("calls to panics, once their handler is defined:");
     succeed(Command::new(root().join("firmware/panic-sites")).arg(release()?.join(program)))
-}
-
-/// Copies an image and changes one word, so that `symbol` holds `value`.
-pub(crate) fn patched(image: Image, symbol: &str, value: u32, to: &Path) -> Result<()> {
-    use object::{Object, ObjectSection, ObjectSymbol};
-    let mut bytes = std::fs::read(image.path()?)?;
-    let offset = {
-        let file = object::File::parse(&*bytes)?;
-        let symbol = file
-            .symbol_by_name(symbol)
-            .with_context(|| format!("no symbol {symbol}"))?;
-        let section = symbol.section_index().context("a symbol without section")?;
-        let section = file.section_by_index(section)?;
-        let (start, _) = section.file_range().context("a section without bytes")?;
-        usize::try_from(start + symbol.address() - section.address())?
-    };
-    bytes
-        .get_mut(offset..offset + 4)
-        .context("a symbol beyond the file")?
-        .copy_from_slice(&value.to_le_bytes());
-    std::fs::write(to, bytes)?;
-    Ok(())
 }
 
 /// Versions of compiler and emulator, for reports.

@@ -36,6 +36,13 @@ impl Outcome {
         self.line["outcome"].as_str().unwrap_or_default()
     }
 
+    /// Whether the log has a rejection whose cause begins with a text.
+    pub(crate) fn has(&self, cause: &str) -> bool {
+        self.rejections()
+            .iter()
+            .any(|found| found.starts_with(cause))
+    }
+
     /// Causes of the rejections in the log, in order.
     pub(crate) fn rejections(&self) -> Vec<&str> {
         let entries = self.log["rejections"].as_array();
@@ -52,6 +59,7 @@ impl Outcome {
 pub(crate) struct Harness {
     program: PathBuf,
     out: PathBuf,
+    patience: Duration,
 }
 
 impl Harness {
@@ -84,6 +92,7 @@ impl Harness {
         Ok(Self {
             program: Path::new(target).join("release/sil-harness"),
             out: out.to_owned(),
+            patience: PATIENCE,
         })
     }
 
@@ -92,7 +101,18 @@ impl Harness {
         Self {
             program,
             out: out.to_owned(),
+            patience: PATIENCE,
         }
+    }
+
+    /// This harness with another patience for a silent core.
+    pub(crate) fn with_patience(self, patience: Duration) -> Self {
+        Self { patience, ..self }
+    }
+
+    /// The harness's program.
+    pub(crate) fn program(&self) -> &Path {
+        &self.program
     }
 
     fn command(&self, arguments: &[String], out: &Path) -> Command {
@@ -112,24 +132,33 @@ impl Harness {
         finish(self.command(arguments, &self.out.join("host")).spawn()?)
     }
 
+    /// Flies with a core at a link.
+    pub(crate) fn fly_linked(&self, arguments: &[String], link: &str) -> Result<Outcome> {
+        finish(self.linked(arguments, link).spawn()?)
+    }
+
+    fn linked(&self, arguments: &[String], link: &str) -> Command {
+        let mut command = self.command(arguments, &self.out.join("target"));
+        // An emulator on a busy machine is slow.
+        let patience = self.patience.as_secs().to_string();
+        command.args(["--link", link, "--patience", &patience]);
+        command
+    }
+
     /// Flies with an emulated core.
     pub(crate) fn fly_emulated(
         &self,
         arguments: &[String],
         emulator: &mut Emulator,
     ) -> Result<Outcome> {
-        let mut command = self.command(arguments, &self.out.join("target"));
-        // An emulator on a busy machine is slow.
-        let patience = PATIENCE.as_secs().to_string();
-        command.args(["--link", emulator.link(), "--patience", &patience]);
-        let mut harness = command.spawn()?;
+        let mut harness = self.linked(arguments, emulator.link()).spawn()?;
         let mut died = None;
         // The harness notices a core that died, unless it died before the link was up.
         while harness.try_wait()?.is_none() {
             if died.is_none() && emulator.has_ended()? {
                 died = Some(Instant::now());
             }
-            if died.is_some_and(|when| when.elapsed() > PATIENCE) {
+            if died.is_some_and(|when| when.elapsed() > self.patience) {
                 harness.kill()?;
                 harness.wait()?;
                 bail!("the emulator ended before the flight did");

@@ -6,10 +6,12 @@
 
 mod aarch64;
 mod budget;
+mod contents;
 mod counts;
 mod faults;
 mod firmware;
 mod flight;
+mod flips;
 mod folders;
 mod fuzz;
 mod golden;
@@ -18,6 +20,7 @@ mod pil;
 mod qemu;
 mod readme;
 mod stack;
+mod talk;
 mod toolchain;
 mod wasm;
 
@@ -44,8 +47,11 @@ enum Command {
     Aarch64(aarch64::Aarch64Args),
     /// Measure flash, RAM, stack and instructions; check them against docs/budgets.toml
     Budget(budget::BudgetArgs),
-    /// Let the planner or the step hang, let the timer run, and check that the aircraft flies on
+    /// Let the planner or the step hang or trap, damage the image, let the timer run, and check that the aircraft flies on
     Faults(faults::FaultsArgs),
+    /// Flip random bits of the core's memory, in the emulator and in a process of this machine, and say
+    /// what came of it
+    Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
@@ -61,6 +67,7 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
+        Command::Flips(args) => flips::run(&args),
         Command::Wasm => wasm::build(),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),

@@ -42,7 +42,11 @@ pub(crate) struct PilArgs {
 }
 
 pub(crate) fn run(args: &PilArgs) -> Result<()> {
-    firmware::build()?;
+    let image = match args.transport {
+        Transport::Uart => Image::Lockstep,
+        Transport::Fifo => Image::Fifo,
+    };
+    firmware::build(&[image])?;
     let folder = work("pil")?;
     let (harness, counter) = (Harness::build(&folder)?, plugin()?);
     if !args.json {
@@ -61,10 +65,6 @@ pub(crate) fn run(args: &PilArgs) -> Result<()> {
     for seed in args.seed..args.seed.saturating_add(args.flights) {
         let arguments = scenario(args, seed);
         let host = harness.fly(&arguments)?;
-        let image = match args.transport {
-            Transport::Uart => Image::Uart,
-            Transport::Fifo => Image::Fifo,
-        };
         let path = image.path()?;
         let run = Run {
             image: &path,

@@ -1,7 +1,7 @@
 //! A bound of the stack, from the compiler's frame sizes and the calls in the image.
 //!
 //! The bound is the sum of three parts: the deepest path of the thread, the deepest path of each
-//! interrupt that can come on top of it, and the frames that the processor stacks. Recursion and
+//! interrupt that can come on top of it, and the frames that the processor stacks, for a trap too. Recursion and
 //! indirect calls have no bound and are errors.
 
 use crate::toolchain::{install, output};
@@ -52,7 +52,21 @@ pub(crate) fn bound(image: &Path) -> Result<u64> {
         let (address, _) = address.with_context(|| format!("no function {root}"))?;
         sum += program.depth(*address, &mut BTreeMap::new(), &mut Vec::new())?;
     }
-    Ok(sum + EXCEPTION_FRAME * (ROOTS.len() as u64 - 1))
+    // A trap or the watchdog may come on top of all of them. Their handler begins at the top of the stack.
+    Ok(sum + EXCEPTION_FRAME * ROOTS.len() as u64)
+}
+
+/// The memory for the stack \[bytes\].
+pub(crate) fn room(image: &Path) -> Result<u64> {
+    let bytes = std::fs::read(image)?;
+    let file = object::File::parse(&*bytes)?;
+    let address = |name: &str| {
+        let symbol = file.symbol_by_name(name);
+        symbol
+            .map(|symbol| symbol.address())
+            .with_context(|| format!("no symbol {name}"))
+    };
+    Ok(address("_stack_start")? - address("_stack_end")?)
 }
 
 /// Reads the compiler's table: an address of four bytes, then the size in groups of seven bits.

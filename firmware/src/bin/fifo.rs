@@ -11,7 +11,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::host::{self, Host};
-use firmware::{board, report, tasks};
+use firmware::{board, protection, report, tasks};
 use mpp_node::Pace;
 
 static TIMED: AtomicBool = AtomicBool::new(false);
@@ -26,6 +26,7 @@ fn main() -> ! {
         Pace::Lockstep
     };
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        protection::start(&mut peripherals.MPU);
         // SAFETY: no interrupt is enabled yet.
         unsafe {
             tasks::set_up(pace);

@@ -6,11 +6,18 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::tasks::{self, StepSide};
-use firmware::{board, uart};
+use firmware::{board, protection, uart};
 use mpp_node::Pace;
 
 /// Greatest number of bytes that one run of the step takes.
 const BYTES_PER_RUN: usize = 2048;
+
+/// The flight image's step never waits for a plan. An image that is compared with the host does.
+const PACE: Pace = if cfg!(feature = "lockstep") {
+    Pace::Lockstep
+} else {
+    Pace::RealTime
+};
 
 /// Number of lost bytes that the step has reported.
 static REPORTED: AtomicU32 = AtomicU32::new(0);
@@ -18,9 +25,10 @@ static REPORTED: AtomicU32 = AtomicU32::new(0);
 #[entry]
 fn main() -> ! {
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+        protection::start(&mut peripherals.MPU);
         // SAFETY: no interrupt is enabled yet.
         unsafe {
-            tasks::set_up(Pace::Lockstep);
+            tasks::set_up(PACE);
             tasks::step_side().announce(uart::send);
         }
         board::set_priorities(&mut peripherals);

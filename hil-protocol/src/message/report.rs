@@ -145,6 +145,48 @@ pub enum RejectionCause {
     ScanRepeated,
     /// A scan has no return, although the map knows obstacles in its fan. The lidar is blind.
     ScanBlind,
+    /// A task of the core trapped or hung. The core restarted the planner, or itself if the step was the task.
+    Trapped {
+        /// The task.
+        task: CoreTask,
+        /// What happened.
+        fault: CoreFault,
+        /// Address of the instruction; 0 if it is not known.
+        address: u32,
+        /// Number of faults in a row.
+        count: u8,
+    },
+    /// After several faults in a row the core flies on without its planner, until its power goes off.
+    PlannerOff,
+    /// A value of the configuration or of a parameter had changed in memory by itself. The core repaired it
+    /// from copies, or says hello if that was not possible.
+    ValuesRepaired,
+}
+
+/// A task of the core. The order goes over the wire: append only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CoreTask {
+    /// The 100 Hz step, with everything that is not the planner.
+    Step = 0,
+    /// The planner.
+    Planner = 1,
+}
+
+/// The reason why a task of the core could not go on. The order goes over the wire: append only.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum CoreFault {
+    /// Another reason than the following ones.
+    Other = 0,
+    /// The stack grew beyond its memory.
+    Stack = 1,
+    /// An access that the memory's protection does not allow.
+    Memory = 2,
+    /// An access that no memory and no device answered.
+    Bus = 3,
+    /// An instruction that does not exist, or not in this state of the processor.
+    Instruction = 4,
+    /// The task did not come to an end in time.
+    Hang = 5,
 }
 
 impl fmt::Display for RejectionCause {
@@ -217,11 +259,53 @@ impl fmt::Display for RejectionCause {
                 f,
                 "no beam returns although the map knows obstacles ahead: the lidar is blind, check it"
             ),
+            Self::Trapped {
+                task,
+                fault,
+                address,
+                count,
+            } => write!(
+                f,
+                "{task} was restarted, because {fault} (address {address:#010x}, fault {count} in a row): \
+                 report the fault"
+            ),
+            Self::ValuesRepaired => write!(
+                f,
+                "a bit of the core's settings had flipped and was repaired: if this comes again, replace \
+                 the flight computer"
+            ),
+            Self::PlannerOff => write!(
+                f,
+                "after several faults in a row the core flies without its planner: land, and switch the \
+                 power off"
+            ),
         }
     }
 }
 
 impl core::error::Error for RejectionCause {}
+
+impl fmt::Display for CoreTask {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Step => "the core",
+            Self::Planner => "the planner",
+        })
+    }
+}
+
+impl fmt::Display for CoreFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Other => "the processor could not go on",
+            Self::Stack => "its stack grew too large",
+            Self::Memory => "it used memory that is not for this use",
+            Self::Bus => "it used an address without memory",
+            Self::Instruction => "it came to an instruction that does not exist",
+            Self::Hang => "it did not come to an end",
+        })
+    }
+}
 
 /// Core to harness: the counters of everything that the core refused, limited or did without. It comes once a
 /// second. The counters only grow, and a full one stays full.

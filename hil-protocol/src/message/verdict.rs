@@ -85,6 +85,8 @@ pub enum ConfigureVerdict {
     OutOfRange(Setting),
     /// The regulator does not hold the aircraft, because it acts only once in a tick.
     Unstable,
+    /// The program in the flight computer's memory is not as it was built.
+    ImageDamaged,
 }
 
 impl fmt::Display for ConfigureVerdict {
@@ -201,6 +203,9 @@ impl fmt::Display for ConfigureVerdict {
             Self::Unstable => {
                 "the regulator is too firm or too soft for a tick of 10 ms: bring its weights and gains \
                  nearer to those of the preset"
+            }
+            Self::ImageDamaged => {
+                "the program in the flight computer's memory is not as it was built: load it again"
             }
         })
     }

@@ -122,6 +122,7 @@ fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
             ConfigureVerdict::Unstable,
             ConfigureVerdict::OutOfRange(Setting::Mass),
             ConfigureVerdict::OutOfRange(Setting::PaddingFar),
+            ConfigureVerdict::ImageDamaged,
         ]),
     ]
 }
@@ -310,9 +311,34 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::ScanAngle,
             RejectionCause::ScanRepeated,
             RejectionCause::ScanBlind,
+            RejectionCause::PlannerOff,
+            RejectionCause::ValuesRepaired,
         ]),
+        (
+            select(&[CoreTask::Step, CoreTask::Planner]),
+            core_fault(),
+            any::<u32>(),
+            any::<u8>()
+        )
+            .prop_map(|(task, fault, address, count)| RejectionCause::Trapped {
+                task,
+                fault,
+                address,
+                count,
+            }),
         any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
     ]
+}
+
+fn core_fault() -> impl Strategy<Value = CoreFault> {
+    select(&[
+        CoreFault::Other,
+        CoreFault::Stack,
+        CoreFault::Memory,
+        CoreFault::Bus,
+        CoreFault::Instruction,
+        CoreFault::Hang,
+    ])
 }
 
 fn decode_error() -> impl Strategy<Value = DecodeError> {

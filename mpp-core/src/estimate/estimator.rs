@@ -1,8 +1,8 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
 use super::{
-    Changes, Conditions, Innovation, LaggedEkf, LiftEstimator, MOST_AGE, Measurement, Navigation,
-    PositionVerdict, Taken, Trust, Verdict, Watch,
+    Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator, MOST_AGE, Measurement,
+    Navigation, PositionVerdict, Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -21,6 +21,15 @@ pub struct Sensors {
     pub pitch: Trust,
     /// Positions.
     pub position: Trust,
+}
+
+/// The values of the estimators that no step changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EstimatorDesign {
+    airframe: Airframe,
+    limits: ActuatorLimits,
+    filter: EkfTuning,
+    wind_change: Option<f64>,
 }
 
 /// The estimators of a flight.
@@ -60,6 +69,25 @@ impl Estimator {
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
         }
+    }
+
+    /// The values that no step changes, as they are in memory now.
+    #[must_use]
+    pub fn design(&self) -> EstimatorDesign {
+        EstimatorDesign {
+            airframe: self.airframe,
+            limits: self.limits,
+            filter: *self.air.tuning(),
+            wind_change: self.navigation.wind_change(),
+        }
+    }
+
+    /// Puts values back that have changed in memory by themselves.
+    pub fn restore(&mut self, design: &EstimatorDesign) {
+        self.airframe = design.airframe;
+        self.limits = design.limits;
+        self.air.set_tuning(design.filter);
+        self.navigation.set_wind_change(design.wind_change);
     }
 
     /// The estimated motion through the air.

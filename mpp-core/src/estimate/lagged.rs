@@ -77,6 +77,17 @@ impl LaggedEkf {
         &self.present
     }
 
+    /// The filter's tuning.
+    #[must_use]
+    pub fn tuning(&self) -> &EkfTuning {
+        self.ekf.tuning()
+    }
+
+    /// Sets the filter's tuning.
+    pub fn set_tuning(&mut self, tuning: EkfTuning) {
+        self.ekf.set_tuning(tuning);
+    }
+
     /// Ticks by which the filter is behind.
     #[must_use]
     pub fn lag(&self) -> u32 {

@@ -13,7 +13,7 @@ use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linear
 pub use changes::Changes;
 pub use conditions::Conditions;
 use core::fmt;
-pub use estimator::{Estimator, Sensors};
+pub use estimator::{Estimator, EstimatorDesign, Sensors};
 pub use history::{History, MOST_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
@@ -156,6 +156,17 @@ pub struct Ekf {
 }
 
 impl Ekf {
+    /// The filter's tuning.
+    #[must_use]
+    pub fn tuning(&self) -> &EkfTuning {
+        &self.tuning
+    }
+
+    /// Replaces the filter's tuning.
+    pub fn set_tuning(&mut self, tuning: EkfTuning) {
+        self.tuning = tuning;
+    }
+
     /// A filter that starts from an estimate.
     #[must_use]
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {

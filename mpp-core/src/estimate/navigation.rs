@@ -93,6 +93,17 @@ impl Navigation {
         }
     }
 
+    /// Standard deviation of the change of the wind in one second [m/s], if the filter estimates wind.
+    #[must_use]
+    pub fn wind_change(&self) -> Option<f64> {
+        self.wind_change
+    }
+
+    /// Sets this standard deviation.
+    pub fn set_wind_change(&mut self, wind_change: Option<f64>) {
+        self.wind_change = wind_change;
+    }
+
     /// The estimated position `(x, z)` \[m\].
     #[must_use]
     pub fn position(&self) -> (f64, f64) {

@@ -1,7 +1,10 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
+mod check;
 mod input;
+mod loss;
+mod spare;
 mod tick;
 mod tune;
 
@@ -17,9 +20,8 @@ use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::Watch;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
-use mpp_core::planner::{PlanSummary, Verdict};
 use mpp_core::sense::LidarScan;
-use mpp_core::trajectory::Trajectory;
+use spare::Spare;
 
 /// The behaviour at the tick at which a plan is due but the planner has not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +84,7 @@ struct Flight {
 ///
 /// ```
 /// use hil_protocol::{
-///     ActuatorLimits, AirframeId, Configure, Decoder, EncodeError, Hello, MAX_FRAME, Message, Preset,
+///     ActuatorLimits, AirData, AirframeId, Configure, Decoder, EncodeError, Hello, MAX_FRAME, Message, Preset,
 ///     Role, SensorFrame, encode,
 /// };
 /// use mpp_node::{Pace, PlanTask, Progress, StepTask};
@@ -113,7 +115,8 @@ struct Flight {
 ///     replan_period_ticks: 100, latency_ticks: 50, slices_per_tick: 100,
 ///     beams: 100, range_max: 45.0, altitude: 50.0, actuators: ActuatorLimits::default(),
 /// }))?;
-/// let frame = SensorFrame { tick: 0, airspeed: 12.0, pitch: 0.156, x: 0.0, z: 50.0 };
+/// let air = AirData { tick: 0, airspeed: 12.0, pitch: 0.156 };
+/// let frame = SensorFrame { tick: 0, air: Some(air), position: None };
 /// let Some(Message::ActuatorCommand(command)) = ask(Message::SensorFrame(frame))? else {
 ///     panic!("a sensor frame is answered by an actuator command");
 /// };
@@ -127,6 +130,8 @@ pub struct StepTask {
     buffer: [u8; MAX_FRAME],
     scan: LidarScan,
     flight: Option<Flight>,
+    /// Copies of those values of the flight that the flight itself does not change.
+    spare: Option<Spare>,
     order: Option<Order>,
     /// Number of the last set-up that the step ordered.
     set_ups: u32,
@@ -134,6 +139,10 @@ pub struct StepTask {
     plan: Option<Plan>,
     /// The sensor frame that waits for a plan.
     held: Option<WireFrame>,
+    /// Whether the flight goes on without the planner.
+    planner_off: bool,
+    /// The reason why the core accepts no configuration, if there is one.
+    refusal: Option<ConfigureVerdict>,
     clock: u32,
 }
 
@@ -147,10 +156,13 @@ impl StepTask {
             buffer: [0; MAX_FRAME],
             scan: LidarScan::new(),
             flight: None,
+            spare: None,
             order: None,
             set_ups: 0,
             plan: None,
             held: None,
+            planner_off: false,
+            refusal: None,
             clock: 0,
         }
     }
@@ -159,6 +171,11 @@ impl StepTask {
     /// flight.
     pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
         self.greet(&mut send);
+    }
+
+    /// Refuses every configuration from now on, so that the core does not fly.
+    pub fn refuse(&mut self, reason: ConfigureVerdict) {
+        self.refusal = Some(reason);
     }
 
     /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller must not give
@@ -205,40 +222,9 @@ impl StepTask {
         }
     }
 
-    /// Handles a restart of the planner: orders its set-up, and ends its cycle without a trajectory.
-    pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
-        let send = &mut send;
-        let Some(flight) = &self.flight else {
-            return;
-        };
-        let (tuning, ready, cycle) = (flight.tuning, flight.ready, flight.cycle);
-        self.order_set_up(tuning);
-        if !ready {
-            return;
-        }
-        self.reject(RejectionCause::PlannerRestarted, send);
-        if let Some(Cycle { begun, .. }) = cycle
-            && self.plan.is_none()
-        {
-            self.plan = Some(Plan {
-                tick: begun,
-                verdict: Verdict::Nothing,
-                summary: PlanSummary {
-                    cost: f64::INFINITY,
-                    violation: f64::INFINITY,
-                    ..PlanSummary::default()
-                },
-                trajectory: Trajectory::new(),
-            });
-        }
-        if let Some(frame) = self.held.take() {
-            self.tick(&frame, send);
-        }
-    }
-
-    /// Reports that bytes of the link were lost before they reached this task.
-    pub fn bytes_lost(&mut self, count: u32, mut send: impl FnMut(&[u8])) {
-        self.reject(RejectionCause::BytesLost { count }, &mut send);
+    /// Reports a cause that the owner of the task knows, such as lost bytes of the link.
+    pub fn report(&mut self, cause: RejectionCause, mut send: impl FnMut(&[u8])) {
+        self.reject(cause, &mut send);
     }
 
     /// The tick of the last step of this flight, if there was one.
@@ -268,6 +254,9 @@ impl StepTask {
             Message::SensorFrame(frame) => self.sensor_frame(frame, send),
             other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
         }
+        if self.planner_off {
+            self.go_on_without_planner(send);
+        }
     }
 
     fn emit(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
@@ -294,6 +283,9 @@ impl StepTask {
             stages: STAGES as u16,
         };
         self.emit(&Message::Hello(hello), send);
+        if self.planner_off {
+            self.reject(RejectionCause::PlannerOff, send);
+        }
     }
 
     fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
@@ -301,6 +293,7 @@ impl StepTask {
             Ok(flight) => {
                 self.order_set_up(flight.tuning);
                 self.flight = Some(flight);
+                self.keep_values();
             }
             Err(verdict) => self.reply(verdict, send),
         }
@@ -319,6 +312,9 @@ impl StepTask {
     fn prepare(&self, configure: &Configure) -> Result<Flight, ConfigureVerdict> {
         if self.flight.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
+        }
+        if let Some(refusal) = self.refusal {
+            return Err(refusal);
         }
         let tuning = Tuning::new(configure)?;
         let between = configure

@@ -18,6 +18,9 @@ const HEALTH_PERIOD: u32 = 100;
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
     pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+        if !self.check_values(send) {
+            return;
+        }
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {
                 // The planner may use the slices of all ticks before this one.
@@ -145,7 +148,7 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return;
         };
-        let Some(scan_tick) = flight.scan_tick.take() else {
+        let Some(scan_tick) = flight.scan_tick.take().filter(|_| !self.planner_off) else {
             return;
         };
         let age = tick.wrapping_sub(scan_tick);

@@ -31,6 +31,7 @@ impl StepTask {
             flight.asker = Asker::Parameter(set.parameter, before);
         }
         flight.tuning = tuning;
+        self.keep_values();
         if !in_flight {
             self.order_set_up(tuning);
         }
@@ -62,6 +63,7 @@ impl StepTask {
                     flight.control = control;
                 }
                 flight.asker = Asker::Nobody;
+                self.keep_values();
                 self.order_set_up(before);
                 ParameterVerdict::SetUp(verdict)
             }

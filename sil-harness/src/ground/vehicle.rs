@@ -237,7 +237,10 @@ impl Vehicle {
         self.state = moment.tick.state;
         self.estimate = moment.tick.estimate.air;
         self.thrust = moment.tick.control.thrust;
-        self.rejections = moment.rejections;
+        for entry in moment.rejections.iter().skip(self.rejections) {
+            self.note_fault(&entry.cause);
+        }
+        self.rejections = moment.rejections.len();
         self.report_sensors(&moment.sensors);
         self.report_scan(moment);
         if let Some(report) = moment.report {
@@ -330,6 +333,20 @@ impl Vehicle {
         self.say(severity, &line);
         let seconds = Scenario::time(self.now);
         self.notes.push(format!("{seconds:.2} s: {line}"));
+    }
+
+    /// Tells a fault of the core itself. Refused inputs are only counted.
+    fn note_fault(&mut self, cause: &str) {
+        let name = cause.split(' ').next().unwrap_or_default();
+        let what = match name {
+            "Trapped" => "Core trapped and recovered",
+            "PlannerRestarted" => "Planner restarted",
+            "PlannerOff" => "Planner stays off: land",
+            "ValuesRepaired" => "Settings in memory repaired",
+            "CoreRestarted" => "Core restarted in flight",
+            _ => return,
+        };
+        self.say(Severity::Warning, what);
     }
 
     pub(super) fn say(&mut self, severity: Severity, line: &str) {

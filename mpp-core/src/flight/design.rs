@@ -1,0 +1,42 @@
+//! What a flight loop keeps unchanged from its start, for checks against copies.
+
+use super::FlightLoop;
+use crate::control::Lqr;
+use crate::estimate::EstimatorDesign;
+use crate::vehicle::{ActuatorLimits, Trim};
+
+/// The values of a flight loop that no step changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Design {
+    estimator: EstimatorDesign,
+    lqr: Lqr,
+    trim: Trim,
+    limits: ActuatorLimits,
+    cross_track: f64,
+    airspeed_hold: f64,
+}
+
+impl FlightLoop {
+    /// The values as they are in memory now.
+    #[must_use]
+    pub fn design(&self) -> Design {
+        Design {
+            estimator: self.estimator.design(),
+            lqr: self.lqr,
+            trim: self.trim,
+            limits: self.limits,
+            cross_track: self.cross_track,
+            airspeed_hold: self.airspeed_hold,
+        }
+    }
+
+    /// Puts values back that have changed in memory by themselves.
+    pub fn restore(&mut self, design: &Design) {
+        self.estimator.restore(&design.estimator);
+        self.lqr = design.lqr;
+        self.trim = design.trim;
+        self.limits = design.limits;
+        self.cross_track = design.cross_track;
+        self.airspeed_hold = design.airspeed_hold;
+    }
+}

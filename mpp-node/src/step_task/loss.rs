@@ -1,0 +1,62 @@
+//! Loss of the planner: for as long as its restart takes, or for good.
+
+use super::{Cycle, StepTask};
+use crate::mail::Plan;
+use hil_protocol::RejectionCause;
+use mpp_core::planner::{PlanSummary, Verdict};
+use mpp_core::trajectory::Trajectory;
+
+impl StepTask {
+    /// Handles a restart of the planner: orders its set-up, and ends its cycle without a trajectory.
+    pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        let Some(flight) = &self.flight else {
+            return;
+        };
+        let (tuning, ready) = (flight.tuning, flight.ready);
+        self.order_set_up(tuning);
+        if ready {
+            self.reject(RejectionCause::PlannerRestarted, send);
+            self.give_cycle_up(send);
+        }
+    }
+
+    /// Flies on without the planner for good, in this session and in later ones: the present trajectory to its
+    /// end, and then level. The cycle ends without a trajectory.
+    pub fn planner_off(&mut self, mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        self.planner_off = true;
+        self.reject(RejectionCause::PlannerOff, send);
+        self.give_cycle_up(send);
+        self.go_on_without_planner(send);
+    }
+
+    /// Drops orders for the planner, and answers those who wait for its set-up.
+    pub(super) fn go_on_without_planner(&mut self, send: &mut impl FnMut(&[u8])) {
+        self.order = None;
+        if self.flight.as_ref().is_some_and(|flight| !flight.ready) {
+            self.set_up_done(Ok(()), send);
+        }
+    }
+
+    fn give_cycle_up(&mut self, send: &mut impl FnMut(&[u8])) {
+        let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
+        if let Some(Cycle { begun, .. }) = cycle
+            && self.plan.is_none()
+        {
+            self.plan = Some(Plan {
+                tick: begun,
+                verdict: Verdict::Nothing,
+                summary: PlanSummary {
+                    cost: f64::INFINITY,
+                    violation: f64::INFINITY,
+                    ..PlanSummary::default()
+                },
+                trajectory: Trajectory::new(),
+            });
+        }
+        if let Some(frame) = self.held.take() {
+            self.tick(&frame, send);
+        }
+    }
+}
