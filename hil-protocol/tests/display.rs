@@ -47,7 +47,6 @@ fn every_verdict_and_cause_speaks() {
             faults.last().copied().unwrap(),
         ),
         (
-            ConfigureVerdict::Unstable,
             ConfigureVerdict::ImageDamaged,
             ParameterVerdict::CruiseFixed,
             RejectionCause::ValuesRepaired,
