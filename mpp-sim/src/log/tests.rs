@@ -7,7 +7,8 @@ use crate::field::Obstacle;
 use crate::lidar::LidarConfig;
 use crate::outcome::{Class, Outcome};
 use crate::sensors::{AirDataNoise, Measurement};
-use mpp_core::vehicle::{AirState, Control, VehicleState};
+use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 
 fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
     let air = AirState {
@@ -143,7 +144,7 @@ fn the_layout_is_frozen() {
     }
     assert_eq!(
         example().hash().unwrap(),
-        "d9d5a676393cedd2",
+        "cd1e22a246677df1",
         "the bytes of a log changed: raise SCHEMA"
     );
 }
@@ -162,7 +163,7 @@ fn another_schema_is_refused_by_name() {
     assert!(matches!(error, LogError::Schema(9)));
     assert_eq!(
         error.to_string(),
-        "flight log has schema 9, this program reads 2"
+        "flight log has schema 9, this program reads 3"
     );
     assert!(matches!(
         FlightLog::from_json(b"nonsense"),
