@@ -8,7 +8,7 @@ use mpp_sim::scenario::{Scenario, ScenarioFile};
 use mpp_sim::witness::Witness;
 
 fn scenario(text: &str) -> Scenario {
-    let base = "seed = 3\nobstacles = 10\nduration = 4\nreplan_hz = 2.0\n";
+    let base = "seed = 3\nobstacles = 40\nduration = 4\nreplan_hz = 2.0\n";
     let base = ScenarioFile::parse("base.toml", base).unwrap();
     base.under("test.toml", text).unwrap().build().unwrap()
 }

@@ -1,5 +1,7 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
+mod faults;
+
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
@@ -32,6 +34,16 @@ pub(super) struct CampaignArgs {
     /// flies
     #[arg(long)]
     oracle: bool,
+    /// Fly pairs of flights without and with faults instead: the named faults, a list, or all. The cells are
+    /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless --obstacles or --replan-hz is given. Such a
+    /// campaign keeps no row file
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_delimiter = ',',
+        conflicts_with_all = ["out", "report", "shard", "oracle", "timing", "taxonomy"]
+    )]
+    faults: Vec<String>,
     /// Number of flights in each cell
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     trials: u32,
@@ -63,6 +75,9 @@ pub(super) struct CampaignArgs {
 }
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
+    if !args.faults.is_empty() {
+        return faults::run(args);
+    }
     let report = if args.report.is_empty() {
         flown(args)
     } else {
@@ -82,6 +97,8 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
 fn failure(error: &CampaignError) -> Failure {
     let code = match error {
         CampaignError::Flight(..)
+        | CampaignError::Faulty(..)
+        | CampaignError::Stopped
         | CampaignError::Log(..)
         | CampaignError::Full(..)
         | CampaignError::Interrupted(_)
@@ -117,16 +134,20 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
     Ok(Report::new(&campaign, &rows))
 }
 
-fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
-    let lists = Lists {
+/// The lists of the command line.
+fn lists(args: &CampaignArgs) -> Lists {
+    Lists {
         preset: args.preset.clone(),
         obstacles: args.obstacles.clone(),
         paths: args.paths.clone(),
         replan_hz: args.replan_hz.clone(),
-    };
+    }
+}
+
+fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
-    let campaign = Campaign::new(scenario, lists, args.trials, args.seed);
+    let campaign = Campaign::new(scenario, lists(args), args.trials, args.seed);
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;
     let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
