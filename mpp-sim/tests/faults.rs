@@ -1,5 +1,9 @@
 //! Whole flights with faults: what each fault does between the aircraft and the core.
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+#![expect(
+    clippy::float_cmp,
+    reason = "a command is the same one or another one, to the last bit"
+)]
 
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::log::FlightLog;
@@ -101,7 +105,7 @@ fn a_counter_that_jumps_is_noted_at_the_tick_of_the_flight() {
         let scenario = scenario(&format!("[faults.clock]\nfrom = 2.0\njump = {jump}"));
         let mut witness = Witness::of(&scenario);
         let log = fly(&scenario, &mut PipeLink::of(&scenario), |moment| {
-            witness.watch(moment)
+            witness.watch(moment);
         });
         let log = log.unwrap();
         assert!(witness.flagged().is_some_and(|time| time < 0.05), "{jump}");

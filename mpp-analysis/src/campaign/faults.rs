@@ -140,7 +140,7 @@ impl FaultCampaign {
     /// [`ScenarioError`] when the scenario, a fault or a cell is invalid.
     pub fn new(
         scenario: &ScenarioFile,
-        lists: Lists,
+        lists: &Lists,
         trials: u32,
         seed: Option<u64>,
         faults: &[NamedFault],
@@ -241,7 +241,7 @@ mod tests {
     fn campaign(names: &[&str], lists: Lists) -> FaultCampaign {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         let faults = NamedFault::of(&names).unwrap();
-        FaultCampaign::new(&ScenarioFile::default(), lists, 3, Some(5), &faults).unwrap()
+        FaultCampaign::new(&ScenarioFile::default(), &lists, 3, Some(5), &faults).unwrap()
     }
 
     #[test]

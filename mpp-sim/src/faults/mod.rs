@@ -23,6 +23,7 @@ pub use model_error::{ModelError, Signs};
 pub use scan::{ScanFault, Scans, Show};
 use serde::{Deserialize, Serialize};
 pub use signal::{Signal, SignalFault};
+use window::is_absent;
 
 /// All faults of a flight. The default value has no fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -69,11 +70,6 @@ pub struct Faults {
     /// The tick counter that the core sees.
     #[serde(skip_serializing_if = "is_absent")]
     pub clock: ClockFault,
-}
-
-/// Whether a table has no fault. The log then does not hold the table.
-fn is_absent<T: Default + PartialEq>(fault: &T) -> bool {
-    *fault == T::default()
 }
 
 impl Faults {

@@ -1,6 +1,6 @@
 //! Faults of one signal: a sensor that reports another value, or an actuator that gives another one.
 
-use super::window::Window;
+use super::window::{Window, is_absent};
 use crate::random::{self, Stream};
 use mpp_core::config::TICK_PERIOD;
 use rand_chacha::ChaCha8Rng;
@@ -103,7 +103,7 @@ impl Signal {
     /// Whether the fault acts at a tick.
     #[must_use]
     pub fn acts(&self, tick: u32) -> bool {
-        !super::is_absent(&self.fault) && self.fault.window().holds(tick)
+        !is_absent(&self.fault) && self.fault.window().holds(tick)
     }
 
     /// The value that the signal has at a tick instead of this one.

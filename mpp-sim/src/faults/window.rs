@@ -47,6 +47,11 @@ fn whole_ticks(time: f64) -> u32 {
     (time * f64::from(TICKS_PER_SECOND)).round() as u32
 }
 
+/// Whether a table has no fault. The log then does not hold the table.
+pub(super) fn is_absent<T: Default + PartialEq>(fault: &T) -> bool {
+    *fault == T::default()
+}
+
 /// The ticks of a time that must be a whole number of them \[ms\]; `None` if it is not, or if it is longer
 /// than 10 s.
 pub(super) fn ticks_of(delay_ms: u32) -> Option<u32> {

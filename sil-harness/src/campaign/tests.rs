@@ -357,7 +357,7 @@ fn failures_are_sorted_by_cause() {
 #[test]
 fn a_report_of_faults_does_not_depend_on_threads() {
     let scenario = ScenarioFile {
-        duration: Some(6),
+        duration: Some(7),
         ..ScenarioFile::default()
     };
     let names = ["link-silent-1s", "elevator-rate-120"].map(str::to_owned);
@@ -366,7 +366,7 @@ fn a_report_of_faults_does_not_depend_on_threads() {
         paths: vec![3],
         ..Lists::default()
     };
-    let campaign = FaultCampaign::new(&scenario, lists, 2, Some(11), &faults).unwrap();
+    let campaign = FaultCampaign::new(&scenario, &lists, 2, Some(11), &faults).unwrap();
     let report = |threads| {
         let flown = run_faults(&campaign, threads, || Ok(())).unwrap();
         FaultReport::new(&campaign, &flown)

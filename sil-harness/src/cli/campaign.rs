@@ -1,7 +1,5 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
-mod faults;
-
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
@@ -17,16 +15,16 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct CampaignArgs {
     #[command(flatten)]
-    scenario: ScenarioArgs,
+    pub(super) scenario: ScenarioArgs,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     obstacles: Vec<usize>,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
-    paths: Vec<u16>,
+    pub(super) paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
     #[arg(long, value_delimiter = ',', value_parser = preset())]
-    preset: Vec<Preset>,
+    pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     replan_hz: Vec<f64>,
@@ -43,16 +41,16 @@ pub(super) struct CampaignArgs {
         value_delimiter = ',',
         conflicts_with_all = ["out", "report", "shard", "oracle", "timing", "taxonomy"]
     )]
-    faults: Vec<String>,
+    pub(super) faults: Vec<String>,
     /// Number of flights in each cell
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
-    trials: u32,
+    pub(super) trials: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
     #[arg(long)]
-    seed: Option<u64>,
+    pub(super) seed: Option<u64>,
     /// Number of threads; 0 takes every core
     #[arg(long, default_value_t = 0)]
-    threads: usize,
+    pub(super) threads: usize,
     /// Fly only the i-th of n parts, such as 2/8
     #[arg(long, default_value = "1/1")]
     shard: Shard,
@@ -71,13 +69,10 @@ pub(super) struct CampaignArgs {
     taxonomy: bool,
     /// Print the report as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
-    if !args.faults.is_empty() {
-        return faults::run(args);
-    }
     let report = if args.report.is_empty() {
         flown(args)
     } else {
@@ -94,7 +89,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn failure(error: &CampaignError) -> Failure {
+pub(super) fn failure(error: &CampaignError) -> Failure {
     let code = match error {
         CampaignError::Flight(..)
         | CampaignError::Faulty(..)
@@ -135,7 +130,7 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
 }
 
 /// The lists of the command line.
-fn lists(args: &CampaignArgs) -> Lists {
+pub(super) fn lists(args: &CampaignArgs) -> Lists {
     Lists {
         preset: args.preset.clone(),
         obstacles: args.obstacles.clone(),
@@ -205,7 +200,7 @@ fn fly_rows(
 }
 
 /// Makes a progress bar. It is drawn on a terminal only.
-fn progress_bar(flights: usize) -> ProgressBar {
+pub(super) fn progress_bar(flights: usize) -> ProgressBar {
     let bar = ProgressBar::new(flights as u64);
     let style =
         ProgressStyle::with_template("{wide_bar} {pos}/{len} flights, {per_sec}, {eta} left");

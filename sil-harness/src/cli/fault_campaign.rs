@@ -1,9 +1,9 @@
 //! `campaign --faults`: pairs of flights without and with named faults.
 
-use super::{CampaignArgs, failure, lists, progress_bar};
+use super::answer::{FAILURE, Failure, USAGE, data};
+use super::campaign::{CampaignArgs, failure, lists, progress_bar};
+use super::signals::Signals;
 use crate::campaign::{CampaignError, run_faults};
-use crate::cli::answer::{FAILURE, Failure, USAGE, data};
-use crate::cli::signals::Signals;
 use mpp_analysis::campaign::{FaultCampaign, FaultReport, NamedFault};
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
@@ -15,7 +15,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     }
     let faults = NamedFault::of(&args.faults).map_err(|error| usage(&error))?;
     let scenario = args.scenario.file()?;
-    let campaign = FaultCampaign::new(&scenario, lists(args), args.trials, args.seed, &faults)
+    let campaign = FaultCampaign::new(&scenario, &lists(args), args.trials, args.seed, &faults)
         .map_err(|error| usage(&error))?;
     let signals = Signals::heed()?;
     let progress = progress_bar(campaign.jobs().len());
