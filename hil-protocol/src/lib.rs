@@ -45,6 +45,7 @@
 //!    | <------------------ [PlanReport] -------- |   |  [..] only when there is one
 //!    | <-------------- [PlanTrajectory] -------- |   |
 //!    | <-------------------- StepReport -------- |   |
+//!    | <---------------- [HealthReport] -------- |   |
 //!    | <--------------- ActuatorCommand -------- |  /
 //! ```
 //!
@@ -70,7 +71,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.1.0, open | messages 10 to 12; [`RejectionCause::BytesLost`], [`RejectionCause::PlannerRestarted`]; [`RejectionCause::ScanAngle`]; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on |
+//! | 2 | 0.1.0, open | messages 10 to 13; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on |
 //!
 //! # Use
 //!
@@ -103,10 +104,10 @@ pub use error::{DecodeError, EncodeError};
 pub use frame::{Decoder, MAGIC, MAX_FRAME, encode};
 pub use message::flight::{
     ActuatorCommand, AirData, ControlMode, GroundVelocity, LidarScan, MAX_BEAMS, Position,
-    SensorFrame, StepReport,
+    SensorFrame, SensorState, SensorStates, StepReport,
 };
 pub use message::report::{
-    MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
+    HealthReport, MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory, Rejection, RejectionCause,
 };
 pub use message::session::{
     ActuatorLimits, AirframeId, Configure, ConfigureReply, Hello, ParameterReply, Preset, Role,

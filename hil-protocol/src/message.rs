@@ -8,7 +8,7 @@ pub(crate) mod verdict;
 
 use crate::error::{DecodeError, EncodeError};
 use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
-use report::{PlanReport, PlanTrajectory, Rejection};
+use report::{HealthReport, PlanReport, PlanTrajectory, Rejection};
 use serde::de::DeserializeOwned;
 use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
 
@@ -38,6 +38,8 @@ pub mod id {
     pub const PARAMETER_REPLY: u8 = 11;
     /// [`PlanTrajectory`](crate::PlanTrajectory).
     pub const PLAN_TRAJECTORY: u8 = 12;
+    /// [`HealthReport`](crate::HealthReport).
+    pub const HEALTH_REPORT: u8 = 13;
 }
 
 /// A message of any kind.
@@ -71,6 +73,8 @@ pub enum Message {
     ParameterReply(ParameterReply),
     /// Core to harness: the trajectory that a planning cycle chose.
     PlanTrajectory(PlanTrajectory),
+    /// Core to harness: the counters of the flight.
+    HealthReport(HealthReport),
 }
 
 impl Message {
@@ -90,6 +94,7 @@ impl Message {
             Self::SetParameter(_) => id::SET_PARAMETER,
             Self::ParameterReply(_) => id::PARAMETER_REPLY,
             Self::PlanTrajectory(_) => id::PLAN_TRAJECTORY,
+            Self::HealthReport(_) => id::HEALTH_REPORT,
         }
     }
 
@@ -111,6 +116,7 @@ impl Message {
             Self::SetParameter(body) => postcard::to_slice(body, buffer),
             Self::ParameterReply(body) => postcard::to_slice(body, buffer),
             Self::PlanTrajectory(body) => postcard::to_slice(body, buffer),
+            Self::HealthReport(body) => postcard::to_slice(body, buffer),
         };
         match written {
             Ok(payload) => Ok(payload),
@@ -133,6 +139,7 @@ impl Message {
             id::SET_PARAMETER => Self::SetParameter(body(id, payload)?),
             id::PARAMETER_REPLY => Self::ParameterReply(body(id, payload)?),
             id::PLAN_TRAJECTORY => Self::PlanTrajectory(body(id, payload)?),
+            id::HEALTH_REPORT => Self::HealthReport(body(id, payload)?),
             _ => return Err(DecodeError::UnknownId { id }),
         })
     }
@@ -162,4 +169,5 @@ const _: () = {
     assert!(SetParameter::MAX_SIZE <= MAX_PAYLOAD);
     assert!(ParameterReply::MAX_SIZE <= MAX_PAYLOAD);
     assert!(PlanTrajectory::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(HealthReport::MAX_SIZE <= MAX_PAYLOAD);
 };

@@ -52,6 +52,7 @@ proptest! {
             Message::SetParameter(body) => postcard::to_slice(body, &mut payload),
             Message::ParameterReply(body) => postcard::to_slice(body, &mut payload),
             Message::PlanTrajectory(body) => postcard::to_slice(body, &mut payload),
+            Message::HealthReport(body) => postcard::to_slice(body, &mut payload),
         }
         .unwrap();
         prop_assert_eq!(frame(&message), oracle::frame(b"MP", PROTOCOL_VERSION, message.id(), payload));

@@ -165,7 +165,10 @@ fn sensor_frame() {
         })
     };
     check(&[
-        (frame(Some(air), Some(position)), "?"),
+        (
+            frame(Some(air), Some(position)),
+            "254d500204e80701e60733333333333322409a9999999999c9bf01de0777be9f1a2fdd5e400101010101083e400ad7a33c0101030841010b80becdcccc3d470482d800",
+        ),
         (
             frame(
                 None,
@@ -174,9 +177,9 @@ fn sensor_frame() {
                     ..position
                 }),
             ),
-            "?",
+            "074d500204e8070c01de0777be9f1a2fdd5e400101010101073e400ad7a33c05c888a8d600",
         ),
-        (frame(None, None), "?"),
+        (frame(None, None), "074d500204e80701057b99a35a00"),
     ]);
 }
 
@@ -233,10 +236,16 @@ fn step_report() {
         lift: 0.03,
         reference: [50.0, 30.5, 9.0, 0.2, 0.02, -0.3],
         plan_age_ticks: 40,
+        sensors: SensorStates {
+            airspeed: SensorState::Healthy,
+            pitch: SensorState::Suspected,
+            position: SensorState::Excluded,
+            lidar: SensorState::Recovering,
+        },
     };
     check(&[(
         Message::StepReport(message),
-        "274d500207ac0233333333333322409a9999999999b93f7b14ae47e17a84bf9a9999999999a93f01010101010349400101010104803e4001010101012022409a9999999999c93f7b14ae47e17a943f333333333333d3bf2856b1d9c200",
+        "274d500207ac0233333333333322409a9999999999b93f7b14ae47e17a84bf9a9999999999a93f0101010104c048400101010104403e40010101010103f8bf01010101010bd03fb81e85eb51b89e3f01010101010349400101010104803e4001010101011c22409a9999999999c93f7b14ae47e17a943f333333333333d3bf28080102034ba62cd000",
     )]);
 }
 
@@ -327,6 +336,8 @@ fn rejection_and_every_cause() {
         ),
         (rejection(PlannerRestarted), "0c4d500209ac020bd4c070c600"),
         (rejection(ScanAngle), "0c4d500209ac020c7755145800"),
+        (rejection(ScanRepeated), "0c4d500209ac020de165132f00"),
+        (rejection(ScanBlind), "0c4d500209ac020e5b341ab600"),
     ]);
 }
 
@@ -402,5 +413,20 @@ fn plan_trajectory() {
     check(&[(
         Message::PlanTrajectory(message),
         "074d50020cc8010104803e020103c03f010720c0cdcccc3d0103c03f010b20c0cdcccc3d718664ce00",
+    )]);
+}
+
+#[test]
+fn health_report() {
+    let mut counters = [0; HealthReport::NAMES.len()];
+    counters[1] = 300;
+    counters[18] = 7;
+    let report = HealthReport {
+        tick: 1263,
+        counters,
+    };
+    check(&[(
+        Message::HealthReport(report),
+        "074d50020def0903ac0201010101010101010101010101010106077d9e63fe00",
     )]);
 }

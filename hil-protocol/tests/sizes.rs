@@ -103,6 +103,7 @@ fn of_a_tick() {
         position: [FLOAT; 2],
         wind: [FLOAT; 2],
         lift: FLOAT,
+        sensors: SensorStates::default(),
         reference: [FLOAT; 6],
         plan_age_ticks: u32::MAX,
     };
@@ -131,6 +132,11 @@ fn of_the_reports() {
         knots: [[value; 3]; MAX_KNOTS].into_iter().collect(),
     };
     assert_eq!(payload(&trajectory), PlanTrajectory::MAX_SIZE);
+    let health = HealthReport {
+        tick: u32::MAX,
+        counters: [u32::MAX; HealthReport::NAMES.len()],
+    };
+    assert_eq!(payload(&health), HealthReport::MAX_SIZE);
     let cause = RejectionCause::TickOrder {
         expected: u32::MAX,
         found: u32::MAX,

@@ -2,19 +2,15 @@
 
 use crate::config::TICK_PERIOD;
 use crate::control::Lqr;
-use crate::estimate::{
-    Changes, Conditions, Ekf, Innovation, LiftEstimator, MOST_AGE, Measurement, Navigation,
-    PositionVerdict, Verdict as MeasurementVerdict,
-};
+use crate::estimate::{Conditions, Estimator, Innovation, PositionVerdict, Sensors};
 use crate::health::Health;
 use crate::map::Pose;
 use crate::planner::{SetupError, Verdict, check_vehicle};
-use crate::sense::{Position, SensorFrame};
+use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
-use crate::tuning::sensors::LONGEST_PREDICTION;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
-use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, linearize};
+use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, linearize};
 
 /// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,11 +52,7 @@ pub struct StepOutput {
 /// The state and the parts of the 100 Hz loop.
 #[derive(Clone, Debug)]
 pub struct FlightLoop {
-    ekf: Ekf,
-    airframe: Airframe,
-    navigation: Navigation,
-    /// Estimator of the lift. Without it the lift is that of the known airframe.
-    lift: Option<LiftEstimator>,
+    estimator: Estimator,
     lqr: Lqr,
     trim: Trim,
     limits: ActuatorLimits,
@@ -69,10 +61,6 @@ pub struct FlightLoop {
     trajectory: Option<Trajectory>,
     /// Time \[s\] of the last step, and its command.
     last: Option<(f64, Control)>,
-    /// The controls that the actuators gave up to the last step, by the model of the actuators.
-    given: Control,
-    airspeed_changes: Changes,
-    pitch_changes: Changes,
     health: Health,
 }
 
@@ -92,13 +80,7 @@ impl FlightLoop {
         let linear = linearize(airframe, &trim.state, design, settings.design_jacobian);
         let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
         Ok(Self {
-            ekf: Ekf::new(*airframe, settings.estimator, trim.state),
-            airframe: *airframe,
-            navigation: Navigation::new(settings.wind_change, settings.planner.altitude),
-            lift: settings
-                .wind_change
-                .is_some()
-                .then(|| LiftEstimator::new(&airframe)),
+            estimator: Estimator::new(settings, &trim),
             lqr,
             trim,
             limits: settings.actuators,
@@ -106,9 +88,6 @@ impl FlightLoop {
             airspeed_hold: settings.airspeed_hold,
             trajectory: None,
             last: None,
-            given: trim.control,
-            airspeed_changes: Changes::new(),
-            pitch_changes: Changes::new(),
             health: Health::default(),
         })
     }
@@ -117,16 +96,16 @@ impl FlightLoop {
     /// corrects the estimate by the measurement, and tracks the reference.
     pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
         let elapsed = match self.last {
-            Some((before, control)) => self.predict(time - before, control),
+            Some((before, control)) => {
+                self.estimator
+                    .predict(time - before, control, &mut self.health)
+            }
             None => {
-                self.navigation.predict(self.ekf.estimate(), 0.0);
+                self.estimator.begin();
                 0.0
             }
         };
-        let innovation = self.measure(frame.air.map(|air| air.measurement));
-        self.count_verdict(innovation.airspeed);
-        self.count_verdict(innovation.pitch);
-        let position = self.locate(elapsed, frame.position.as_ref());
+        let (innovation, position) = self.estimator.take(elapsed, frame, &mut self.health);
 
         let tracked = self
             .trajectory
@@ -137,11 +116,11 @@ impl FlightLoop {
             None => (Mode::TrimHold, self.level_reference()),
         };
         let mut wanted = self.lqr.track(
-            self.ekf.estimate(),
+            self.estimator.air(),
             &self.turned_back(&reference.state),
             reference.feedforward,
         );
-        let slower = reference.state.air.airspeed - self.ekf.estimate().airspeed;
+        let slower = reference.state.air.airspeed - self.estimator.air().airspeed;
         wanted.thrust += self.airspeed_hold * slower;
         let control = self.limit(wanted);
         self.last = Some((time, control));
@@ -152,83 +131,6 @@ impl FlightLoop {
             innovation,
             position,
         }
-    }
-
-    /// Moves the estimate on by the time since the last step \[s\], in pieces of about a tick. A time that
-    /// goes back counts as none. Of a long time only the last part is believed: the clock has jumped, or the
-    /// aircraft was not controlled meanwhile.
-    /// Gives the time that it believes \[s\].
-    fn predict(&mut self, elapsed: f64, control: Control) -> f64 {
-        let believed = (0.0..=LONGEST_PREDICTION).contains(&elapsed);
-        if !believed {
-            Health::count(&mut self.health.time_jumps);
-        }
-        // A time that is not a number is in no range and not greater than any.
-        let period = if believed {
-            elapsed
-        } else if elapsed > 0.0 {
-            LONGEST_PREDICTION
-        } else {
-            0.0
-        };
-        let pieces = libm::round(period / TICK_PERIOD).max(1.0);
-        for _ in 0..pieces as u32 {
-            let piece = period / pieces;
-            self.given = self.limits.given(control, self.given, piece);
-            if self.ekf.predict(self.given, piece).is_err() {
-                Health::count(&mut self.health.predictions_diverged);
-            }
-            self.navigation.predict(self.ekf.estimate(), piece);
-        }
-        period
-    }
-
-    /// Takes in the position, if there is one, and then estimates the lift.
-    fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
-        let air = *self.ekf.estimate();
-        self.navigation.correct_motion(&air);
-        let verdict = fix.map(|fix| self.navigation.take(fix));
-        let health = &mut self.health;
-        match verdict {
-            Some(PositionVerdict::Accepted) | None => {}
-            Some(PositionVerdict::NotFinite) => Health::count(&mut health.positions_not_finite),
-            Some(PositionVerdict::Held) => Health::count(&mut health.positions_held),
-            Some(PositionVerdict::Late) => Health::count(&mut health.positions_late),
-            Some(PositionVerdict::Gated) => Health::count(&mut health.positions_gated),
-            Some(PositionVerdict::Restarted) => {
-                Health::count(&mut health.positions_restarted);
-            }
-        }
-        let (_, climb) = self.navigation.wind().ground_velocity(&air);
-        if let Some(lift) = &mut self.lift {
-            if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
-                lift.interrupt();
-            } else {
-                lift.update(elapsed, climb, &air, self.given);
-            }
-        }
-        let airframe = self.conditions().airframe(&self.airframe);
-        self.ekf.set_airframe(&airframe);
-        verdict
-    }
-
-    /// Corrects the estimate by what was measured, without values that the sensors only repeat.
-    fn measure(&mut self, measured: Option<Measurement>) -> Innovation {
-        let Some(measured) = measured else {
-            return Innovation::MISSING;
-        };
-        let fresh = Measurement {
-            airspeed: self.airspeed_changes.take(measured.airspeed),
-            pitch: self.pitch_changes.take(measured.pitch),
-        };
-        let mut innovation = self.ekf.update(&fresh);
-        if self.airspeed_changes.frozen() {
-            innovation.airspeed = MeasurementVerdict::Frozen;
-        }
-        if self.pitch_changes.frozen() {
-            innovation.pitch = MeasurementVerdict::Frozen;
-        }
-        innovation
     }
 
     /// Takes over the result of a planning cycle. This function alone decides what the vehicle flies without
@@ -266,41 +168,31 @@ impl FlightLoop {
     /// The estimated motion.
     #[must_use]
     pub fn estimate(&self) -> &AirState {
-        self.ekf.estimate()
+        self.estimator.air()
     }
 
     /// The first state of a plan: the estimated position and motion.
     #[must_use]
     pub fn state(&self) -> VehicleState {
-        let (x, z) = self.navigation.position();
-        VehicleState {
-            x,
-            z,
-            air: *self.ekf.estimate(),
-        }
+        self.estimator.state()
     }
 
-    /// The pose at the tick that was `age` ticks ago. `None` if that was before the first step or more than
-    /// [`crate::estimate::MOST_AGE`] ticks ago.
+    /// The pose at the tick that was `age` ticks ago; see [`Estimator::pose_at`].
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
-        if age == 0 {
-            return Some(Pose::of(&self.state()));
-        }
-        if age > MOST_AGE {
-            return None;
-        }
-        let ((x, z), pitch) = self.navigation.pose_at(age)?;
-        Some(Pose { x, z, pitch })
+        self.estimator.pose_at(age)
     }
 
     /// The estimated wind and lift that a plan uses besides the state.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
-        Conditions {
-            wind: self.navigation.wind(),
-            lift: self.lift.as_ref().map_or(0.0, LiftEstimator::offset),
-        }
+        self.estimator.conditions()
+    }
+
+    /// The trust in each sensor.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
+        self.estimator.sensors()
     }
 
     /// The last trajectory that the loop took over, if any.
@@ -320,10 +212,14 @@ impl FlightLoop {
         if !(wanted.thrust.is_finite() && wanted.elevator.is_finite()) {
             Health::count(&mut self.health.commands_not_finite);
             let trim = self.trim.control;
-            return self.limits.within(trim, trim, self.given, TICK_PERIOD);
+            return self
+                .limits
+                .within(trim, trim, self.estimator.given(), TICK_PERIOD);
         }
         let trim = self.trim.control;
-        let control = self.limits.within(wanted, trim, self.given, TICK_PERIOD);
+        let control = self
+            .limits
+            .within(wanted, trim, self.estimator.given(), TICK_PERIOD);
         if libm::fabs(control.thrust - wanted.thrust) > 0.0 {
             Health::count(&mut self.health.thrust_limited);
         }
@@ -335,7 +231,7 @@ impl FlightLoop {
 
     /// The motion of the reference, turned towards the path of the reference.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
-        let (x, z) = self.navigation.position();
+        let VehicleState { x, z, .. } = self.estimator.state();
         let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
         let ahead = ahead.max(LEAST_ADVANCE);
         let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
@@ -348,7 +244,7 @@ impl FlightLoop {
     }
 
     fn level_reference(&self) -> Reference {
-        let (x, z) = self.navigation.position();
+        let VehicleState { x, z, .. } = self.estimator.state();
         Reference {
             state: VehicleState {
                 x,
@@ -356,17 +252,6 @@ impl FlightLoop {
                 air: self.trim.state,
             },
             feedforward: self.trim.control,
-        }
-    }
-
-    fn count_verdict(&mut self, verdict: MeasurementVerdict) {
-        match verdict {
-            MeasurementVerdict::Accepted | MeasurementVerdict::Missing => {}
-            MeasurementVerdict::Gated => Health::count(&mut self.health.measurements_gated),
-            MeasurementVerdict::Frozen => Health::count(&mut self.health.measurements_frozen),
-            MeasurementVerdict::NotFinite => {
-                Health::count(&mut self.health.measurements_not_finite);
-            }
         }
     }
 }

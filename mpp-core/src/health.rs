@@ -8,6 +8,10 @@ pub struct Health {
     pub measurements_not_finite: u32,
     /// Measured values that the sensor only repeated.
     pub measurements_frozen: u32,
+    /// Measured values that came later than the ones before.
+    pub measurements_late: u32,
+    /// Measured values of a sensor that was not trusted.
+    pub measurements_distrusted: u32,
     /// Measured values beyond the innovation gate.
     pub measurements_gated: u32,
     /// Steps that came before the previous step, or later after it than the loop believes.
@@ -41,6 +45,32 @@ pub struct Health {
 }
 
 impl Health {
+    /// The counters, in the order of the fields.
+    #[must_use]
+    pub const fn counters(&self) -> [u32; 19] {
+        [
+            self.measurements_not_finite,
+            self.measurements_frozen,
+            self.measurements_late,
+            self.measurements_distrusted,
+            self.measurements_gated,
+            self.time_jumps,
+            self.predictions_diverged,
+            self.positions_not_finite,
+            self.positions_held,
+            self.positions_late,
+            self.positions_gated,
+            self.positions_restarted,
+            self.commands_not_finite,
+            self.thrust_limited,
+            self.elevator_limited,
+            self.plans_feasible,
+            self.plans_kept,
+            self.plans_least_violating,
+            self.plans_trim_hold,
+        ]
+    }
+
     /// Adds one to a counter.
     pub(crate) fn count(counter: &mut u32) {
         *counter = counter.saturating_add(1);

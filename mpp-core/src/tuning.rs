@@ -55,6 +55,13 @@ pub mod memory {
     pub const RANGE_DOUBT: f64 = 0.03;
     /// Length before a hit that is no evidence at any range \[m\]: two cells, for beams that graze a rim.
     pub const HIT_DOUBT: f64 = 1.0;
+    /// Number of occupied cells in the fan of a scan without returns at which the lidar counts as blind [-]. One
+    /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. Source:
+    /// derived.
+    pub const BLIND_CELLS: u32 = 8;
+    /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
+    /// pose moves a cell out of sight.
+    pub const BLIND_SHARE: f64 = 0.8;
     /// Share of the lidar's range over which a beam without a return is evidence [-]: 40 m of 45 m.
     pub const UNANSWERED_SHARE: f64 = 8.0 / 9.0;
 }
@@ -160,6 +167,19 @@ pub mod sensors {
     /// Ticks after which a value that repeats to the last bit counts as missing: 50 ms. A sensor of 20 Hz or
     /// more may hold its values between; with noise a repetition by chance is far rarer. Source: D15.
     pub const FROZEN_TICKS: u8 = 5;
+    /// Ticks without a good value, beyond the sensor's own period, after which it is suspected [-]. One value
+    /// that fails its gate is no fault.
+    pub const SUSPECTED_AFTER: u16 = 3;
+    /// Ticks after which it is excluded [-]: 0.2 s. Its values are then no longer used.
+    pub const EXCLUDED_AFTER: u16 = 20;
+    /// Ticks with good values after which an excluded sensor is used again [-]: 0.5 s. A fault that blinks
+    /// faster keeps the sensor excluded.
+    pub const RECOVERED_AFTER: u16 = 50;
+    /// Greatest time between two positions of a healthy source \[ticks\]: 1 Hz is the slowest source.
+    pub const POSITION_PERIOD: u16 = 100;
+    /// Number of measurements in a row that must be late before the filter falls behind to their age [-]. With
+    /// fewer a single late one costs the freshness of the others. Source: derived; 0.03 s of data.
+    pub const LATE_MEASUREMENTS: u8 = 3;
     /// Longest time between two steps that the estimate is moved on by \[s\]. After a longer time the state
     /// is another one; the sensors tell it. Source: D15.
     pub const LONGEST_PREDICTION: f64 = 0.5;

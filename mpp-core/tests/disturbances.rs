@@ -2,15 +2,16 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
+    pub(crate) mod sensors;
     pub(crate) mod world;
 }
 
+use common::sensors::frame;
 use common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
-use mpp_core::estimate::{Conditions, Ekf, Measurement, WindEstimator};
+use mpp_core::estimate::{Conditions, Ekf, Measurement};
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError, Verdict};
-use mpp_core::sense::SensorFrame;
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
@@ -62,84 +63,6 @@ proptest! {
             last = given;
         }
     }
-
-    #[test]
-    fn the_estimated_wind_is_what_carries_the_aircraft(
-        x in -3.0..3.0, z in -3.0..3.0, path in -0.5..0.5, airspeed in 8.0..16.0,
-    ) {
-        let (wind, air) = (Wind { x, z }, AirState { airspeed, flight_path: path, ..AirState::default() });
-        let mut estimator = WindEstimator::new(Some(0.3));
-        let (ahead, up) = wind.ground_velocity(&air);
-        for tick in 0..300 {
-            let time = f64::from(tick) * TICK_PERIOD;
-            estimator.update(time, (ahead * time, 50.0 + up * time), &air);
-        }
-        let found = estimator.wind();
-        prop_assert!((found.x - x).abs() < 1e-3 && (found.z - z).abs() < 1e-3, "{found:?}");
-        let (mut still, mut before) = (WindEstimator::new(None), estimator.clone());
-        still.update(0.0, (0.0, 50.0), &air);
-        still.update(1.0, (30.0, 50.0), &air);
-        prop_assert_eq!(still.wind(), Wind::STILL);
-        // A clock that stands still or goes back teaches nothing.
-        before.update(2.99, (1e3, 1e3), &air);
-        before.update(2.5, (1e3, 1e3), &air);
-        prop_assert_eq!(before.wind(), found);
-        before.update(3.0, (ahead * 3.0, 50.0 + up * 3.0), &air);
-        let after = before.wind();
-        prop_assert!((after.x - x).abs() < 1e-3 && (after.z - z).abs() < 1e-3, "{after:?}");
-    }
-}
-
-/// A position that stands still, leaps or is wild gives no wind, and does not reach the elevator.
-#[test]
-fn a_wrong_position_is_refused_and_counted() {
-    let faults: [fn(u32, f64) -> f64; 3] = [
-        |_, _| 120.0,
-        |tick, x| x - 4.5 * f64::from(u32::from(tick >= 100)),
-        |tick, x| if tick == 100 { 1e160 } else { x },
-    ];
-    for fault in faults {
-        let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
-        let level = flight.state();
-        let trim = Settings::flight()
-            .cruise
-            .trim(&Settings::flight().airframe)
-            .unwrap();
-        for tick in 0..400 {
-            let time = f64::from(tick) * TICK_PERIOD;
-            let frame = SensorFrame {
-                measurement: Measurement {
-                    airspeed: level.air.airspeed,
-                    pitch: level.air.pitch,
-                },
-                x: fault(tick, level.air.airspeed * time),
-                z: 50.0,
-            };
-            let out = flight.step(time, &frame);
-            assert!((out.control.elevator - trim.control.elevator).abs() < 0.1);
-            let wind = flight.conditions().wind;
-            assert!(wind.x.abs() < 0.5 && wind.z.abs() < 0.5, "{wind:?}");
-        }
-        // A position that never changes is held by its source; the others stand for too much wind.
-        let health = flight.health();
-        assert!(health.winds_refused > 0 || health.positions_held > 0);
-        assert_eq!(health.commands_not_finite, 0);
-    }
-}
-
-/// Positions are not compared across a gap, because the motion through the air has changed
-/// meanwhile.
-#[test]
-fn a_gap_in_the_positions_is_no_wind() {
-    let mut estimator = WindEstimator::new(Some(0.3));
-    let air = |path: f64| AirState {
-        airspeed: 12.0,
-        flight_path: path,
-        ..AirState::default()
-    };
-    estimator.update(0.0, (0.0, 50.0), &air(-0.3));
-    estimator.update(1.0, (11.8, 50.0), &air(0.3));
-    assert_eq!(estimator.wind(), Wind::STILL);
 }
 
 fn plan_in(settings: &Settings, wind: &Wind, discs: &[(f64, f64, f64)]) -> Box<Planner> {
@@ -279,14 +202,9 @@ fn the_loop_clamps_counts_and_predicts_by_what_is_given() {
     let mut flight = FlightLoop::new(&with_actuators(limits)).unwrap();
     let level = flight.state();
     // The nose is far up, so the regulator wants it down at once.
-    let frame = SensorFrame {
-        measurement: Measurement {
-            airspeed: level.air.airspeed,
-            pitch: level.air.pitch + 0.02,
-        },
-        x: 0.0,
-        z: 50.0,
-    };
+    let mut nose_up = level;
+    nose_up.air.pitch += 0.02;
+    let frame = frame(&nose_up);
     let trim = Settings::flight()
         .cruise
         .trim(&Settings::flight().airframe)
@@ -313,7 +231,7 @@ fn the_filter_predicts_by_the_lagging_thrust() {
         ..ActuatorLimits::NONE
     };
     let settings = Settings {
-        wind: None,
+        wind_change: None,
         airspeed_hold: 0.0,
         ..with_actuators(limits)
     };
@@ -350,12 +268,16 @@ fn the_filter_predicts_by_the_lagging_thrust() {
             pitch: measurement.pitch + 1e-9 * f64::from(tick % 2),
         };
         by_hand.update(&measurement);
-        let frame = SensorFrame {
-            measurement,
+        let seen = VehicleState {
             x: 12.0 * time,
             z: 50.0,
+            air: AirState {
+                airspeed: measurement.airspeed,
+                pitch: measurement.pitch,
+                ..trim.state
+            },
         };
-        elevator = flight.step(time, &frame).control.elevator;
+        elevator = flight.step(time, &frame(&seen)).control.elevator;
         let off = flight.estimate().to_vector() - by_hand.estimate().to_vector();
         assert!(off.amax() < 1e-9, "{off} at {tick}");
     }

@@ -9,7 +9,7 @@ mod common {
 use common::sensors::frame;
 use common::trajectories::{HORIZON, trajectory};
 use mpp_core::config::{KNOTS, TICK_PERIOD};
-use mpp_core::estimate::Verdict as MeasurementVerdict;
+use mpp_core::estimate::{PositionVerdict, Verdict as MeasurementVerdict};
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
 use mpp_core::health::Health;
 use mpp_core::planner::{SetupError, Verdict};
@@ -138,13 +138,15 @@ fn frames_that_are_not_finite_are_counted_and_survived() {
     let mut flight = flight_loop();
     let state = flight.state();
     let mut bad = frame(&state);
-    bad.measurement.airspeed = f64::NAN;
-    bad.measurement.pitch = f64::INFINITY;
-    bad.x = f64::NAN;
+    let air = bad.air.as_mut().unwrap();
+    air.measurement.airspeed = f64::NAN;
+    air.measurement.pitch = f64::INFINITY;
+    bad.position.as_mut().unwrap().x = f64::NAN;
     for tick in 0..50 {
         let out = flight.step(f64::from(tick) * TICK_PERIOD, &bad);
         assert!(out.control.thrust.is_finite() && out.control.elevator.is_finite());
-        assert!(!out.position_used && out.innovation.airspeed == MeasurementVerdict::NotFinite);
+        assert_eq!(out.position, Some(PositionVerdict::NotFinite));
+        assert_eq!(out.innovation.airspeed, MeasurementVerdict::NotFinite);
     }
     let expected = Health {
         measurements_not_finite: 100,
@@ -157,8 +159,9 @@ fn frames_that_are_not_finite_are_counted_and_survived() {
     assert!((flight.state().z - state.z).abs() < 0.01);
 
     let mut moved = frame(&state);
-    moved.x = 7.0;
-    assert!(flight.step(0.5, &moved).position_used);
+    moved.position.as_mut().unwrap().x = 7.0;
+    let used = flight.step(0.5, &moved).position;
+    assert_eq!(used, Some(PositionVerdict::Accepted));
     assert!((flight.state().x - 7.0).abs() < 1e-12 && flight.health().positions_not_finite == 50);
 }
 
@@ -166,7 +169,7 @@ fn frames_that_are_not_finite_are_counted_and_survived() {
 fn spikes_are_counted_apart() {
     let mut flight = flight_loop();
     let mut spike = frame(&flight.state());
-    spike.measurement.airspeed += 50.0;
+    spike.air.as_mut().unwrap().measurement.airspeed += 50.0;
     let before = *flight.estimate();
     flight.step(0.0, &spike);
     assert_eq!(flight.health().measurements_gated, 1);
@@ -222,15 +225,14 @@ fn held_positions_are_bridged() {
             delivered = state;
         }
         let mut frame = lively(&state, tick);
-        (frame.x, frame.z) = (delivered.x, delivered.z);
-        let used = flight
-            .step(f64::from(tick) * TICK_PERIOD, &frame)
-            .position_used;
+        let position = frame.position.as_mut().unwrap();
+        (position.x, position.z) = (delivered.x, delivered.z);
+        let verdict = flight.step(f64::from(tick) * TICK_PERIOD, &frame).position;
+        let used = verdict == Some(PositionVerdict::Accepted);
         assert_eq!(used, tick % 10 == 0);
         assert!((flight.state().x - state.x).abs() < 0.05, "tick {tick}");
     }
     assert_eq!(flight.health().positions_held, 270);
-    assert_eq!(flight.health().winds_refused, 0);
     let wind = flight.conditions().wind;
     assert!(wind.x.abs() < 0.1 && wind.z.abs() < 0.1, "{wind:?}");
 }
@@ -245,9 +247,9 @@ fn frozen_values_are_not_used() {
         for tick in 0..100 {
             let mut frame = lively(&state, tick);
             if frozen == 0 {
-                frame.measurement.airspeed = state.air.airspeed + 2.0;
+                frame.air.as_mut().unwrap().measurement.airspeed = state.air.airspeed + 2.0;
             } else {
-                frame.measurement.pitch = state.air.pitch + 0.03;
+                frame.air.as_mut().unwrap().measurement.pitch = state.air.pitch + 0.03;
             }
             let verdicts = flight
                 .step(f64::from(tick) * TICK_PERIOD, &frame)

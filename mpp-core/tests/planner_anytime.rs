@@ -4,6 +4,7 @@ mod common {
     pub(crate) mod planning;
     pub(crate) mod presets;
     pub(crate) mod scattered;
+    pub(crate) mod sensors;
     pub(crate) mod with_planner;
     pub(crate) mod world;
 }
@@ -11,16 +12,17 @@ mod common {
 use common::planning::{level, plan, planner};
 use common::presets::presets;
 use common::scattered::{FEASIBLE, SCATTERED};
+use common::sensors::frame;
 use common::with_planner::with_planner;
 use common::world::{Disc, scan};
 use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
-use mpp_core::estimate::{Conditions, Measurement};
+use mpp_core::estimate::Conditions;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Weights};
-use mpp_core::sense::SensorFrame;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::VehicleState;
 
 /// One slice for the map, the trees of a cycle at 10 samples a slice, and each path's corridor and
 /// program at 8 steps a slice.
@@ -101,18 +103,7 @@ fn the_same_seed_gives_the_same_bits_whatever_runs_between_slices() {
         let mut time = 0.0;
         let busy = two_cycles(&mut planner(&settings), || {
             time += 0.01;
-            let measurement = Measurement {
-                airspeed: 12.0,
-                pitch: 0.15,
-            };
-            flight.step(
-                time,
-                &SensorFrame {
-                    measurement,
-                    x: time,
-                    z: 50.0,
-                },
-            );
+            flight.step(time, &frame(&VehicleState { x: time, ..state }));
             other.advance();
         });
         assert_eq!(alone, busy);

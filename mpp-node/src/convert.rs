@@ -4,11 +4,11 @@ use crate::duration;
 use hil_protocol::{
     ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
     LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
-    SensorFrame as WireFrame, StepReport,
+    SensorFrame as WireFrame, SensorState, SensorStates, StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD};
 use mpp_core::control::RiccatiError;
-use mpp_core::estimate::{Conditions, Measurement};
+use mpp_core::estimate::{Conditions, Measurement, Sensors, Trust};
 use mpp_core::flight::{Adoption, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
@@ -218,6 +218,7 @@ pub(crate) fn step_report(
     plan_age_ticks: u32,
     estimate: &VehicleState,
     conditions: &Conditions,
+    sensors: SensorStates,
     output: &StepOutput,
 ) -> StepReport {
     let state = &output.reference.state;
@@ -230,6 +231,22 @@ pub(crate) fn step_report(
         lift: conditions.lift,
         reference: [state.x, state.z, air.x, air.y, air.z, air.w],
         plan_age_ticks,
+        sensors,
+    }
+}
+
+pub(crate) fn sensor_states(sensors: Sensors, lidar: Trust) -> SensorStates {
+    let state = |trust| match trust {
+        Trust::Healthy => SensorState::Healthy,
+        Trust::Suspected => SensorState::Suspected,
+        Trust::Excluded => SensorState::Excluded,
+        Trust::Recovering => SensorState::Recovering,
+    };
+    SensorStates {
+        airspeed: state(sensors.airspeed),
+        pitch: state(sensors.pitch),
+        position: state(sensors.position),
+        lidar: state(lidar),
     }
 }
 

@@ -194,6 +194,17 @@ pub struct RejectionEntry {
     pub cause: String,
 }
 
+/// A change of the core's trust in a sensor.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SensorEntry {
+    /// The tick of the change.
+    pub tick: u64,
+    /// Name of the sensor: `airspeed`, `pitch`, `position` or `lidar`.
+    pub sensor: String,
+    /// Its state from this tick on: `healthy`, `suspected`, `excluded` or `recovering`.
+    pub state: String,
+}
+
 /// Returns the value if JSON can write it, that is, if it is finite.
 #[must_use]
 pub fn finite(value: Option<f64>) -> Option<f64> {

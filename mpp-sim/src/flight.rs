@@ -19,13 +19,14 @@ use crate::sensors::Measurement;
 use crate::world::World;
 pub use error::FlyError;
 use exchange::Exchange;
-use hil_protocol::{ControlMode, PlanReport};
+use hil_protocol::{ControlMode, HealthReport, PlanReport, SensorStates};
 use judge::Judge;
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 use sensing::Sensing;
 use session::{Answer, Session};
+use std::collections::BTreeMap;
 use steering::Steering;
 
 /// A ground that watches the flight and gives no orders.
@@ -83,6 +84,7 @@ pub fn fly_in(
     let mut session = Session::open(scenario, link)?;
     let mut sensing = Sensing::new(scenario);
     let mut exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
+    let mut trust = SensorStates::default();
     let mut judge = Judge::new();
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, plant.state());
@@ -129,11 +131,18 @@ pub fn fly_in(
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
+            sensors: answer.step.map_or(trust, |step| step.sensors),
+            health: answer.health.as_ref(),
             rejections: session.rejections.len(),
         };
         let holds_trim = answer.command.mode == ControlMode::TrimHold;
         judge.watch(&moment, field.as_ref(), plant.state(), holds_trim);
         ground.watch(&moment);
+        log.note_sensors(&trust, &moment.sensors, flown);
+        trust = moment.sensors;
+        if let Some(health) = moment.health {
+            log.health = counters(health);
+        }
         log.ticks.push(&tick);
         log.plans.extend(plan);
     }
@@ -141,6 +150,15 @@ pub fn fly_in(
     log.orders = std::mem::take(&mut steering.orders);
     log.summary = judge.conclude(&log.plans, field.as_ref(), plant.state().x);
     Ok(log)
+}
+
+/// The counters that are not zero, by name.
+fn counters(report: &HealthReport) -> BTreeMap<String, u32> {
+    let named = HealthReport::NAMES.iter().zip(report.counters);
+    named
+        .filter(|(_, count)| *count > 0)
+        .map(|(name, count)| ((*name).to_owned(), count))
+        .collect()
 }
 
 fn plan_entry(report: &PlanReport) -> PlanEntry {

@@ -9,7 +9,7 @@ mod summary;
 
 pub use summary::Summary;
 
-use crate::entries::{Columns, ObstacleEntry, PlanEntry, RejectionEntry};
+use crate::entries::{Columns, ObstacleEntry, PlanEntry, RejectionEntry, SensorEntry};
 use crate::faults::Faults;
 use crate::field::{Field, Obstacle};
 use crate::lidar::LidarConfig;
@@ -19,8 +19,10 @@ use crate::orders::OrderEntry;
 use crate::scenario::{Scenario, ScenarioError, Times};
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
+use hil_protocol::SensorStates;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Version of the log's layout.
@@ -39,6 +41,12 @@ pub struct FlightLog {
     pub plans: Vec<PlanEntry>,
     /// Every input that the core refused.
     pub rejections: Vec<RejectionEntry>,
+    /// Every change of the core's trust in a sensor.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sensors: Vec<SensorEntry>,
+    /// The core's counters that are not zero, as of its last report.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub health: BTreeMap<String, u32>,
     /// Every order from the ground that took effect; not written if there was no such order.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub orders: Vec<OrderEntry>,
@@ -159,6 +167,19 @@ impl Header {
 }
 
 impl FlightLog {
+    /// Notes each sensor that the core trusts otherwise than in the tick before.
+    pub(crate) fn note_sensors(&mut self, before: &SensorStates, now: &SensorStates, tick: u32) {
+        for ((sensor, before), (_, now)) in before.named().into_iter().zip(now.named()) {
+            if before != now {
+                self.sensors.push(SensorEntry {
+                    tick: u64::from(tick),
+                    sensor: sensor.to_owned(),
+                    state: now.to_string(),
+                });
+            }
+        }
+    }
+
     /// The log of a flight that is about to begin.
     #[must_use]
     pub fn begin(header: Header) -> Self {
@@ -168,6 +189,8 @@ impl FlightLog {
             ticks: Columns::default(),
             plans: Vec::new(),
             rejections: Vec::new(),
+            sensors: Vec::new(),
+            health: BTreeMap::new(),
             orders: Vec::new(),
             summary: Summary::default(),
         }

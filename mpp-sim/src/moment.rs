@@ -1,7 +1,7 @@
 //! The data of one tick, for an observer of a flight.
 
 use crate::entries::{PlanEntry, Tick};
-use hil_protocol::{LidarScan, PlanReport, PlanTrajectory};
+use hil_protocol::{HealthReport, LidarScan, PlanReport, PlanTrajectory, SensorStates};
 
 /// The data of one tick.
 pub struct Moment<'a> {
@@ -16,6 +16,10 @@ pub struct Moment<'a> {
     pub report: Option<&'a PlanReport>,
     /// The plan's trajectory.
     pub trajectory: Option<&'a PlanTrajectory>,
+    /// The core's trust in its sensors.
+    pub sensors: SensorStates,
+    /// The core's counters, if it reported them at this tick.
+    pub health: Option<&'a HealthReport>,
     /// Inputs refused so far.
     pub rejections: usize,
 }

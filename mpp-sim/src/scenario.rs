@@ -197,7 +197,10 @@ impl Scenario {
             ticks: 20 * TICKS_PER_SECOND,
             lidar,
             air_data: AirDataNoise::PAPER,
-            navigation: NavigationConfig::IDEAL,
+            navigation: match preset {
+                Preset::Reference | Preset::Paper => NavigationConfig::IDEAL,
+                Preset::Flight => NavigationConfig::RTK,
+            },
             faults: Faults::default(),
             oracle: false,
         }

@@ -6,6 +6,7 @@ use crate::log::FlightLog;
 use crate::moment::Moment;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
+use hil_protocol::SensorState;
 
 /// Time from which on an obstacle counts as known \[s\]: the aircraft can avoid it with time to spare.
 pub const KNOWN: f64 = 1.0;
@@ -19,6 +20,8 @@ pub struct Witness {
     place: Point,
     /// Inputs refused so far.
     rejections: usize,
+    /// Number of sensors that are excluded.
+    excluded: usize,
     flagged: Option<f64>,
 }
 
@@ -37,14 +40,20 @@ impl Witness {
         self.inquest.watch(moment);
         self.place = (moment.tick.state.x, moment.tick.state.z);
         let since = moment.tick.t - Scenario::time(self.onset);
-        if since >= 0.0 && moment.rejections > self.rejections {
+        let states = moment.sensors.named();
+        let excluded = states
+            .iter()
+            .filter(|(_, state)| *state == SensorState::Excluded);
+        let excluded = excluded.count();
+        let said = moment.rejections > self.rejections || excluded > self.excluded;
+        if since >= 0.0 && said {
             self.flagged.get_or_insert(since);
         }
-        self.rejections = moment.rejections;
+        (self.rejections, self.excluded) = (moment.rejections, excluded);
     }
 
-    /// Time from the onset of the faults until the core first refused an input \[s\]; `None` if it refused
-    /// none.
+    /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an
+    /// input, or it excluded a sensor. `None` if it said nothing.
     #[must_use]
     pub fn flagged(&self) -> Option<f64> {
         self.flagged

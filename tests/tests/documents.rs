@@ -254,7 +254,7 @@ fn the_table_of_settings_is_that_of_preset_flight() {
         design_thrust: None,
         design_jacobian: _,
         estimator,
-        wind: Some(wind),
+        wind_change: Some(wind_change),
         regulator,
         cross_track,
         airspeed_hold,
@@ -301,7 +301,7 @@ fn the_table_of_settings_is_that_of_preset_flight() {
     assert!((pitch_variance.sqrt() - 0.25_f64.to_radians()).abs() < 1e-15);
     let settings: [(&str, f64); 32] = [
         ("cruise", cruise),
-        ("wind", wind),
+        ("wind_change", wind_change),
         ("cross_track", cross_track),
         ("airspeed_hold", airspeed_hold),
         ("estimator.process_noise[0]", process_noise[0]),

@@ -1,6 +1,7 @@
 //! The messages of a tick: measurements to the core, and commands from it.
 
 use super::size;
+use core::fmt;
 use heapless::Vec;
 use serde::{Deserialize, Serialize};
 
@@ -149,9 +150,65 @@ pub struct StepReport {
     pub reference: [f64; 6],
     /// Ticks since the scan from which the present plan was made; 0 without a plan.
     pub plan_age_ticks: u32,
+    /// The core's trust in its sensors.
+    pub sensors: SensorStates,
+}
+
+/// The core's trust in each sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SensorStates {
+    /// Airspeed.
+    pub airspeed: SensorState,
+    /// Pitch.
+    pub pitch: SensorState,
+    /// Positions.
+    pub position: SensorState,
+    /// Scans of the lidar.
+    pub lidar: SensorState,
+}
+
+impl SensorStates {
+    /// Size of the longest form \[bytes\].
+    pub const MAX_SIZE: usize = 4 * size::BYTE;
+
+    /// Each sensor's name and state.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, SensorState); 4] {
+        [
+            ("airspeed", self.airspeed),
+            ("pitch", self.pitch),
+            ("position", self.position),
+            ("lidar", self.lidar),
+        ]
+    }
+}
+
+/// The core's trust in a sensor. The order goes over the wire: append only.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum SensorState {
+    /// The sensor delivers good values.
+    #[default]
+    Healthy = 0,
+    /// The last good value is some ticks old.
+    Suspected = 1,
+    /// The sensor delivers no good values, and its values are not used.
+    Excluded = 2,
+    /// The sensor delivers good values again, but not for long enough to be used.
+    Recovering = 3,
+}
+
+impl fmt::Display for SensorState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Healthy => "healthy",
+            Self::Suspected => "suspected",
+            Self::Excluded => "excluded",
+            Self::Recovering => "recovering",
+        })
+    }
 }
 
 impl StepReport {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = 2 * size::U32 + 15 * size::F64;
+    pub const MAX_SIZE: usize = 2 * size::U32 + 15 * size::F64 + SensorStates::MAX_SIZE;
 }

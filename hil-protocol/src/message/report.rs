@@ -141,6 +141,10 @@ pub enum RejectionCause {
     PlannerRestarted,
     /// An angle of a scan is infinite or not a number.
     ScanAngle,
+    /// A scan has the same ranges as the one before, to the last bit. The lidar is frozen.
+    ScanRepeated,
+    /// A scan has no return, although the map knows obstacles in its fan. The lidar is blind.
+    ScanBlind,
 }
 
 impl fmt::Display for RejectionCause {
@@ -205,8 +209,54 @@ impl fmt::Display for RejectionCause {
                     "an angle of the scan is not a finite number: check the lidar"
                 )
             }
+            Self::ScanRepeated => write!(
+                f,
+                "the scan repeats the one before to the last bit: the lidar is frozen, check it"
+            ),
+            Self::ScanBlind => write!(
+                f,
+                "no beam returns although the map knows obstacles ahead: the lidar is blind, check it"
+            ),
         }
     }
 }
 
 impl core::error::Error for RejectionCause {}
+
+/// Core to harness: the counters of everything that the core refused, limited or did without. It comes once a
+/// second. The counters only grow, and a full one stays full.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HealthReport {
+    /// The tick of the report.
+    pub tick: u32,
+    /// The counters, in the order of [`HealthReport::NAMES`].
+    pub counters: [u32; HealthReport::NAMES.len()],
+}
+
+impl HealthReport {
+    /// The name of each counter. The order goes over the wire: append only.
+    pub const NAMES: [&str; 19] = [
+        "measurements_not_finite",
+        "measurements_frozen",
+        "measurements_late",
+        "measurements_distrusted",
+        "measurements_gated",
+        "time_jumps",
+        "predictions_diverged",
+        "positions_not_finite",
+        "positions_held",
+        "positions_late",
+        "positions_gated",
+        "positions_restarted",
+        "commands_not_finite",
+        "thrust_limited",
+        "elevator_limited",
+        "plans_feasible",
+        "plans_kept",
+        "plans_least_violating",
+        "plans_trim_hold",
+    ];
+
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = (1 + Self::NAMES.len()) * size::U32;
+}

@@ -24,6 +24,7 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
         )),
         parameter_reply().prop_map(Message::ParameterReply),
         plan_trajectory().prop_map(Message::PlanTrajectory),
+        health_report().prop_map(Message::HealthReport),
     ]
 }
 
@@ -222,9 +223,10 @@ fn step_report() -> impl Strategy<Value = StepReport> {
         uniform5(f64::ANY),
         uniform6(f64::ANY),
         any::<u32>(),
+        sensor_states(),
     )
         .prop_map(
-            |(tick, estimate, [x, z, ahead, up, lift], reference, age)| StepReport {
+            |(tick, estimate, [x, z, ahead, up, lift], reference, age, sensors)| StepReport {
                 tick,
                 estimate,
                 position: [x, z],
@@ -232,8 +234,33 @@ fn step_report() -> impl Strategy<Value = StepReport> {
                 lift,
                 reference,
                 plan_age_ticks: age,
+                sensors,
             },
         )
+}
+
+fn sensor_states() -> impl Strategy<Value = SensorStates> {
+    let state = || {
+        select(&[
+            SensorState::Healthy,
+            SensorState::Suspected,
+            SensorState::Excluded,
+            SensorState::Recovering,
+        ])
+    };
+    [state(), state(), state(), state()].prop_map(|[airspeed, pitch, position, lidar]| {
+        SensorStates {
+            airspeed,
+            pitch,
+            position,
+            lidar,
+        }
+    })
+}
+
+fn health_report() -> impl Strategy<Value = HealthReport> {
+    any::<(u32, [u32; HealthReport::NAMES.len()])>()
+        .prop_map(|(tick, counters)| HealthReport { tick, counters })
 }
 
 fn plan_report() -> impl Strategy<Value = PlanReport> {
@@ -278,6 +305,8 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::PlannerBusy,
             RejectionCause::PlannerRestarted,
             RejectionCause::ScanAngle,
+            RejectionCause::ScanRepeated,
+            RejectionCause::ScanBlind,
         ]),
         any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
     ]

@@ -55,10 +55,10 @@ pub struct FaultRow {
     /// Number of flights with the fault that collided with an obstacle that a beam had met more than 1 s
     /// before.
     pub known_collisions: u32,
-    /// Number of flights with the fault in which the core refused an input after the onset.
+    /// Number of flights with the fault in which the core refused an input or excluded a sensor after the
+    /// onset.
     pub flagged: u32,
-    /// Median over these flights of the time from the onset to the first refused input \[s\]; null without
-    /// such flights.
+    /// Median over these flights of the time from the onset to that tick \[s\]; null without such flights.
     pub flagged_s: Option<f64>,
 }
 

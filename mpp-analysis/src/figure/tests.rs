@@ -95,6 +95,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
+        sensors: Vec::new(),
+        health: Default::default(),
         orders: Vec::new(),
         summary: Summary {
             outcome: Outcome::Survived,

@@ -2,18 +2,24 @@
 
 mod changes;
 mod conditions;
+mod estimator;
 mod history;
+mod lagged;
 mod lift;
 mod navigation;
+mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
 pub use changes::Changes;
 pub use conditions::Conditions;
 use core::fmt;
+pub use estimator::{Estimator, Sensors};
 pub use history::{History, MOST_AGE};
+pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
 use nalgebra::{Matrix4, SMatrix, Vector4};
 pub use navigation::{Navigation, PositionVerdict};
+pub use watch::{Trust, Watch};
 
 /// Measured airspeed and pitch. Their errors are independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +96,19 @@ pub enum Verdict {
     Frozen,
     /// There was no value.
     Missing,
+    /// The value came later than the ones before, or is older than the filter remembers. The filter did not
+    /// use it.
+    Late,
+    /// The value passes the gate, but the sensor is not trusted yet. The filter did not use it.
+    Distrusted,
+}
+
+impl Verdict {
+    /// Whether the value agrees with the estimate.
+    #[must_use]
+    pub fn is_good(self) -> bool {
+        matches!(self, Self::Accepted | Self::Distrusted)
+    }
 }
 
 /// The verdicts on the two values of one measurement.
@@ -102,11 +121,14 @@ pub struct Innovation {
 }
 
 impl Innovation {
-    /// There were no air data.
-    pub const MISSING: Self = Self {
-        airspeed: Verdict::Missing,
-        pitch: Verdict::Missing,
-    };
+    /// The same verdict on both values.
+    #[must_use]
+    pub const fn both(verdict: Verdict) -> Self {
+        Self {
+            airspeed: verdict,
+            pitch: verdict,
+        }
+    }
 }
 
 /// The prediction is not finite, for instance because the airspeed is zero. The filter keeps its last
@@ -190,14 +212,21 @@ impl Ekf {
     /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one
     /// value after the other. The result equals the joint update and needs no matrix inverse.
     pub fn update(&mut self, measurement: &Measurement) -> Innovation {
+        self.update_by(measurement, [true, true])
+    }
+
+    /// Does the same, but uses airspeed and pitch only where `used` says so. The other value gets its verdict
+    /// all the same.
+    pub fn update_by(&mut self, measurement: &Measurement, used: [bool; 2]) -> Innovation {
+        let Measurement { airspeed, pitch } = *measurement;
         Innovation {
-            airspeed: self.correct::<0>(measurement.airspeed, self.tuning.airspeed_variance),
-            pitch: self.correct::<1>(measurement.pitch, self.tuning.pitch_variance),
+            airspeed: self.correct::<0>(airspeed, self.tuning.airspeed_variance, used[0]),
+            pitch: self.correct::<1>(pitch, self.tuning.pitch_variance, used[1]),
         }
     }
 
     /// Scalar update by a measurement of state `INDEX`. Joseph's form keeps the covariance positive.
-    fn correct<const INDEX: usize>(&mut self, measured: f64, variance: f64) -> Verdict {
+    fn correct<const INDEX: usize>(&mut self, measured: f64, variance: f64, used: bool) -> Verdict {
         if !measured.is_finite() {
             return Verdict::NotFinite;
         }
@@ -206,6 +235,9 @@ impl Ekf {
         let innovation_variance = self.covariance[(INDEX, INDEX)] + variance;
         if innovation * innovation > self.tuning.gate * self.tuning.gate * innovation_variance {
             return Verdict::Gated;
+        }
+        if !used {
+            return Verdict::Distrusted;
         }
         let gain: Vector4<f64> = self.covariance.column(INDEX) / innovation_variance;
         state += gain * innovation;

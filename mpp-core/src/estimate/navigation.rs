@@ -159,6 +159,11 @@ impl Navigation {
         c.wind += noise * period;
     }
 
+    /// Doubts the position by this distance \[m\], because the time since the last step is not known.
+    pub fn doubt(&mut self, distance: f64) {
+        self.covariance.position += distance * distance;
+    }
+
     /// Takes in the motion through the air as it is after the sensors of this tick.
     pub fn correct_motion(&mut self, air: &AirState) {
         self.history.correct(air);

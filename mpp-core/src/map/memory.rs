@@ -7,8 +7,8 @@
 use super::Pose;
 use crate::sense::LidarScan;
 use crate::tuning::memory::{
-    BEHIND, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS, OCCUPIED, PASSED,
-    PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
+    BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,
+    OCCUPIED, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
 };
 use core::ops::Range;
 
@@ -122,7 +122,7 @@ impl MemoryMap {
     pub fn insert_beams(&mut self, scan: &LidarScan, beams: Range<usize>, sight: f64, pose: &Pose) {
         let &Pose { x, z, pitch } = pose;
         if beams.start == 0 {
-            self.note_lone_hits(scan, pose);
+            self.note_lone_hits(scan, sight, pose);
         }
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
         for (beam, range) in ranges.skip(beams.start) {
@@ -130,7 +130,7 @@ impl MemoryMap {
             let (up, ahead) = libm::sincos(angle);
             let at = |range: f64| (x + range * ahead, z + range * up);
             let range = f64::from(*range);
-            if range > 0.0 {
+            if is_return(range, sight) {
                 self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED);
                 if let Some(evidence) = self.cell_mut(self.locate(at(range))) {
                     *evidence = weighed(*evidence, HIT);
@@ -139,6 +139,37 @@ impl MemoryMap {
                 self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED);
             }
         }
+    }
+
+    /// Whether a scan has no return although obstacles that the map knows stand in its fan. Such a scan is no
+    /// evidence of free space: the lidar is blind.
+    #[must_use]
+    pub fn contradicts(&self, scan: &LidarScan, sight: f64, pose: &Pose) -> bool {
+        let returned = |range: &f32| is_return(f64::from(*range), sight);
+        if scan.ranges.iter().any(returned) {
+            return false;
+        }
+        let middle = 0.5 * (scan.ranges.len().saturating_sub(1)) as f64;
+        let centre = pose.pitch + scan.angle_min + scan.angle_increment * middle;
+        let half = libm::fabs(scan.angle_increment) * middle * BLIND_SHARE;
+        let mut seen = 0_u32;
+        for (row, evidence) in self.evidence.iter().enumerate() {
+            let up = self.floor + CELL * (row as f64 + 0.5) - pose.z;
+            for col in 0..COLS as i32 {
+                let col = self.first_col.saturating_add(col);
+                if evidence
+                    .get(slot(col))
+                    .is_none_or(|evidence| *evidence < OCCUPIED)
+                {
+                    continue;
+                }
+                let ahead = CELL * (f64::from(col) + 0.5) - pose.x;
+                let off = libm::fabs(libm::atan2(up, ahead) - centre);
+                let near = libm::hypot(ahead, up) < BLIND_SHARE * sight;
+                seen += u32::from(near && off < half);
+            }
+        }
+        seen >= BLIND_CELLS
     }
 
     /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\].
@@ -164,11 +195,11 @@ impl MemoryMap {
 
     /// Notes the cells that the beams of a scan ended in and that stand alone: a pole, a wire, or a bar end on.
     /// Beams that pass the rim of something larger clear the cells that errors of the range set beside it.
-    fn note_lone_hits(&mut self, scan: &LidarScan, pose: &Pose) {
+    fn note_lone_hits(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
         let mut hits = [0_u128; ROWS];
         for (beam, range) in scan.ranges.iter().enumerate() {
             let range = f64::from(*range);
-            if range > 0.0 {
+            if is_return(range, sight) {
                 let (up, ahead) = libm::sincos(pose.pitch + scan.beam_angle(beam));
                 let (row, col) = self.locate((pose.x + range * ahead, pose.z + range * up));
                 let ahead = col.saturating_sub(self.first_col);
@@ -266,6 +297,12 @@ fn weighed(evidence: i8, more: i8) -> i8 {
         0 => -1,
         sum => sum,
     }
+}
+
+/// Whether a range \[m\] is that of an obstacle. Some lidars give 0 where nothing came back, others their full
+/// range.
+fn is_return(range: f64, sight: f64) -> bool {
+    range > 0.0 && range < sight
 }
 
 /// Index at which the map stores a world column.

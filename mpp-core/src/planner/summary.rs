@@ -19,6 +19,8 @@ pub struct PlanSummary {
     pub solver_steps: usize,
     /// Whether the cycle finished all its work.
     pub complete: bool,
+    /// Whether the scan had no return although the map knows obstacles in its fan. The map did not use it.
+    pub blind: bool,
     /// Cost of the best trajectory. It is infinite if there is no trajectory.
     pub cost: f64,
     /// Worst violation of the best trajectory [m or rad]. It is infinite if there is no trajectory.
@@ -34,6 +36,7 @@ impl PlanSummary {
         slices: 0,
         solver_steps: 0,
         complete: false,
+        blind: false,
         cost: f64::INFINITY,
         violation: f64::INFINITY,
     };

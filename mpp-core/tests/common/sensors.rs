@@ -10,11 +10,6 @@ pub(crate) fn frame(state: &VehicleState) -> SensorFrame {
         airspeed: state.air.airspeed,
         pitch: state.air.pitch,
     };
-    reading(measurement, (state.x, state.z))
-}
-
-/// The frame of a measurement and an exact position `(x, z)` \[m\], both of this tick.
-pub(crate) fn reading(measurement: Measurement, (x, z): (f64, f64)) -> SensorFrame {
     SensorFrame {
         air: Some(AirData {
             age: 0,
@@ -22,8 +17,8 @@ pub(crate) fn reading(measurement: Measurement, (x, z): (f64, f64)) -> SensorFra
         }),
         position: Some(Position {
             age: 0,
-            x,
-            z,
+            x: state.x,
+            z: state.z,
             sigma: 0.0,
             velocity: None,
         }),

@@ -14,6 +14,7 @@ use hil_protocol::{
     Message, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode,
 };
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
+use mpp_core::estimate::Watch;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
 use mpp_core::planner::{PlanSummary, Verdict};
@@ -62,6 +63,9 @@ struct Flight {
     plan_tick: Option<u32>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
+    /// The trust in the lidar, and whether a scan since the last tick was good.
+    lidar: Watch,
+    lidar_good: Option<bool>,
 }
 
 /// The link and the 100 Hz step. It shares no data with the planner: the caller passes orders from
@@ -324,6 +328,8 @@ impl StepTask {
             last_scan: None,
             plan_tick: None,
             scan_tick: None,
+            lidar: Watch::new(u16::try_from(configure.replan_period_ticks).unwrap_or(u16::MAX)),
+            lidar_good: None,
         })
     }
 
@@ -362,11 +368,21 @@ impl StepTask {
             let configure = &flight.tuning.configure;
             (configure.beams, configure.range_max)
         };
+        let frozen = repeats(&self.scan, wire);
         convert::scan(wire, &mut self.scan);
+        if frozen {
+            flight.scan_tick = None;
+            flight.lidar_good = Some(false);
+            return self.reject(RejectionCause::ScanRepeated, send);
+        }
         match self.scan.check(usize::from(beams), f64::from(range_max)) {
-            Ok(()) => flight.scan_tick = Some(wire.tick),
+            Ok(()) => {
+                flight.scan_tick = Some(wire.tick);
+                flight.lidar_good = Some(true);
+            }
             Err(error) => {
                 flight.scan_tick = None;
+                flight.lidar_good = Some(false);
                 self.reject(convert::scan_rejection(error), send);
             }
         }
@@ -389,6 +405,14 @@ impl StepTask {
         }
         self.tick(frame, send);
     }
+}
+
+/// Whether a scan has returns and repeats the ranges of the one before to the last bit.
+fn repeats(before: &LidarScan, wire: &WireScan) -> bool {
+    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
+    before.ranges.len() == wire.ranges.len()
+        && wire.ranges.iter().any(|range| *range > 0.0)
+        && before.ranges.iter().zip(&wire.ranges).all(same)
 }
 
 /// The version of this crate.

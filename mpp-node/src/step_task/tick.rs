@@ -5,10 +5,15 @@ use crate::convert;
 use crate::mail::Order;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
-use hil_protocol::{ActuatorCommand, Message, PlanOutcome, PlanReport, RejectionCause};
+use hil_protocol::{
+    ActuatorCommand, HealthReport, Message, PlanOutcome, PlanReport, RejectionCause,
+};
 use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
 use mpp_core::flight::Adoption;
 use mpp_core::planner::PlanSummary;
+
+/// Ticks from one report of the counters to the next.
+const HEALTH_PERIOD: u32 = 100;
 
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
@@ -56,10 +61,14 @@ impl StepTask {
             tree_runs,
             slices,
             complete,
+            blind,
             cost,
             violation,
             ..
         } = plan.summary;
+        if blind {
+            flight.lidar_good = Some(false);
+        }
         let report = PlanReport {
             scan_tick,
             used_from_tick: tick,
@@ -75,6 +84,9 @@ impl StepTask {
         let flown = matches!(adoption, Adoption::Feasible | Adoption::LeastViolating)
             .then(|| convert::trajectory(scan_tick, &plan.trajectory));
         self.plan = None;
+        if blind {
+            self.reject(RejectionCause::ScanBlind, send);
+        }
         self.emit(&Message::PlanReport(report), send);
         if let Some(trajectory) = flown {
             self.emit(&Message::PlanTrajectory(trajectory), send);
@@ -89,6 +101,8 @@ impl StepTask {
         flight.last_tick = Some(frame.tick);
         let time = flight.time(frame.tick);
         let output = flight.control.step(time, &convert::sensor_frame(frame));
+        flight.lidar.tick(flight.lidar_good.take());
+        let sensors = convert::sensor_states(flight.control.sensors(), flight.lidar.trust());
         let age = flight
             .plan_tick
             .map_or(0, |plan| frame.tick.wrapping_sub(plan));
@@ -97,6 +111,7 @@ impl StepTask {
             age,
             &flight.control.state(),
             &flight.control.conditions(),
+            sensors,
             &output,
         );
         let command = ActuatorCommand {
@@ -109,7 +124,22 @@ impl StepTask {
             self.reject(cause, send);
         }
         self.emit(&Message::StepReport(report), send);
+        self.report_health(frame.tick, send);
         self.emit(&Message::ActuatorCommand(command), send);
+    }
+
+    /// Sends the counters once a second, at a tick at which scans and plans are rare.
+    fn report_health(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+        if tick % HEALTH_PERIOD != HEALTH_PERIOD / 2 + 13 {
+            return;
+        }
+        if let Some(health) = self.health() {
+            let counters = health.counters();
+            self.emit(
+                &Message::HealthReport(HealthReport { tick, counters }),
+                send,
+            );
+        }
     }
 
     /// Starts a cycle from the scan of this tick, if one is due.

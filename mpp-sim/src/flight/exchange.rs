@@ -73,6 +73,7 @@ impl Exchange {
                 step: None,
                 plan: None,
                 trajectory: None,
+                health: None,
             },
         })
     }
@@ -103,6 +104,9 @@ impl Exchange {
         answer.command.tick = now;
         if let Some(step) = &mut answer.step {
             step.tick = now;
+        }
+        if let Some(health) = &mut answer.health {
+            health.tick = now;
         }
         if let Some(plan) = &mut answer.plan {
             flown(&mut plan.scan_tick);

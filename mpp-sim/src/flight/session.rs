@@ -7,9 +7,9 @@ use crate::entries::RejectionEntry;
 use crate::link::{Link, LinkError};
 use crate::scenario::{Scenario, TICK_US};
 use hil_protocol::{
-    ActuatorCommand, ConfigureReply, ConfigureVerdict, Hello, LidarScan, Message, ParameterReply,
-    ParameterVerdict, PlanReport, PlanTrajectory, Rejection, RejectionCause, Role, SensorFrame,
-    SetParameter, StepReport,
+    ActuatorCommand, ConfigureReply, ConfigureVerdict, HealthReport, Hello, LidarScan, Message,
+    ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection, RejectionCause, Role,
+    SensorFrame, SetParameter, StepReport,
 };
 use mpp_core::config::STAGES;
 use mpp_core::vehicle::{VehicleState, Wind};
@@ -24,6 +24,7 @@ pub(super) struct Answer {
     pub(super) step: Option<StepReport>,
     pub(super) plan: Option<PlanReport>,
     pub(super) trajectory: Option<PlanTrajectory>,
+    pub(super) health: Option<HealthReport>,
 }
 
 /// The parts of an answer that came before the command. The command ends the answer.
@@ -32,6 +33,7 @@ struct Draft {
     step: Option<StepReport>,
     plan: Option<PlanReport>,
     trajectory: Option<PlanTrajectory>,
+    health: Option<HealthReport>,
 }
 
 /// The role of a message for a question that awaits its answer.
@@ -115,12 +117,14 @@ impl<'a> Session<'a> {
                         step,
                         plan,
                         trajectory,
+                        health,
                     } = std::mem::take(draft);
                     return Part::Last(Some(Answer {
                         command: *command,
                         step,
                         plan,
                         trajectory,
+                        health,
                     }));
                 }
                 Message::Rejection(rejection) if is_old(frame.tick, rejection) => {
@@ -128,6 +132,7 @@ impl<'a> Session<'a> {
                 }
                 Message::StepReport(report) => draft.step = Some(*report),
                 Message::PlanReport(report) => draft.plan = Some(*report),
+                Message::HealthReport(report) => draft.health = Some(*report),
                 Message::PlanTrajectory(knots) => draft.trajectory = Some(knots.clone()),
                 _ => return Part::None,
             }

@@ -103,6 +103,8 @@ fn example() -> FlightLog {
             tick: 1,
             cause: "stale scan".into(),
         }],
+        sensors: Vec::new(),
+        health: [("plans_feasible".to_owned(), 2)].into(),
         orders: Vec::new(),
         summary: Summary {
             outcome: Outcome::FlightPathLimit,
@@ -144,7 +146,7 @@ fn the_layout_is_frozen() {
     }
     assert_eq!(
         example().hash().unwrap(),
-        "cd1e22a246677df1",
+        "87d77f7e801b35a9",
         "the bytes of a log changed: raise SCHEMA"
     );
 }

@@ -63,7 +63,7 @@ pub struct ScenarioFile {
     pub lidar: LidarTable,
     /// Errors of the airspeed and pitch sensors.
     pub air_data: AirDataTable,
-    /// The navigation source.
+    /// The navigation source; by default `rtk` for preset `flight`, and `ideal` for the others.
     pub navigation: NavigationTable,
     /// Faults and disturbances.
     pub faults: Faults,

@@ -21,7 +21,7 @@ pub(super) struct ScenarioArgs {
     /// Airframe, both of the aircraft and of the core's model [default: reference]
     #[arg(long, value_parser = airframe())]
     airframe: Option<AirframeName>,
-    /// Source of positions: their rate, errors and delay [default: ideal]
+    /// Source of positions: their rate, errors and delay [default: rtk; of presets paper and reference: ideal]
     #[arg(long, value_parser = navigation())]
     navigation: Option<NavigationSource>,
     /// Simulated time from a scan until its plan is flown [ms], a multiple of 10 [default: 10]

@@ -6,7 +6,7 @@ use super::tlog::EPOCH_US;
 use super::vehicle::{Severity, Vehicle};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
-use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory};
+use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory, SensorState, SensorStates};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::Mode;
 
@@ -21,8 +21,14 @@ const MODE_FLAGS: u8 = CUSTOM_MODE | 16;
 const AUTO: u8 = 4;
 /// MAV_MODE_FLAG_SAFETY_ARMED.
 const ARMED: u8 = 128;
-/// MAV_SYS_STATUS_SENSOR: airspeed, laser, attitude reference, motors.
-const SENSORS: u32 = 0x10 | 0x100 | 0x20_0000 | 0x8000;
+/// MAV_SYS_STATUS_SENSOR: airspeed is differential pressure, pitch is the attitude reference, the position is
+/// that of satellite navigation, the lidar is a laser position.
+const AIRSPEED: u32 = 0x10;
+const POSITION: u32 = 0x20;
+const LIDAR: u32 = 0x100;
+const MOTORS: u32 = 0x8000;
+const PITCH: u32 = 0x20_0000;
+const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
 /// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as plain floats.
 const CAPABILITIES: u64 = 8 | 2048 | 8192 | 131_072;
 /// Position of the start on maps \[deg\]. The place is arbitrary. It counts as sea level, so that
@@ -175,13 +181,29 @@ impl Vehicle {
         });
     }
 
+    /// Tells the stations of each sensor that the core trusts otherwise than before.
+    pub(super) fn report_sensors(&mut self, now: &SensorStates) {
+        let before = self.sensors.named();
+        self.sensors = *now;
+        for ((sensor, before), (_, now)) in before.into_iter().zip(now.named()) {
+            let (severity, what) = match now {
+                SensorState::Excluded if before != now => (Severity::Critical, "failed"),
+                SensorState::Healthy if before == SensorState::Recovering => {
+                    (Severity::Notice, "is back")
+                }
+                _ => continue,
+            };
+            self.say(severity, &format!("Sensor {sensor} {what}"));
+        }
+    }
+
     fn send_system_status(&mut self) {
         let (_, _, rejections) = self.motion();
         let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
         self.send(&SYS_STATUS_DATA {
             onboard_control_sensors_present: SENSORS,
             onboard_control_sensors_enabled: SENSORS,
-            onboard_control_sensors_health: SENSORS,
+            onboard_control_sensors_health: healthy(&self.sensors),
             // There is no battery.
             voltage_battery: u16::MAX,
             current_battery: -1,
@@ -331,4 +353,15 @@ impl Vehicle {
         }
         self.send(&message);
     }
+}
+
+/// The bits of the sensors that the core uses.
+fn healthy(sensors: &SensorStates) -> u32 {
+    let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
+    let states = sensors.named();
+    let used = states
+        .iter()
+        .zip(bits)
+        .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
+    used.fold(MOTORS, |all, (_, bit)| all | bit)
 }

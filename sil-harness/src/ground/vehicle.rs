@@ -9,6 +9,7 @@ use super::parameter_queue::ParameterQueue;
 use super::security::Security;
 use super::stations::{Change, Stations};
 use super::streams::Streams;
+use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender, text};
 use mpp_core::vehicle::{AirState, VehicleState};
@@ -26,6 +27,7 @@ const STATION: u8 = 6;
 /// The severity of a text, with the numbers of MAV_SEVERITY.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Severity {
+    Critical = 2,
     Warning = 4,
     Notice = 5,
     Info = 6,
@@ -86,6 +88,7 @@ pub struct Vehicle {
     estimate: AirState,
     thrust: f64,
     rejections: usize,
+    pub(super) sensors: SensorStates,
 }
 
 impl Vehicle {
@@ -115,6 +118,7 @@ impl Vehicle {
             estimate: AirState::default(),
             thrust: 0.0,
             rejections: 0,
+            sensors: SensorStates::default(),
         }
     }
 
@@ -234,6 +238,7 @@ impl Vehicle {
         self.estimate = moment.tick.estimate.air;
         self.thrust = moment.tick.control.thrust;
         self.rejections = moment.rejections;
+        self.report_sensors(&moment.sensors);
         self.report_scan(moment);
         if let Some(report) = moment.report {
             self.report_plan(report);

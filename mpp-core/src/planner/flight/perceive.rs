@@ -17,6 +17,10 @@ impl FlightPlanner {
         let beams = self.beams..self.beams + BEAMS_PER_SLICE;
         if beams.start == 0 {
             self.map.roll(pose.x, self.altitude);
+            if self.map.contradicts(&self.scan, self.settings.sight, &pose) {
+                self.summary.blind = true;
+                self.scan.ranges.clear();
+            }
         }
         if beams.start < self.scan.ranges.len() {
             self.beams = beams.end;

@@ -68,7 +68,7 @@ impl FromStr for NavigationSource {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct NavigationTable {
-    /// The named source; by default `ideal`.
+    /// The named source; by default `rtk` for preset `flight`, and `ideal` for the others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub source: Option<NavigationSource>,
     /// Positions in a second \[Hz\].

@@ -31,8 +31,8 @@ fn the_documented_example_holds_every_key() {
     let json = serde_json::to_value(&file).unwrap();
     let keys = |value: &serde_json::Value| value.as_object().unwrap().len();
     assert_eq!(keys(&json), 16);
-    assert_eq!(keys(&json["navigation"]), 8);
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
+    assert_eq!(keys(&json["navigation"]), 8);
     assert_eq!(keys(&json["faults"]["actuators"]), 4);
     let faults = &json["faults"];
     assert_eq!(keys(faults), 15);
@@ -48,6 +48,7 @@ fn unknown_keys_are_refused_by_name() {
         ("obstcles = 20", "obstcles"),
         ("[lidar]\nbeam = 3", "beam"),
         ("[air_data]\npitch_sigma = 1.0", "pitch_sigma"),
+        ("[navigation]\nspeed = 1.0", "speed"),
         ("[faults]\nwind = 1.0", "wind"),
         ("[faults.gusts]\nstrength = 1.0", "strength"),
         ("[faults.actuators]\nthrust = 1.0", "thrust"),
@@ -91,6 +92,17 @@ fn nonsense_is_refused_by_key() {
         (
             "[air_data]\nairspeed_sigma = inf",
             "air_data.airspeed_sigma",
+        ),
+        ("[navigation]\nrate_hz = 33.0", "navigation.rate_hz"),
+        ("[navigation]\nrate_hz = 0.5", "navigation.rate_hz"),
+        ("[navigation]\ndelay_ms = 15", "navigation.delay_ms"),
+        ("[navigation]\ndelay_ms = 510", "navigation.delay_ms"),
+        ("[navigation]\nsigma = -0.1", "navigation.sigma"),
+        ("[navigation]\nwander = nan", "navigation.wander"),
+        ("[navigation]\nwander_time = 0.0", "navigation.wander_time"),
+        (
+            "[navigation]\nvelocity_sigma = inf",
+            "navigation.velocity_sigma",
         ),
         ("[faults.gusts]\nintensity = -1.0", "faults.gusts.intensity"),
         ("[faults.lidar]\ndropouts = 1.5", "faults.lidar.dropouts"),

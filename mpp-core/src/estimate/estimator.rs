@@ -1,0 +1,247 @@
+//! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
+
+use super::{
+    Changes, Conditions, Innovation, LaggedEkf, LiftEstimator, MOST_AGE, Measurement, Navigation,
+    PositionVerdict, Taken, Trust, Verdict, Watch,
+};
+use crate::config::TICK_PERIOD;
+use crate::health::Health;
+use crate::map::Pose;
+use crate::sense::{AirData, Position, SensorFrame};
+use crate::settings::Settings;
+use crate::tuning::sensors::{LONGEST_PREDICTION, POSITION_PERIOD};
+use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState};
+
+/// The trust in each sensor of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sensors {
+    /// Airspeed.
+    pub airspeed: Trust,
+    /// Pitch.
+    pub pitch: Trust,
+    /// Positions.
+    pub position: Trust,
+}
+
+/// The estimators of a flight.
+#[derive(Clone, Debug)]
+pub struct Estimator {
+    airframe: Airframe,
+    limits: ActuatorLimits,
+    air: LaggedEkf,
+    navigation: Navigation,
+    /// Estimator of the lift. Without it the lift is that of the known airframe.
+    lift: Option<LiftEstimator>,
+    /// The controls that the actuators gave up to the last step, by the model of the actuators.
+    given: Control,
+    airspeed_changes: Changes,
+    pitch_changes: Changes,
+    airspeed: Watch,
+    pitch: Watch,
+    position: Watch,
+}
+
+impl Estimator {
+    /// Estimators that start from level trim at the origin.
+    #[must_use]
+    pub fn new(settings: &Settings, trim: &Trim) -> Self {
+        let airframe = settings.airframe;
+        let lift = LiftEstimator::new(&airframe);
+        Self {
+            airframe,
+            limits: settings.actuators,
+            air: LaggedEkf::new(airframe, settings.estimator, trim.state),
+            navigation: Navigation::new(settings.wind_change, settings.planner.altitude),
+            lift: settings.wind_change.is_some().then_some(lift),
+            given: trim.control,
+            airspeed_changes: Changes::new(),
+            pitch_changes: Changes::new(),
+            airspeed: Watch::new(1),
+            pitch: Watch::new(1),
+            position: Watch::new(POSITION_PERIOD),
+        }
+    }
+
+    /// The estimated motion through the air.
+    #[must_use]
+    pub fn air(&self) -> &AirState {
+        self.air.present()
+    }
+
+    /// The estimated position and motion.
+    #[must_use]
+    pub fn state(&self) -> VehicleState {
+        let (x, z) = self.navigation.position();
+        VehicleState {
+            x,
+            z,
+            air: *self.air.present(),
+        }
+    }
+
+    /// The estimated wind and lift.
+    #[must_use]
+    pub fn conditions(&self) -> Conditions {
+        Conditions {
+            wind: self.navigation.wind(),
+            lift: self.lift.as_ref().map_or(0.0, LiftEstimator::offset),
+        }
+    }
+
+    /// The pose at the tick that was `age` ticks ago. `None` if that was before the first step or more than
+    /// [`MOST_AGE`] ticks ago.
+    #[must_use]
+    pub fn pose_at(&self, age: u32) -> Option<Pose> {
+        if age == 0 {
+            return Some(Pose::of(&self.state()));
+        }
+        if age > MOST_AGE {
+            return None;
+        }
+        let ((x, z), pitch) = self.navigation.pose_at(age)?;
+        Some(Pose { x, z, pitch })
+    }
+
+    /// The controls that the actuators gave up to the last step, by the model of the actuators.
+    #[must_use]
+    pub fn given(&self) -> Control {
+        self.given
+    }
+
+    /// The trust in each sensor.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
+        Sensors {
+            airspeed: self.airspeed.trust(),
+            pitch: self.pitch.trust(),
+            position: self.position.trust(),
+        }
+    }
+
+    /// Notes the motion at the first step.
+    pub fn begin(&mut self) {
+        self.navigation.predict(self.air.present(), 0.0);
+    }
+
+    /// Moves the estimates on by the time since the last step \[s\], in pieces of about a tick. A time that
+    /// goes back counts as none. Of a long time only the last part is believed: the clock has jumped, or the
+    /// aircraft was not controlled meanwhile.
+    /// Gives the time that it believes \[s\].
+    pub fn predict(&mut self, elapsed: f64, control: Control, health: &mut Health) -> f64 {
+        let believed = (0.0..=LONGEST_PREDICTION).contains(&elapsed);
+        if !believed {
+            Health::count(&mut health.time_jumps);
+            let doubt = self.air.present().airspeed * LONGEST_PREDICTION;
+            self.navigation.doubt(doubt);
+        }
+        // A time that is not a number is in no range and not greater than any.
+        let period = if believed {
+            elapsed
+        } else if elapsed > 0.0 {
+            LONGEST_PREDICTION
+        } else {
+            0.0
+        };
+        let pieces = libm::round(period / TICK_PERIOD).max(1.0);
+        for _ in 0..pieces as u32 {
+            let piece = period / pieces;
+            self.given = self.limits.given(control, self.given, piece);
+            if self.air.predict(self.given, piece).is_err() {
+                Health::count(&mut health.predictions_diverged);
+            }
+            self.navigation.predict(self.air.present(), piece);
+        }
+        period
+    }
+
+    /// Corrects the estimates by what arrived `elapsed` \[s\] after the last step.
+    pub fn take(
+        &mut self,
+        elapsed: f64,
+        frame: &SensorFrame,
+        health: &mut Health,
+    ) -> (Innovation, Option<PositionVerdict>) {
+        let innovation = self.measure(frame.air.as_ref());
+        count_verdict(innovation.airspeed, health);
+        count_verdict(innovation.pitch, health);
+        let position = self.locate(elapsed, frame.position.as_ref());
+        count_position(position, health);
+        (innovation, position)
+    }
+
+    /// Corrects the motion by what was measured. Values that a sensor only repeats, and those of a sensor that
+    /// is not trusted, are not used.
+    fn measure(&mut self, air: Option<&AirData>) -> Innovation {
+        let Some(air) = air else {
+            self.airspeed.tick(None);
+            self.pitch.tick(None);
+            return Innovation::both(Verdict::Missing);
+        };
+        let fresh = Measurement {
+            airspeed: self.airspeed_changes.take(air.measurement.airspeed),
+            pitch: self.pitch_changes.take(air.measurement.pitch),
+        };
+        let used = [self.airspeed.uses(), self.pitch.uses()];
+        let Taken::Measured(mut innovation) = self.air.take(air.age, &fresh, used) else {
+            self.airspeed.tick(None);
+            self.pitch.tick(None);
+            return Innovation::both(Verdict::Late);
+        };
+        if self.airspeed_changes.frozen() {
+            innovation.airspeed = Verdict::Frozen;
+        }
+        if self.pitch_changes.frozen() {
+            innovation.pitch = Verdict::Frozen;
+        }
+        self.airspeed.tick(Some(innovation.airspeed.is_good()));
+        self.pitch.tick(Some(innovation.pitch.is_good()));
+        innovation
+    }
+
+    /// Takes in the position, if there is one, and then estimates the lift.
+    fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
+        let air = *self.air.present();
+        self.navigation.correct_motion(&air);
+        let verdict = fix.map(|fix| self.navigation.take(fix));
+        self.position.tick(match verdict {
+            Some(PositionVerdict::Accepted) => Some(true),
+            Some(PositionVerdict::Held) | None => None,
+            Some(_) => Some(false),
+        });
+        let (_, climb) = self.navigation.wind().ground_velocity(&air);
+        if let Some(lift) = &mut self.lift {
+            if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
+                lift.interrupt();
+            } else {
+                lift.update(elapsed, climb, &air, self.given);
+            }
+        }
+        let airframe = self.conditions().airframe(&self.airframe);
+        self.air.set_airframe(&airframe);
+        verdict
+    }
+}
+
+fn count_verdict(verdict: Verdict, health: &mut Health) {
+    let counter = match verdict {
+        Verdict::Accepted | Verdict::Missing => return,
+        Verdict::Gated => &mut health.measurements_gated,
+        Verdict::Frozen => &mut health.measurements_frozen,
+        Verdict::NotFinite => &mut health.measurements_not_finite,
+        Verdict::Late => &mut health.measurements_late,
+        Verdict::Distrusted => &mut health.measurements_distrusted,
+    };
+    Health::count(counter);
+}
+
+fn count_position(verdict: Option<PositionVerdict>, health: &mut Health) {
+    let counter = match verdict {
+        None | Some(PositionVerdict::Accepted) => return,
+        Some(PositionVerdict::NotFinite) => &mut health.positions_not_finite,
+        Some(PositionVerdict::Held) => &mut health.positions_held,
+        Some(PositionVerdict::Late) => &mut health.positions_late,
+        Some(PositionVerdict::Gated) => &mut health.positions_gated,
+        Some(PositionVerdict::Restarted) => &mut health.positions_restarted,
+    };
+    Health::count(counter);
+}

@@ -1,0 +1,75 @@
+//! Trust in a sensor: when it is left out, and when it is used again.
+
+use crate::tuning::sensors::{EXCLUDED_AFTER, RECOVERED_AFTER, SUSPECTED_AFTER};
+
+/// The trust in a sensor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Trust {
+    /// The sensor delivers good values.
+    #[default]
+    Healthy,
+    /// The last good value is some ticks old. A good value is used at once.
+    Suspected,
+    /// The sensor has not delivered a good value for longer. Its values are not used.
+    Excluded,
+    /// The sensor delivers good values again, but not for long enough. Its values are not used.
+    Recovering,
+}
+
+/// Watches one sensor.
+#[derive(Clone, Copy, Debug)]
+pub struct Watch {
+    trust: Trust,
+    /// Ticks since the last good value; while the sensor recovers, ticks with good values.
+    ticks: u16,
+    /// Greatest time between two good values of a healthy sensor \[ticks\].
+    period: u16,
+}
+
+impl Watch {
+    /// A watch of a sensor that may deliver a good value every `period` ticks.
+    #[must_use]
+    pub const fn new(period: u16) -> Self {
+        Self {
+            trust: Trust::Healthy,
+            ticks: 0,
+            period,
+        }
+    }
+
+    /// The present trust.
+    #[must_use]
+    pub fn trust(&self) -> Trust {
+        self.trust
+    }
+
+    /// Whether the sensor's values may be used.
+    #[must_use]
+    pub fn uses(&self) -> bool {
+        matches!(self.trust, Trust::Healthy | Trust::Suspected)
+    }
+
+    /// Takes note of one tick: whether the sensor delivered a good value (`Some(true)`), a bad one
+    /// (`Some(false)`) or nothing.
+    pub fn tick(&mut self, good: Option<bool>) {
+        let since = self.ticks.saturating_add(1);
+        (self.trust, self.ticks) = match (self.trust, good) {
+            (Trust::Healthy | Trust::Suspected, Some(true)) => (Trust::Healthy, 0),
+            (Trust::Healthy | Trust::Suspected, _) => {
+                let late = since.saturating_sub(self.period);
+                if late >= EXCLUDED_AFTER {
+                    (Trust::Excluded, 0)
+                } else if late >= SUSPECTED_AFTER {
+                    (Trust::Suspected, since)
+                } else {
+                    (self.trust, since)
+                }
+            }
+            (Trust::Excluded, Some(true)) => (Trust::Recovering, 0),
+            (Trust::Excluded, _) => (Trust::Excluded, 0),
+            (Trust::Recovering, Some(false)) => (Trust::Excluded, 0),
+            (Trust::Recovering, Some(true)) if since >= RECOVERED_AFTER => (Trust::Healthy, 0),
+            (Trust::Recovering, _) => (Trust::Recovering, since),
+        };
+    }
+}

@@ -1,0 +1,333 @@
+//! Tests the estimate of position and wind against motions that are known.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod sensors;
+}
+
+use common::sensors::frame;
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::estimate::{Navigation, PositionVerdict, Trust};
+use mpp_core::flight::FlightLoop;
+use mpp_core::sense::{GroundVelocity, Position};
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::{AirState, VehicleState, Wind};
+use proptest::prelude::*;
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::{Rng, SeedableRng};
+
+const CHANGE: f64 = 1.0;
+
+fn fix(x: f64, z: f64, age: u32, sigma: f64) -> Position {
+    Position {
+        age,
+        x,
+        z,
+        sigma,
+        velocity: None,
+    }
+}
+
+fn air(airspeed: f64, flight_path: f64) -> AirState {
+    AirState {
+        airspeed,
+        flight_path,
+        ..AirState::default()
+    }
+}
+
+fn gaussian(random: &mut Pcg64Mcg) -> f64 {
+    let mut uniform = || ((random.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
+    (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos()
+}
+
+proptest! {
+    /// The wind is what carries the aircraft beside its motion through the air, at any delay.
+    #[test]
+    fn a_steady_wind_is_found(
+        x in -3.0..3.0, z in -3.0..3.0, path in -0.5..0.5, airspeed in 8.0..16.0, delay in 0_u32..50,
+    ) {
+        let (wind, air) = (Wind { x, z }, air(airspeed, path));
+        let (ahead, up) = wind.ground_velocity(&air);
+        let mut navigation = Navigation::new(Some(CHANGE), 50.0);
+        let at = |tick: u32| {
+            let time = f64::from(tick) * TICK_PERIOD;
+            (ahead * time, 50.0 + up * time)
+        };
+        for tick in 0_u32..400 {
+            navigation.predict(&air, if tick == 0 { 0.0 } else { TICK_PERIOD });
+            navigation.correct_motion(&air);
+            if let Some(then) = tick.checked_sub(delay) {
+                let (x, z) = at(then);
+                let verdict = navigation.take(&fix(x, z, delay, 0.0));
+                prop_assert_eq!(verdict, PositionVerdict::Accepted);
+            }
+        }
+        let (found, position) = (navigation.wind(), navigation.position());
+        prop_assert!((found.x - x).abs() < 1e-3 && (found.z - z).abs() < 1e-3, "{found:?}");
+        let truth = at(399);
+        prop_assert!((position.0 - truth.0).abs() < 0.01 && (position.1 - truth.1).abs() < 0.01);
+        // The pose of an earlier tick lies on the way.
+        let ((x, z), _) = navigation.pose_at(30).unwrap();
+        let truth = at(369);
+        prop_assert!((x - truth.0).abs() < 0.01 && (z - truth.1).abs() < 0.01);
+    }
+
+    /// Errors that are as declared give innovations as the covariance says: their mean square over their
+    /// variance is 1. Rate, delay and the velocity do not matter.
+    #[test]
+    fn innovations_are_consistent(
+        seed in any::<u64>(), sigma in 0.01..0.5, period in 1_u32..20, delay in 0_u32..20,
+        with_velocity in any::<bool>(),
+    ) {
+        // The filter takes the wind as constant over the delay. This is the variance that it leaves out, as a
+        // share of the declared one.
+        let time = f64::from(delay) * TICK_PERIOD;
+        let unknown = CHANGE * CHANGE * time * time * time / (sigma * sigma);
+        prop_assume!(unknown < 0.5);
+        let mut random = Pcg64Mcg::seed_from_u64(seed);
+        let air = air(12.0, 0.1);
+        let mut navigation = Navigation::new(Some(CHANGE), 50.0);
+        let mut wind = Wind { x: 1.0, z: -0.5 };
+        let mut truth = vec![((0.0, 50.0), wind)];
+        let (mut sum, mut count) = (0.0, 0.0);
+        for tick in 0_u32..8000 {
+            if tick > 0 {
+                let step = CHANGE * TICK_PERIOD.sqrt();
+                let before = wind;
+                wind.x += step * gaussian(&mut random);
+                wind.z += step * gaussian(&mut random);
+                // A random walk has no greater value than what the filter believes in this test.
+                wind.x = wind.x.clamp(-8.0, 8.0);
+                wind.z = wind.z.clamp(-8.0, 8.0);
+                let (x, z) = truth[tick as usize - 1].0;
+                let mean = Wind { x: 0.5 * (before.x + wind.x), z: 0.5 * (before.z + wind.z) };
+                let (ahead, up) = mean.ground_velocity(&air);
+                truth.push(((x + ahead * TICK_PERIOD, z + up * TICK_PERIOD), wind));
+            }
+            navigation.predict(&air, if tick == 0 { 0.0 } else { TICK_PERIOD });
+            let due = (tick % period == 0).then(|| tick.checked_sub(delay)).flatten();
+            if let Some(then) = due {
+                let ((x, z), wind) = truth[then as usize];
+                let (ahead, up) = wind.ground_velocity(&air);
+                let position = Position {
+                    velocity: with_velocity.then(|| GroundVelocity {
+                        x: ahead + 0.1 * gaussian(&mut random),
+                        z: up + 0.1 * gaussian(&mut random),
+                        sigma: 0.1,
+                    }),
+                    ..fix(x + sigma * gaussian(&mut random), z + sigma * gaussian(&mut random), delay, sigma)
+                };
+                let verdict = navigation.take(&position);
+                prop_assert_eq!(verdict, PositionVerdict::Accepted);
+                if tick > 500 {
+                    sum += navigation.normalised_innovation();
+                    count += 1.0;
+                }
+            }
+        }
+        let mean = sum / count;
+        // Four standard errors of the mean of chi-square values with two degrees of freedom.
+        let doubt = 4.0 / f64::sqrt(count) + unknown;
+        prop_assert!((mean - 1.0).abs() < doubt + 0.05, "{mean} of {count}");
+    }
+}
+
+/// Without an estimate of the wind each position is taken as it is, as the paper does.
+#[test]
+fn without_wind_a_position_is_taken_as_it_is() {
+    let mut navigation = Navigation::new(None, 50.0);
+    for (tick, x) in (0..5).zip([0.0, 3.0, 77.0, 78.0, -4.0]) {
+        navigation.predict(&air(12.0, 0.0), if tick == 0 { 0.0 } else { TICK_PERIOD });
+        assert_eq!(
+            navigation.take(&fix(x, 50.0, 0, 0.1)),
+            PositionVerdict::Accepted
+        );
+        assert_eq!(navigation.position(), (x, 50.0));
+        assert_eq!(navigation.wind(), Wind::STILL);
+    }
+}
+
+/// A position that stands still, leaps or is wild gives no wind, and does not reach the elevator.
+#[test]
+fn a_wrong_position_is_refused_and_counted() {
+    let faults: [fn(u32, f64) -> f64; 4] = [
+        |_, _| 120.0,
+        |tick, x| x - 4.5 * f64::from(u32::from(tick >= 100)),
+        |tick, x| if tick == 100 { 1e160 } else { x },
+        |tick, x| {
+            if (100..150).contains(&tick) {
+                x + 0.3 * f64::from(tick % 7)
+            } else {
+                x
+            }
+        },
+    ];
+    for (number, fault) in faults.into_iter().enumerate() {
+        let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+        let level = flight.state().air;
+        let trim = Settings::flight()
+            .cruise
+            .trim(&Settings::flight().airframe)
+            .unwrap();
+        for tick in 0..400 {
+            let time = f64::from(tick) * TICK_PERIOD;
+            let air = AirState {
+                airspeed: level.airspeed + 1e-9 * f64::from(tick % 2),
+                pitch: level.pitch + 1e-9 * f64::from(tick % 2),
+                ..level
+            };
+            let out = flight.step(
+                time,
+                &frame(&VehicleState {
+                    x: fault(tick, level.airspeed * time),
+                    z: 50.0,
+                    air,
+                }),
+            );
+            assert!((out.control.elevator - trim.control.elevator).abs() < 0.1);
+            let wind = flight.conditions().wind;
+            assert!(
+                wind.x.abs() < 0.5 && wind.z.abs() < 0.5,
+                "{number} at {tick}: {wind:?}"
+            );
+        }
+        let health = flight.health();
+        assert!(
+            health.positions_gated > 0 || health.positions_held > 0,
+            "{number}"
+        );
+        assert_eq!(health.commands_not_finite, 0);
+        // The leap stays, so the filter starts anew from it.
+        assert_eq!(
+            health.positions_restarted,
+            u32::from(number == 1),
+            "{number}"
+        );
+        if number == 1 {
+            assert!((flight.state().x - (level.airspeed * 3.99 - 4.5)).abs() < 0.05);
+        }
+    }
+}
+
+/// A clock that jumps leaves the position in doubt; the next position is taken at once, and no wind comes
+/// of it.
+#[test]
+fn a_clock_that_jumps_gives_no_wind() {
+    for jump in [0.6, 10.0, 1e4, -3.0] {
+        let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+        let level = flight.state().air;
+        let mut time = 0.0;
+        for tick in 0..200 {
+            time += TICK_PERIOD;
+            if tick == 100 {
+                time += jump;
+            }
+            let last_digits = 1e-9 * f64::from(tick % 2);
+            let air = AirState {
+                airspeed: level.airspeed + last_digits,
+                pitch: level.pitch + last_digits,
+                ..level
+            };
+            let x = level.airspeed * TICK_PERIOD * f64::from(tick);
+            let out = flight.step(time, &frame(&VehicleState { x, z: 50.0, air }));
+            assert_eq!(
+                out.position,
+                Some(PositionVerdict::Accepted),
+                "{jump} at {tick}"
+            );
+            assert!((flight.state().x - x).abs() < 0.05, "{jump} at {tick}");
+            let wind = flight.conditions().wind;
+            assert!(
+                wind.x.abs() < 0.5 && wind.z.abs() < 0.5,
+                "{jump} at {tick}: {wind:?}"
+            );
+        }
+    }
+}
+
+/// A measurement older than half a second, from the future, or not newer than the last one is not used.
+#[test]
+fn late_positions_are_refused() {
+    let mut navigation = Navigation::new(Some(CHANGE), 50.0);
+    for tick in 0..100 {
+        navigation.predict(&air(12.0, 0.0), if tick == 0 { 0.0 } else { TICK_PERIOD });
+    }
+    for age in [51, 1000, u32::MAX] {
+        assert_eq!(
+            navigation.take(&fix(1.0, 50.0, age, 0.1)),
+            PositionVerdict::Late
+        );
+    }
+    assert_eq!(
+        navigation.take(&fix(11.0, 50.0, 3, 0.1)),
+        PositionVerdict::Accepted
+    );
+    assert_eq!(
+        navigation.take(&fix(10.9, 50.0, 4, 0.1)),
+        PositionVerdict::Late
+    );
+    assert_eq!(
+        navigation.take(&fix(11.3, 50.0, 0, 0.1)),
+        PositionVerdict::Accepted
+    );
+    let unsound = [
+        fix(f64::NAN, 50.0, 0, 0.1),
+        fix(1.0, f64::INFINITY, 0, 0.1),
+        fix(1.0, 50.0, 0, -0.1),
+        fix(1.0, 50.0, 0, f64::NAN),
+    ];
+    for bad in unsound {
+        assert_eq!(navigation.take(&bad), PositionVerdict::NotFinite);
+    }
+}
+
+/// A sensor that freezes is left out within half a second, and is used again only after it has delivered good
+/// values for half a second.
+#[test]
+fn a_frozen_sensor_is_excluded_and_recovers_by_rule() {
+    let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+    let level = flight.state().air;
+    let mut seen = Vec::new();
+    for tick in 0..400 {
+        let time = f64::from(tick) * TICK_PERIOD;
+        let last_digits = 1e-9 * f64::from(tick % 2);
+        let frozen = (100..200).contains(&tick);
+        let air = AirState {
+            airspeed: level.airspeed + if frozen { 0.25 } else { last_digits },
+            pitch: level.pitch + last_digits,
+            ..level
+        };
+        flight.step(
+            time,
+            &frame(&VehicleState {
+                x: level.airspeed * time,
+                z: 50.0,
+                air,
+            }),
+        );
+        assert_eq!(flight.sensors().pitch, Trust::Healthy);
+        if seen
+            .last()
+            .is_none_or(|(_, trust)| *trust != flight.sensors().airspeed)
+        {
+            seen.push((tick, flight.sensors().airspeed));
+        }
+    }
+    let [
+        (_, Trust::Healthy),
+        (suspected, Trust::Suspected),
+        (excluded, Trust::Excluded),
+        (recovering, Trust::Recovering),
+        (healthy, Trust::Healthy),
+    ] = seen[..]
+    else {
+        panic!("{seen:?}");
+    };
+    assert!(suspected < 115 && excluded < 150, "{seen:?}");
+    assert!(
+        recovering == 200 && (245..260).contains(&healthy),
+        "{seen:?}"
+    );
+}
