@@ -17,6 +17,8 @@ pub struct Witness {
     inquest: Inquest,
     /// The first tick of the faults.
     onset: u32,
+    /// Ticks watched.
+    ticks: u32,
     place: Point,
     /// Inputs refused so far.
     rejections: usize,
@@ -39,15 +41,16 @@ impl Witness {
     pub fn watch(&mut self, moment: &Moment<'_>) {
         self.inquest.watch(moment);
         self.place = (moment.tick.state.x, moment.tick.state.z);
-        let since = moment.tick.t - Scenario::time(self.onset);
+        let since = self.ticks.checked_sub(self.onset);
+        self.ticks += 1;
         let states = moment.sensors.named();
         let excluded = states
             .iter()
             .filter(|(_, state)| *state == SensorState::Excluded);
         let excluded = excluded.count();
         let said = moment.rejections > self.rejections || excluded > self.excluded;
-        if since >= 0.0 && said {
-            self.flagged.get_or_insert(since);
+        if let Some(since) = since.filter(|_| said) {
+            self.flagged.get_or_insert(Scenario::time(since));
         }
         (self.rejections, self.excluded) = (moment.rejections, excluded);
     }
