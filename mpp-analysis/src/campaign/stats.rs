@@ -162,7 +162,7 @@ mod tests {
             let (swapped_low, swapped_high) = paired(second, first, pairs);
             prop_assert!((low + swapped_high).abs() < 1e-9 && (high + swapped_low).abs() < 1e-9);
             for end in [low, high] {
-                let log = |count: f64, share: f64| if count > 0.0 { count * share.ln() } else { 0.0 };
+                let log = |count: f64, share: f64| if count > 0.0 { count * libm::log(share) } else { 0.0 };
                 let likelihood = |share: f64| {
                     log(f64::from(second), share)
                         + log(f64::from(first), share + end)
