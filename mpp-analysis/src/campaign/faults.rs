@@ -238,15 +238,15 @@ impl FaultCampaign {
 mod tests {
     use super::*;
 
-    fn campaign(names: &[&str], lists: Lists) -> FaultCampaign {
+    fn campaign(names: &[&str], lists: &Lists) -> FaultCampaign {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         let faults = NamedFault::of(&names).unwrap();
-        FaultCampaign::new(&ScenarioFile::default(), &lists, 3, Some(5), &faults).unwrap()
+        FaultCampaign::new(&ScenarioFile::default(), lists, 3, Some(5), &faults).unwrap()
     }
 
     #[test]
     fn every_named_fault_is_a_fault_that_can_be_flown() {
-        let all = campaign(&["all"], Lists::default());
+        let all = campaign(&["all"], &Lists::default());
         assert_eq!(all.faults.len(), NamedFault::ALL.len());
         for variant in &all.faults {
             let job = |fault| FaultJob {
@@ -266,12 +266,12 @@ mod tests {
 
     #[test]
     fn faults_share_the_flights_without_a_fault() {
-        let two = campaign(&["rtk", "pitch-bias", "rtk"], Lists::default());
+        let two = campaign(&["rtk", "pitch-bias", "rtk"], &Lists::default());
         let jobs = two.jobs();
         let clean = jobs.iter().filter(|job| job.fault.is_none()).count();
         // Two cells with three seeds each.
         assert_eq!((clean, jobs.len()), (6, 18));
-        let own = campaign(&["latency-500ms"], Lists::default()).jobs();
+        let own = campaign(&["latency-500ms"], &Lists::default()).jobs();
         let cells: Vec<_> = own
             .iter()
             .map(|job| (job.cell.obstacles, job.cell.replan_hz))
@@ -282,7 +282,7 @@ mod tests {
             obstacles: vec![10, 30],
             ..Lists::default()
         };
-        let dense = campaign(&["elevator-rate-160"], lists).jobs();
+        let dense = campaign(&["elevator-rate-160"], &lists).jobs();
         assert_eq!(dense.len(), 6);
         assert!(dense.iter().all(|job| job.cell.obstacles == 160));
     }
