@@ -5,8 +5,9 @@
 //! ground. Its velocity through the air then changes by the opposite amount.
 
 use crate::dynamics::Dynamics;
-use crate::faults::{Actuators, Gusts};
+use crate::faults::{Actuators, Gusts, Signal};
 use crate::plant::{Plant, PlantError};
+use crate::random::Stream;
 use crate::scenario::Scenario;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, TrimError, VehicleState};
@@ -16,6 +17,12 @@ use mpp_core::vehicle::{Control, TrimError, VehicleState};
 pub struct Aircraft {
     body: Dynamics,
     actuators: Actuators,
+    /// Faults of what the actuators give: the distance of the elevator from trim, and the thrust.
+    elevator: Signal,
+    thrust: Signal,
+    trim: Control,
+    /// Ticks flown.
+    flown: u32,
     gusts: Option<Gusts>,
 }
 
@@ -27,15 +34,31 @@ impl Aircraft {
     /// [`TrimError`] when the core's airframe has no level flight.
     pub fn new(scenario: &Scenario) -> Result<Self, TrimError> {
         let known = scenario.airframe.airframe();
-        let faults = &scenario.faults;
+        let (faults, seed) = (&scenario.faults, scenario.seed);
+        let trim = scenario.trim()?.control;
         Ok(Self {
             body: Dynamics {
-                airframe: faults.model_error.airframe(scenario.seed, known),
+                airframe: faults.model_error.airframe(seed, known),
                 state: scenario.start()?,
             },
-            actuators: Actuators::new(faults.actuators, scenario.trim()?.control),
-            gusts: Gusts::new(scenario.seed, faults.gusts, TICK_PERIOD),
+            actuators: Actuators::new(faults.actuators, trim),
+            elevator: Signal::new(seed, Stream::ElevatorFault, faults.elevator),
+            thrust: Signal::new(seed, Stream::ThrustFault, faults.thrust),
+            trim,
+            flown: 0,
+            gusts: Gusts::new(seed, faults.gusts, TICK_PERIOD),
         })
+    }
+
+    /// The control that acts in the next tick.
+    fn given(&mut self, command: Control) -> Control {
+        let mut given = self.actuators.give(command, TICK_PERIOD);
+        let (tick, neutral) = (self.flown, self.trim.elevator);
+        if self.elevator.acts(tick) {
+            given.elevator = neutral + self.elevator.pass(tick, given.elevator - neutral);
+        }
+        given.thrust = self.thrust.pass(tick, given.thrust);
+        given
     }
 }
 
@@ -49,8 +72,9 @@ impl Plant for Aircraft {
     }
 
     fn step(&mut self, command: Control) -> Result<Control, PlantError> {
-        let given = self.actuators.give(command, TICK_PERIOD);
+        let given = self.given(command);
         self.body.step(given, TICK_PERIOD)?;
+        self.flown += 1;
         if let Some(gusts) = &mut self.gusts {
             let before = gusts.wind();
             gusts.advance();

@@ -2,7 +2,9 @@
 //! plant moves on.
 
 mod error;
+mod exchange;
 mod judge;
+mod sensing;
 mod session;
 mod steering;
 
@@ -10,18 +12,19 @@ use crate::entries::{PlanEntry, Tick, finite};
 use crate::link::Link;
 use crate::log::{FlightLog, Header};
 use crate::moment::Moment;
-use crate::navigation::{GroundTruth, NavigationSensor};
 use crate::orders::Ground;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
-use crate::sensors::{AirDataSensors, Measurement};
+use crate::sensors::Measurement;
 use crate::world::World;
 pub use error::FlyError;
-use hil_protocol::{AirData, ControlMode, HealthReport, PlanReport, SensorFrame, SensorStates};
+use exchange::Exchange;
+use hil_protocol::{ControlMode, HealthReport, PlanReport, SensorStates};
 use judge::Judge;
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
+use sensing::Sensing;
 use session::{Answer, Session};
 use std::collections::BTreeMap;
 use steering::Steering;
@@ -79,8 +82,8 @@ pub fn fly_in(
     } = world;
     let mut log = FlightLog::begin(Header::of(scenario, field.as_ref()));
     let mut session = Session::open(scenario, link)?;
-    let mut sensors = AirDataSensors::new(scenario.seed, scenario.air_data);
-    let mut navigation = NavigationSensor::new(scenario.seed, scenario.navigation);
+    let mut sensing = Sensing::new(scenario);
+    let mut exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
     let mut trust = SensorStates::default();
     let mut judge = Judge::new();
     let mut steering = Steering::new(scenario)?;
@@ -104,25 +107,15 @@ pub fn fly_in(
         if scenario.oracle {
             session.reveal(&before, air)?;
         }
-        let measured = sensors.measure(&before);
-        let scan = steering.scans(flown).then(|| {
-            let ranges = lidar.scan(&before, field.as_ref());
-            scenario.lidar.wire_scan(flown, &ranges)
-        });
-        let truth = GroundTruth {
-            position: (before.x, before.z),
-            velocity: air.ground_velocity(&before.air),
-        };
-        let frame = SensorFrame {
-            tick: flown,
-            air: Some(AirData {
-                tick: flown,
-                airspeed: measured.airspeed,
-                pitch: measured.pitch,
-            }),
-            position: navigation.measure(flown, &truth),
-        };
-        let mut answer = session.fly(scan.as_ref(), frame)?;
+        let (measured, frame) = sensing.measure(flown, &before, air);
+        let shown = steering
+            .scans(flown)
+            .then(|| lidar.scan(&sensing.lidar_state(flown, &before), field.as_ref()))
+            .and_then(|ranges| sensing.show(flown, &ranges));
+        let passage = exchange.passage(flown);
+        let seen = shown.clone().filter(|_| passage.to_core);
+        let scan = sensing.scan(flown, shown);
+        let mut answer = exchange.tick(&mut session, passage, scan, frame)?;
         steering.limit(&mut answer.command);
         let wind = plant.wind();
         let applied = plant.step(control(&answer)).map_err(FlyError::Plant)?;
@@ -134,7 +127,7 @@ pub fn fly_in(
         let plan = answer.plan.as_ref().map(plan_entry);
         let moment = Moment {
             tick: &tick,
-            scan: scan.as_ref(),
+            scan: seen.as_ref(),
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),

@@ -144,6 +144,14 @@ impl Inquest {
         }
     }
 
+    /// Time from the first scan that met the obstacle nearest to a place until `t_end` \[s\]. Returns `None` if
+    /// no beam met it.
+    pub(crate) fn seen_before(&self, field: &[Obstacle], place: Point, t_end: f64) -> Option<f64> {
+        let clearance = |index: &usize| field[*index].clearance(place);
+        let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
+        self.first_seen(field)[hit].map(|t| t_end - t)
+    }
+
     /// The failure of a flight that ended at `t_end` \[s\]. `last` holds the positions before and
     /// after the last tick. Returns `None` if the flight did not fail by itself.
     pub(crate) fn conclude(

@@ -26,6 +26,7 @@
 //! entries, moment            the entries of the log, and the data of one tick
 //! inquest, orders            the cause of a failure; the orders from people
 //! log                        one flight as JSON, and its hash
+//! witness                    what a campaign notes beside the log
 //! link, oracle, pipe         the link to a core, an all-knowing core, a core in this process
 //! flight                     one flight in lockstep
 //! ```
@@ -88,6 +89,8 @@ pub mod inquest;
 pub mod orders;
 
 pub mod log;
+
+pub mod witness;
 
 pub mod link;
 

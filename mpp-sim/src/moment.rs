@@ -7,7 +7,8 @@ use hil_protocol::{HealthReport, LidarScan, PlanReport, PlanTrajectory, SensorSt
 pub struct Moment<'a> {
     /// The tick as logged.
     pub tick: &'a Tick,
-    /// The scan taken at this tick, if one was.
+    /// The scan taken at this tick, as the lidar shows it, if one was taken. It may arrive at the core later.
+    /// It is absent if the link loses the messages of this tick.
     pub scan: Option<&'a LidarScan>,
     /// The plan taken over at this tick, if one was.
     pub plan: Option<&'a PlanEntry>,

@@ -28,6 +28,20 @@ pub enum Stream {
     Scene = 8,
     /// Errors of the navigation source.
     Navigation = 9,
+    /// Noise of a faulty airspeed sensor.
+    AirspeedFault = 10,
+    /// Noise of a faulty pitch sensor.
+    PitchFault = 11,
+    /// Noise of a faulty position downrange.
+    XFault = 12,
+    /// Noise of a faulty height.
+    ZFault = 13,
+    /// Noise of a faulty elevator.
+    ElevatorFault = 14,
+    /// Noise of a faulty thrust.
+    ThrustFault = 15,
+    /// Messages that are lost.
+    LinkFault = 16,
 }
 
 /// The generator of one subsystem in the flight with this seed.
@@ -61,7 +75,7 @@ pub fn gaussian(generator: &mut ChaCha8Rng) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 9] = [
+    const ALL: [Stream; 16] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -71,6 +85,13 @@ mod tests {
         Stream::LidarFaults,
         Stream::Scene,
         Stream::Navigation,
+        Stream::AirspeedFault,
+        Stream::PitchFault,
+        Stream::XFault,
+        Stream::ZFault,
+        Stream::ElevatorFault,
+        Stream::ThrustFault,
+        Stream::LinkFault,
     ];
 
     #[test]
@@ -88,6 +109,13 @@ mod tests {
                 12_947_559_667_725_341_916,
                 18_116_008_155_350_138_704,
                 10_998_222_350_071_771_533,
+                14_454_029_882_420_853_398,
+                9_565_470_705_248_308_949,
+                4_789_873_397_465_613_025,
+                3_239_095_324_188_114_646,
+                17_143_269_106_807_000_846,
+                18_074_614_959_641_999_106,
+                15_842_934_994_030_001_981,
             ]
         );
     }

@@ -393,3 +393,40 @@ fn the_readme_shows_what_the_main_job_prints() {
         "README.md shows another flight than {line}"
     );
 }
+
+/// A campaign of faults prints one object, and says what it does not do.
+#[test]
+fn a_campaign_of_faults_reports_pairs_and_refuses_what_it_cannot_do() {
+    let campaign = |flags: &[&str]| {
+        let begin = ["campaign", "--trials", "1", "--duration", "1", "--faults"];
+        harness().args(begin).args(flags).output().unwrap()
+    };
+    let output = campaign(&["rtk,clock-wrap", "--obstacles", "5", "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = report["faults"].as_array().unwrap();
+    assert_eq!(rows.len(), 2);
+    assert_eq!(
+        (&rows[0]["name"], &rows[0]["pairs"]),
+        (&"rtk".into(), &1.into())
+    );
+    assert_eq!(
+        (&rows[1]["obstacles"], &rows[1]["lost_points"]),
+        (&5.into(), &0.0.into())
+    );
+    for (flags, hint) in [
+        (
+            ["rtx", "--json"].as_slice(),
+            "there is no fault `rtx`: give all, rtk",
+        ),
+        (&["rtk", "--out", "rows.jsonl"], "cannot be used with"),
+        (
+            &["rtk", "--paths", "3,5"],
+            "at most one --preset and one --paths",
+        ),
+    ] {
+        let output = campaign(flags);
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{talk}");
+        assert!(talk.contains(hint), "{talk}");
+    }
+}

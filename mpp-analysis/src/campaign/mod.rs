@@ -5,6 +5,8 @@
 //! with the same log hash.
 
 mod causes;
+mod fault_report;
+mod faults;
 mod grid;
 mod merge;
 mod pairs;
@@ -15,10 +17,12 @@ mod table;
 mod taxonomy;
 
 pub use causes::CauseReport;
+pub use fault_report::{FaultReport, FaultRow, Flown};
+pub use faults::{FaultCampaign, FaultJob, NamedFault};
 pub use grid::{Campaign, Cell, Lists, NoShard, Shard};
 pub use merge::{Disagreement, merge};
 pub use pairs::AgainstOracle;
 pub use report::{CellReport, Outcomes, Report};
 pub use row::Row;
-pub use stats::wilson;
+pub use stats::{paired, wilson};
 pub use taxonomy::Taxonomy;

@@ -46,6 +46,8 @@ pub struct CellReport {
     pub strict_wilson_low: f64,
     /// Upper end of this interval.
     pub strict_wilson_high: f64,
+    /// Number of collisions with an obstacle that a beam had met more than 1 s before.
+    pub known_collisions: u32,
     /// Number of flights in each class.
     pub outcomes: Outcomes,
     /// Failures by cause, the most frequent first.
@@ -137,6 +139,7 @@ impl CellReport {
             strict_success_rate: share(strict_successes),
             strict_wilson_low,
             strict_wilson_high,
+            known_collisions: count(|row| row.known_collision),
             outcomes,
             causes: causes(&rows, oracle.as_deref()),
             against_oracle: oracle
@@ -157,7 +160,7 @@ impl CellReport {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
     let (low, high) = (

@@ -3,6 +3,7 @@
 use super::grid::Cell;
 use mpp_sim::log::{FlightLog, Summary};
 use mpp_sim::outcome::Outcome;
+use mpp_sim::witness::Witness;
 use serde::{Deserialize, Serialize};
 
 /// One flight: its cell, its seed and its summary.
@@ -18,6 +19,9 @@ pub struct Row {
     /// Summary of the flight, as in its log.
     #[serde(flatten)]
     pub summary: Summary,
+    /// Whether it collided with an obstacle that a beam had met more than 1 s before; not written if not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub known_collision: bool,
     /// The flight log's hash.
     pub log_hash: String,
     /// Wall time of the core's work \[ms\], if it was measured. A seed does not determine it.
@@ -28,12 +32,19 @@ pub struct Row {
 impl Row {
     /// The row of a flight.
     #[must_use]
-    pub fn new(cell: Cell, log: &FlightLog, log_hash: String, core_ms: Option<f64>) -> Self {
+    pub fn new(
+        cell: Cell,
+        log: &FlightLog,
+        witness: &Witness,
+        log_hash: String,
+        core_ms: Option<f64>,
+    ) -> Self {
         Self {
             cell,
             seed: log.header.seed,
             success: log.summary.outcome == Outcome::Survived,
             summary: log.summary,
+            known_collision: witness.known_collision(log),
             log_hash,
             core_ms,
         }

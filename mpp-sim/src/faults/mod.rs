@@ -5,15 +5,25 @@
 //! additional fault therefore does not change the noise of the sensors.
 
 mod actuators;
+mod delivery;
 mod gusts;
 mod lidar;
+mod line;
 mod model_error;
+mod scan;
+mod signal;
+mod window;
 
 pub use actuators::{ActuatorLimits, Actuators};
+pub use delivery::{Delivery, DeliveryFault};
 pub use gusts::{GustConfig, Gusts, HEIGHT, longitudinal_ratio};
 pub use lidar::{FaultyLidar, LidarFaultConfig, LidarFaults};
+pub use line::{ClockFault, Line, LinkFault, Passage};
 pub use model_error::{ModelError, Signs};
+pub use scan::{ScanFault, Scans, Show};
 use serde::{Deserialize, Serialize};
+pub use signal::{Signal, SignalFault};
+use window::is_absent;
 
 /// All faults of a flight. The default value has no fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,6 +37,39 @@ pub struct Faults {
     pub model_error: ModelError,
     /// Beams that return nothing or nonsense.
     pub lidar: LidarFaultConfig,
+    /// The airspeed sensor [m/s].
+    #[serde(skip_serializing_if = "is_absent")]
+    pub airspeed: SignalFault,
+    /// The pitch sensor \[deg\].
+    #[serde(skip_serializing_if = "is_absent")]
+    pub pitch: SignalFault,
+    /// The way of the air data.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub air: DeliveryFault,
+    /// The navigation source's position downrange \[m\].
+    #[serde(skip_serializing_if = "is_absent")]
+    pub x: SignalFault,
+    /// The navigation source's height \[m\].
+    #[serde(skip_serializing_if = "is_absent")]
+    pub z: SignalFault,
+    /// The way of the positions.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub position: DeliveryFault,
+    /// Whole scans.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub scan: ScanFault,
+    /// The elevator, as its distance from trim [-]. The core is not told of it.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub elevator: SignalFault,
+    /// The thrust \[N\]. The core is not told of it.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub thrust: SignalFault,
+    /// The link to the core.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub link: LinkFault,
+    /// The tick counter that the core sees.
+    #[serde(skip_serializing_if = "is_absent")]
+    pub clock: ClockFault,
 }
 
 impl Faults {
@@ -93,6 +136,46 @@ impl Faults {
         ]
         .into_iter()
         .find_map(|(sound, key, advice)| (!sound).then_some((key, advice)))
+        .or_else(|| self.table_flaw())
+    }
+
+    /// The first tick at which a fault with a time acts; 0 if no fault has one.
+    #[must_use]
+    pub fn onset(&self) -> u32 {
+        let windows = [
+            (self.airspeed.window(), is_absent(&self.airspeed)),
+            (self.pitch.window(), is_absent(&self.pitch)),
+            (self.air.window(), is_absent(&self.air)),
+            (self.x.window(), is_absent(&self.x)),
+            (self.z.window(), is_absent(&self.z)),
+            (self.position.window(), is_absent(&self.position)),
+            (self.scan.window(), is_absent(&self.scan)),
+            (self.elevator.window(), is_absent(&self.elevator)),
+            (self.thrust.window(), is_absent(&self.thrust)),
+            (self.link.window(), is_absent(&self.link)),
+            (self.clock.window(), is_absent(&self.clock)),
+        ];
+        let present = windows.into_iter().filter(|(_, absent)| !absent);
+        present.map(|(window, _)| window.first()).min().unwrap_or(0)
+    }
+
+    /// The same for the tables that [`is_absent`] may leave out. The advice names the key of the table.
+    fn table_flaw(&self) -> Option<(&'static str, &'static str)> {
+        [
+            ("faults.airspeed", self.airspeed.flaw()),
+            ("faults.pitch", self.pitch.flaw()),
+            ("faults.air", self.air.flaw()),
+            ("faults.x", self.x.flaw()),
+            ("faults.z", self.z.flaw()),
+            ("faults.position", self.position.flaw()),
+            ("faults.scan", self.scan.flaw()),
+            ("faults.elevator", self.elevator.flaw()),
+            ("faults.thrust", self.thrust.flaw()),
+            ("faults.link", self.link.flaw()),
+            ("faults.clock", self.clock.flaw()),
+        ]
+        .into_iter()
+        .find_map(|(table, flaw)| flaw.map(|advice| (table, advice)))
     }
 }
 

@@ -8,8 +8,8 @@ use crate::link::{Link, LinkError};
 use crate::scenario::{Scenario, TICK_US};
 use hil_protocol::{
     ActuatorCommand, ConfigureReply, ConfigureVerdict, HealthReport, Hello, LidarScan, Message,
-    ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection, Role, SensorFrame,
-    SetParameter, StepReport,
+    ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection, RejectionCause, Role,
+    SensorFrame, SetParameter, StepReport,
 };
 use mpp_core::config::STAGES;
 use mpp_core::vehicle::{VehicleState, Wind};
@@ -97,12 +97,13 @@ impl<'a> Session<'a> {
         Ok(verdict)
     }
 
-    /// Sends a tick's measurements and gets the answer.
+    /// Sends a tick's measurements and gets the answer. Returns `None` if the core takes the tick for an old
+    /// one: it then refuses the measurements and sends no command.
     pub(super) fn fly(
         &mut self,
         scan: Option<&LidarScan>,
         frame: SensorFrame,
-    ) -> Result<Answer, LinkError> {
+    ) -> Result<Option<Answer>, LinkError> {
         let scan = scan.map(|scan| Message::LidarScan(scan.clone()));
         let questions: Vec<_> = scan
             .into_iter()
@@ -118,13 +119,16 @@ impl<'a> Session<'a> {
                         trajectory,
                         health,
                     } = std::mem::take(draft);
-                    return Part::Last(Answer {
+                    return Part::Last(Some(Answer {
                         command: *command,
                         step,
                         plan,
                         trajectory,
                         health,
-                    });
+                    }));
+                }
+                Message::Rejection(rejection) if is_old(frame.tick, rejection) => {
+                    return Part::Last(None);
                 }
                 Message::StepReport(report) => draft.step = Some(*report),
                 Message::PlanReport(report) => draft.plan = Some(*report),
@@ -170,7 +174,13 @@ impl<'a> Session<'a> {
                     self.greeted(&peer)?;
                     return Ok(None);
                 }
-                Message::Rejection(rejection) => self.rejections.push(entry(&rejection)),
+                Message::Rejection(rejection) => {
+                    self.rejections.push(entry(&rejection));
+                    // A refused tick gets no other answer.
+                    if let Part::Last(answer) = take(&mut draft, &Message::Rejection(rejection)) {
+                        return Ok(Some(answer));
+                    }
+                }
                 // The core started after a configuration was sent and still got it. It then also
                 // got the configuration that was sent after its hello.
                 Message::ConfigureReply(ConfigureReply {
@@ -268,6 +278,16 @@ fn entry(rejection: &Rejection) -> RejectionEntry {
     RejectionEntry {
         tick: u64::from(rejection.tick),
         cause: format!("{:?}", rejection.cause),
+    }
+}
+
+/// Whether a core refuses this tick because it has done a later one.
+fn is_old(tick: u32, rejection: &Rejection) -> bool {
+    match rejection.cause {
+        RejectionCause::TickOrder { expected, found } => {
+            found == tick && found.wrapping_sub(expected).cast_signed() < 0
+        }
+        _ => false,
     }
 }
 

@@ -3,6 +3,7 @@
 //! `docs/scenarios/example.toml` holds every key with its unit.
 
 mod navigation;
+mod overlay;
 
 use super::{AirframeName, Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
 use crate::faults::Faults;

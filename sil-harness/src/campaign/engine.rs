@@ -2,11 +2,14 @@
 
 use super::error::CampaignError;
 use hil_protocol::Message;
-use mpp_analysis::campaign::{Campaign, Cell, Row};
+use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row};
 use mpp_core::vehicle::{VehicleState, Wind};
-use mpp_sim::flight::fly;
+use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::link::{Link, LinkError};
+use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::Scenario;
+use mpp_sim::witness::Witness;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -45,11 +48,7 @@ pub fn run(
     timed: bool,
     keep: impl Fn(Row) -> Result<(), CampaignError> + Sync,
 ) -> Result<(), CampaignError> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .stack_size(STACK)
-        .build()
-        .map_err(CampaignError::Threads)?;
+    let pool = pool(threads)?;
     pool.install(|| {
         // With `par_bridge` the flights start in order, and no flight runs on a stack of half-split
         // lists.
@@ -59,22 +58,65 @@ pub fn run(
     })
 }
 
+/// Flies the flights of a campaign of faults. `done` is called after each flight. The result is in the order
+/// of the flights.
+///
+/// # Errors
+/// [`CampaignError`] of the first flight that fails, or the error of `done`.
+pub fn run_faults(
+    campaign: &FaultCampaign,
+    threads: usize,
+    done: impl Fn() -> Result<(), CampaignError> + Sync,
+) -> Result<Vec<(FaultJob, Flown)>, CampaignError> {
+    let fly_one = |job: FaultJob| {
+        let scenario = campaign.scenario(&job).map_err(CampaignError::Scenario)?;
+        let (log, witness, _) = witnessed(&scenario).map_err(|error| {
+            let fault = campaign.name(&job).unwrap_or("no fault");
+            CampaignError::Faulty(fault, job.cell, job.seed, error)
+        })?;
+        done()?;
+        let flown = Flown {
+            strict: log.summary.strict,
+            known_collision: witness.known_collision(&log),
+            flagged: witness.flagged(),
+        };
+        Ok((job, flown))
+    };
+    pool(threads)?.install(|| campaign.jobs().into_par_iter().map(fly_one).collect())
+}
+
+/// Threads for flights; 0 means as many as there are cores.
+fn pool(threads: usize) -> Result<rayon::ThreadPool, CampaignError> {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    builder
+        .stack_size(STACK)
+        .build()
+        .map_err(CampaignError::Threads)
+}
+
+/// Flies a scenario in this process. Also gives the time for which the core worked.
+fn witnessed(scenario: &Scenario) -> Result<(FlightLog, Witness, Duration), FlyError> {
+    let mut link = Stopwatch {
+        link: PipeLink::of(scenario),
+        elapsed: Duration::ZERO,
+    };
+    let mut witness = Witness::of(scenario);
+    let log = fly(scenario, &mut link, |moment| witness.watch(moment))?;
+    Ok((log, witness, link.elapsed))
+}
+
 /// Flies one row.
 fn flown(campaign: &Campaign, cell: Cell, seed: u64, timed: bool) -> Result<Row, CampaignError> {
     let scenario = campaign
         .scenario(&cell, seed)
         .map_err(CampaignError::Scenario)?;
-    let mut link = Stopwatch {
-        link: PipeLink::of(&scenario),
-        elapsed: Duration::ZERO,
-    };
-    let log = fly(&scenario, &mut link, |_| {})
-        .map_err(|error| CampaignError::Flight(cell, seed, error))?;
+    let (log, witness, elapsed) =
+        witnessed(&scenario).map_err(|error| CampaignError::Flight(cell, seed, error))?;
     let hash = log
         .hash()
         .map_err(|error| CampaignError::Log(cell, seed, error))?;
-    let core_ms = timed.then_some(link.elapsed.as_secs_f64() * 1e3);
-    Ok(Row::new(cell, &log, hash, core_ms))
+    let core_ms = timed.then_some(elapsed.as_secs_f64() * 1e3);
+    Ok(Row::new(cell, &log, &witness, hash, core_ms))
 }
 
 /// A link that measures how long the core works. In this process the core works during `send`.

@@ -13,6 +13,10 @@ pub enum CampaignError {
     Scenario(ScenarioError),
     /// A flight has no outcome. Holds its cell, its seed and the reason.
     Flight(Cell, u64, FlyError),
+    /// A flight of a campaign of faults has no outcome. Holds its fault, its cell, its seed and the reason.
+    Faulty(&'static str, Cell, u64, FlyError),
+    /// Whoever started a campaign of faults ended it.
+    Stopped,
     /// A flight's log cannot be written. Holds its cell, its seed and the reason.
     Log(Cell, u64, LogError),
     /// A row file cannot be opened or read.
@@ -46,6 +50,13 @@ impl fmt::Display for CampaignError {
             Self::Flight(cell, seed, why) => {
                 write!(f, "{why}; fly it again with: fly --seed {seed} {cell}")
             }
+            Self::Faulty(fault, cell, seed, why) => {
+                write!(
+                    f,
+                    "{why}; this flight failed: {fault}, --seed {seed} {cell}"
+                )
+            }
+            Self::Stopped => f.write_str("interrupted: a campaign of faults keeps nothing"),
             Self::Log(cell, seed, why) => {
                 write!(f, "{why}; fly it again with: fly --seed {seed} {cell}")
             }
@@ -90,12 +101,13 @@ impl std::error::Error for CampaignError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Scenario(error) => Some(error),
-            Self::Flight(_, _, error) => Some(error),
+            Self::Flight(_, _, error) | Self::Faulty(_, _, _, error) => Some(error),
             Self::Log(_, _, error) => Some(error),
             Self::File(_, error) | Self::Full(_, _, error) => Some(error),
             Self::Disagree(error) => Some(error),
             Self::Threads(error) => Some(error),
             Self::Interrupted(_)
+            | Self::Stopped
             | Self::NoFile(_)
             | Self::NoRowFile(_)
             | Self::Line(..)

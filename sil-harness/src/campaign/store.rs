@@ -15,7 +15,7 @@ use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
 
 /// Version of the rows' layout.
-const ROWS: u32 = 2;
+const ROWS: u32 = 3;
 
 /// A row file's first line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

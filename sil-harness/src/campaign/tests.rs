@@ -2,7 +2,8 @@
 
 use super::*;
 use mpp_analysis::campaign::{
-    Campaign, Disagreement, Lists, Report, Row, Shard, Taxonomy, merge, wilson,
+    Campaign, Disagreement, FaultCampaign, FaultReport, Lists, NamedFault, Report, Row, Shard,
+    Taxonomy, merge, wilson,
 };
 use mpp_sim::scenario::{Preset, ScenarioFile};
 use std::path::PathBuf;
@@ -350,4 +351,47 @@ fn failures_are_sorted_by_cause() {
     assert_eq!(json["failure"]["cause"], "hidden");
     let back: Row = serde_json::from_value(json).unwrap();
     assert_eq!(back, row(0, 0, Some(Cause::Hidden)));
+}
+
+/// Short pairs of flights with two faults in two cells, on one thread and on three.
+#[test]
+fn a_report_of_faults_does_not_depend_on_threads() {
+    let scenario = ScenarioFile {
+        duration: Some(7),
+        ..ScenarioFile::default()
+    };
+    let names = ["link-silent-1s", "elevator-rate-120"].map(str::to_owned);
+    let faults = NamedFault::of(&names).unwrap();
+    let lists = Lists {
+        paths: vec![3],
+        ..Lists::default()
+    };
+    let campaign = FaultCampaign::new(&scenario, &lists, 2, Some(11), &faults).unwrap();
+    let report = |threads| {
+        let flown = run_faults(&campaign, threads, || Ok(())).unwrap();
+        FaultReport::new(&campaign, &flown)
+    };
+    let (one, three) = (report(1), report(3));
+    let json = |report: &FaultReport| serde_json::to_string(report).unwrap();
+    assert_eq!(json(&one), json(&three));
+    let cells: Vec<_> = one
+        .faults
+        .iter()
+        .map(|row| (row.name, row.obstacles))
+        .collect();
+    let expected = [
+        ("link-silent-1s", 20),
+        ("link-silent-1s", 40),
+        ("elevator-rate-120", 120),
+    ];
+    assert_eq!(cells, expected);
+    for row in &one.faults {
+        assert_eq!(row.pairs, 2);
+        assert_eq!(row.clean + row.only_faulty, row.faulty + row.only_clean);
+    }
+    // The core refuses the tick after the silence, which comes 1 s after the onset.
+    let after = one.faults[0].flagged_s.unwrap();
+    assert!(after > 0.0 && after <= 1.0, "{after}");
+    let stopped = run_faults(&campaign, 1, || Err(CampaignError::Stopped)).unwrap_err();
+    assert!(matches!(stopped, CampaignError::Stopped));
 }

@@ -15,16 +15,16 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct CampaignArgs {
     #[command(flatten)]
-    scenario: ScenarioArgs,
+    pub(super) scenario: ScenarioArgs,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     obstacles: Vec<usize>,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
-    paths: Vec<u16>,
+    pub(super) paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
     #[arg(long, value_delimiter = ',', value_parser = preset())]
-    preset: Vec<Preset>,
+    pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     replan_hz: Vec<f64>,
@@ -32,15 +32,25 @@ pub(super) struct CampaignArgs {
     /// flies
     #[arg(long)]
     oracle: bool,
+    /// Fly pairs of flights without and with faults instead: the named faults, a list, or all. The cells are
+    /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless --obstacles or --replan-hz is given. Such a
+    /// campaign keeps no row file
+    #[arg(
+        long,
+        value_name = "NAME",
+        value_delimiter = ',',
+        conflicts_with_all = ["out", "report", "shard", "oracle", "timing", "taxonomy"]
+    )]
+    pub(super) faults: Vec<String>,
     /// Number of flights in each cell
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
-    trials: u32,
+    pub(super) trials: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
     #[arg(long)]
-    seed: Option<u64>,
+    pub(super) seed: Option<u64>,
     /// Number of threads; 0 takes every core
     #[arg(long, default_value_t = 0)]
-    threads: usize,
+    pub(super) threads: usize,
     /// Fly only the i-th of n parts, such as 2/8
     #[arg(long, default_value = "1/1")]
     shard: Shard,
@@ -59,7 +69,7 @@ pub(super) struct CampaignArgs {
     taxonomy: bool,
     /// Print the report as one JSON object
     #[arg(long)]
-    json: bool,
+    pub(super) json: bool,
 }
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
@@ -79,9 +89,11 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn failure(error: &CampaignError) -> Failure {
+pub(super) fn failure(error: &CampaignError) -> Failure {
     let code = match error {
         CampaignError::Flight(..)
+        | CampaignError::Faulty(..)
+        | CampaignError::Stopped
         | CampaignError::Log(..)
         | CampaignError::Full(..)
         | CampaignError::Interrupted(_)
@@ -117,16 +129,20 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
     Ok(Report::new(&campaign, &rows))
 }
 
-fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
-    let lists = Lists {
+/// The lists of the command line.
+pub(super) fn lists(args: &CampaignArgs) -> Lists {
+    Lists {
         preset: args.preset.clone(),
         obstacles: args.obstacles.clone(),
         paths: args.paths.clone(),
         replan_hz: args.replan_hz.clone(),
-    };
+    }
+}
+
+fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
-    let campaign = Campaign::new(scenario, lists, args.trials, args.seed);
+    let campaign = Campaign::new(scenario, lists(args), args.trials, args.seed);
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;
     let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
@@ -184,7 +200,7 @@ fn fly_rows(
 }
 
 /// Makes a progress bar. It is drawn on a terminal only.
-fn progress_bar(flights: usize) -> ProgressBar {
+pub(super) fn progress_bar(flights: usize) -> ProgressBar {
     let bar = ProgressBar::new(flights as u64);
     let style =
         ProgressStyle::with_template("{wide_bar} {pos}/{len} flights, {per_sec}, {eta} left");

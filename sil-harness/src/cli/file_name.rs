@@ -121,7 +121,7 @@ mod tests {
             gusts("2.0"),
             "[lidar]\nbeams = 31\n".to_owned(),
             "[air_data]\nairspeed_sigma = 0.1\n".to_owned(),
-            "[navigation]\nsource = \"rtk\"\n".to_owned(),
+            "[navigation]\nsource = \"ideal\"\n".to_owned(),
             "[[obstacle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n".to_owned(),
             "[[obstacle]]\nx = 61.0\nz = 50.0\nradius = 2.0\n".to_owned(),
         ];

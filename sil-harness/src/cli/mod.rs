@@ -8,6 +8,7 @@ mod bench;
 mod campaign;
 mod check;
 mod core;
+mod fault_campaign;
 mod figures;
 mod file_name;
 mod fly;
@@ -60,7 +61,8 @@ pub fn run() -> ExitCode {
     let result = match cli.command {
         None => fly::run(&cli.fly),
         Some(Command::Fly(args)) => fly::run(&args),
-        Some(Command::Campaign(args)) => campaign::run(&args),
+        Some(Command::Campaign(args)) if args.faults.is_empty() => campaign::run(&args),
+        Some(Command::Campaign(args)) => fault_campaign::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

@@ -77,3 +77,18 @@ fn a_file_is_written_whole_or_not_at_all() {
     assert_eq!(std::fs::read_dir(&directory).unwrap().count(), 1);
     std::fs::remove_dir_all(directory).unwrap();
 }
+
+/// Every file of a fault has a line in the table of the named faults, and the other way round.
+#[test]
+fn every_file_of_a_fault_is_in_the_table() {
+    let directory = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/scenarios/faults");
+    let files = std::fs::read_dir(directory).unwrap();
+    let mut names: Vec<String> = files
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    let table = mpp_analysis::campaign::NamedFault::ALL.iter();
+    let mut expected: Vec<String> = table.map(|fault| format!("{}.toml", fault.name)).collect();
+    expected.sort();
+    assert_eq!(names, expected);
+}

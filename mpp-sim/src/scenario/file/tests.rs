@@ -34,7 +34,12 @@ fn the_documented_example_holds_every_key() {
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
     assert_eq!(keys(&json["navigation"]), 8);
     assert_eq!(keys(&json["faults"]["actuators"]), 4);
-    assert!(file.faults != Faults::default());
+    let faults = &json["faults"];
+    assert_eq!(keys(faults), 15);
+    // A flag that is false is not written.
+    assert_eq!((keys(&faults["airspeed"]), keys(&faults["air"])), (7, 4));
+    assert_eq!((keys(&faults["scan"]), keys(&faults["link"])), (5, 4));
+    assert_eq!(keys(&faults["clock"]), 4);
 }
 
 #[test]
@@ -49,6 +54,11 @@ fn unknown_keys_are_refused_by_name() {
         ("[faults.actuators]\nthrust = 1.0", "thrust"),
         ("[faults.model_error]\nweight = 0.1", "weight"),
         ("[faults.lidar]\nghosts = 0.1", "ghosts"),
+        ("[faults.airspeed]\nstuck = true", "stuck"),
+        ("[faults.position]\ndelay = 0.2", "delay"),
+        ("[faults.scan]\nrate_hz = 2.0", "rate_hz"),
+        ("[faults.link]\nlost = 0.2", "lost"),
+        ("[faults.clock]\nback = 1.0", "back"),
         (
             "[[obstacle]]\nx = 1.0\nz = 1.0\nradius = 1.0\ncolour = 2",
             "colour",
@@ -116,4 +126,57 @@ fn a_scene_stands_alone_unless_obstacles_are_asked_for() {
     );
     let placed = parse("[[obstacle]]\nx = 30.0\nz = 50.0\nradius = 2.0").unwrap();
     assert_eq!(placed.field().obstacles.len(), 1);
+}
+
+#[test]
+fn a_bad_table_of_a_fault_is_refused_by_table_and_key() {
+    for (text, table, key) in [
+        ("airspeed]\nfrom = -1.0", "airspeed", "from"),
+        ("airspeed]\nfrom = 2.0\nuntil = 2.0", "airspeed", "until"),
+        ("pitch]\nbias = nan", "pitch", "bias"),
+        ("x]\nquantum = 0.0", "x", "quantum"),
+        ("z]\nnoise = -1.0", "z", "noise"),
+        ("elevator]\nscale = inf", "elevator", "scale"),
+        ("thrust]\nramp = nan", "thrust", "ramp"),
+        ("air]\ndelay_ms = 15", "air", "delay_ms"),
+        ("air]\ndelay_ms = 20000", "air", "delay_ms"),
+        ("position]\nrate_hz = 3.0", "position", "rate_hz"),
+        ("scan]\nrotation_deg = 200.0", "scan", "rotation_deg"),
+        ("link]\nloss = 1.5", "link", "loss"),
+        ("clock]\njump = 1e9", "clock", "jump"),
+    ] {
+        let error = refused(&format!("[faults.{text}"));
+        let begin = format!("faults.{table}: give a");
+        assert!(error.starts_with(&begin), "{error}");
+        assert!(error.contains(&format!("`{key}`")), "{error}");
+    }
+}
+
+/// A second file changes what it names and keeps the rest, also within a table.
+#[test]
+fn a_file_over_a_file_keeps_what_it_does_not_name() {
+    let text = "seed = 7\nobstacles = 40\n[faults.gusts]\nintensity = 1.0\n\
+                [faults.link]\nfrom = 2.0\nloss = 0.1";
+    let base = ScenarioFile::parse("base.toml", text).unwrap();
+    let over = "latency_ms = 20\n[faults.link]\nloss = 0.2\n[navigation]\nsource = \"rtk\"";
+    let both = base.under("over.toml", over).unwrap();
+    assert_eq!(
+        (both.seed, both.obstacles, both.latency_ms),
+        (Some(7), Some(40), Some(20))
+    );
+    assert!((both.faults.gusts.intensity - 1.0).abs() < 1e-15);
+    assert_eq!(
+        (both.faults.link.from, both.faults.link.loss),
+        (Some(2.0), Some(0.2))
+    );
+    assert_eq!(both.navigation.source, Some(NavigationSource::Rtk));
+    assert_eq!(base.under("over.toml", "").unwrap(), base);
+    let error = base
+        .under("over.toml", "latency = 20")
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("over.toml") && error.contains("`latency`"),
+        "{error}"
+    );
 }

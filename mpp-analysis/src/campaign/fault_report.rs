@@ -1,0 +1,170 @@
+//! The report of a campaign of faults.
+
+use super::faults::{FaultCampaign, FaultJob};
+use super::grid::Cell;
+use super::report::median;
+use super::stats::paired;
+use serde::Serialize;
+use std::fmt;
+
+/// What a campaign of faults keeps of one flight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flown {
+    /// Whether the flight is a success by the strict rule.
+    pub strict: bool,
+    /// Whether it collided with an obstacle that it had known.
+    pub known_collision: bool,
+    /// Time from the onset of the fault until the core said so \[s\].
+    pub flagged: Option<f64>,
+}
+
+/// The result of a campaign of faults, the same for any number of threads.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultReport {
+    /// One entry for each fault and cell.
+    pub faults: Vec<FaultRow>,
+}
+
+/// The pairs of one fault in one cell.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultRow {
+    /// Name of the fault.
+    pub name: &'static str,
+    /// Number of random obstacles in the field.
+    pub obstacles: usize,
+    /// Replanning rate \[Hz\].
+    pub replan_hz: f64,
+    /// Number of pairs.
+    pub pairs: u32,
+    /// Number of strict successes without the fault.
+    pub clean: u32,
+    /// Number of strict successes with it.
+    pub faulty: u32,
+    /// Number of pairs in which only the flight without the fault is a success.
+    pub only_clean: u32,
+    /// Number of pairs in which only the flight with the fault is a success.
+    pub only_faulty: u32,
+    /// Success rate without the fault less that with it [percentage points].
+    pub lost_points: f64,
+    /// Lower end of the 95 % interval of these points.
+    pub lost_low: f64,
+    /// Upper end of this interval.
+    pub lost_high: f64,
+    /// The most points that the fault may cost; null if nothing is asked.
+    pub asked: Option<f64>,
+    /// Number of flights with the fault that collided with an obstacle that a beam had met more than 1 s
+    /// before.
+    pub known_collisions: u32,
+    /// Number of flights with the fault in which the core refused an input or excluded a sensor after the
+    /// onset.
+    pub flagged: u32,
+    /// Median over these flights of the time from the onset to that tick \[s\]; null without such flights.
+    pub flagged_s: Option<f64>,
+}
+
+impl FaultReport {
+    /// The report of a campaign whose jobs came to these ends, in the order of the jobs.
+    #[must_use]
+    pub fn new(campaign: &FaultCampaign, flown: &[(FaultJob, Flown)]) -> Self {
+        let of = |fault: Option<usize>, cell: Cell| -> Vec<&Flown> {
+            let these = flown.iter();
+            let these = these.filter(|(job, _)| job.fault == fault && job.cell == cell);
+            these.map(|(_, flown)| flown).collect()
+        };
+        let mut faults = Vec::new();
+        for (number, variant) in campaign.faults.iter().enumerate() {
+            for &cell in &variant.cells {
+                let (clean, faulty) = (of(None, cell), of(Some(number), cell));
+                let row = FaultRow::new(variant.fault.name, cell, &clean, &faulty);
+                faults.push(FaultRow {
+                    asked: variant.fault.asked,
+                    ..row
+                });
+            }
+        }
+        Self { faults }
+    }
+}
+
+impl FaultRow {
+    /// The row of flights without and with a fault, seed for seed.
+    fn new(name: &'static str, cell: Cell, clean: &[&Flown], faulty: &[&Flown]) -> Self {
+        let both = || clean.iter().zip(faulty);
+        let count = |is: fn(bool, bool) -> bool| {
+            both()
+                .filter(|(clean, faulty)| is(clean.strict, faulty.strict))
+                .count() as u32
+        };
+        let only_clean = count(|clean, faulty| clean && !faulty);
+        let only_faulty = count(|clean, faulty| !clean && faulty);
+        let pairs = count(|_, _| true);
+        let (low, high) = paired(only_clean, only_faulty, pairs);
+        let lost = f64::from(only_clean) - f64::from(only_faulty);
+        let flags = || faulty.iter().filter_map(|flown| flown.flagged);
+        Self {
+            name,
+            obstacles: cell.obstacles,
+            replan_hz: cell.replan_hz,
+            pairs,
+            clean: count(|clean, _| clean),
+            faulty: count(|_, faulty| faulty),
+            only_clean,
+            only_faulty,
+            lost_points: 100.0 * lost / f64::from(pairs.max(1)),
+            lost_low: 100.0 * low,
+            lost_high: 100.0 * high,
+            asked: None,
+            known_collisions: faulty.iter().filter(|flown| flown.known_collision).count() as u32,
+            flagged: flags().count() as u32,
+            flagged_s: median(flags()),
+        }
+    }
+}
+
+impl fmt::Display for FaultReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>5} {:>7} {:>9}",
+            "fault",
+            "obstacles",
+            "Hz",
+            "pairs",
+            "clean",
+            "faulty",
+            "only clean",
+            "only faulty",
+            "lost points [95 %]",
+            "asked",
+            "known",
+            "flagged",
+            "after [s]",
+        )?;
+        for row in &self.faults {
+            let lost = format!(
+                "{:.1} [{:.1}, {:.1}]",
+                row.lost_points, row.lost_low, row.lost_high
+            );
+            let number = |value: Option<f64>, digits| {
+                value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+            };
+            writeln!(
+                f,
+                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>5} {:>7} {:>9}",
+                row.name,
+                row.obstacles,
+                row.replan_hz,
+                row.pairs,
+                row.clean,
+                row.faulty,
+                row.only_clean,
+                row.only_faulty,
+                number(row.asked, 0),
+                row.known_collisions,
+                row.flagged,
+                number(row.flagged_s, 2),
+            )?;
+        }
+        Ok(())
+    }
+}

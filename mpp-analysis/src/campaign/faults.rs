@@ -1,0 +1,298 @@
+//! A campaign of faults: for each named fault the same fields are flown without and with it.
+//!
+//! The flights without a fault are flown once for each cell. All faults share them.
+
+use super::grid::{Campaign, Cell, Lists};
+use mpp_sim::names::UnknownName;
+use mpp_sim::scenario::{Scenario, ScenarioError, ScenarioFile};
+
+/// A fault with a name, as a scenario file that goes over the campaign's scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NamedFault {
+    /// Its name.
+    pub name: &'static str,
+    /// The text of its file.
+    pub text: &'static str,
+    /// The most points of success that it may cost [percentage points]; `None` if nothing is asked.
+    pub asked: Option<f64>,
+}
+
+/// Makes the table of the faults from their names and what is asked of them.
+macro_rules! named {
+    ($($name:literal: $asked:expr,)*) => {
+        &[$(NamedFault {
+            name: $name,
+            text: include_str!(concat!("../../../docs/scenarios/faults/", $name, ".toml")),
+            asked: $asked,
+        }),*]
+    };
+}
+
+impl NamedFault {
+    /// All of them, in the order of the report. The files are in `docs/scenarios/faults`.
+    pub const ALL: &'static [Self] = named! {
+        "rtk": Some(1.0),
+        "gnss-ins": Some(2.0),
+        "lidar-odometry": Some(2.0),
+        "airspeed-frozen": Some(2.0),
+        "pitch-frozen": Some(2.0),
+        "both-frozen": Some(5.0),
+        "pitch-bias": Some(3.0),
+        "airspeed-bias": Some(3.0),
+        "airspeed-ramp": Some(3.0),
+        "pitot-blocked": Some(3.0),
+        "air-delay": Some(3.0),
+        "scan-delay": Some(3.0),
+        "position-delay": Some(3.0),
+        "scan-stale": Some(3.0),
+        "lidar-zeros": Some(3.0),
+        "lidar-full-range": Some(3.0),
+        "lidar-frozen": Some(3.0),
+        "lidar-silent": Some(3.0),
+        "link-silent-1s": Some(1.0),
+        "link-silent-3s": Some(5.0),
+        "link-loss-20": Some(1.0),
+        "link-loss-50": Some(10.0),
+        "clock-jump-1s": Some(2.0),
+        "clock-jump-10s": Some(2.0),
+        "clock-jump-100s": Some(2.0),
+        "clock-back": Some(2.0),
+        "clock-wrap": Some(2.0),
+        "latency-250ms": Some(2.0),
+        "latency-500ms": Some(5.0),
+        "elevator-rate-120": None,
+        "elevator-rate-160": None,
+        "elevator-stuck-1s": Some(2.0),
+        "elevator-quarter": Some(5.0),
+        "thrust-lost-3s": Some(5.0),
+        "position-jump": Some(3.0),
+        "position-step": Some(3.0),
+        "position-noise-0.1": None,
+    };
+
+    /// The faults with these names, in the order of the names. The name `all` stands for all of them.
+    ///
+    /// # Errors
+    /// [`UnknownName`].
+    pub fn of(names: &[String]) -> Result<Vec<Self>, UnknownName> {
+        let mut found: Vec<Self> = Vec::new();
+        for name in names {
+            let these = |fault: &&Self| name == "all" || fault.name == name;
+            let known = found.len();
+            let named = Self::ALL.iter().filter(these);
+            let mut any = false;
+            for fault in named {
+                any = true;
+                if !found[..known].contains(fault) {
+                    found.push(*fault);
+                }
+            }
+            if !any {
+                let known = core::iter::once("all").chain(Self::ALL.iter().map(|fault| fault.name));
+                return Err(UnknownName {
+                    kind: "fault",
+                    name: name.clone(),
+                    known: known.collect(),
+                });
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// One fault of a campaign.
+#[derive(Clone, Debug)]
+pub(super) struct Variant {
+    pub(super) fault: NamedFault,
+    /// The campaign with the fault; only its scenario and its seeds count.
+    campaign: Campaign,
+    /// The cells of the pairs.
+    pub(super) cells: Vec<Cell>,
+}
+
+/// One flight of a campaign of faults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FaultJob {
+    /// Number of the fault in the campaign; `None` without a fault.
+    pub(super) fault: Option<usize>,
+    /// Cell of the flight.
+    pub cell: Cell,
+    /// Seed of the flight.
+    pub seed: u64,
+}
+
+/// The pairs of flights of a campaign of faults.
+#[derive(Clone, Debug)]
+pub struct FaultCampaign {
+    clean: Campaign,
+    pub(super) faults: Vec<Variant>,
+}
+
+/// Obstacles and replanning rate \[Hz\] of the pairs if the lists name none.
+const DEFAULT_PAIRS: [(usize, f64); 2] = [(20, 1.0), (40, 4.0)];
+
+impl FaultCampaign {
+    /// A campaign with `trials` pairs for each fault and cell. The cells are those of the lists, or 20
+    /// obstacles at 1 Hz and 40 obstacles at 4 Hz. A fault whose file names obstacles or a rate has these in
+    /// each cell.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] when the scenario, a fault or a cell is invalid.
+    pub fn new(
+        scenario: &ScenarioFile,
+        lists: &Lists,
+        trials: u32,
+        seed: Option<u64>,
+        faults: &[NamedFault],
+    ) -> Result<Self, ScenarioError> {
+        let given = !lists.obstacles.is_empty() || !lists.replan_hz.is_empty();
+        let clean = Campaign::new(scenario.clone(), lists.clone(), trials, seed)?;
+        let mut cells = clean.cells();
+        cells.retain(|cell| !cell.oracle);
+        if !given {
+            let paired = |cell: &Cell| {
+                let cell = *cell;
+                DEFAULT_PAIRS.map(|(obstacles, replan_hz)| Cell {
+                    obstacles,
+                    replan_hz,
+                    ..cell
+                })
+            };
+            cells = cells.iter().flat_map(paired).collect();
+        }
+        let variant = |fault: &NamedFault| -> Result<Variant, ScenarioError> {
+            let name = format!("docs/scenarios/faults/{}.toml", fault.name);
+            let own = ScenarioFile::parse(&name, fault.text)?;
+            let mut paired: Vec<Cell> = Vec::new();
+            for cell in &cells {
+                let cell = Cell {
+                    obstacles: own.obstacles.unwrap_or(cell.obstacles),
+                    replan_hz: own.replan_hz.unwrap_or(cell.replan_hz),
+                    ..*cell
+                };
+                if !paired.contains(&cell) {
+                    paired.push(cell);
+                }
+            }
+            let variant = Variant {
+                fault: *fault,
+                campaign: Campaign {
+                    scenario: clean.scenario.under(&name, fault.text)?,
+                    ..clean.clone()
+                },
+                cells: paired,
+            };
+            for cell in &variant.cells {
+                clean.scenario(cell, clean.seed)?;
+                variant.campaign.scenario(cell, clean.seed)?;
+            }
+            Ok(variant)
+        };
+        let faults = faults.iter().map(variant).collect::<Result<_, _>>()?;
+        Ok(Self { clean, faults })
+    }
+
+    /// Every flight: those without a fault first, each of them once.
+    #[must_use]
+    pub fn jobs(&self) -> Vec<FaultJob> {
+        let mut clean: Vec<(Option<usize>, Cell)> = Vec::new();
+        let mut faulty = Vec::new();
+        for (number, variant) in self.faults.iter().enumerate() {
+            for cell in &variant.cells {
+                if !clean.contains(&(None, *cell)) {
+                    clean.push((None, *cell));
+                }
+                faulty.push((Some(number), *cell));
+            }
+        }
+        let all = clean.into_iter().chain(faulty);
+        all.flat_map(|(fault, cell)| self.seeds().map(move |seed| FaultJob { fault, cell, seed }))
+            .collect()
+    }
+
+    /// The seeds of the pairs.
+    fn seeds(&self) -> impl Iterator<Item = u64> + use<> {
+        let first = self.clean.seed;
+        (0..u64::from(self.clean.trials)).map(move |trial| first.wrapping_add(trial))
+    }
+
+    /// The scenario of a flight.
+    ///
+    /// # Errors
+    /// [`ScenarioError`].
+    pub fn scenario(&self, job: &FaultJob) -> Result<Scenario, ScenarioError> {
+        let variant = job.fault.and_then(|number| self.faults.get(number));
+        let campaign = variant.map_or(&self.clean, |variant| &variant.campaign);
+        campaign.scenario(&job.cell, job.seed)
+    }
+
+    /// The name of a flight's fault, if it has one.
+    #[must_use]
+    pub fn name(&self, job: &FaultJob) -> Option<&'static str> {
+        let variant = job.fault.and_then(|number| self.faults.get(number));
+        variant.map(|variant| variant.fault.name)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn campaign(names: &[&str], lists: &Lists) -> FaultCampaign {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let faults = NamedFault::of(&names).unwrap();
+        FaultCampaign::new(&ScenarioFile::default(), lists, 3, Some(5), &faults).unwrap()
+    }
+
+    #[test]
+    fn every_named_fault_is_a_fault_that_can_be_flown() {
+        let all = campaign(&["all"], &Lists::default());
+        assert_eq!(all.faults.len(), NamedFault::ALL.len());
+        for variant in &all.faults {
+            let job = |fault| FaultJob {
+                fault,
+                cell: variant.cells[0],
+                seed: 5,
+            };
+            let number = all.faults.iter().position(|one| one.fault == variant.fault);
+            let (clean, faulty) = (all.scenario(&job(None)), all.scenario(&job(number)));
+            let (clean, faulty) = (clean.unwrap(), faulty.unwrap());
+            // The source of fault `rtk` is the one that preset `flight` has without a fault.
+            let same = variant.fault.name == "rtk";
+            assert_eq!(clean == faulty, same, "{}", variant.fault.name);
+            assert_eq!(clean.field(), faulty.field(), "{}", variant.fault.name);
+        }
+    }
+
+    #[test]
+    fn faults_share_the_flights_without_a_fault() {
+        let two = campaign(&["rtk", "pitch-bias", "rtk"], &Lists::default());
+        let jobs = two.jobs();
+        let clean = jobs.iter().filter(|job| job.fault.is_none()).count();
+        // Two cells with three seeds each.
+        assert_eq!((clean, jobs.len()), (6, 18));
+        let own = campaign(&["latency-500ms"], &Lists::default()).jobs();
+        let cells: Vec<_> = own
+            .iter()
+            .map(|job| (job.cell.obstacles, job.cell.replan_hz))
+            .collect();
+        assert_eq!(cells[0], (20, 2.0));
+        assert_eq!(cells[11], (40, 2.0));
+        let lists = Lists {
+            obstacles: vec![10, 30],
+            ..Lists::default()
+        };
+        let dense = campaign(&["elevator-rate-160"], &lists).jobs();
+        assert_eq!(dense.len(), 6);
+        assert!(dense.iter().all(|job| job.cell.obstacles == 160));
+    }
+
+    #[test]
+    fn an_unknown_fault_is_refused_with_the_known_ones() {
+        let error = NamedFault::of(&["rtx".to_owned()]).unwrap_err().to_string();
+        assert!(
+            error.starts_with("there is no fault `rtx`: give all, rtk, "),
+            "{error}"
+        );
+    }
+}

@@ -1,0 +1,60 @@
+//! The part of a flight in which a fault acts.
+
+use mpp_core::config::TICK_PERIOD;
+
+/// The ticks at which a fault acts, by the keys `from` and `until` of its table \[s\]. Without them it acts
+/// during the whole flight.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Window {
+    pub(super) from: Option<f64>,
+    pub(super) until: Option<f64>,
+}
+
+impl Window {
+    /// The first tick of the fault.
+    pub(super) fn first(&self) -> u32 {
+        self.from.map_or(0, whole_ticks)
+    }
+
+    /// Whether the fault acts at a tick.
+    pub(super) fn holds(&self, tick: u32) -> bool {
+        tick >= self.first() && self.until.is_none_or(|until| tick < whole_ticks(until))
+    }
+
+    /// What is wrong with the two keys.
+    pub(super) fn flaw(&self) -> Option<&'static str> {
+        let from = self.from.unwrap_or(0.0);
+        if !(0.0..=LONGEST).contains(&from) {
+            return Some("give a `from` of 0 to 3600 s");
+        }
+        let ends = |until: f64| until > from && until <= LONGEST;
+        let sound = self.until.is_none_or(ends);
+        (!sound).then_some("give an `until` after `from`, and at most 3600 s")
+    }
+}
+
+/// Ticks in a second.
+pub(super) const TICKS_PER_SECOND: u32 = (1.0 / TICK_PERIOD) as u32;
+
+/// Length of a tick \[ms\].
+const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
+
+/// Latest time of a key \[s\]: the longest flight.
+const LONGEST: f64 = 3600.0;
+
+/// The tick nearest to a time \[s\].
+fn whole_ticks(time: f64) -> u32 {
+    (time * f64::from(TICKS_PER_SECOND)).round() as u32
+}
+
+/// Whether a table has no fault. The log then does not hold the table.
+pub(super) fn is_absent<T: Default + PartialEq>(fault: &T) -> bool {
+    *fault == T::default()
+}
+
+/// The ticks of a time that must be a whole number of them \[ms\]; `None` if it is not, or if it is longer
+/// than 10 s.
+pub(super) fn ticks_of(delay_ms: u32) -> Option<u32> {
+    let sound = delay_ms.is_multiple_of(TICK_MS) && delay_ms <= 10_000;
+    sound.then_some(delay_ms / TICK_MS)
+}

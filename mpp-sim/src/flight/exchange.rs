@@ -1,0 +1,125 @@
+//! The exchange of one tick over a link that may lose it, under a tick counter that may be wrong.
+
+use super::session::{Answer, Session};
+use crate::entries::RejectionEntry;
+use crate::faults::{ClockFault, Line, Passage};
+use crate::link::LinkError;
+use crate::scenario::Scenario;
+use hil_protocol::{ActuatorCommand, ControlMode, LidarScan, SensorFrame};
+use mpp_core::vehicle::TrimError;
+
+/// The link of one flight, with its faults.
+pub(super) struct Exchange {
+    line: Line,
+    clock: ClockFault,
+    /// The command that the aircraft has.
+    command: ActuatorCommand,
+}
+
+impl Exchange {
+    /// The link of a scenario. Before the first command the aircraft holds trim.
+    pub(super) fn new(scenario: &Scenario) -> Result<Self, TrimError> {
+        let trim = scenario.trim()?.control;
+        Ok(Self {
+            line: Line::new(scenario.seed, scenario.faults.link),
+            clock: scenario.faults.clock,
+            command: ActuatorCommand {
+                tick: 0,
+                thrust: trim.thrust,
+                elevator: trim.elevator,
+                mode: ControlMode::TrimHold,
+            },
+        })
+    }
+
+    /// The messages of a tick that come through.
+    pub(super) fn passage(&mut self, tick: u32) -> Passage {
+        self.line.passage(tick)
+    }
+
+    /// Sends what comes to the core, and gives its answer. Without an answer, and if the command is lost, the
+    /// aircraft keeps its last command. Reports are for the log alone, so they are never lost.
+    pub(super) fn tick(
+        &mut self,
+        session: &mut Session<'_>,
+        passage: Passage,
+        scan: Option<LidarScan>,
+        frame: SensorFrame,
+    ) -> Result<Answer, LinkError> {
+        let now = frame.tick;
+        let known = session.rejections.len();
+        let mut answer = if passage.to_core {
+            session.fly(
+                scan.map(|scan| self.stamped(scan)).as_ref(),
+                self.frame(frame),
+            )?
+        } else {
+            None
+        };
+        if let Some(answer) = &mut answer {
+            self.restore(answer, now);
+            if passage.to_aircraft {
+                self.command = answer.command;
+            }
+        }
+        for entry in session.rejections.iter_mut().skip(known) {
+            self.restore_entry(entry, now);
+        }
+        let command = self.command;
+        Ok(match answer {
+            Some(answer) => Answer { command, ..answer },
+            None => Answer {
+                command,
+                step: None,
+                plan: None,
+                trajectory: None,
+                health: None,
+            },
+        })
+    }
+
+    /// A scan with the number that the core sees.
+    fn stamped(&self, scan: LidarScan) -> LidarScan {
+        LidarScan {
+            tick: self.clock.shown(scan.tick),
+            ..scan
+        }
+    }
+
+    /// A frame with the numbers that the core sees.
+    fn frame(&self, mut frame: SensorFrame) -> SensorFrame {
+        frame.tick = self.clock.shown(frame.tick);
+        if let Some(air) = &mut frame.air {
+            air.tick = self.clock.shown(air.tick);
+        }
+        if let Some(position) = &mut frame.position {
+            position.tick = self.clock.shown(position.tick);
+        }
+        frame
+    }
+
+    /// Gives the reports the ticks of the flight.
+    fn restore(&self, answer: &mut Answer, now: u32) {
+        let flown = |shown: &mut u32| *shown = self.clock.flown(*shown, now).unwrap_or(*shown);
+        answer.command.tick = now;
+        if let Some(step) = &mut answer.step {
+            step.tick = now;
+        }
+        if let Some(health) = &mut answer.health {
+            health.tick = now;
+        }
+        if let Some(plan) = &mut answer.plan {
+            flown(&mut plan.scan_tick);
+            flown(&mut plan.used_from_tick);
+        }
+        if let Some(trajectory) = &mut answer.trajectory {
+            flown(&mut trajectory.scan_tick);
+        }
+    }
+
+    fn restore_entry(&self, entry: &mut RejectionEntry, now: u32) {
+        let shown = u32::try_from(entry.tick).ok();
+        let flown = shown.and_then(|shown| self.clock.flown(shown, now));
+        entry.tick = flown.map_or(entry.tick, u64::from);
+    }
+}

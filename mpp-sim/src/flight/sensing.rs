@@ -1,0 +1,100 @@
+//! The sensors of one flight with their faults: from the true state to what arrives at the link.
+
+use crate::faults::{Delivery, ScanFault, Scans, Signal};
+use crate::lidar::LidarConfig;
+use crate::navigation::{GroundTruth, NavigationSensor};
+use crate::random::Stream;
+use crate::scenario::Scenario;
+use crate::sensors::{AirDataSensors, Measurement};
+use hil_protocol::{AirData, LidarScan, Position, SensorFrame};
+use mpp_core::vehicle::{VehicleState, Wind};
+
+/// The sensors of one flight.
+pub(super) struct Sensing {
+    sensors: AirDataSensors,
+    airspeed: Signal,
+    pitch: Signal,
+    air: Delivery<AirData>,
+    navigation: NavigationSensor,
+    x: Signal,
+    z: Signal,
+    position: Delivery<Position>,
+    lidar: LidarConfig,
+    scan_fault: ScanFault,
+    scans: Scans,
+}
+
+impl Sensing {
+    /// The sensors of a scenario.
+    pub(super) fn new(scenario: &Scenario) -> Self {
+        let (seed, faults) = (scenario.seed, &scenario.faults);
+        let pitch = faults.pitch.in_units_of(1_f64.to_radians());
+        Self {
+            sensors: AirDataSensors::new(seed, scenario.air_data),
+            airspeed: Signal::new(seed, Stream::AirspeedFault, faults.airspeed),
+            pitch: Signal::new(seed, Stream::PitchFault, pitch),
+            air: Delivery::new(faults.air),
+            navigation: NavigationSensor::new(seed, scenario.navigation),
+            x: Signal::new(seed, Stream::XFault, faults.x),
+            z: Signal::new(seed, Stream::ZFault, faults.z),
+            position: Delivery::new(faults.position),
+            lidar: scenario.lidar,
+            scan_fault: faults.scan,
+            scans: Scans::new(faults.scan, scenario.lidar.range_max),
+        }
+    }
+
+    /// Measures a tick. Returns what the air data sensors say, and the measurements that arrive at this tick.
+    pub(super) fn measure(
+        &mut self,
+        tick: u32,
+        state: &VehicleState,
+        wind: Wind,
+    ) -> (Measurement, SensorFrame) {
+        let sound = self.sensors.measure(state);
+        let measured = Measurement {
+            airspeed: self.airspeed.pass(tick, sound.airspeed),
+            pitch: self.pitch.pass(tick, sound.pitch),
+        };
+        let air = AirData {
+            tick,
+            airspeed: measured.airspeed,
+            pitch: measured.pitch,
+        };
+        let truth = GroundTruth {
+            position: (state.x, state.z),
+            velocity: wind.ground_velocity(&state.air),
+        };
+        let position = self.navigation.measure(tick, &truth).map(|sound| Position {
+            x: self.x.pass(sound.tick, sound.x),
+            z: self.z.pass(sound.tick, sound.z),
+            ..sound
+        });
+        let frame = SensorFrame {
+            tick,
+            air: self.air.pass(tick, Some(air)),
+            position: self.position.pass(tick, position),
+        };
+        (measured, frame)
+    }
+
+    /// The state of the lidar at a tick, which may be turned.
+    pub(super) fn lidar_state(&self, tick: u32, state: &VehicleState) -> VehicleState {
+        let mut turned = *state;
+        let rotation = self.scan_fault.rotation(tick);
+        if rotation != 0.0 {
+            turned.air.pitch += rotation;
+        }
+        turned
+    }
+
+    /// What the lidar shows at a tick, made from its ranges \[m\]; `None` if it shows nothing.
+    pub(super) fn show(&mut self, tick: u32, ranges: &[f32]) -> Option<LidarScan> {
+        self.scans.show(self.lidar.wire_scan(tick, ranges))
+    }
+
+    /// Takes the scan of a tick, if there is one, and gives the one that arrives at this tick.
+    pub(super) fn scan(&mut self, tick: u32, shown: Option<LidarScan>) -> Option<LidarScan> {
+        self.scans.pass(tick, shown)
+    }
+}

@@ -1,0 +1,83 @@
+//! What an observer of a flight notes beside its log, for a campaign.
+
+use crate::field::{Obstacle, Point};
+use crate::inquest::Inquest;
+use crate::log::FlightLog;
+use crate::moment::Moment;
+use crate::outcome::Outcome;
+use crate::scenario::Scenario;
+use hil_protocol::SensorState;
+
+/// Time from which on an obstacle counts as known \[s\]: the aircraft can avoid it with time to spare.
+pub const KNOWN: f64 = 1.0;
+
+/// Watches one flight.
+#[derive(Default)]
+pub struct Witness {
+    inquest: Inquest,
+    /// The first tick of the faults.
+    onset: u32,
+    /// Ticks watched.
+    ticks: u32,
+    place: Point,
+    /// Inputs refused so far.
+    rejections: usize,
+    /// Number of sensors that are excluded.
+    excluded: usize,
+    flagged: Option<f64>,
+}
+
+impl Witness {
+    /// A witness of a flight of this scenario.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            onset: scenario.faults.onset(),
+            ..Self::default()
+        }
+    }
+
+    /// Records one tick.
+    pub fn watch(&mut self, moment: &Moment<'_>) {
+        self.inquest.watch(moment);
+        self.place = (moment.tick.state.x, moment.tick.state.z);
+        let since = self.ticks.checked_sub(self.onset);
+        self.ticks += 1;
+        let states = moment.sensors.named();
+        let excluded = states
+            .iter()
+            .filter(|(_, state)| *state == SensorState::Excluded);
+        let excluded = excluded.count();
+        let said = moment.rejections > self.rejections || excluded > self.excluded;
+        if let Some(since) = since.filter(|_| said) {
+            self.flagged.get_or_insert(Scenario::time(since));
+        }
+        (self.rejections, self.excluded) = (moment.rejections, excluded);
+    }
+
+    /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an
+    /// input, or it excluded a sensor. `None` if it said nothing.
+    #[must_use]
+    pub fn flagged(&self) -> Option<f64> {
+        self.flagged
+    }
+
+    /// Whether the flight collided with an obstacle that a beam had met more than [`KNOWN`] before. A scan
+    /// that the lidar did not show, or that was lost, does not count.
+    #[must_use]
+    pub fn known_collision(&self, log: &FlightLog) -> bool {
+        if log.summary.outcome != Outcome::Collision {
+            return false;
+        }
+        let field = log.header.field.iter().map(|entry| Obstacle {
+            x: entry.x,
+            z: entry.z,
+            radius: entry.radius,
+        });
+        let field: Vec<Obstacle> = field.collect();
+        let seen = self
+            .inquest
+            .seen_before(&field, self.place, log.summary.t_end);
+        seen.is_some_and(|time| time > KNOWN)
+    }
+}

@@ -1,0 +1,40 @@
+//! `campaign --faults`: pairs of flights without and with named faults.
+
+use super::answer::{FAILURE, Failure, USAGE, data};
+use super::campaign::{CampaignArgs, failure, lists, progress_bar};
+use super::signals::Signals;
+use crate::campaign::{CampaignError, run_faults};
+use mpp_analysis::campaign::{FaultCampaign, FaultReport, NamedFault};
+
+pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
+    let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
+    if args.preset.len() > 1 || args.paths.len() > 1 {
+        return Err(usage(
+            &"--faults: give at most one --preset and one --paths",
+        ));
+    }
+    let faults = NamedFault::of(&args.faults).map_err(|error| usage(&error))?;
+    let scenario = args.scenario.file()?;
+    let campaign = FaultCampaign::new(&scenario, &lists(args), args.trials, args.seed, &faults)
+        .map_err(|error| usage(&error))?;
+    let signals = Signals::heed()?;
+    let progress = progress_bar(campaign.jobs().len());
+    let flown = run_faults(&campaign, args.threads, || {
+        progress.inc(1);
+        signals
+            .raised()
+            .map_or(Ok(()), |_| Err(CampaignError::Stopped))
+    });
+    progress.finish_and_clear();
+    let flown = flown.map_err(|error| match signals.raised() {
+        Some(code) if matches!(error, CampaignError::Stopped) => Failure::new(code, error),
+        _ => failure(&error),
+    })?;
+    let report = FaultReport::new(&campaign, &flown);
+    if args.json {
+        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
+    } else {
+        data(report.to_string().trim_end())?;
+    }
+    Ok(0)
+}
