@@ -205,6 +205,22 @@ pub mod navigation {
     pub const RESTART_TIME: f64 = 1.0;
 }
 
+/// Bias of the pitch, seen as a steady vertical wind.
+pub mod bias {
+    /// Time over which the wind is averaged \[s\]. More of it tells gusts better from a bias, and finds a bias
+    /// later.
+    pub const MEMORY: f64 = 3.0;
+    /// Time after which a bias can be found \[s\].
+    pub const SEEN: f64 = 1.5;
+    /// Least mean wind of a bias [m/s]: 2.4 degrees at 12 m/s. An error of the airframe looks like a smaller
+    /// one.
+    pub const LEAST_WIND: f64 = 0.5;
+    /// Standard deviation of the estimated wind in still air [m/s].
+    pub const STILL_WIND: f64 = 0.1;
+    /// Standard deviations by which the mean wind of a bias exceeds zero [-]. Fewer take gusts for a bias.
+    pub const STEADY: f64 = 5.0;
+}
+
 /// The estimate of the lift.
 pub mod lift {
     /// Time of observation after which the observed lift and the known airframe have equal weight \[s\]. Over

@@ -48,11 +48,11 @@ impl Witness {
             .iter()
             .filter(|(_, state)| *state == SensorState::Excluded);
         let excluded = excluded.count();
-        let said = moment.rejections > self.rejections || excluded > self.excluded;
+        let said = moment.rejections.len() > self.rejections || excluded > self.excluded;
         if let Some(since) = since.filter(|_| said) {
             self.flagged.get_or_insert(Scenario::time(since));
         }
-        (self.rejections, self.excluded) = (moment.rejections, excluded);
+        (self.rejections, self.excluded) = (moment.rejections.len(), excluded);
     }
 
     /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an

@@ -2,7 +2,7 @@
 
 use super::{
     Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator, MOST_AGE, Measurement,
-    Navigation, PositionVerdict, Taken, Trust, Verdict, Watch,
+    Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -48,6 +48,7 @@ pub struct Estimator {
     airspeed: Watch,
     pitch: Watch,
     position: Watch,
+    bias: PitchBias,
 }
 
 impl Estimator {
@@ -68,6 +69,7 @@ impl Estimator {
             airspeed: Watch::new(1),
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
+            bias: PitchBias::new(),
         }
     }
 
@@ -116,18 +118,27 @@ impl Estimator {
         }
     }
 
-    /// The pose at the tick that was `age` ticks ago. `None` if that was before the first step or more than
+    /// The pose of the lidar at the tick that was `age` ticks ago, without the bias of the pitch. `None` if that was before the first step or more than
     /// [`MOST_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
+        let bias = self.bias.angle(self.air.present().airspeed);
         if age == 0 {
-            return Some(Pose::of(&self.state()));
+            let pose = Pose::of(&self.state());
+            return Some(Pose {
+                pitch: pose.pitch - bias,
+                ..pose
+            });
         }
         if age > MOST_AGE {
             return None;
         }
         let ((x, z), pitch) = self.navigation.pose_at(age)?;
-        Some(Pose { x, z, pitch })
+        Some(Pose {
+            x,
+            z,
+            pitch: pitch - bias,
+        })
     }
 
     /// The controls that the actuators gave up to the last step, by the model of the actuators.
@@ -141,7 +152,11 @@ impl Estimator {
     pub fn sensors(&self) -> Sensors {
         Sensors {
             airspeed: self.airspeed.trust(),
-            pitch: self.pitch.trust(),
+            pitch: if self.bias.found() {
+                self.pitch.trust().doubted()
+            } else {
+                self.pitch.trust()
+            },
             position: self.position.trust(),
         }
     }
@@ -242,6 +257,7 @@ impl Estimator {
                 lift.interrupt();
             } else {
                 lift.update(elapsed, climb, &air, self.given);
+                self.bias.update(self.navigation.wind().z, elapsed);
             }
         }
         let airframe = self.conditions().airframe(&self.airframe);

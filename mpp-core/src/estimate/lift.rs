@@ -48,7 +48,7 @@ impl LiftEstimator {
         let (expected, per_lift) = self.acceleration(air, given);
         let more = (climb - before) / period - expected;
         // Without airspeed there is no lift. Without a period there is no acceleration.
-        if !more.is_finite() || !(per_lift >= 1.0 && period > 0.0) {
+        if !(more.is_finite() && per_lift >= 1.0 && period > 0.0) {
             return;
         }
         self.seen = (self.seen + period).min(MEMORY);

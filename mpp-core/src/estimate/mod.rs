@@ -1,5 +1,6 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
+mod bias;
 mod changes;
 mod conditions;
 mod estimator;
@@ -10,6 +11,7 @@ mod navigation;
 mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+pub use bias::PitchBias;
 pub use changes::Changes;
 pub use conditions::Conditions;
 use core::fmt;

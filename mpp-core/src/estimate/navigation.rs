@@ -197,15 +197,17 @@ impl Navigation {
         self.last = Some((bits, fix.age));
         let delay = f64::from(fix.age) * TICK_PERIOD;
         let now = (fix.x + way.0, fix.z + way.1);
-        if self.wind_change.is_none() {
+        let Some(change) = self.wind_change else {
             self.position = now;
             self.unaided = 0;
             return PositionVerdict::Accepted;
-        }
+        };
         let sigma = fix.sigma.max(LEAST_SIGMA);
+        // The wind has changed since the measurement.
+        let noise = change * change;
         let observation = Observation {
             h: [1.0, -delay],
-            variance: sigma * sigma,
+            variance: sigma * sigma + noise * delay * delay * delay / 3.0,
         };
         if !self.started {
             self.start(now, &observation);
@@ -223,18 +225,20 @@ impl Navigation {
             return PositionVerdict::Restarted;
         }
         self.unaided = 0;
-        self.take_velocity(fix);
+        self.take_velocity(fix, noise * delay);
         PositionVerdict::Accepted
     }
 
-    fn take_velocity(&mut self, fix: &Position) {
+    /// Takes in the velocity over ground of a fix. `since` is the variance by which the wind has changed since
+    /// [(m/s)^2].
+    fn take_velocity(&mut self, fix: &Position, since: f64) {
         let (Some(velocity), Some(air)) = (fix.velocity, self.history.velocity_at(fix.age)) else {
             return;
         };
         let sigma = velocity.sigma.max(LEAST_SIGMA);
         let observation = Observation {
             h: [0.0, 1.0],
-            variance: sigma * sigma,
+            variance: sigma * sigma + since,
         };
         let off = (
             velocity.x - air.0 - self.wind.x,

@@ -16,6 +16,17 @@ pub enum Trust {
     Recovering,
 }
 
+impl Trust {
+    /// At most suspected.
+    #[must_use]
+    pub fn doubted(self) -> Self {
+        match self {
+            Self::Healthy => Self::Suspected,
+            other => other,
+        }
+    }
+}
+
 /// Watches one sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Watch {
