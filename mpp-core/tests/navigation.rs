@@ -1,7 +1,5 @@
 //! Tests the estimate of position and wind against motions that are known.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-
 mod common {
     pub(crate) mod sensors;
 }
@@ -39,7 +37,7 @@ fn air(airspeed: f64, flight_path: f64) -> AirState {
 
 fn gaussian(random: &mut Pcg64Mcg) -> f64 {
     let mut uniform = || ((random.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
-    (-2.0 * uniform().ln()).sqrt() * (core::f64::consts::TAU * uniform()).cos()
+    (-2.0 * libm::log(uniform())).sqrt() * libm::cos(core::f64::consts::TAU * uniform())
 }
 
 proptest! {

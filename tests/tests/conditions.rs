@@ -114,6 +114,7 @@ fn everything_at_once_is_flown_through_by_most() {
             dropouts: 0.1,
             false_hits: 0.01,
         },
+        ..Faults::default()
     };
     let flights = flights(faults, 40);
     let strict = flights.iter().filter(|log| log.summary.strict).count();

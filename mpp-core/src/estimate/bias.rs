@@ -14,7 +14,7 @@ pub struct PitchBias {
     /// Mean of the vertical wind [m/s], and its variance [(m/s)^2].
     mean: f64,
     variance: f64,
-    /// Greatest standard deviation of the vertical wind so far [m/s]. A flight in gusts stays one.
+    /// Greatest standard deviation of the vertical wind so far, slowly forgotten [m/s].
     lively: f64,
     found: bool,
 }
@@ -47,7 +47,7 @@ impl PitchBias {
             self.variance = 0.0;
         }
         let now = libm::sqrt(self.variance.max(0.0));
-        self.lively = now.max(self.lively);
+        self.lively = now.max(self.lively * (1.0 - period / (10.0 * MEMORY)));
         let size = libm::fabs(self.mean);
         // A bias that was found stays found until its mean is small.
         let least = if self.found {
