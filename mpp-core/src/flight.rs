@@ -73,17 +73,13 @@ impl FlightLoop {
     /// # Errors
     /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
-        let airframe = &settings.airframe;
-        let trim = check(settings)?;
-        let design = Control {
-            thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
-            ..trim.control
-        };
-        let linear = linearize(airframe, &trim.state, design, settings.design_jacobian);
-        let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
-        if !holds(settings, &trim, &lqr) {
-            return Err(SetupError::Unstable);
-        }
+        let (trim, lqr) = regulator(settings)?;
+        Self::regulated(settings, trim, lqr)
+    }
+
+    // Not inlined, so that the design of the regulator does not lie on the stack above the new loop.
+    #[inline(never)]
+    fn regulated(settings: &Settings, trim: Trim, lqr: Lqr) -> Result<Self, SetupError> {
         Ok(Self {
             estimator: Estimator::new(settings, &trim),
             lqr,
@@ -266,5 +262,27 @@ impl FlightLoop {
             },
             feedforward: self.trim.control,
         }
+    }
+}
+
+/// Checks the settings and designs the regulator about level trim.
+#[inline(never)]
+fn regulator(settings: &Settings) -> Result<(Trim, Lqr), SetupError> {
+    let trim = check(settings)?;
+    let design = Control {
+        thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
+        ..trim.control
+    };
+    let linear = linearize(
+        &settings.airframe,
+        &trim.state,
+        design,
+        settings.design_jacobian,
+    );
+    let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
+    if holds(settings, &trim, &lqr) {
+        Ok((trim, lqr))
+    } else {
+        Err(SetupError::Unstable)
     }
 }

@@ -70,7 +70,7 @@ fn fresh_measurements_give_the_plain_filter_to_the_last_bit() {
 proptest! {
     /// Whatever the age of the measurements, the estimate for the present is the truth.
     #[test]
-    fn late_measurements_give_the_present(age in 1_u32..50) {
+    fn late_measurements_give_the_present(age in 1_u32..31) {
         let states = truth(400);
         let mut filter = filter();
         for tick in 1..=400_u32 {

@@ -20,6 +20,7 @@ const SQUARINGS: i32 = 15;
 /// Whether the closed loop about level flight is stable when each command comes one tick late, at the
 /// regulator's gain and at [`GAIN_MARGIN`] times the gain. Between two ticks the controls stand still. The
 /// estimate is taken for the true motion, and the limits of the actuators do not count.
+#[inline(never)]
 pub(crate) fn holds(settings: &Settings, trim: &Trim, lqr: &Lqr) -> bool {
     let moves = sampled(&open(settings, trim));
     [1.0, GAIN_MARGIN]

@@ -1,13 +1,13 @@
-//! The motion of the last half second, for measurements that come late.
+//! The motion of the last 0.3 s, for measurements that come late.
 
 use crate::config::TICK_PERIOD;
 use crate::vehicle::{AirState, Wind};
 
 /// Number of ticks that the history holds, the present one included; a power of two.
-const TICKS: usize = 64;
+const TICKS: usize = 32;
 
-/// Greatest age of a measurement that the estimators use \[ticks\]: 0.5 s.
-pub const MOST_AGE: u32 = 50;
+/// Greatest age of a measurement that the estimators use \[ticks\]: 0.3 s.
+pub const MOST_AGE: u32 = 30;
 
 const _: () = assert!((MOST_AGE as usize) + 1 < TICKS);
 
@@ -20,7 +20,7 @@ struct Entry {
     pitch: f64,
 }
 
-/// The aircraft's way through the air and its pitch at each tick of the last half second.
+/// The aircraft's way through the air and its pitch at each tick of the last 0.3 s.
 #[derive(Clone, Debug)]
 pub struct History {
     entries: [Entry; TICKS],

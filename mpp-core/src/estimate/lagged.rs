@@ -11,7 +11,7 @@ use crate::tuning::sensors::LATE_MEASUREMENTS;
 use crate::vehicle::{AirState, Airframe, Control, air_rate};
 
 /// Number of ticks of which the controls are kept; a power of two.
-const TICKS: usize = 64;
+const TICKS: usize = 32;
 
 const _: () = assert!((MOST_AGE as usize) < TICKS);
 

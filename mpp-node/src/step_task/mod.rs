@@ -288,6 +288,8 @@ impl StepTask {
         }
     }
 
+    // Not inlined, so that a new flight is not on the stack of each tick.
+    #[inline(never)]
     fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
         match self.prepare(configure) {
             Ok(flight) => {

@@ -8,6 +8,8 @@ use hil_protocol::{ConfigureVerdict, Message, ParameterReply, ParameterVerdict, 
 use mpp_core::flight::FlightLoop;
 
 impl StepTask {
+    // Not inlined, so that a new flight loop is not on the stack of each tick.
+    #[inline(never)]
     pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
         if let Err(verdict) = self.tune(set) {
             self.reply_to_parameter(set.parameter, verdict, send);
