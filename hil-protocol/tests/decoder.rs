@@ -190,8 +190,8 @@ fn each_fault_has_its_name() {
             Version { peer: 0 },
         ),
         (
-            oracle::frame(b"MP", PROTOCOL_VERSION, 13, &reply),
-            UnknownId { id: 13 },
+            oracle::frame(b"MP", PROTOCOL_VERSION, 14, &reply),
+            UnknownId { id: 14 },
         ),
         (
             oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &[99]),

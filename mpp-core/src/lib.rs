@@ -27,7 +27,7 @@
 //! use mpp_core::estimate::Measurement;
 //! use mpp_core::flight::FlightLoop;
 //! use mpp_core::planner::{Planner, SetupError};
-//! use mpp_core::sense::{LidarScan, SensorFrame};
+//! use mpp_core::sense::{AirData, LidarScan, SensorFrame};
 //! use mpp_core::settings::Settings;
 //!
 //! # fn main() -> Result<(), SetupError> {
@@ -39,10 +39,10 @@
 //! // A scan without returns, taken at the start of the flight.
 //! let scan = LidarScan::new();
 //! planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
+//! let measurement = Measurement { airspeed: 12.0, pitch: 0.156 };
 //! let frame = SensorFrame {
-//!     measurement: Measurement { airspeed: 12.0, pitch: 0.156 },
-//!     x: 0.0,
-//!     z: 50.0,
+//!     air: Some(AirData { age: 0, measurement }),
+//!     position: None,
 //! };
 //! let first = flight.step(0.0, &frame);
 //! // The flight step may run between any two slices.

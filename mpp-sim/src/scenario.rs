@@ -1,6 +1,7 @@
 //! The parameters of a flight: the presets, and everything that a scenario file or a flag may
 //! change.
 
+mod error;
 mod file;
 mod recorded;
 
@@ -21,9 +22,8 @@ use serde::{Deserialize, Serialize};
 
 pub(crate) use recorded::Times;
 
-pub use file::{
-    AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioError, ScenarioFile,
-};
+pub use error::ScenarioError;
+pub use file::{AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile};
 
 /// The height at which flights start and which the planner returns to \[m\].
 pub const ALTITUDE: f64 = 50.0;

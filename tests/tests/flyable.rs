@@ -9,6 +9,7 @@ use mpp_node::parameters::{PARAMETERS, Parameter, Tuning};
 use mpp_sim::dynamics::Dynamics;
 use mpp_sim::flight::fly_in;
 use mpp_sim::log::FlightLog;
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::orders::{Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::plant::{Plant, PlantError};
@@ -57,6 +58,8 @@ fn flown(name: &str, value: f64) -> Result<FlightLog, Refused> {
     let scenario = Scenario {
         obstacles: 0,
         ticks: 500,
+        // The parameters are on trial here, not the source of positions.
+        navigation: NavigationConfig::IDEAL,
         ..Scenario::new(Preset::Flight, 1)
     };
     let mut ground = Setter {

@@ -45,10 +45,13 @@ impl StepTask {
             .map_or(frame.tick, |last| last.wrapping_add(1));
         let found = frame.tick;
         if found != expected {
-            self.reject(RejectionCause::TickOrder { expected, found }, send);
-            if ticks(expected, found) < 0 && !self.counts_anew(found) {
-                // The frame is old: the step for its tick is already done.
-                return;
+            let old = ticks(expected, found) < 0;
+            if !(old && self.counts_anew(found)) {
+                self.reject(RejectionCause::TickOrder { expected, found }, send);
+                if old {
+                    // The step for this tick is already done.
+                    return;
+                }
             }
         }
         self.tick(frame, send);

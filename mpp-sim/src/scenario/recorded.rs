@@ -1,6 +1,7 @@
 //! A scenario found again in what a log says of it, by the limits of a scenario file.
 
-use super::file::{MAX_DURATION, ScenarioError, check, ensure};
+use super::error::{ScenarioError, ensure};
+use super::file::{MAX_DURATION, check};
 use super::{Scenario, TICKS_PER_SECOND};
 use crate::field::Obstacle;
 

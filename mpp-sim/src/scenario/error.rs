@@ -1,0 +1,54 @@
+//! The reasons why there is no scenario.
+
+use std::fmt;
+
+/// The reason why there is no scenario.
+#[derive(Debug)]
+pub enum ScenarioError {
+    /// The text with this name is no scenario; the message names line and key.
+    Toml(String, Box<toml::de::Error>),
+    /// A value is invalid. Holds the key and what to give instead.
+    Value(&'static str, String),
+}
+
+/// Greatest length of a message that repeats a line of the file \[bytes\].
+const LONGEST_MESSAGE: usize = 1000;
+
+impl fmt::Display for ScenarioError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Toml(path, error) => {
+                let text = error.to_string();
+                // The parser repeats the line, however long it is.
+                if text.len() <= LONGEST_MESSAGE {
+                    return write!(f, "scenario {path}: {}", text.trim_end());
+                }
+                let place = error.span().map_or(0, |span| span.start);
+                write!(f, "scenario {path}, byte {place}: {}", error.message())
+            }
+            Self::Value(key, advice) => write!(f, "{key}: {advice}"),
+        }
+    }
+}
+
+impl core::error::Error for ScenarioError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::Toml(_, error) => Some(error),
+            Self::Value(..) => None,
+        }
+    }
+}
+
+/// Gives an error with key and advice unless a value is sound.
+pub(super) fn ensure(
+    sound: bool,
+    key: &'static str,
+    advice: impl Into<String>,
+) -> Result<(), ScenarioError> {
+    if sound {
+        Ok(())
+    } else {
+        Err(ScenarioError::Value(key, advice.into()))
+    }
+}
