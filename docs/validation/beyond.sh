@@ -15,8 +15,8 @@ harness=${CARGO_TARGET_DIR:-target}/release/sil-harness
 fly() {
   local name=$1 flights=$2
   shift 2
-  printf '\n== %s: campaign %s --trials %s --seed %s\n' "$name" "$*" "$((flights * percent / 100))" "$seed"
-  "$harness" campaign --preset flight --threads "${THREADS:-0}" --seed "$seed" --oracle --taxonomy \
+  printf '\n== %s: campaign --navigation ideal %s --trials %s --seed %s\n' "$name" "$*" "$((flights * percent / 100))" "$seed"
+  "$harness" campaign --preset flight --navigation ideal --threads "${THREADS:-0}" --seed "$seed" --oracle --taxonomy \
     --trials "$((flights * percent / 100))" --out "$out/$name.jsonl" "$@" | tee "$out/$name.txt"
 }
 

@@ -64,7 +64,7 @@
 //!   [`DecodeError::Version`] names that of the other side;
 //! * header and CRC stay as they are in every version, so that this error can be told from noise;
 //! * ids and variants are only ever appended, never moved or used again, so that a number means
-//!   the same in every recording. `tests/frozen_bytes.rs` holds the bytes of all of them.
+//!   the same in every recording. `tests/frozen_bytes` holds the bytes of all of them.
 //!
 //! A version is open until a release uses it. Until then its row in the table collects the changes.
 //!

@@ -12,7 +12,7 @@ use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
-use crate::vehicle::{ActuatorLimits, AirState, Control, Trim, VehicleState, linearize};
+use crate::vehicle::{AirState, Control, Trim, VehicleState, linearize};
 pub use design::Design;
 
 /// The source of the reference: a trajectory, or level trim.
@@ -58,7 +58,6 @@ pub struct FlightLoop {
     estimator: Estimator,
     lqr: Lqr,
     trim: Trim,
-    limits: ActuatorLimits,
     cross_track: f64,
     airspeed_hold: f64,
     trajectory: Option<Trajectory>,
@@ -84,7 +83,6 @@ impl FlightLoop {
             estimator: Estimator::new(settings, &trim),
             lqr,
             trim,
-            limits: settings.actuators,
             cross_track: settings.cross_track,
             airspeed_hold: settings.airspeed_hold,
             trajectory: None,
@@ -218,17 +216,15 @@ impl FlightLoop {
 
     /// Limits a command to the range of the actuators, and counts each limitation.
     fn limit(&mut self, wanted: Control) -> Control {
-        if !(wanted.thrust.is_finite() && wanted.elevator.is_finite()) {
-            Health::count(&mut self.health.commands_not_finite);
-            let trim = self.trim.control;
-            return self
-                .limits
-                .within(trim, trim, self.estimator.given(), TICK_PERIOD);
-        }
         let trim = self.trim.control;
-        let control = self
-            .limits
-            .within(wanted, trim, self.estimator.given(), TICK_PERIOD);
+        let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
+        let asked = if sound { wanted } else { trim };
+        let given = self.estimator.given();
+        let control = (self.estimator.limits()).within(asked, trim, given, TICK_PERIOD);
+        if !sound {
+            Health::count(&mut self.health.commands_not_finite);
+            return control;
+        }
         if libm::fabs(control.thrust - wanted.thrust) > 0.0 {
             Health::count(&mut self.health.thrust_limited);
         }

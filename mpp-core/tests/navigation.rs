@@ -6,7 +6,7 @@ mod common {
 
 use common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{Navigation, PitchBias, PositionVerdict, Trust};
+use mpp_core::estimate::{Navigation, PitchBias, PositionVerdict, Trust, Watch};
 use mpp_core::flight::FlightLoop;
 use mpp_core::sense::{GroundVelocity, Position};
 use mpp_core::settings::Settings;
@@ -363,4 +363,30 @@ fn a_frozen_sensor_is_excluded_and_recovers_by_rule() {
         recovering == 200 && (245..260).contains(&healthy),
         "{seen:?}"
     );
+}
+
+/// A sensor that falls silent while it recovers is excluded again, however long it is silent.
+#[test]
+fn a_sensor_must_deliver_good_values_all_through_its_recovery() {
+    let mut watch = Watch::new(10);
+    for _ in 0..60 {
+        watch.tick(None);
+    }
+    assert_eq!(watch.trust(), Trust::Excluded);
+    watch.tick(Some(true));
+    assert_eq!(watch.trust(), Trust::Recovering);
+    for _ in 0..30 {
+        watch.tick(None);
+    }
+    assert_eq!(watch.trust(), Trust::Excluded);
+    watch.tick(Some(true));
+    assert_eq!(watch.trust(), Trust::Recovering);
+    // Good values at the sensor's own period.
+    let mut ticks = 0;
+    while watch.trust() == Trust::Recovering && ticks < 200 {
+        ticks += 1;
+        watch.tick((ticks % 10 == 0).then_some(true));
+    }
+    assert_eq!(watch.trust(), Trust::Healthy);
+    assert_eq!(ticks, 50);
 }

@@ -37,15 +37,11 @@ impl PitchBias {
         if !(wind.is_finite() && period > 0.0) {
             return;
         }
-        let first = self.seen == 0.0;
         self.seen = (self.seen + period).min(MEMORY);
         let share = (period / self.seen).min(1.0);
         let off = wind - self.mean;
         self.mean += share * off;
         self.variance += share * (off * off * (1.0 - share) - self.variance);
-        if first {
-            self.variance = 0.0;
-        }
         let now = libm::sqrt(self.variance.max(0.0));
         self.lively = now.max(self.lively * (1.0 - period / (10.0 * MEMORY)));
         let size = libm::fabs(self.mean);

@@ -92,6 +92,12 @@ impl Estimator {
         self.navigation.set_wind_change(design.wind_change);
     }
 
+    /// The limits of the actuators.
+    #[must_use]
+    pub fn limits(&self) -> &ActuatorLimits {
+        &self.limits
+    }
+
     /// The estimated motion through the air.
     #[must_use]
     pub fn air(&self) -> &AirState {
@@ -118,8 +124,8 @@ impl Estimator {
         }
     }
 
-    /// The pose of the lidar at the tick that was `age` ticks ago, without the bias of the pitch. `None` if that was before the first step or more than
-    /// [`MOST_AGE`] ticks ago.
+    /// The pose of the lidar at the tick that was `age` ticks ago, without the bias of the pitch. `None` if that
+    /// was before the first step or more than [`MOST_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
         let bias = self.bias.angle(self.air.present().airspeed);

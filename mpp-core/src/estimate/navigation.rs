@@ -122,19 +122,6 @@ impl Navigation {
         self.started && self.covariance.wind < SETTLED_WIND * SETTLED_WIND
     }
 
-    /// Ticks since the last position that the filter used.
-    #[must_use]
-    pub fn unaided(&self) -> u32 {
-        self.unaided
-    }
-
-    /// Standard deviations of position \[m\] and wind [m/s] along an axis.
-    #[must_use]
-    pub fn deviation(&self) -> (f64, f64) {
-        let root = |variance: f64| libm::sqrt(variance.max(0.0));
-        (root(self.covariance.position), root(self.covariance.wind))
-    }
-
     /// Square of the last innovation over its variance, mean of both axes [-]. It is 1 in the mean for errors
     /// as declared.
     #[must_use]

@@ -31,8 +31,10 @@ impl Trust {
 #[derive(Clone, Copy, Debug)]
 pub struct Watch {
     trust: Trust,
-    /// Ticks since the last good value; while the sensor recovers, ticks with good values.
-    ticks: u16,
+    /// Ticks since the last good value.
+    silent: u16,
+    /// While the sensor recovers, ticks since its first good value.
+    recovering: u16,
     /// Greatest time between two good values of a healthy sensor \[ticks\].
     period: u16,
 }
@@ -43,7 +45,8 @@ impl Watch {
     pub const fn new(period: u16) -> Self {
         Self {
             trust: Trust::Healthy,
-            ticks: 0,
+            silent: 0,
+            recovering: 0,
             period,
         }
     }
@@ -63,24 +66,25 @@ impl Watch {
     /// Takes note of one tick: whether the sensor delivered a good value (`Some(true)`), a bad one
     /// (`Some(false)`) or nothing.
     pub fn tick(&mut self, good: Option<bool>) {
-        let since = self.ticks.saturating_add(1);
-        (self.trust, self.ticks) = match (self.trust, good) {
-            (Trust::Healthy | Trust::Suspected, Some(true)) => (Trust::Healthy, 0),
-            (Trust::Healthy | Trust::Suspected, _) => {
-                let late = since.saturating_sub(self.period);
-                if late >= EXCLUDED_AFTER {
-                    (Trust::Excluded, 0)
-                } else if late >= SUSPECTED_AFTER {
-                    (Trust::Suspected, since)
-                } else {
-                    (self.trust, since)
-                }
-            }
-            (Trust::Excluded, Some(true)) => (Trust::Recovering, 0),
-            (Trust::Excluded, _) => (Trust::Excluded, 0),
-            (Trust::Recovering, Some(false)) => (Trust::Excluded, 0),
-            (Trust::Recovering, Some(true)) if since >= RECOVERED_AFTER => (Trust::Healthy, 0),
-            (Trust::Recovering, _) => (Trust::Recovering, since),
+        let fresh = good == Some(true);
+        self.silent = if fresh {
+            0
+        } else {
+            self.silent.saturating_add(1)
+        };
+        let late = self.silent.saturating_sub(self.period);
+        self.recovering = match self.trust {
+            Trust::Recovering => self.recovering.saturating_add(1),
+            _ => 0,
+        };
+        self.trust = match self.trust {
+            Trust::Healthy | Trust::Suspected if fresh => Trust::Healthy,
+            Trust::Healthy | Trust::Suspected if late >= EXCLUDED_AFTER => Trust::Excluded,
+            Trust::Healthy if late >= SUSPECTED_AFTER => Trust::Suspected,
+            Trust::Excluded if fresh => Trust::Recovering,
+            Trust::Recovering if good == Some(false) || late >= SUSPECTED_AFTER => Trust::Excluded,
+            Trust::Recovering if fresh && self.recovering >= RECOVERED_AFTER => Trust::Healthy,
+            trust => trust,
         };
     }
 }

@@ -3,7 +3,7 @@
 use super::FlightLoop;
 use crate::control::Lqr;
 use crate::estimate::EstimatorDesign;
-use crate::vehicle::{ActuatorLimits, Trim};
+use crate::vehicle::Trim;
 
 /// The values of a flight loop that no step changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +11,6 @@ pub struct Design {
     estimator: EstimatorDesign,
     lqr: Lqr,
     trim: Trim,
-    limits: ActuatorLimits,
     cross_track: f64,
     airspeed_hold: f64,
 }
@@ -24,7 +23,6 @@ impl FlightLoop {
             estimator: self.estimator.design(),
             lqr: self.lqr,
             trim: self.trim,
-            limits: self.limits,
             cross_track: self.cross_track,
             airspeed_hold: self.airspeed_hold,
         }
@@ -35,7 +33,6 @@ impl FlightLoop {
         self.estimator.restore(&design.estimator);
         self.lqr = design.lqr;
         self.trim = design.trim;
-        self.limits = design.limits;
         self.cross_track = design.cross_track;
         self.airspeed_hold = design.airspeed_hold;
     }

@@ -37,24 +37,25 @@ impl StepTask {
 
     /// Makes the tick of a sensor frame, unless the frame is old.
     pub(super) fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &self.flight else {
+        let Some(flight) = &mut self.flight else {
             return self.reject(RejectionCause::NotConfigured, send);
         };
         let expected = flight
             .last_tick
             .map_or(frame.tick, |last| last.wrapping_add(1));
         let found = frame.tick;
-        if found != expected {
-            let old = ticks(expected, found) < 0;
-            if !(old && self.counts_anew(found)) {
-                self.reject(RejectionCause::TickOrder { expected, found }, send);
-                if old {
-                    // The step for this tick is already done.
-                    return;
-                }
-            }
+        let old = ticks(expected, found) < 0;
+        if !old {
+            flight.old_ticks = None;
         }
-        self.tick(frame, send);
+        let anew = old && self.counts_anew(found);
+        if found != expected && !anew {
+            self.reject(RejectionCause::TickOrder { expected, found }, send);
+        }
+        // The step for an old tick is already done.
+        if !old || anew {
+            self.tick(frame, send);
+        }
     }
 
     /// Takes note of an old tick. Returns true if so many old ticks came in a row that the sender must count

@@ -102,6 +102,11 @@ impl StepTask {
         flight.last_tick = Some(frame.tick);
         let time = flight.time(frame.tick);
         let output = flight.control.step(time, &convert::sensor_frame(frame));
+        if output.position == Some(PositionVerdict::Restarted) {
+            // The plan under way counts from an origin that is no more.
+            flight.cycle = None;
+            self.plan = None;
+        }
         flight.lidar.tick(flight.lidar_good.take());
         let sensors = convert::sensor_states(flight.control.sensors(), flight.lidar.trust());
         let age = flight

@@ -5,6 +5,7 @@ use crate::short;
 use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame, SensorState};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use std::collections::VecDeque;
@@ -116,6 +117,57 @@ fn a_clock_that_was_set_back_is_followed() {
         }
     }
     assert_eq!(refused, 19);
+}
+
+/// A link that delivers each frame twice is no clock that was set back: the second copies are refused, and
+/// the flight's time stays that of the ticks.
+#[test]
+fn frames_that_come_twice_are_refused_once_each() {
+    let mut pipe = PipeLink::new();
+    answers(&mut pipe, &Message::Configure(short(1).configure()));
+    let count = |answers: &[Message], is: fn(&Message) -> bool| {
+        answers.iter().filter(|answer| is(answer)).count()
+    };
+    for tick in 0..200 {
+        let first = answers(&mut pipe, &level_flight(tick));
+        assert_eq!(
+            count(&first, |it| matches!(it, Message::ActuatorCommand(_))),
+            1
+        );
+        let again = answers(&mut pipe, &level_flight(tick));
+        assert!(matches!(again[..], [Message::Rejection(_)]), "{again:?}");
+    }
+}
+
+/// When the origin of the positions jumps, the plan under way is dropped: it counts from the old origin.
+#[test]
+fn a_plan_under_way_is_dropped_when_the_origin_jumps() {
+    let mut link = crate::Spoilt {
+        pipe: PipeLink::new(),
+        spoil: |pipe: &mut PipeLink, message: &Message| {
+            let Message::SensorFrame(mut frame) = *message else {
+                return false;
+            };
+            // The positions are refused for a second; then the filter starts anew from them.
+            if frame.tick >= 110
+                && let Some(position) = &mut frame.position
+            {
+                position.x += 30.0;
+            }
+            pipe.send(&Message::SensorFrame(frame)).is_ok()
+        },
+    };
+    let mut scenario = short(2);
+    scenario.navigation = NavigationConfig::IDEAL;
+    scenario.replan_ticks = 25;
+    scenario.latency_ticks = 20;
+    let log = fly(&scenario, &mut link, |_| {}).unwrap();
+    let scans: Vec<_> = log.plans.iter().map(|plan| plan.tick).collect();
+    let expected: Vec<_> = (0..20)
+        .map(|k| 25 * k)
+        .filter(|tick| *tick != 200)
+        .collect();
+    assert_eq!(scans, expected);
 }
 
 /// Sends everything later by some ticks, each with the time at which it was measured.

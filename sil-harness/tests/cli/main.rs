@@ -1,11 +1,10 @@
 //! The command line as a user meets it: exit codes, what is printed where, what is written.
 
+mod peers;
+
 use serde_json::Value;
-use std::io::{BufRead, BufReader, Write};
-use std::net::{TcpStream, UdpSocket};
 use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
-use std::time::Duration;
+use std::process::{Command, Output};
 
 fn harness() -> Command {
     Command::new(env!("CARGO_BIN_EXE_sil-harness"))
@@ -150,7 +149,7 @@ fn a_scenario_file_is_flown_and_flags_go_before_it() {
 #[test]
 fn a_campaigns_row_is_flown_again_in_full() {
     let file = scratch("all.toml");
-    let text = include_str!("../../docs/scenarios/all-together.toml");
+    let text = include_str!("../../../docs/scenarios/all-together.toml");
     std::fs::write(&file, text.replace("replan_hz = 4.0", "duration = 3")).unwrap();
     let rows = scratch("rows.jsonl");
     let flags = ["--scenario", file.to_str().unwrap()];
@@ -271,92 +270,6 @@ fn figures_are_drawn_into_a_directory() {
 }
 
 #[test]
-fn a_core_that_is_not_there_is_a_link_error() {
-    // A port that was free a moment ago.
-    let port = std::net::TcpListener::bind("127.0.0.1:0")
-        .unwrap()
-        .local_addr()
-        .unwrap()
-        .port();
-    let (output, _) = run("nobody", &["--link", &format!("tcp:127.0.0.1:{port}")]);
-    let talk = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(6), "{talk}");
-    assert!(
-        talk.contains("connecting to the core at 127.0.0.1"),
-        "{talk}"
-    );
-}
-
-#[test]
-fn a_core_in_another_process_flies_the_same_log() {
-    let mut core = harness()
-        .args(["core", "--listen", "127.0.0.1:0", "--once"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut greeting = String::new();
-    BufReader::new(core.stderr.take().unwrap())
-        .read_line(&mut greeting)
-        .unwrap();
-    let link = greeting.split_whitespace().last().unwrap();
-    assert!(link.starts_with("tcp:127.0.0.1:"), "{greeting}");
-    // A stranger who configures nothing does not end the core that serves once.
-    let mut stranger = TcpStream::connect(link.trim_start_matches("tcp:")).unwrap();
-    stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
-    drop(stranger);
-    let flags = ["--seed", "9", "--duration", "5", "--json"];
-    let (apart, out) = run("apart", &[&flags[..], &["--link", link]].concat());
-    assert!(core.wait().unwrap().success());
-    let (together, other) = run("together", &flags);
-    let hash = |output: &Output| {
-        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
-        result["log_hash"].as_str().map(str::to_owned)
-    };
-    assert!(hash(&apart).is_some());
-    assert_eq!(hash(&apart), hash(&together));
-    let bytes = |out: &PathBuf| std::fs::read(out.join("flight-seed9-5s.json")).unwrap();
-    assert_eq!(bytes(&out), bytes(&other));
-    std::fs::remove_dir_all(out).unwrap();
-    std::fs::remove_dir_all(other).unwrap();
-}
-
-#[test]
-fn telemetry_goes_out_over_udp() {
-    let ground = UdpSocket::bind("127.0.0.1:0").unwrap();
-    ground
-        .set_read_timeout(Some(Duration::from_secs(5)))
-        .unwrap();
-    let target = format!("udp:{}", ground.local_addr().unwrap());
-    let flags = ["--duration", "2", "--speed", "max", "--mavlink", &target];
-    let (output, out) = run("mavlink", &flags);
-    assert!(output.status.success());
-    std::fs::remove_dir_all(out).unwrap();
-    // Two seconds of everything; one heartbeat and a text at the end.
-    let mut ids = std::collections::BTreeMap::new();
-    let mut datagram = [0; 300];
-    for _ in 0..84 {
-        let length = ground.recv(&mut datagram).unwrap();
-        assert!(length > 9 && datagram[0] == 0xFD, "MAVLink 2 magic");
-        let id = u32::from_le_bytes([datagram[7], datagram[8], datagram[9], 0]);
-        *ids.entry(id).or_insert(0) += 1;
-    }
-    let expected = [
-        (0, 3),
-        (1, 2),
-        (30, 20),
-        (32, 20),
-        (33, 10),
-        (74, 20),
-        (132, 2),
-        (253, 1),
-        (54_100, 2),
-        (54_101, 2),
-        (54_102, 2),
-    ];
-    assert_eq!(ids.into_iter().collect::<Vec<_>>(), expected);
-}
-
-#[test]
 fn the_reference_check_refuses_what_is_no_reference() {
     let missing = harness()
         .args(["check-reference", "no-such-directory"])
@@ -386,7 +299,7 @@ fn the_reference_check_refuses_what_is_no_reference() {
 fn the_readme_shows_what_the_main_job_prints() {
     let (output, out) = run("readme", &[]);
     std::fs::remove_dir_all(out).unwrap();
-    let readme = include_str!("../../README.md");
+    let readme = include_str!("../../../README.md");
     let line = String::from_utf8(output.stdout).unwrap();
     assert!(
         readme.contains(line.trim_end()),
