@@ -71,7 +71,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.1.0, open | messages 10 to 13; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
+//! | 2 | 0.1.0, open | messages 10 to 13; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
 //!
 //! # Use
 //!
@@ -102,6 +102,7 @@ mod version;
 
 pub use error::{DecodeError, EncodeError};
 pub use frame::{Decoder, MAGIC, MAX_FRAME, encode};
+pub use message::aircraft::{ActuatorLimits, Aircraft};
 pub use message::flight::{
     ActuatorCommand, AirData, ControlMode, GroundVelocity, LidarScan, MAX_BEAMS, Position,
     SensorFrame, SensorState, SensorStates, StepReport,
@@ -111,8 +112,7 @@ pub use message::report::{
     Rejection, RejectionCause,
 };
 pub use message::session::{
-    ActuatorLimits, AirframeId, Configure, ConfigureReply, Hello, ParameterReply, Preset, Role,
-    SetParameter,
+    Configure, ConfigureReply, Hello, ParameterReply, Preset, Role, SetParameter,
 };
 pub use message::setting::Setting;
 pub use message::verdict::{ConfigureVerdict, ParameterVerdict};

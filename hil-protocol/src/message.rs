@@ -1,5 +1,6 @@
 //! The messages: one struct for each message, and the enum [`Message`] of all of them.
 
+pub(crate) mod aircraft;
 pub(crate) mod flight;
 pub(crate) mod report;
 pub(crate) mod session;

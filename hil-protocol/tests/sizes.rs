@@ -34,7 +34,10 @@ fn of_the_session() {
     assert_eq!(payload(&hello), Hello::MAX_SIZE);
     let configure = Configure {
         preset: Preset::Flight,
-        airframe: AirframeId::Reference,
+        aircraft: Aircraft {
+            stall: Some(1.0),
+            ..Aircraft::REFERENCE
+        },
         paths: u16::MAX,
         replan_period_ticks: u32::MAX,
         latency_ticks: u32::MAX,
@@ -46,7 +49,8 @@ fn of_the_session() {
         actuators: ActuatorLimits {
             thrust_max: Some(1.0),
             thrust_lag: Some(1.0),
-            elevator_range: Some(1.0),
+            elevator_below: Some(1.0),
+            elevator_above: Some(1.0),
             elevator_rate: Some(1.0),
         },
     };

@@ -20,6 +20,7 @@
 //! * [`check_reference`]: checks core and plant against data recorded from the authors' code.
 //! * [`mod@bench`]: times our parts beside others.
 //! * [`campaign`]: reports about many flights over a grid, with intervals.
+//! * [`aircraft`]: what follows from an aircraft file before any flight.
 //! * [`figure`]: counterparts of the paper's figures; [`picture`]: pages for a browser.
 //!
 //! The caller reads and writes the files, and runs the threads if there are any.
@@ -33,6 +34,8 @@ pub mod check_reference;
 pub mod bench;
 
 pub mod campaign;
+
+pub mod aircraft;
 
 pub mod figure;
 

@@ -72,6 +72,7 @@ pub mod sense;
 pub mod settings;
 pub mod trajectory;
 pub mod tuning;
+pub mod units;
 pub mod vehicle;
 
 /// The rules of the grid, the tree and the raytracing: the authors' or the corrected ones.

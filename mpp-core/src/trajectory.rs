@@ -23,6 +23,8 @@ pub struct Reference {
 pub struct Trajectory {
     /// Start time \[s\].
     pub start: f64,
+    /// Length of a stage \[s\].
+    pub stage_period: f64,
     /// References at the stage boundaries. The last reference has the controls of the last stage.
     pub knots: [Reference; KNOTS],
     /// Kind of interpolation between the references.
@@ -61,6 +63,7 @@ impl Trajectory {
         };
         Self {
             start: 0.0,
+            stage_period: STAGE_PERIOD,
             knots: [nothing; KNOTS],
             between: Between::Lines,
         }
@@ -79,7 +82,8 @@ impl Trajectory {
         }
     }
 
-    /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages.
+    /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages, which last
+    /// `stage_period` \[s\] each.
     pub fn fly_out(
         &mut self,
         knots: &[PathState; KNOTS],
@@ -87,8 +91,10 @@ impl Trajectory {
         airframe: &Airframe,
         wind: &Wind,
         start: f64,
+        stage_period: f64,
     ) {
         self.start = start;
+        self.stage_period = stage_period;
         self.between = Between::Flown(*airframe, *wind);
         for (stage, (place, knot)) in self.knots.iter_mut().zip(knots).enumerate() {
             let (state, feedforward) = knot.reference(airframe, &controls[stage.min(STAGES - 1)]);
@@ -100,6 +106,7 @@ impl Trajectory {
     /// `(x, z)` \[m\].
     pub fn place(&mut self, solution: &Solution, trim: &Trim, start: f64, x: f64, z: f64) {
         self.start = start;
+        self.stage_period = STAGE_PERIOD;
         self.between = Between::Lines;
         for (stage, (knot, state)) in self.knots.iter_mut().zip(&solution.states).enumerate() {
             let elapsed = STAGE_PERIOD * stage as f64;
@@ -132,6 +139,7 @@ impl Trajectory {
         state: &VehicleState,
     ) {
         self.start = start;
+        self.stage_period = STAGE_PERIOD;
         self.between = Between::Lines;
         let mut slope = 0.0;
         for (stage, (knot, point)) in self.knots.iter_mut().zip(points).enumerate() {
@@ -160,7 +168,7 @@ impl Trajectory {
     /// and after the last stage.
     #[must_use]
     pub fn sample(&self, time: f64) -> Option<Reference> {
-        let stages = (time - self.start) / STAGE_PERIOD;
+        let stages = (time - self.start) / self.stage_period;
         // Rounding may move a tick on the first or last boundary slightly outside.
         if !(-1e-6..=STAGES as f64 + 1e-6).contains(&stages) {
             return None;
@@ -169,7 +177,8 @@ impl Trajectory {
         let share = stages - stage as f64;
         let (from, to) = (&self.knots[stage], &self.knots[stage + 1]);
         if let Between::Flown(airframe, wind) = &self.between {
-            return Some(flown(airframe, wind, from, to, share));
+            let period = self.stage_period;
+            return Some(flown(airframe, wind, from, to, share, period));
         }
         let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
         let air = from.state.air.to_vector() * (1.0 - share) + to.state.air.to_vector() * share;
@@ -194,14 +203,15 @@ fn flown(
     from: &Reference,
     to: &Reference,
     share: f64,
+    stage_period: f64,
 ) -> Reference {
     let rise = to.state.air.angle_of_attack() - from.state.air.angle_of_attack();
     let control = PathControl {
-        angle_of_attack_rate: rise / STAGE_PERIOD,
+        angle_of_attack_rate: rise / stage_period,
         thrust: from.feedforward.thrust,
     };
     let knot = PathState::of(&from.state);
-    let at = knot.after_in(wind, airframe, &control, share * STAGE_PERIOD, 2);
+    let at = knot.after_in(wind, airframe, &control, share * stage_period, 2);
     let (state, feedforward) = at.reference(airframe, &control);
     Reference { state, feedforward }
 }

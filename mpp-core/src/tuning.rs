@@ -228,7 +228,7 @@ pub mod lift {
     pub const TRUST_TIME: f64 = 0.7;
     /// Time of observation beyond which the estimator slowly forgets older observations \[s\].
     pub const MEMORY: f64 = 6.0;
-    /// Greatest plausible offset of the lift coefficient [-]: somewhat more than a quarter of the lift of
+    /// Greatest plausible offset of the lift coefficient of the reference aircraft [-]: somewhat more than a quarter of the lift of
     /// level flight.
     pub const MOST: f64 = 0.4;
 }

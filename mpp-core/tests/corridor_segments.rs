@@ -18,6 +18,7 @@ const CRUISE: f64 = 12.0;
 const KEEP: Keep = Keep {
     margin: 0.85,
     room: 0.0,
+    body_radius: 0.0,
     floor: 39.7,
     ceiling: 60.3,
 };

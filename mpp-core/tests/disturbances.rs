@@ -28,7 +28,8 @@ fn some_limits() -> impl Strategy<Value = ActuatorLimits> {
         |(thrust_max, thrust_lag, elevator_range, elevator_rate)| ActuatorLimits {
             thrust_max,
             thrust_lag,
-            elevator_range,
+            elevator_below: elevator_range,
+            elevator_above: elevator_range,
             elevator_rate,
         },
     )
@@ -50,7 +51,7 @@ proptest! {
             prop_assert!(within.thrust >= 0.0);
             prop_assert!(limits.thrust_max.is_none_or(|most| within.thrust <= most));
             let off = (within.elevator - TRIM.elevator).abs();
-            prop_assert!(limits.elevator_range.is_none_or(|range| off <= range + 1e-12));
+            prop_assert!(limits.elevator_above.is_none_or(|range| off <= range + 1e-12));
             let moved = (within.elevator - last.elevator).abs();
             prop_assert!(limits.elevator_rate.is_none_or(|rate| moved <= rate * TICK_PERIOD + 1e-12));
             prop_assert_eq!(limits.within(within, TRIM, last, TICK_PERIOD), within);
@@ -142,7 +143,8 @@ fn plans_ask_for_no_more_than_the_actuators_give() {
     let limited = plan_in(
         &with_actuators(ActuatorLimits {
             thrust_max: Some(5.0),
-            elevator_range: Some(2.0),
+            elevator_below: Some(2.0),
+            elevator_above: Some(2.0),
             ..ActuatorLimits::NONE
         }),
         &Wind::STILL,
@@ -167,7 +169,8 @@ fn an_aircraft_that_turns_little_keeps_more_room() {
     };
     let agile = clearance(ActuatorLimits::NONE);
     let sluggish = clearance(ActuatorLimits {
-        elevator_range: Some(2.0),
+        elevator_below: Some(2.0),
+        elevator_above: Some(2.0),
         ..ActuatorLimits::NONE
     });
     assert!(agile > 0.3 && sluggish > agile + 0.4, "{agile} {sluggish}");
@@ -176,19 +179,25 @@ fn an_aircraft_that_turns_little_keeps_more_room() {
 #[test]
 fn what_the_elevator_balances_is_the_trim_of_another_angle_of_attack() {
     let limits = ActuatorLimits {
-        elevator_range: Some(2.0),
+        elevator_below: Some(1.0),
+        elevator_above: Some(3.0),
         ..ActuatorLimits::NONE
     };
     for airframe in [Airframe::PAPER, Airframe::REFERENCE] {
-        let reach = limits.angle_of_attack(&airframe);
-        let moved = airframe.elevator_for(0.15) - airframe.elevator_for(0.15 + reach);
-        assert!((moved.abs() - 2.0).abs() < 1e-9, "{moved}");
+        let [down, up] = limits.angle_of_attack(&airframe);
+        for (alpha, room) in [(0.15 - down, -1.0), (0.15 + up, 3.0)] {
+            let moved = airframe.elevator_for(alpha) - airframe.elevator_for(0.15);
+            assert!((moved - room).abs() < 1e-9, "{moved}");
+        }
+        // An elevator that counts the other way has its sides exchanged.
+        let turned = Airframe {
+            moment_elevator: -airframe.moment_elevator,
+            ..airframe
+        };
+        assert_eq!(limits.angle_of_attack(&turned), [up, down]);
     }
-    assert!(
-        ActuatorLimits::NONE
-            .angle_of_attack(&Airframe::PAPER)
-            .is_infinite()
-    );
+    let free = ActuatorLimits::NONE.angle_of_attack(&Airframe::PAPER);
+    assert!(free.into_iter().all(f64::is_infinite));
 }
 
 #[test]
@@ -196,7 +205,8 @@ fn the_loop_clamps_counts_and_predicts_by_what_is_given() {
     let limits = ActuatorLimits {
         thrust_max: Some(6.0),
         thrust_lag: Some(0.2),
-        elevator_range: Some(1.0),
+        elevator_below: Some(1.0),
+        elevator_above: Some(1.0),
         elevator_rate: Some(20.0),
     };
     let mut flight = FlightLoop::new(&with_actuators(limits)).unwrap();

@@ -34,7 +34,7 @@ fn climb_at(estimator: &mut LiftEstimator, lift: f64, ticks: std::ops::Range<u32
 proptest! {
     #[test]
     fn lift_beyond_the_airframe_s_is_found_from_climb_rates(lift in -0.35..0.35) {
-        let mut estimator = LiftEstimator::new(&KNOWN);
+        let mut estimator = LiftEstimator::new(&KNOWN, 12.0);
         climb_at(&mut estimator, lift, 0..200);
         let early = estimator.offset() / lift;
         climb_at(&mut estimator, lift, 200..4000);
@@ -50,7 +50,7 @@ proptest! {
         period in prop_oneof![Just(0.0), Just(-0.01), Just(f64::NAN)],
     ) {
         let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
-        let mut estimator = LiftEstimator::new(&KNOWN);
+        let mut estimator = LiftEstimator::new(&KNOWN, 12.0);
         climb_at(&mut estimator, 0.1, 0..200);
         let before = estimator.offset();
         let stalled = AirState { airspeed: 0.0, ..trim.state };
@@ -70,7 +70,7 @@ proptest! {
     #[test]
     fn a_leap_of_the_climb_rate_and_back_averages_out(leap in -5.0..5.0) {
         let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
-        let mut estimator = LiftEstimator::new(&KNOWN);
+        let mut estimator = LiftEstimator::new(&KNOWN, 12.0);
         climb_at(&mut estimator, 0.0, 0..300);
         estimator.update(TICK_PERIOD, leap, &trim.state, trim.control);
         estimator.update(TICK_PERIOD, 0.0, &trim.state, trim.control);
@@ -81,7 +81,7 @@ proptest! {
     #[test]
     fn the_offset_stays_within_what_is_believed(rates in prop::collection::vec(-20.0..20.0, 1..300)) {
         let trim = Trim::at_speed(&KNOWN, 12.0, 0.0).unwrap();
-        let mut estimator = LiftEstimator::new(&KNOWN);
+        let mut estimator = LiftEstimator::new(&KNOWN, 12.0);
         for rate in rates {
             let control = Control { elevator: -20.0, ..trim.control };
             estimator.update(TICK_PERIOD, rate, &trim.state, control);
@@ -119,7 +119,8 @@ fn a_wrong_airframe_cruises_with_the_elevator_near_its_trim() {
         };
         let settings = Settings {
             actuators: ActuatorLimits {
-                elevator_range: Some(2.0),
+                elevator_below: Some(2.0),
+                elevator_above: Some(2.0),
                 ..ActuatorLimits::NONE
             },
             ..Settings::flight()

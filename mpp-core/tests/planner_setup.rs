@@ -20,9 +20,12 @@ fn own(settings: &mut Settings) -> &mut FlightSettings {
 }
 
 /// The numbers of all presets.
-const SHARED: [Row; 39] = {
+const SHARED: [Row; 45] = {
     use Setting::*;
     [
+        (LengthUnit, |s, n| s.units.length = n, [0.0, 1e6]),
+        (TimeUnit, |s, n| s.units.time = n, [0.0, 1e6]),
+        (MassUnit, |s, n| s.units.mass = n, [0.0, 1e9]),
         (Mass, |s, n| s.airframe.mass = n, [-1.0, 1e6]),
         (
             PitchInertia,
@@ -38,6 +41,11 @@ const SHARED: [Row; 39] = {
         (AirDensity, |s, n| s.airframe.air_density = n, [0.0, 1e3]),
         (LiftZero, |s, n| s.airframe.lift_zero = n, [-1e3, 1e3]),
         (LiftAlpha, |s, n| s.airframe.lift_alpha = n, [-5.73, 1e3]),
+        (
+            LiftElevator,
+            |s, n| s.airframe.lift_elevator = n,
+            [-1e3, 1e3],
+        ),
         (DragZero, |s, n| s.airframe.drag_zero = n, [-0.1, 1e3]),
         (
             DragInduced,
@@ -50,6 +58,11 @@ const SHARED: [Row; 39] = {
             MomentAlphaRate,
             |s, n| s.airframe.moment_alpha_rate = n,
             [-1e6, 0.46],
+        ),
+        (
+            MomentPitchRate,
+            |s, n| s.airframe.moment_pitch_rate = n,
+            [-1e6, 0.1],
         ),
         (
             MomentElevator,
@@ -67,8 +80,13 @@ const SHARED: [Row; 39] = {
             [-0.1, 1e4],
         ),
         (
-            ElevatorRange,
-            |s, n| s.actuators.elevator_range = Some(n),
+            ElevatorBelow,
+            |s, n| s.actuators.elevator_below = Some(n),
+            [0.0, 1e9],
+        ),
+        (
+            ElevatorAbove,
+            |s, n| s.actuators.elevator_above = Some(n),
             [0.0, 1e9],
         ),
         (
@@ -125,7 +143,7 @@ const SHARED: [Row; 39] = {
         (PathWeight, |s, n| s.regulator.state[3] = n, [-1.0, 1e12]),
         (ElevatorWeight, |s, n| s.regulator.elevator = n, [0.0, 1e12]),
         (CrossTrack, |s, n| s.cross_track = n, [-0.08, 1e3]),
-        (AirspeedHold, |s, n| s.airspeed_hold = n, [-10.0, 1e6]),
+        (AirspeedHold, |s, n| s.airspeed_hold = n, [-10.0, 1e9]),
         (Altitude, |s, n| s.planner.altitude = n, [-1e6, 1e6]),
         (
             PlanElevatorWeight,
@@ -146,7 +164,7 @@ const SHARED: [Row; 39] = {
 };
 
 /// The numbers of the flight planner.
-const FLIGHT: [Row; 11] = {
+const FLIGHT: [Row; 13] = {
     use Setting::*;
     [
         (Sight, |s, n| own(s).sight = n, [0.0, 1e9]),
@@ -168,6 +186,8 @@ const FLIGHT: [Row; 11] = {
             [-0.6, 2.0],
         ),
         (Margin, |s, n| own(s).margin = n, [0.0, 1e3]),
+        (BodyRadius, |s, n| own(s).body_radius = n, [-0.1, 1e3]),
+        (Stall, |s, n| own(s).stall = Some(n), [0.0, 2.0]),
         (Band, |s, n| own(s).band = n, [-10.0, 1e6]),
         (PlanThrust, |s, n| own(s).thrust_max = n, [0.0, 1e9]),
         // These two are whole numbers, so that each value here stands for the nearest one.

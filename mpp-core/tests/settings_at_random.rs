@@ -32,7 +32,14 @@ fn fly(settings: &Settings, flight: &mut FlightLoop, trim: &Trim) {
         assert!(control.thrust.is_finite() && control.elevator.is_finite());
         assert!((0.0..=limits.thrust_max.unwrap_or(f64::MAX)).contains(&control.thrust));
         let off = control.elevator - trim.control.elevator;
-        assert!(off.abs() <= limits.elevator_range.unwrap_or(f64::MAX) * (1.0 + 1e-9));
+        assert!(
+            off.abs()
+                <= limits
+                    .elevator_above
+                    .unwrap_or(f64::MAX)
+                    .max(limits.elevator_below.unwrap_or(f64::MAX))
+                    * (1.0 + 1e-9)
+        );
         let step = control.elevator - last.elevator;
         let most = limits.elevator_rate.unwrap_or(f64::MAX / 2.0) * TICK_PERIOD;
         assert!(step.abs() <= most * (1.0 + 1e-9) + 1e-9);
@@ -63,7 +70,8 @@ proptest! {
         let places = [
             &mut settings.actuators.thrust_max,
             &mut settings.actuators.thrust_lag,
-            &mut settings.actuators.elevator_range,
+            &mut settings.actuators.elevator_below,
+            &mut settings.actuators.elevator_above,
             &mut settings.actuators.elevator_rate,
         ];
         let kept = |place: usize| libm::pow(10.0, spread * factors[place]);

@@ -35,9 +35,11 @@ fn controls() -> impl Strategy<Value = Control> {
     (0.0..20.0, -10.0..20.0).prop_map(|(thrust, elevator)| Control { thrust, elevator })
 }
 
-/// Both named airframes with every parameter up to 30 % wrong.
+/// Both named airframes with every parameter up to 30 % wrong, an elevator with lift, and a damping by the
+/// pitch rate.
 fn airframes() -> impl Strategy<Value = Airframe> {
-    (named(), prop::array::uniform13(0.7..1.3)).prop_map(|(base, f)| Airframe {
+    let numbers = (prop::array::uniform13(0.7..1.3), -0.03..0.03, -1.0..0.0);
+    (named(), numbers).prop_map(|(base, (f, lift_elevator, moment_pitch_rate))| Airframe {
         mass: base.mass * f[0],
         pitch_inertia: base.pitch_inertia * f[1],
         wing_area: base.wing_area * f[2],
@@ -45,6 +47,8 @@ fn airframes() -> impl Strategy<Value = Airframe> {
         air_density: base.air_density * f[4],
         lift_zero: base.lift_zero * f[5],
         lift_alpha: base.lift_alpha * f[6],
+        lift_elevator,
+        moment_pitch_rate,
         drag_zero: base.drag_zero * f[7],
         drag_induced: base.drag_induced * f[8],
         moment_zero: base.moment_zero * f[9],
@@ -115,8 +119,10 @@ proptest! {
         let mut expected = exact;
         let path_rate = air_rate(&airframe, &state, control).flight_path;
         expected.a[(3, 0)] += path_rate / state.airspeed;
-        // The damping acts on theta' - gamma', so gamma' brings its share into theta''.
-        expected.a[(2, 0)] += exact.a[(2, 2)] * exact.a[(3, 0)];
+        // One damping acts on theta' - gamma', so gamma' brings its share into theta''.
+        let dampings = airframe.moment_alpha_rate + airframe.moment_pitch_rate;
+        let share = airframe.moment_alpha_rate / dampings;
+        expected.a[(2, 0)] += exact.a[(2, 2)] * share * exact.a[(3, 0)];
         expected.a[(2, 2)] = 0.0;
         expected.b[(2, 0)] = 0.0;
         let authors = linearize(&airframe, &state, control, JacobianForm::Authors);
@@ -129,7 +135,9 @@ proptest! {
     fn only_thrust_and_drag_change_the_energy(
         airframe in airframes(), state in states(), control in controls(),
     ) {
-        let lift_coefficient = airframe.lift_zero + airframe.lift_alpha * state.angle_of_attack();
+        let lift_coefficient = airframe.lift_zero
+            + airframe.lift_alpha * state.angle_of_attack()
+            + airframe.lift_elevator * control.elevator;
         let drag_coefficient =
             airframe.drag_zero + airframe.drag_induced * lift_coefficient * lift_coefficient;
         let v = state.airspeed;
@@ -152,7 +160,9 @@ proptest! {
         // and drag as vectors.
         let v = state.airspeed;
         let pressure_area = 0.5 * airframe.air_density * v * v * airframe.wing_area;
-        let lift_coefficient = airframe.lift_zero + airframe.lift_alpha * state.angle_of_attack();
+        let lift_coefficient = airframe.lift_zero
+            + airframe.lift_alpha * state.angle_of_attack()
+            + airframe.lift_elevator * control.elevator;
         let lift = pressure_area * lift_coefficient;
         let drag = pressure_area
             * (airframe.drag_zero + airframe.drag_induced * lift_coefficient * lift_coefficient);

@@ -2,8 +2,8 @@
 
 use crate::duration;
 use hil_protocol::{
-    ActuatorLimits as WireLimits, AirframeId, Configure, ConfigureVerdict, ControlMode,
-    LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
+    ActuatorLimits as WireLimits, Aircraft as WireAircraft, Configure, ConfigureVerdict,
+    ControlMode, LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
     SensorFrame as WireFrame, SensorState, SensorStates, Setting as WireSetting, StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
@@ -13,17 +13,14 @@ use mpp_core::flight::{Adoption, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
-use mpp_core::settings::{Setting, Settings};
+use mpp_core::settings::{Aircraft, Setting, Settings};
 use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::vehicle::{ActuatorLimits, Airframe, TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
-    let mut settings = preset(configure.preset)?;
-    settings.airframe = match configure.airframe {
-        AirframeId::Paper => Airframe::PAPER,
-        AirframeId::Reference => Airframe::REFERENCE,
-    };
+    let aircraft = aircraft(&configure.aircraft, &configure.actuators);
+    let mut settings = preset(configure.preset, &aircraft)?;
     settings.planner.paths = usize::from(configure.paths);
     settings.planner.altitude = configure.altitude;
     settings.planner.seed = configure.seed;
@@ -31,7 +28,6 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
     if let Some(own) = settings.planner.flight_mut() {
         own.sight = f64::from(configure.range_max);
         own.latency = duration(configure.latency_ticks);
-        settings.actuators = actuators(&configure.actuators);
     }
 
     if settings.planner.paths > MAX_PATHS {
@@ -40,17 +36,36 @@ pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdi
         });
     }
     check(configure)?;
+    check_latency(configure, &settings)?;
     Ok(settings)
 }
 
-/// The settings of a preset, if this build contains its planner.
-fn preset(preset: Preset) -> Result<Settings, ConfigureVerdict> {
+/// Checks that a plan is taken over before its horizon.
+pub(crate) fn check_latency(
+    configure: &Configure,
+    settings: &Settings,
+) -> Result<(), ConfigureVerdict> {
+    let horizon = STAGES as f64 * STAGE_PERIOD * settings.units.time;
+    if duration(configure.latency_ticks) > horizon {
+        return Err(ConfigureVerdict::OutOfRange(WireSetting::Latency));
+    }
+    Ok(())
+}
+
+/// The settings of a preset for an aircraft, if this build contains its planner. The paper's presets have a
+/// cruise of their own and know no limits.
+fn preset(preset: Preset, aircraft: &Aircraft) -> Result<Settings, ConfigureVerdict> {
+    #[cfg(feature = "paper")]
+    let of_paper = |settings: Settings| Settings {
+        airframe: aircraft.airframe,
+        ..settings
+    };
     match preset {
-        Preset::Flight => Ok(Settings::flight()),
+        Preset::Flight => Ok(Settings::flight_of(aircraft)),
         #[cfg(feature = "paper")]
-        Preset::Reference => Ok(Settings::reference()),
+        Preset::Reference => Ok(of_paper(Settings::reference())),
         #[cfg(feature = "paper")]
-        Preset::Paper => Ok(Settings::paper()),
+        Preset::Paper => Ok(of_paper(Settings::paper())),
         #[cfg(not(feature = "paper"))]
         Preset::Reference | Preset::Paper => Err(ConfigureVerdict::PresetNotBuilt),
     }
@@ -63,9 +78,6 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
     }
     if configure.latency_ticks == 0 || configure.latency_ticks > configure.replan_period_ticks {
         return Err(ConfigureVerdict::Latency);
-    }
-    if duration(configure.latency_ticks) > STAGES as f64 * STAGE_PERIOD {
-        return Err(ConfigureVerdict::OutOfRange(WireSetting::Latency));
     }
     if configure.slices_per_tick == 0 {
         return Err(ConfigureVerdict::SlicesPerTick);
@@ -88,11 +100,46 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
 }
 
 fn actuators(wire: &WireLimits) -> ActuatorLimits {
+    let WireLimits {
+        thrust_max,
+        thrust_lag,
+        elevator_below,
+        elevator_above,
+        elevator_rate,
+    } = *wire;
     ActuatorLimits {
-        thrust_max: wire.thrust_max.map(f64::from),
-        thrust_lag: wire.thrust_lag.map(f64::from),
-        elevator_range: wire.elevator_range.map(f64::from),
-        elevator_rate: wire.elevator_rate.map(f64::from),
+        thrust_max,
+        thrust_lag,
+        elevator_below,
+        elevator_above,
+        elevator_rate,
+    }
+}
+
+/// The aircraft of a configuration.
+fn aircraft(wire: &WireAircraft, limits: &WireLimits) -> Aircraft {
+    Aircraft {
+        airframe: Airframe {
+            mass: wire.mass,
+            pitch_inertia: wire.pitch_inertia,
+            wing_area: wire.wing_area,
+            moment_length: wire.moment_length,
+            air_density: wire.air_density,
+            lift_zero: wire.lift_zero,
+            lift_alpha: wire.lift_alpha,
+            lift_elevator: wire.lift_elevator,
+            drag_zero: wire.drag_zero,
+            drag_induced: wire.drag_induced,
+            moment_zero: wire.moment_zero,
+            moment_alpha: wire.moment_alpha,
+            moment_alpha_rate: wire.moment_alpha_rate,
+            moment_pitch_rate: wire.moment_pitch_rate,
+            moment_elevator: wire.moment_elevator,
+        },
+        actuators: actuators(limits),
+        cruise: wire.cruise,
+        body_radius: wire.body_radius,
+        stall: wire.stall,
     }
 }
 
@@ -141,7 +188,8 @@ pub(crate) fn out_of_range(setting: Setting) -> ConfigureVerdict {
         AngleOfAttackLimit => AngleOfAttackLimit,
         FlightPathLimit => FlightPathLimit;
         Mass PitchInertia WingArea MomentLength AirDensity LiftZero LiftAlpha DragZero DragInduced
-        MomentZero MomentAlpha MomentAlphaRate MomentElevator MotorThrust ThrustLag ElevatorRange
+        MomentZero MomentAlpha MomentAlphaRate MomentElevator MotorThrust ThrustLag
+        ElevatorBelow ElevatorAbove LiftElevator MomentPitchRate BodyRadius Stall LengthUnit TimeUnit MassUnit
         ElevatorRate DesignThrust SpeedNoise PitchNoise RateNoise PathNoise AirspeedVariance PitchVariance
         InitialVariance Gate SpeedWeight PitchWeight RateWeight PathWeight ElevatorWeight CrossTrack
         AirspeedHold PlanElevatorWeight PlanThrustWeight PlanTerminalWeight Latency PenaltyQuadratic Rounds
@@ -223,7 +271,7 @@ pub(crate) fn trajectory(scan_tick: u32, trajectory: &Trajectory) -> PlanTraject
     };
     PlanTrajectory {
         scan_tick,
-        period: STAGE_PERIOD as f32,
+        period: trajectory.stage_period as f32,
         knots: trajectory.knots.iter().map(knot).collect(),
     }
 }
@@ -281,6 +329,15 @@ mod tests {
     use super::*;
     use std::format;
     use std::vec::Vec;
+
+    #[test]
+    fn the_reference_aircraft_of_the_link_is_that_of_the_core() {
+        let wire = hil_protocol::Aircraft::REFERENCE;
+        let none = WireLimits::NONE;
+        assert_eq!(aircraft(&wire, &none), Aircraft::REFERENCE);
+        let same = Settings::flight_of(&Aircraft::REFERENCE);
+        assert_eq!(same, Settings::flight());
+    }
 
     /// The report of the counters has the names of the core's counters, in their order.
     #[test]

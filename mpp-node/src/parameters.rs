@@ -80,10 +80,13 @@ impl Tuning {
             return Err(ParameterVerdict::PathsInFlight);
         }
         // The range of the elevator is relative to the trim of the cruise with which it was set.
-        if self.settings.actuators.elevator_range.is_some() && self.settings.cruise != cruise {
+        let limits = &self.settings.actuators;
+        let limited = limits.elevator_below.is_some() || limits.elevator_above.is_some();
+        if limited && self.settings.cruise != cruise {
             return Err(ParameterVerdict::CruiseFixed);
         }
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
+        convert::check_latency(&self.configure, &self.settings).map_err(ParameterVerdict::SetUp)?;
         if let Some(setting) = self.settings.out_of_range() {
             return Err(ParameterVerdict::SetUp(convert::out_of_range(setting)));
         }
@@ -339,8 +342,15 @@ parameters! { 41:
         |tuning| limit(tuning, tuning.settings.actuators.thrust_lag),
         |tuning, value| tuning.settings.actuators.thrust_lag = positive(value);
     "ACT_ELEV_RANGE", "either side of trim; 0: no limit", [0.0, 100.0], None, BEFORE,
-        |tuning| limit(tuning, tuning.settings.actuators.elevator_range),
-        |tuning, value| tuning.settings.actuators.elevator_range = positive(value);
+        |tuning| {
+            let limits = &tuning.settings.actuators;
+            let sides = [limits.elevator_below, limits.elevator_above];
+            limit(tuning, sides.into_iter().flatten().reduce(f64::min))
+        },
+        |tuning, value| {
+            let limits = &mut tuning.settings.actuators;
+            (limits.elevator_below, limits.elevator_above) = (positive(value), positive(value));
+        };
     "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.elevator_rate),
         |tuning, value| tuning.settings.actuators.elevator_rate = positive(value);

@@ -4,7 +4,7 @@
 //! with this motion and with the wind. When the wind changes, the aircraft keeps its velocity over
 //! ground. Its velocity through the air then changes by the opposite amount.
 
-use crate::dynamics::Dynamics;
+use crate::dynamics::{Aerodynamics, Dynamics};
 use crate::faults::{Actuators, Gusts, Signal};
 use crate::plant::{Plant, PlantError};
 use crate::random::Stream;
@@ -33,15 +33,16 @@ impl Aircraft {
     /// # Errors
     /// [`TrimError`] when the core's airframe has no level flight.
     pub fn new(scenario: &Scenario) -> Result<Self, TrimError> {
-        let known = scenario.airframe.airframe();
+        let known = scenario.aircraft.known.airframe;
         let (faults, seed) = (&scenario.faults, scenario.seed);
         let trim = scenario.trim()?.control;
         Ok(Self {
             body: Dynamics {
                 airframe: faults.model_error.airframe(seed, known),
+                more: Aerodynamics::of(&scenario.aircraft.file),
                 state: scenario.start()?,
             },
-            actuators: Actuators::new(faults.actuators, trim),
+            actuators: Actuators::new(scenario.limits(), trim),
             elevator: Signal::new(seed, Stream::ElevatorFault, faults.elevator),
             thrust: Signal::new(seed, Stream::ThrustFault, faults.thrust),
             trim,
@@ -197,7 +198,8 @@ mod tests {
         let ideal = scenario();
         let mut aircraft = Aircraft::new(&ideal).unwrap();
         let mut body = Dynamics {
-            airframe: ideal.airframe.airframe(),
+            airframe: ideal.aircraft.known.airframe,
+            more: Aerodynamics::NONE,
             state: ideal.start().unwrap(),
         };
         for tick in 0..200 {

@@ -1,5 +1,7 @@
-//! The motion of the true aircraft. This module integrates the core's equations of motion.
+//! The motion of the true aircraft. This module integrates the core's equations of motion, with the
+//! aerodynamics that an aircraft file adds to them.
 
+use crate::aircraft_file::AircraftFile;
 use crate::plant::PlantError;
 use mpp_core::vehicle::{AirState, Airframe, Control, VehicleState, vehicle_rate};
 
@@ -12,8 +14,70 @@ pub const SUBSTEPS: u32 = 2;
 pub struct Dynamics {
     /// Parameters of the true aircraft; a campaign may make them differ from the core's.
     pub airframe: Airframe,
+    /// What the core's equations leave out.
+    pub more: Aerodynamics,
     /// True state.
     pub state: VehicleState,
+}
+
+/// Aerodynamics of the true aircraft that the core's equations leave out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aerodynamics {
+    /// Airspeed at which the dampings are as the airframe says [m/s]. They fall with `1 / v`, because they
+    /// are of `theta' c / 2v`. Without a value they are constant, as in the paper.
+    pub damping_airspeed: Option<f64>,
+    /// Angle of attack at which the wing stalls \[rad\]; it never does without a value.
+    pub stall: Option<f64>,
+}
+
+/// Sharpness of the stall [1/rad]. Source: Beard, McLain, "Small Unmanned Aircraft", 2012, table E.2.
+const STALL_SHARPNESS: f64 = 50.0;
+
+impl Aerodynamics {
+    /// The core's equations alone.
+    pub const NONE: Self = Self {
+        damping_airspeed: None,
+        stall: None,
+    };
+
+    /// The aerodynamics of an aircraft file.
+    #[must_use]
+    pub fn of(file: &AircraftFile) -> Self {
+        let constant = file.moment.pitch_rate == 0.0 && file.moment.alpha_rate == 0.0;
+        Self {
+            damping_airspeed: (!constant).then_some(file.cruise),
+            stall: file.lift.stall,
+        }
+    }
+
+    /// The airframe whose linear lift and constant dampings are those of the true aircraft in this motion.
+    fn at(&self, airframe: &Airframe, air: &AirState) -> Airframe {
+        let mut at = *airframe;
+        if let Some(airspeed) = self.damping_airspeed {
+            at.moment_alpha_rate *= airspeed / air.airspeed;
+            at.moment_pitch_rate *= airspeed / air.airspeed;
+        }
+        if let Some(stall) = self.stall {
+            let alpha = air.angle_of_attack();
+            let linear = at.lift_zero + at.lift_alpha * alpha;
+            at.lift_zero += separated(alpha, stall) * (flat_plate(alpha) - linear);
+        }
+        at
+    }
+}
+
+/// Share of the flow that is separated [-]: a smooth step at the stall, to either side. Source: Beard and
+/// McLain, equation 4.10.
+fn separated(alpha: f64, stall: f64) -> f64 {
+    let above = libm::exp(-STALL_SHARPNESS * (alpha - stall));
+    let below = libm::exp(STALL_SHARPNESS * (alpha + stall));
+    (1.0 + above + below) / ((1.0 + above) * (1.0 + below))
+}
+
+/// Lift coefficient of a flat plate [-]. Source: Beard and McLain, equation 4.9.
+fn flat_plate(alpha: f64) -> f64 {
+    let (sin, cos) = libm::sincos(alpha);
+    2.0 * alpha.signum() * sin * sin * cos
 }
 
 impl Dynamics {
@@ -24,11 +88,10 @@ impl Dynamics {
     /// [`PlantError`]; the state is then as before.
     pub fn step(&mut self, control: Control, dt: f64) -> Result<(), PlantError> {
         let substep = dt / f64::from(SUBSTEPS);
-        let airframe = self.airframe;
+        let (airframe, more) = (self.airframe, self.more);
+        let rate = |at: &VehicleState| vehicle_rate(&more.at(&airframe, &at.air), at, control);
         self.advance(control, |state| {
-            (0..SUBSTEPS).fold(*state, |state, _| {
-                runge_kutta(&airframe, &state, control, substep)
-            })
+            (0..SUBSTEPS).fold(*state, |state, _| runge_kutta(rate, &state, substep))
         })
     }
 
@@ -64,12 +127,10 @@ impl Dynamics {
 
 /// One step of the classic fourth-order Runge-Kutta method over `h` \[s\].
 fn runge_kutta(
-    airframe: &Airframe,
+    rate: impl Fn(&VehicleState) -> VehicleState,
     state: &VehicleState,
-    control: Control,
     h: f64,
 ) -> VehicleState {
-    let rate = |at: &VehicleState| vehicle_rate(airframe, at, control);
     let k1 = rate(state);
     let k2 = rate(&moved(state, &k1, 0.5 * h));
     let k3 = rate(&moved(state, &k2, 0.5 * h));
@@ -102,7 +163,15 @@ mod tests {
             z: 50.0,
             air: trim.state,
         };
-        (Dynamics { airframe, state }, trim.control)
+        let more = Aerodynamics::NONE;
+        (
+            Dynamics {
+                airframe,
+                more,
+                state,
+            },
+            trim.control,
+        )
     }
 
     /// Flies `seconds` in steps of `dt` with a constant control that differs from trim.

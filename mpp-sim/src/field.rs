@@ -28,6 +28,16 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
+    /// The obstacle in a world whose lengths are `scale` times as long, about downrange 0 and an altitude \[m\].
+    #[must_use]
+    pub fn scaled(&self, scale: f64, altitude: f64) -> Self {
+        Self {
+            x: self.x * scale,
+            z: altitude + (self.z - altitude) * scale,
+            radius: self.radius * scale,
+        }
+    }
+
     /// Distance from a point to the edge \[m\], negative inside.
     #[must_use]
     pub fn clearance(&self, point: Point) -> f64 {

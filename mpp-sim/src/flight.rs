@@ -85,7 +85,7 @@ pub fn fly_in(
     let mut sensing = Sensing::new(scenario);
     let mut exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
     let mut trust = SensorStates::default();
-    let mut judge = Judge::new();
+    let mut judge = Judge::new(scenario);
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, plant.state());
     steering.wait(&mut session, ground)?;

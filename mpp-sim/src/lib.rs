@@ -15,7 +15,8 @@
 //! from those before it:
 //!
 //! ```text
-//! names, random              named values; the only source of random numbers
+//! names, random, file_error  named values; the only source of random numbers; errors of files
+//! aircraft_file              an aircraft as TOML, and the numbers that core and plant take from it
 //! field, scene               the obstacles: the paper's circles, the challenge scenes
 //! lidar, sensors, navigation the sensors, with noise from seeded streams
 //! plant, dynamics            the interface of an aircraft, and this crate's equations of motion
@@ -55,6 +56,10 @@
 pub mod names;
 
 pub mod random;
+
+mod file_error;
+
+pub mod aircraft_file;
 
 pub mod field;
 

@@ -9,6 +9,7 @@ mod summary;
 
 pub use summary::Summary;
 
+use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::entries::{Columns, ObstacleEntry, PlanEntry, RejectionEntry, SensorEntry};
 use crate::faults::Faults;
 use crate::field::{Field, Obstacle};
@@ -26,7 +27,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 /// Version of the log's layout.
-pub const SCHEMA: u32 = 3;
+pub const SCHEMA: u32 = 4;
 
 /// One flight from its parameters to its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,8 +68,10 @@ pub struct Header {
     pub paths: usize,
     /// Name of the planner's preset.
     pub preset: String,
-    /// Name of the airframe.
-    pub airframe: String,
+    /// The aircraft.
+    pub aircraft: AircraftFile,
+    /// Factor on the lengths of the world [-]; see [`Scenario::world_scale`].
+    pub world_scale: f64,
     /// Replanning rate \[Hz\].
     pub replan_hz: f64,
     /// Time from a scan until its plan is flown \[s\].
@@ -114,7 +117,8 @@ impl Header {
             obstacles: scenario.obstacles,
             paths: usize::from(scenario.paths),
             preset: scenario.preset.name().to_owned(),
-            airframe: scenario.airframe.name().to_owned(),
+            aircraft: scenario.aircraft.file.clone(),
+            world_scale: scenario.world_scale,
             replan_hz: scenario.replan_hz(),
             latency: Scenario::time(scenario.latency_ticks),
             slices_per_tick: Some(scenario.slices_per_tick).filter(|slices| *slices != u32::MAX),
@@ -144,7 +148,8 @@ impl Header {
         let scenario = Scenario {
             obstacles: self.obstacles,
             scene: self.scene,
-            airframe: (self.airframe.parse()).map_err(|error| unknown("airframe", error))?,
+            aircraft: AircraftModel::new(self.aircraft.clone()).map_err(LogError::Header)?,
+            world_scale: self.world_scale,
             // Too many for the type are too many for a scenario.
             paths: u16::try_from(self.paths).unwrap_or(u16::MAX),
             slices_per_tick: self.slices_per_tick.unwrap_or(u32::MAX),

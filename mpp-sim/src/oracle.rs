@@ -72,14 +72,15 @@ impl Oracle {
                 }
                 // Beams would clear occupied cells that they graze.
                 scan.ranges.clear();
-                let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH;
+                let length = planner.flight().map_or(1.0, |own| own.units().length);
+                let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH * length;
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
                 if let Some(planner) = planner.flight_mut() {
                     let map = planner.map_mut();
-                    map.roll(state.x, ALTITUDE);
+                    map.roll(state.x / length, ALTITUDE / length);
                     map.know(|x, z| {
-                        near.iter()
-                            .any(|obstacle| obstacle.clearance((x, z)) <= 0.0)
+                        let at = (x * length, z * length);
+                        near.iter().any(|obstacle| obstacle.clearance(at) <= 0.0)
                     });
                 }
             }

@@ -136,6 +136,8 @@ impl Class {
 pub struct Score {
     /// The altitude that the flight should keep \[m\].
     pub altitude: f64,
+    /// Greatest distance from the altitude of a strict success \[m\].
+    pub band: f64,
     /// Least distance to an obstacle's edge \[m\]: negative inside, infinite without obstacles.
     pub min_clearance: f64,
     /// Greatest `|pitch|` \[rad\].
@@ -147,11 +149,12 @@ pub struct Score {
 }
 
 impl Score {
-    /// The score of a flight that has not begun and should keep this altitude \[m\].
+    /// The score of a flight that has not begun and should keep within `band` of this altitude \[m\].
     #[must_use]
-    pub fn new(altitude: f64) -> Self {
+    pub fn new(altitude: f64, band: f64) -> Self {
         Self {
             altitude,
+            band,
             min_clearance: f64::INFINITY,
             max_pitch: 0.0,
             max_flight_path: 0.0,
@@ -159,10 +162,10 @@ impl Score {
         }
     }
 
-    /// Whether the flight stayed within [`ALTITUDE_BAND`].
+    /// Whether the flight stayed within its band.
     #[must_use]
     pub fn in_band(&self) -> bool {
-        self.max_altitude_deviation <= ALTITUDE_BAND
+        self.max_altitude_deviation <= self.band
     }
 
     /// Adds one tick's motion, with the straight path between the two states. Returns the outcome
@@ -222,7 +225,7 @@ mod tests {
     }
 
     fn end(from: VehicleState, to: VehicleState) -> Option<Outcome> {
-        Score::new(50.0).update(&field(), &from, &to)
+        Score::new(50.0, ALTITUDE_BAND).update(&field(), &from, &to)
     }
 
     #[test]
@@ -250,7 +253,7 @@ mod tests {
 
     #[test]
     fn a_score_keeps_the_extremes() {
-        let mut score = Score::new(50.0);
+        let mut score = Score::new(50.0, ALTITUDE_BAND);
         let path = [
             state(0.0, 50.0, -20.0, 5.0),
             state(10.0, 53.0, 10.0, -8.0),
@@ -270,7 +273,7 @@ mod tests {
     #[test]
     fn the_band_is_left_at_eleven_metres() {
         for (z, inside) in [(60.9, true), (61.1, false), (39.1, true), (38.9, false)] {
-            let mut score = Score::new(50.0);
+            let mut score = Score::new(50.0, ALTITUDE_BAND);
             let at = state(0.0, z, 0.0, 0.0);
             assert_eq!(score.update(&field(), &at, &at), None);
             // A flight that comes back into the band is still not strict.

@@ -1,28 +1,29 @@
 //! The parameters of a flight: the presets, and everything that a scenario file or a flag may
 //! change.
 
-mod error;
 mod file;
 mod recorded;
 
+use crate::aircraft_file::AircraftModel;
 use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::names::{self, UnknownName};
 use crate::navigation::NavigationConfig;
+use crate::outcome::ALTITUDE_BAND;
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
 use core::fmt;
 use core::str::FromStr;
-use hil_protocol::{AirframeId, Configure};
+use hil_protocol::Configure;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{Airframe, Trim, TrimError, VehicleState};
+use mpp_core::vehicle::{ActuatorLimits, Trim, TrimError, VehicleState};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use recorded::Times;
 
-pub use error::ScenarioError;
+pub use crate::file_error::ScenarioError;
 pub use file::{AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile};
 
 /// The height at which flights start and which the planner returns to \[m\].
@@ -91,53 +92,6 @@ impl FromStr for Preset {
     }
 }
 
-/// The named airframes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum AirframeName {
-    /// The airframe of the paper's appendix: with chord, `I_yy` = 0.17 kg m^2.
-    Paper,
-    /// The airframe of the authors' code: without chord.
-    Reference,
-}
-
-impl AirframeName {
-    /// All of them.
-    pub const ALL: [Self; 2] = [Self::Paper, Self::Reference];
-
-    /// Its name on the command line and in logs.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Reference => "reference",
-        }
-    }
-
-    /// Its parameters.
-    #[must_use]
-    pub fn airframe(self) -> Airframe {
-        match self {
-            Self::Paper => Airframe::PAPER,
-            Self::Reference => Airframe::REFERENCE,
-        }
-    }
-}
-
-impl fmt::Display for AirframeName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for AirframeName {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        names::find("airframe", &Self::ALL, Self::name, text)
-    }
-}
-
 /// One flight, in full.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
@@ -151,8 +105,12 @@ pub struct Scenario {
     pub placed: Vec<Obstacle>,
     /// The core's preset.
     pub preset: Preset,
-    /// The airframe that the core knows. The true airframe differs from it only by its model error.
-    pub airframe: AirframeName,
+    /// The aircraft. The true one differs from what the core knows by its model error, and by what an
+    /// aircraft file says besides.
+    pub aircraft: AircraftModel,
+    /// Factor on the lengths of the field, of the lidar's range and of the strict band [-]; times are scaled
+    /// by its root. By default it is that of the planner's units.
+    pub world_scale: f64,
     /// Number of candidate paths of a cycle. With 0 the core tracks the shortest path itself.
     pub paths: u16,
     /// Ticks from one plan to the next.
@@ -189,7 +147,8 @@ impl Scenario {
             scene: None,
             placed: Vec::new(),
             preset,
-            airframe: AirframeName::Reference,
+            aircraft: AircraftModel::reference(),
+            world_scale: 1.0,
             paths: 25,
             replan_ticks: TICKS_PER_SECOND,
             latency_ticks: 1,
@@ -224,16 +183,34 @@ impl Scenario {
     /// The core's level trim.
     ///
     /// # Errors
-    /// [`TrimError`] when the airframe has no level flight.
+    /// [`TrimError`] when the aircraft has no level flight.
     pub fn trim(&self) -> Result<Trim, TrimError> {
-        let cruise = self.preset.settings().cruise;
-        cruise.trim(&self.airframe.airframe())
+        let cruise = match self.preset {
+            Preset::Flight => return Ok(self.aircraft.trim),
+            paper => paper.settings().cruise,
+        };
+        cruise.trim(&self.aircraft.known.airframe)
+    }
+
+    /// The limits of the actuators: those of the aircraft, or the narrower ones among the scenario's faults.
+    #[must_use]
+    pub fn limits(&self) -> ActuatorLimits {
+        let own = self.aircraft.known.actuators;
+        let more = self.faults.actuators.limits();
+        let least = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::min);
+        ActuatorLimits {
+            thrust_max: least(own.thrust_max, more.thrust_max),
+            thrust_lag: more.thrust_lag.or(own.thrust_lag),
+            elevator_below: least(own.elevator_below, more.elevator_below),
+            elevator_above: least(own.elevator_above, more.elevator_above),
+            elevator_rate: least(own.elevator_rate, more.elevator_rate),
+        }
     }
 
     /// The state at the start of the flight: level flight in the core's trim.
     ///
     /// # Errors
-    /// [`TrimError`] when the airframe has no level flight.
+    /// [`TrimError`] when the aircraft has no level flight.
     pub fn start(&self) -> Result<VehicleState, TrimError> {
         Ok(VehicleState {
             x: 0.0,
@@ -250,6 +227,12 @@ impl Scenario {
             field
                 .obstacles
                 .extend(scene.obstacles(self.seed, 0.0, ALTITUDE));
+        }
+        // No other scale than 1 leaves every bit of `z` as it was drawn.
+        if self.world_scale != 1.0 {
+            for obstacle in &mut field.obstacles {
+                *obstacle = obstacle.scaled(self.world_scale, ALTITUDE);
+            }
         }
         field.obstacles.extend(&self.placed);
         field
@@ -276,10 +259,7 @@ impl Scenario {
                 Preset::Paper => hil_protocol::Preset::Paper,
                 Preset::Flight => hil_protocol::Preset::Flight,
             },
-            airframe: match self.airframe {
-                AirframeName::Paper => AirframeId::Paper,
-                AirframeName::Reference => AirframeId::Reference,
-            },
+            aircraft: self.aircraft.told(),
             paths: self.paths,
             replan_period_ticks: self.replan_ticks,
             latency_ticks: self.latency_ticks,
@@ -288,13 +268,37 @@ impl Scenario {
             beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
             range_max: (self.lidar.range_max + beyond) as f32,
             altitude: ALTITUDE,
-            actuators: self.faults.actuators.told(),
+            actuators: told(self.limits()),
         }
+    }
+
+    /// Greatest distance from the initial altitude of a strict success \[m\].
+    #[must_use]
+    pub fn band(&self) -> f64 {
+        ALTITUDE_BAND * self.world_scale
     }
 
     /// Time of a tick \[s\].
     #[must_use]
     pub fn time(tick: u32) -> f64 {
         f64::from(tick) * TICK_PERIOD
+    }
+}
+
+/// Limits in the form that goes to the core.
+fn told(limits: ActuatorLimits) -> hil_protocol::ActuatorLimits {
+    let ActuatorLimits {
+        thrust_max,
+        thrust_lag,
+        elevator_below,
+        elevator_above,
+        elevator_rate,
+    } = limits;
+    hil_protocol::ActuatorLimits {
+        thrust_max,
+        thrust_lag,
+        elevator_below,
+        elevator_above,
+        elevator_rate,
     }
 }

@@ -4,7 +4,7 @@
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, VehicleState};
 use mpp_sim::aircraft::Aircraft;
-use mpp_sim::dynamics::Dynamics;
+use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use mpp_sim::field::{Field, Obstacle, Point};
 use mpp_sim::flight::{fly, fly_in};
 use mpp_sim::inquest::Cause;
@@ -58,7 +58,8 @@ impl Plant for Hatch {
 
 fn with_hatch(scenario: &Scenario, drag: f64) -> FlightLog {
     let body = Dynamics {
-        airframe: scenario.airframe.airframe(),
+        airframe: scenario.aircraft.known.airframe,
+        more: Aerodynamics::NONE,
         state: scenario.start().unwrap(),
     };
     let mut world = World {

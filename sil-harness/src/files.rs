@@ -2,6 +2,7 @@
 
 use mpp_analysis::check_reference::{Report, check, recorded_instances};
 use mpp_analysis::instance::{Instance, InstanceError};
+use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{ScenarioError, ScenarioFile};
 use std::fmt;
@@ -123,6 +124,18 @@ fn is_json(path: &Path) -> bool {
 pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
     ScenarioFile::parse(&path.display().to_string(), &read(path, MOST_WRITTEN)?)
         .map_err(FileError::Scenario)
+}
+
+/// Reads an aircraft: one that comes with the project, by its name, or a file.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Scenario`].
+pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
+    if let Some(known) = AircraftFile::known(name_or_path) {
+        return Ok(known);
+    }
+    let text = read(Path::new(name_or_path), MOST_WRITTEN)?;
+    AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)
 }
 
 /// Reads a flight's log.

@@ -10,6 +10,7 @@ use mpp_core::control::LqrWeights;
 use mpp_core::estimate::EkfTuning;
 use mpp_core::qp::{Penalty, Weights};
 use mpp_core::settings::{AttitudeLimits, Cruise, FlightSettings, PlannerSettings, Settings};
+use mpp_core::units::Units;
 use mpp_core::vehicle::{Airframe, Trim};
 use std::collections::BTreeMap;
 use std::fs;
@@ -248,6 +249,7 @@ fn the_table_of_sizes_is_that_of_the_code() {
 fn the_table_of_settings_is_that_of_preset_flight() {
     // Whoever adds a field has to say here, and in the table, what it is.
     let Settings {
+        units: Units::SI,
         airframe: Airframe::REFERENCE,
         actuators: _,
         cruise: Cruise::Airspeed(cruise),
@@ -287,6 +289,8 @@ fn the_table_of_settings_is_that_of_preset_flight() {
         sight,
         latency,
         penalty: Penalty { linear, quadratic },
+        stall: _,
+        body_radius: _,
         attitude: AttitudeLimits {
             angle_of_attack,
             flight_path,

@@ -69,7 +69,7 @@ fn tracking_paths_without_refinement_is_worse() {
 #[test]
 fn the_paper_airframe_flies_too() {
     let heavy_tail = |seed| Scenario {
-        airframe: mpp_sim::scenario::AirframeName::Paper,
+        aircraft: mpp_sim::aircraft_file::AircraftModel::paper(),
         ..Scenario::new(Preset::Flight, seed)
     };
     assert!(survivors(20, heavy_tail) >= 19);

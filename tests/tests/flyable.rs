@@ -6,7 +6,7 @@ use mpp_core::config::TICK_PERIOD;
 use mpp_core::settings::Cruise;
 use mpp_core::vehicle::{Control, VehicleState};
 use mpp_node::parameters::{PARAMETERS, Parameter, Tuning};
-use mpp_sim::dynamics::Dynamics;
+use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use mpp_sim::flight::fly_in;
 use mpp_sim::log::FlightLog;
 use mpp_sim::navigation::NavigationConfig;
@@ -83,6 +83,7 @@ fn flown(name: &str, value: f64) -> Result<FlightLog, Refused> {
     let mut world = World {
         plant: Box::new(Body(Dynamics {
             airframe: settings.airframe,
+            more: Aerodynamics::NONE,
             state: start,
         })),
         ..World::of(&scenario).expect("it flies")

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use hil_protocol::{
-    AirData, AirframeId, Configure, Decoder, Hello, MAX_FRAME, Message, Position, Preset, Role,
+    AirData, Aircraft, Configure, Decoder, Hello, MAX_FRAME, Message, Position, Preset, Role,
     SensorFrame, encode,
 };
 use std::io::{Read, Write};
@@ -18,14 +18,9 @@ pub(crate) const HELLO: Hello = Hello {
 
 /// A configuration that every core accepts.
 pub(crate) const CONFIGURE: Configure = Configure {
-    actuators: hil_protocol::ActuatorLimits {
-        thrust_max: None,
-        thrust_lag: None,
-        elevator_range: None,
-        elevator_rate: None,
-    },
+    actuators: hil_protocol::ActuatorLimits::NONE,
     preset: Preset::Flight,
-    airframe: AirframeId::Reference,
+    aircraft: Aircraft::REFERENCE,
     paths: 25,
     replan_period_ticks: 100,
     latency_ticks: 1,

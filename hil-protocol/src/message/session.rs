@@ -1,5 +1,6 @@
 //! The opening of a session: the two sides, the configuration, and the parameters.
 
+use super::aircraft::{ActuatorLimits, Aircraft};
 use super::size;
 use super::verdict::{ConfigureVerdict, ParameterVerdict};
 use serde::{Deserialize, Serialize};
@@ -41,8 +42,8 @@ pub enum Role {
 pub struct Configure {
     /// The planner's set of parameters.
     pub preset: Preset,
-    /// The aircraft that the core assumes.
-    pub airframe: AirframeId,
+    /// The aircraft that the core flies.
+    pub aircraft: Aircraft,
     /// Number of candidate paths that a planning cycle refines. 0 means that the core tracks a path itself
     /// without refinement; preset `flight` refuses 0.
     pub paths: u16,
@@ -66,31 +67,14 @@ pub struct Configure {
 
 impl Configure {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = 2 * size::BYTE
+    pub const MAX_SIZE: usize = size::BYTE
+        + Aircraft::MAX_SIZE
         + 2 * size::U16
         + 3 * size::U32
         + size::U64
         + size::F32
         + size::F64
         + ActuatorLimits::MAX_SIZE;
-}
-
-/// Limits of the actuators. `None` means no limit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct ActuatorLimits {
-    /// Greatest thrust \[N\].
-    pub thrust_max: Option<f32>,
-    /// Time constant of the thrust's first-order lag \[s\].
-    pub thrust_lag: Option<f32>,
-    /// Greatest distance of the elevator from its trim, in units of the command.
-    pub elevator_range: Option<f32>,
-    /// Greatest rate of the elevator \[1/s\].
-    pub elevator_rate: Option<f32>,
-}
-
-impl ActuatorLimits {
-    /// Size of the longest form \[bytes\].
-    pub const MAX_SIZE: usize = 4 * (size::BYTE + size::F32);
 }
 
 /// A named set of the planner's parameters. The order goes over the wire: append only.
@@ -102,15 +86,6 @@ pub enum Preset {
     Paper = 1,
     /// Our parameters for flight.
     Flight = 2,
-}
-
-/// An aircraft of which the core has a model. The order goes over the wire: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum AirframeId {
-    /// The airframe of the paper.
-    Paper = 0,
-    /// The airframe of the reference implementation.
-    Reference = 1,
 }
 
 /// Core to harness: the answer to a [`Configure`].

@@ -37,8 +37,8 @@ pub enum Setting {
     MotorThrust,
     /// The time constant of the thrust.
     ThrustLag,
-    /// The range of the elevator.
-    ElevatorRange,
+    /// The range of the elevator below its trim.
+    ElevatorBelow,
     /// The rate of the elevator.
     ElevatorRate,
     /// The thrust of the regulator's design.
@@ -91,6 +91,22 @@ pub enum Setting {
     PaddingNear,
     /// The corridor's padding at the end of the plan.
     PaddingFar,
+    /// The range of the elevator above its trim.
+    ElevatorAbove,
+    /// The lift of the elevator.
+    LiftElevator,
+    /// The pitch damping of the airframe through the pitch rate.
+    MomentPitchRate,
+    /// The radius of the aircraft.
+    BodyRadius,
+    /// The distance of the stall from level flight.
+    Stall,
+    /// The planner's unit of length.
+    LengthUnit,
+    /// The planner's unit of time.
+    TimeUnit,
+    /// The planner's unit of mass.
+    MassUnit,
 }
 
 impl fmt::Display for Setting {
@@ -111,7 +127,7 @@ impl fmt::Display for Setting {
             Self::MomentElevator => "the effectiveness of the elevator",
             Self::MotorThrust => "the greatest thrust of the motor",
             Self::ThrustLag => "the time constant of the thrust",
-            Self::ElevatorRange => "the range of the elevator",
+            Self::ElevatorBelow => "the range of the elevator below its trim",
             Self::ElevatorRate => "the rate of the elevator",
             Self::DesignThrust => "the thrust of the regulator's design",
             Self::SpeedNoise => "the estimator's process noise of the airspeed",
@@ -138,6 +154,14 @@ impl fmt::Display for Setting {
             Self::Deepened => "the number of candidates with all rounds",
             Self::PaddingNear => "the corridor's padding at the start of the plan",
             Self::PaddingFar => "the corridor's padding at the end of the plan",
+            Self::ElevatorAbove => "the range of the elevator above its trim",
+            Self::LiftElevator => "the lift of the elevator",
+            Self::MomentPitchRate => "the pitch damping of the airframe through the pitch rate",
+            Self::BodyRadius => "the radius of the aircraft",
+            Self::LengthUnit => "the planner's unit of length",
+            Self::TimeUnit => "the planner's unit of time",
+            Self::MassUnit => "the planner's unit of mass",
+            Self::Stall => "the distance of the stall from level flight",
         })
     }
 }

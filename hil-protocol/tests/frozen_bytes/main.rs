@@ -59,10 +59,10 @@ fn hello_and_every_role() {
     ]);
 }
 
-fn configure(preset: Preset, airframe: AirframeId) -> Message {
+fn configure(preset: Preset, aircraft: Aircraft) -> Message {
     Message::Configure(Configure {
         preset,
-        airframe,
+        aircraft,
         paths: 25,
         replan_period_ticks: 50,
         latency_ticks: 300,
@@ -74,26 +74,33 @@ fn configure(preset: Preset, airframe: AirframeId) -> Message {
         actuators: ActuatorLimits {
             thrust_max: Some(15.0),
             thrust_lag: None,
-            elevator_range: Some(2.0),
+            elevator_below: Some(2.0),
+            elevator_above: None,
             elevator_rate: None,
         },
     })
 }
 
 #[test]
-fn configure_and_every_preset_and_airframe() {
+fn configure_and_every_preset() {
     check(&[
         (
-            configure(Preset::Reference, AirframeId::Paper),
-            "054d50020201121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010103704102010101024005625f53ad00",
+            configure(Preset::Reference, Aircraft::REFERENCE),
+            "054d500202119a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb164001010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e4002010101010101010240010581ac076500",
         ),
         (
-            configure(Preset::Paper, AirframeId::Reference),
-            "184d50020201011932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010103704102010101024005772d794b00",
+            configure(
+                Preset::Paper,
+                Aircraft {
+                    stall: Some(0.25),
+                    ..Aircraft::REFERENCE
+                },
+            ),
+            "164d500202019a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb164001010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f0101010101032840010101010101010201010101010114d03f1932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e400201010101010101024001055361408c00",
         ),
         (
-            configure(Preset::Flight, AirframeId::Paper),
-            "064d50020202121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf01010370410201010102400594b2742300",
+            configure(Preset::Flight, Aircraft::REFERENCE),
+            "164d500202029a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb164001010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e40020101010101010102400105ec83ad3400",
         ),
     ]);
 }
@@ -156,10 +163,11 @@ fn every_setting_out_of_range() {
     let places = [
         Mass, PitchInertia, WingArea, MomentLength, AirDensity, LiftZero, LiftAlpha, DragZero,
         DragInduced, MomentZero, MomentAlpha, MomentAlphaRate, MomentElevator, MotorThrust, ThrustLag,
-        ElevatorRange, ElevatorRate, DesignThrust, SpeedNoise, PitchNoise, RateNoise, PathNoise,
+        ElevatorBelow, ElevatorRate, DesignThrust, SpeedNoise, PitchNoise, RateNoise, PathNoise,
         AirspeedVariance, PitchVariance, InitialVariance, Gate, SpeedWeight, PitchWeight, RateWeight,
         PathWeight, ElevatorWeight, CrossTrack, AirspeedHold, PlanElevatorWeight, PlanThrustWeight,
         PlanTerminalWeight, Latency, PenaltyQuadratic, Rounds, Deepened, PaddingNear, PaddingFar,
+        ElevatorAbove, LiftElevator, MomentPitchRate, BodyRadius, Stall, LengthUnit, TimeUnit, MassUnit,
     ];
     for (place, setting) in places.into_iter().enumerate() {
         let mut bytes = [0; 2];

@@ -50,14 +50,13 @@ fn hello() -> impl Strategy<Value = Hello> {
 
 fn configure() -> impl Strategy<Value = Configure> {
     let presets = select(&[Preset::Reference, Preset::Paper, Preset::Flight]);
-    let airframes = select(&[AirframeId::Paper, AirframeId::Reference]);
     let ticks = any::<[u32; 3]>();
     let rest = (any::<u64>(), any::<u16>(), f32::ANY, f64::ANY, limits());
-    (presets, airframes, any::<u16>(), ticks, rest).prop_map(
-        |(preset, airframe, paths, ticks, (seed, beams, range_max, altitude, actuators))| {
+    (presets, aircraft(), any::<u16>(), ticks, rest).prop_map(
+        |(preset, aircraft, paths, ticks, (seed, beams, range_max, altitude, actuators))| {
             Configure {
                 preset,
-                airframe,
+                aircraft,
                 paths,
                 replan_period_ticks: ticks[0],
                 latency_ticks: ticks[1],
@@ -72,13 +71,64 @@ fn configure() -> impl Strategy<Value = Configure> {
     )
 }
 
+fn aircraft() -> impl Strategy<Value = Aircraft> {
+    let numbers = proptest::array::uniform17(f64::ANY);
+    (numbers, proptest::option::of(f64::ANY)).prop_map(|(numbers, stall)| {
+        let [
+            mass,
+            pitch_inertia,
+            wing_area,
+            moment_length,
+            air_density,
+            lift_zero,
+            lift_alpha,
+            lift_elevator,
+            drag_zero,
+            drag_induced,
+            moment_zero,
+            moment_alpha,
+            moment_alpha_rate,
+            moment_pitch_rate,
+            moment_elevator,
+            cruise,
+            body_radius,
+        ] = numbers;
+        Aircraft {
+            mass,
+            pitch_inertia,
+            wing_area,
+            moment_length,
+            air_density,
+            lift_zero,
+            lift_alpha,
+            lift_elevator,
+            drag_zero,
+            drag_induced,
+            moment_zero,
+            moment_alpha,
+            moment_alpha_rate,
+            moment_pitch_rate,
+            moment_elevator,
+            cruise,
+            body_radius,
+            stall,
+        }
+    })
+}
+
 fn limits() -> impl Strategy<Value = ActuatorLimits> {
-    let limit = || proptest::option::of(f32::ANY);
-    (limit(), limit(), limit(), limit()).prop_map(
-        |(thrust_max, thrust_lag, elevator_range, elevator_rate)| ActuatorLimits {
+    proptest::array::uniform5(proptest::option::of(f64::ANY)).prop_map(
+        |[
             thrust_max,
             thrust_lag,
-            elevator_range,
+            elevator_below,
+            elevator_above,
+            elevator_rate,
+        ]| ActuatorLimits {
+            thrust_max,
+            thrust_lag,
+            elevator_below,
+            elevator_above,
             elevator_rate,
         },
     )

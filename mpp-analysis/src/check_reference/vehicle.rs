@@ -8,7 +8,7 @@ use mpp_core::vehicle::{
     AirState, Airframe, Control, JacobianForm, Linearization, Trim, VehicleState, linearize,
     vehicle_rate,
 };
-use mpp_sim::dynamics::Dynamics;
+use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use nalgebra::{Matrix4, Matrix6, Matrix6x2, Vector4};
 use serde::Deserialize;
 
@@ -89,6 +89,7 @@ pub(super) fn check_plant(text: &str) -> Result<Vec<Comparison>, serde_json::Err
     };
     let mut plant = Dynamics {
         airframe: AIRFRAME,
+        more: Aerodynamics::NONE,
         state: vehicle(first),
     };
     let mut path_error = 0.0_f64;

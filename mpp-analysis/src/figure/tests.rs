@@ -6,7 +6,7 @@ use super::*;
 use crate::campaign::{Campaign, Lists, Report};
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
-use mpp_sim::dynamics::Dynamics;
+use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use mpp_sim::entries::{Columns, ObstacleEntry, PlanEntry, Tick};
 use mpp_sim::faults::Faults;
 use mpp_sim::field::ObstacleField;
@@ -28,10 +28,15 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         z: 50.0,
         air: trim.state,
     };
-    let mut plant = Dynamics { airframe, state };
+    let more = Aerodynamics::NONE;
+    let mut plant = Dynamics {
+        airframe,
+        more,
+        state,
+    };
     let mut sensors = AirDataSensors::new(1, AirDataNoise::PAPER);
     let field = ObstacleField::generate(1, obstacles, 0.0, 50.0);
-    let mut score = Score::new(50.0);
+    let mut score = Score::new(50.0, 11.0);
     let mut ticks = Columns::default();
     let mut wanted = state;
     for k in 0..count {
@@ -80,7 +85,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             obstacles,
             paths: 25,
             preset: "paper".into(),
-            airframe: "reference".into(),
+            aircraft: mpp_sim::aircraft_file::AircraftModel::reference().file,
+            world_scale: 1.0,
             replan_hz: 1.0,
             latency: 0.0,
             slices_per_tick: None,

@@ -18,11 +18,13 @@ const DOWN: usize = 4;
 /// Distances and heights that a trajectory must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keep {
-    /// Least distance from the centres of occupied cells \[m\].
+    /// Least distance of the aircraft from the centres of occupied cells \[m\].
     pub margin: f64,
     /// Distance that a trajectory keeps where it already has that much room \[m\]. A value below the margin
     /// has no effect.
     pub room: f64,
+    /// Radius of the aircraft \[m\].
+    pub body_radius: f64,
     /// Least height \[m\].
     pub floor: f64,
     /// Greatest height \[m\].
@@ -55,7 +57,7 @@ impl Corridor {
             ) else {
                 continue;
             };
-            let distance = kept(field, from, to, keep);
+            let distance = kept(field, from, to, keep) + keep.body_radius;
             let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
             field.surface(range(from.x, to.x), range(from.z, to.z), |x, z| {
                 let (direction, vector) = farthest_direction(from, to, x, z);

@@ -49,6 +49,8 @@ pub struct Estimator {
     pitch: Watch,
     position: Watch,
     bias: PitchBias,
+    /// Unit of the speeds in which the watch of the pitch's bias reckons [m/s].
+    speed_unit: f64,
 }
 
 impl Estimator {
@@ -56,7 +58,7 @@ impl Estimator {
     #[must_use]
     pub fn new(settings: &Settings, trim: &Trim) -> Self {
         let airframe = settings.airframe;
-        let lift = LiftEstimator::new(&airframe);
+        let lift = LiftEstimator::new(&airframe.balanced(), trim.state.airspeed);
         Self {
             airframe,
             limits: settings.actuators,
@@ -70,6 +72,7 @@ impl Estimator {
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
             bias: PitchBias::new(),
+            speed_unit: settings.units.speed(),
         }
     }
 
@@ -128,7 +131,9 @@ impl Estimator {
     /// was before the first step or more than [`MOST_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
-        let bias = self.bias.angle(self.air.present().airspeed);
+        let bias = self
+            .bias
+            .angle(self.air.present().airspeed / self.speed_unit);
         if age == 0 {
             let pose = Pose::of(&self.state());
             return Some(Pose {
@@ -263,7 +268,8 @@ impl Estimator {
                 lift.interrupt();
             } else {
                 lift.update(elapsed, climb, &air, self.given);
-                self.bias.update(self.navigation.wind().z, elapsed);
+                let wind = self.navigation.wind().z / self.speed_unit;
+                self.bias.update(wind, elapsed);
             }
         }
         let airframe = self.conditions().airframe(&self.airframe);

@@ -1,6 +1,7 @@
 //! Estimate of the lift that the wing gives beyond that of the known airframe.
 
 use crate::tuning::lift::{MEMORY, MOST, TRUST_TIME};
+use crate::units::REFERENCE_CRUISE;
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY};
 
 /// Estimator of the offset of the lift coefficient, at the angle of attack that the elevator balances.
@@ -19,13 +20,19 @@ pub struct LiftEstimator {
     seen: f64,
     /// Climb rate over ground at the last tick [m/s].
     last: Option<f64>,
+    /// Greatest plausible offset [-].
+    most: f64,
 }
 
 impl LiftEstimator {
-    /// An estimator that starts with the offset 0.
+    /// An estimator that starts with the offset 0, for an airframe with an elevator without lift
+    /// ([`Airframe::balanced`]) that cruises at an airspeed [m/s].
     #[must_use]
-    pub const fn new(airframe: &Airframe) -> Self {
+    pub fn new(airframe: &Airframe, cruise: f64) -> Self {
+        let level = airframe.level_lift(cruise);
+        let reference = Airframe::REFERENCE.level_lift(REFERENCE_CRUISE);
         Self {
+            most: MOST * (level / reference),
             airframe: *airframe,
             average: 0.0,
             seen: 0.0,
@@ -36,7 +43,7 @@ impl LiftEstimator {
     /// Offset to add to the lift coefficient of the known airframe [-].
     #[must_use]
     pub fn offset(&self) -> f64 {
-        self.average.clamp(-MOST, MOST)
+        self.average.max(-self.most).min(self.most)
     }
 
     /// Takes in the climb rate over ground [m/s] after a further `period` \[s\], the motion through the air,

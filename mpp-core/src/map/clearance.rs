@@ -18,6 +18,8 @@ pub struct ClearanceField {
     unknown: [u128; ROWS],
     first_x: f64,
     floor: f64,
+    /// Radius of the aircraft \[m\].
+    body_radius: f64,
 }
 
 impl ClearanceField {
@@ -30,12 +32,15 @@ impl ClearanceField {
             unknown: [0; ROWS],
             first_x: 0.0,
             floor: 0.0,
+            body_radius: 0.0,
         }
     }
 
-    /// Computes the field of a map: exact distances between cell centres up to [`FAR`].
-    pub fn build(&mut self, map: &MemoryMap) {
+    /// Computes the field of a map for an aircraft with this radius \[m\]: exact distances between cell centres
+    /// up to [`FAR`].
+    pub fn build(&mut self, map: &MemoryMap, body_radius: f64) {
         (self.first_x, self.floor) = (map.first_x(), map.floor());
+        self.body_radius = body_radius;
         for row in 0..ROWS {
             (self.occupied[row], self.unknown[row]) = map.row(row);
         }
@@ -104,8 +109,9 @@ impl ClearanceField {
             .unwrap_or(0)
     }
 
-    /// Distance from a point `(x, z)` \[m\] to the nearest centre of an occupied cell \[m\]. It is bilinear
-    /// between cell centres and at most [`FAR`]. A point outside the window gets the distance at its edge.
+    /// Distance from the aircraft at a point `(x, z)` \[m\] to the nearest centre of an occupied cell \[m\],
+    /// negative if the cell is inside the aircraft's radius. It is bilinear between cell centres and at most
+    /// [`FAR`]. A point outside the window gets the distance at its edge.
     #[must_use]
     pub fn distance(&self, x: f64, z: f64) -> f64 {
         let (col, right) = split((x - self.first_x) / CELL - 0.5, COLS);
@@ -113,7 +119,7 @@ impl ClearanceField {
         let at = |row: usize, col: usize| f64::from(self.distance[row % ROWS][col % COLS]);
         let low = at(row, col) * (1.0 - right) + at(row, col + 1) * right;
         let high = at(row + 1, col) * (1.0 - right) + at(row + 1, col + 1) * right;
-        (low * (1.0 - up) + high * up) * (1.0 / PARTS)
+        (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
     /// Whether the cell of a point is in the window and the map knows nothing of it.

@@ -23,12 +23,17 @@ pub struct FlightSettings {
     pub penalty: Penalty,
     /// Limits of the attitude rows.
     pub attitude: AttitudeLimits,
+    /// Distance of the stall from the angle of attack of level flight \[rad\], if it is known. No plan goes
+    /// beyond it.
+    pub stall: Option<f64>,
     /// Rounds of linearisation that the best candidates get; every other candidate gets one.
     pub rounds: u8,
     /// Number of candidates that get all rounds.
     pub deepened: usize,
-    /// Distance that a plan keeps from the centres of occupied cells \[m\].
+    /// Distance that a plan keeps between the aircraft and the centres of occupied cells \[m\].
     pub margin: f64,
+    /// Radius of the circle that holds the aircraft \[m\].
+    pub body_radius: f64,
     /// Greatest distance of a plan from the altitude \[m\].
     pub band: f64,
     /// Greatest thrust of a plan \[N\].
@@ -48,9 +53,11 @@ impl FlightSettings {
             angle_of_attack: 0.2,
             flight_path: 0.6,
         },
+        stall: None,
         rounds: 3,
         deepened: 2,
         margin: 0.8,
+        body_radius: 0.0,
         band: 10.3,
         thrust_max: 20.0,
     };

@@ -1,5 +1,6 @@
 //! The settings that a user chooses before a flight, and the named presets.
 
+mod aircraft;
 mod flight;
 #[cfg(feature = "paper")]
 mod paper;
@@ -8,7 +9,9 @@ mod range;
 use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
 use crate::qp::Weights;
+use crate::units::Units;
 use crate::vehicle::{ActuatorLimits, Airframe, JacobianForm, Trim, TrimError};
+pub use aircraft::Aircraft;
 pub use flight::{AttitudeLimits, FlightSettings};
 #[cfg(feature = "paper")]
 pub use paper::PaperSettings;
@@ -118,6 +121,8 @@ impl PlannerSettings {
 /// Settings of the whole flight core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
+    /// The units in which the flight planner reckons.
+    pub units: Units,
     /// The aircraft as the core knows it.
     pub airframe: Airframe,
     /// Limits of motor and elevator, as far as the core knows them.
@@ -190,6 +195,7 @@ impl Settings {
     #[must_use]
     pub const fn flight() -> Self {
         Self {
+            units: Units::SI,
             airframe: Airframe::REFERENCE,
             actuators: ActuatorLimits::NONE,
             cruise: Cruise::Airspeed(12.0),

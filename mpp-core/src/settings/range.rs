@@ -95,13 +95,17 @@ impl PlannerSettings {
 
 numbers! {
     Settings as all {
-        Mass, "airframe.mass", "kg", [0.01, 1e3], Some(all.airframe.mass);
-        PitchInertia, "airframe.pitch_inertia", "kg m^2", [1e-6, 1e4], Some(all.airframe.pitch_inertia);
+        LengthUnit, "units.length", "m", [1e-3, 1e3], Some(all.units.length);
+        TimeUnit, "units.time", "s", [1e-2, 1e2], Some(all.units.time);
+        MassUnit, "units.mass", "kg", [1e-4, 1e5], Some(all.units.mass);
+        Mass, "airframe.mass", "kg", [0.01, 1e5], Some(all.airframe.mass);
+        PitchInertia, "airframe.pitch_inertia", "kg m^2", [1e-6, 1e6], Some(all.airframe.pitch_inertia);
         WingArea, "airframe.wing_area", "m^2", [1e-3, 100.0], Some(all.airframe.wing_area);
         MomentLength, "airframe.moment_length", "m", [1e-3, 10.0], Some(all.airframe.moment_length);
         AirDensity, "airframe.air_density", "kg/m^3", [0.1, 2.0], Some(all.airframe.air_density);
         LiftZero, "airframe.lift_zero", "1", [-5.0, 5.0], Some(all.airframe.lift_zero);
         LiftAlpha, "airframe.lift_alpha", "1/rad", [0.1, 20.0], Some(all.airframe.lift_alpha);
+        LiftElevator, "airframe.lift_elevator", "1", [-100.0, 100.0], Some(all.airframe.lift_elevator);
         DragZero, "airframe.drag_zero", "1", [0.0, 5.0], Some(all.airframe.drag_zero);
         DragInduced, "airframe.drag_induced", "1", [0.0, 5.0], Some(all.airframe.drag_induced);
         MomentZero, "airframe.moment_zero", "1", [-10.0, 10.0], Some(all.airframe.moment_zero);
@@ -109,15 +113,18 @@ numbers! {
         MomentAlpha, "airframe.moment_alpha", "1/rad", [-100.0, -0.01], Some(all.airframe.moment_alpha);
         MomentAlphaRate, "airframe.moment_alpha_rate", "s/rad", [-100.0, 0.0],
             Some(all.airframe.moment_alpha_rate);
+        MomentPitchRate, "airframe.moment_pitch_rate", "s/rad", [-100.0, 0.0],
+            Some(all.airframe.moment_pitch_rate);
         // The elevator may count in either direction, but it must have an effect.
         MomentElevator, "the magnitude of airframe.moment_elevator", "1", [1e-4, 100.0],
             Some(libm::fabs(all.airframe.moment_elevator));
         MotorThrust, "actuators.thrust_max", "N", [1e-3, 1e5], all.actuators.thrust_max;
         ThrustLag, "actuators.thrust_lag", "s", [1e-4, 60.0], all.actuators.thrust_lag;
-        ElevatorRange, "actuators.elevator_range", "1", [1e-3, 1e4], all.actuators.elevator_range;
+        ElevatorBelow, "actuators.elevator_below", "1", [1e-3, 1e4], all.actuators.elevator_below;
+        ElevatorAbove, "actuators.elevator_above", "1", [1e-3, 1e4], all.actuators.elevator_above;
         ElevatorRate, "actuators.elevator_rate", "1/s", [1e-3, 1e6], all.actuators.elevator_rate;
-        CruiseAirspeed, "cruise", "m/s", [1.0, 100.0], all.cruise.airspeed();
-        DesignThrust, "design_thrust", "N", [0.0, 1e4], all.design_thrust;
+        CruiseAirspeed, "cruise", "m/s", [1.0, 200.0], all.cruise.airspeed();
+        DesignThrust, "design_thrust", "N", [0.0, 1e6], all.design_thrust;
         SpeedNoise, "estimator.process_noise[0]", "m^2/s^2", [0.0, 1e4], Some(all.estimator.process_noise[0]);
         PitchNoise, "estimator.process_noise[1]", "rad^2", [0.0, 100.0], Some(all.estimator.process_noise[1]);
         RateNoise, "estimator.process_noise[2]", "rad^2/s^2", [0.0, 1e4],
@@ -137,7 +144,10 @@ numbers! {
         PathWeight, "regulator.state[3]", "1/rad^2", [0.0, 1e9], Some(all.regulator.state[3]);
         ElevatorWeight, "regulator.elevator", "1", [1e-6, 1e9], Some(all.regulator.elevator);
         CrossTrack, "cross_track", "rad/m", [0.0, 10.0], Some(all.cross_track);
-        AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e3], Some(all.airspeed_hold);
+        AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e6], Some(all.airspeed_hold);
+        // A plan ends at the horizon; it is of no use if the vehicle takes it over later.
+        Latency, "latency", "s of the planner's units", [0.0, STAGES as f64 * STAGE_PERIOD],
+            all.planner.flight().map(|own| own.latency / all.units.time);
     }
     PlannerSettings as planner {
         Altitude, "planner.altitude", "m", [-1e3, 2e4], Some(planner.altitude);
@@ -146,8 +156,6 @@ numbers! {
             Some(planner.weights.control[1]);
         PlanTerminalWeight, "planner.weights.terminal", "1", [0.0, 1e9], Some(planner.weights.terminal);
         Sight, "sight", "m", [1.0, 1e4], planner.flight().map(|own| own.sight);
-        // A plan ends at the horizon; it is of no use if the vehicle takes it over later.
-        Latency, "latency", "s", [0.0, STAGES as f64 * STAGE_PERIOD], planner.flight().map(|own| own.latency);
         PenaltyLinear, "penalty.linear", "1/m", [1e-6, 1e12], planner.flight().map(|own| own.penalty.linear);
         PenaltyQuadratic, "penalty.quadratic", "1/m^2", [1e-6, 1e12],
             planner.flight().map(|own| own.penalty.quadratic);
@@ -158,9 +166,11 @@ numbers! {
         Rounds, "rounds", "rounds", [1.0, 100.0], planner.flight().map(|own| f64::from(own.rounds));
         Deepened, "deepened", "candidates", [0.0, MAX_PATHS as f64],
             planner.flight().map(|own| own.deepened as f64);
-        Margin, "margin", "m", [0.01, 20.0], planner.flight().map(|own| own.margin);
-        Band, "band", "m", [1.0, 1e3], planner.flight().map(|own| own.band);
-        PlanThrust, "thrust_max", "N", [0.1, 1e4], planner.flight().map(|own| own.thrust_max);
+        Margin, "margin", "m", [1e-3, 500.0], planner.flight().map(|own| own.margin);
+        BodyRadius, "body_radius", "m", [0.0, 100.0], planner.flight().map(|own| own.body_radius);
+        Stall, "stall", "rad", [1e-3, 1.5], planner.flight().and_then(|own| own.stall);
+        Band, "band", "m", [0.1, 1e4], planner.flight().map(|own| own.band);
+        PlanThrust, "thrust_max", "N", [0.1, 1e6], planner.flight().map(|own| own.thrust_max);
         PaddingNear, "padding.near", "m", [0.0, 20.0], planner.padding().map(|padding| padding.near);
         PaddingFar, "padding.far", "m", [0.0, 20.0], planner.padding().map(|padding| padding.far);
     }

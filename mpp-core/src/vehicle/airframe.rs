@@ -7,8 +7,9 @@ pub const GRAVITY: f64 = 9.81;
 ///
 /// Aerodynamic coefficients refer to the dynamic pressure `q = rho v^2 / 2` and the wing area:
 /// `L = q S C_L`, `D = q S C_D`, `M = q S l C_M` with
-/// `C_L = C_L0 + C_La alpha`, `C_D = C_D0 + K C_L^2`,
-/// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Me delta_e`.
+/// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
+/// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`.
+/// The paper has neither `C_Le` nor `C_Mq`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Airframe {
     /// Mass `m` \[kg\].
@@ -26,6 +27,8 @@ pub struct Airframe {
     pub lift_zero: f64,
     /// Lift slope `C_La` [1/rad].
     pub lift_alpha: f64,
+    /// Lift of the elevator `C_Le` [1 per unit of elevator command].
+    pub lift_elevator: f64,
     /// Parasitic drag coefficient `C_D0` [-].
     pub drag_zero: f64,
     /// Induced drag factor `K` [-].
@@ -36,6 +39,9 @@ pub struct Airframe {
     pub moment_alpha: f64,
     /// Pitch damping through the rate of the angle of attack `C_Ma'` [s/rad].
     pub moment_alpha_rate: f64,
+    /// Pitch damping through the pitch rate `C_Mq` [s/rad]: the usual coefficient per radian of `theta' c / 2v`,
+    /// times `c / 2v` at cruise.
+    pub moment_pitch_rate: f64,
     /// Elevator effectiveness `C_Me` [1 per unit of elevator command]. The command is a number without a
     /// unit, not an angle in radians: level trim of [`Airframe::REFERENCE`] at 12 m/s needs 3.749.
     pub moment_elevator: f64,
@@ -53,11 +59,13 @@ impl Airframe {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_elevator,
             drag_zero,
             drag_induced,
             moment_zero,
             moment_alpha,
             moment_alpha_rate,
+            moment_pitch_rate,
             moment_elevator,
         } = *self;
         [
@@ -68,11 +76,13 @@ impl Airframe {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_elevator,
             drag_zero,
             drag_induced,
             moment_zero,
             moment_alpha,
             moment_alpha_rate,
+            moment_pitch_rate,
             moment_elevator,
         ]
         .iter()
@@ -88,11 +98,13 @@ impl Airframe {
         air_density: 1.225,
         lift_zero: 0.5,
         lift_alpha: 5.73,
+        lift_elevator: 0.0,
         drag_zero: 0.1,
         drag_induced: 0.05,
         moment_zero: 0.5,
         moment_alpha: -8.02,
         moment_alpha_rate: -0.46,
+        moment_pitch_rate: 0.0,
         moment_elevator: 0.2,
     };
 
@@ -107,6 +119,29 @@ impl Airframe {
         moment_alpha_rate: -0.008 * 180.0 / core::f64::consts::PI,
         ..Self::PAPER
     };
+
+    /// Lift coefficient [-] at which the lift carries the weight at an airspeed [m/s].
+    #[must_use]
+    pub fn level_lift(&self, airspeed: f64) -> f64 {
+        self.mass * GRAVITY / (0.5 * self.air_density * (airspeed * airspeed) * self.wing_area)
+    }
+
+    /// The airframe whose lift curve is that with the elevator in balance at each angle of attack, and whose
+    /// elevator has no lift of its own.
+    #[must_use]
+    pub fn balanced(&self) -> Self {
+        // An elevator without effect has no balance; the trim says so.
+        if self.lift_elevator == 0.0 {
+            return *self;
+        }
+        let per_moment = self.lift_elevator / self.moment_elevator;
+        Self {
+            lift_zero: self.lift_zero - per_moment * self.moment_zero,
+            lift_alpha: self.lift_alpha - per_moment * self.moment_alpha,
+            lift_elevator: 0.0,
+            ..*self
+        }
+    }
 
     /// Elevator command [-] that balances the pitching moment at a constant angle of attack \[rad\].
     #[must_use]

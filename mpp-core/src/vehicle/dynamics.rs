@@ -90,7 +90,7 @@ pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirS
     let (sin_alpha, cos_alpha) = libm::sincos(alpha);
     let pressure_area = 0.5 * a.air_density * (state.airspeed * state.airspeed) * a.wing_area;
 
-    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha;
+    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha + a.lift_elevator * control.elevator;
     let drag_coefficient = a.drag_zero + a.drag_induced * (lift_coefficient * lift_coefficient);
     let lift = pressure_area * lift_coefficient;
     let drag = pressure_area * drag_coefficient;
@@ -100,6 +100,7 @@ pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirS
     let moment_coefficient = a.moment_zero
         + a.moment_alpha * alpha
         + a.moment_alpha_rate * (state.pitch_rate - flight_path)
+        + a.moment_pitch_rate * state.pitch_rate
         + a.moment_elevator * control.elevator;
     AirState {
         airspeed: (-drag - a.mass * GRAVITY * sin_path + control.thrust * cos_alpha) / a.mass,

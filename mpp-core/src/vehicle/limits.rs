@@ -9,8 +9,10 @@ pub struct ActuatorLimits {
     pub thrust_max: Option<f64>,
     /// Time constant of the thrust's first-order lag \[s\].
     pub thrust_lag: Option<f64>,
-    /// Greatest distance of the elevator from its trim, in units of the command.
-    pub elevator_range: Option<f64>,
+    /// Greatest distance of the elevator below its trim, in units of the command.
+    pub elevator_below: Option<f64>,
+    /// Greatest distance of the elevator above its trim, in units of the command.
+    pub elevator_above: Option<f64>,
     /// Greatest rate of the elevator [1/s].
     pub elevator_rate: Option<f64>,
 }
@@ -20,7 +22,8 @@ impl ActuatorLimits {
     pub const NONE: Self = Self {
         thrust_max: None,
         thrust_lag: None,
-        elevator_range: None,
+        elevator_below: None,
+        elevator_above: None,
         elevator_rate: None,
     };
 
@@ -30,7 +33,8 @@ impl ActuatorLimits {
         let limits = [
             self.thrust_max,
             self.thrust_lag,
-            self.elevator_range,
+            self.elevator_below,
+            self.elevator_above,
             self.elevator_rate,
         ];
         limits
@@ -47,12 +51,16 @@ impl ActuatorLimits {
             .thrust
             .min(self.thrust_max.unwrap_or(f64::INFINITY))
             .max(0.0);
-        for (middle, most) in [
-            (trim.elevator, self.elevator_range),
-            (last.elevator, self.elevator_rate.map(|rate| rate * dt)),
+        let turn = self.elevator_rate.map(|rate| rate * dt);
+        for (middle, above, below) in [
+            (trim.elevator, self.elevator_above, self.elevator_below),
+            (last.elevator, turn, turn),
         ] {
-            if let Some(most) = most {
-                within.elevator = within.elevator.min(middle + most).max(middle - most);
+            if let Some(above) = above {
+                within.elevator = within.elevator.min(middle + above);
+            }
+            if let Some(below) = below {
+                within.elevator = within.elevator.max(middle - below);
             }
         }
         within
@@ -69,11 +77,16 @@ impl ActuatorLimits {
         given
     }
 
-    /// Greatest distance of the angle of attack from its trim that the elevator balances \[rad\].
+    /// Greatest distances of the angle of attack below and above its trim that the elevator balances \[rad\].
     #[must_use]
-    pub fn angle_of_attack(&self, airframe: &Airframe) -> f64 {
-        let range = self.elevator_range;
-        range.map_or(f64::INFINITY, |range| range * per_unit(airframe))
+    pub fn angle_of_attack(&self, airframe: &Airframe) -> [f64; 2] {
+        // A command above trim raises the angle of attack if the elevator's effectiveness is positive.
+        let [down, up] = if airframe.moment_elevator >= 0.0 {
+            [self.elevator_below, self.elevator_above]
+        } else {
+            [self.elevator_above, self.elevator_below]
+        };
+        [down, up].map(|most| most.map_or(f64::INFINITY, |most| most * per_unit(airframe)))
     }
 
     /// Greatest rate of the angle of attack [rad/s] that the elevator follows in balance.

@@ -42,7 +42,7 @@ pub fn linearize(
     let momentum = a.mass * v;
     let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
 
-    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha;
+    let lift_coefficient = a.lift_zero + a.lift_alpha * alpha + a.lift_elevator * control.elevator;
     let drag_coefficient = a.drag_zero + a.drag_induced * (lift_coefficient * lift_coefficient);
     let lift = pressure_area * lift_coefficient;
     let lift_v = a.air_density * v * a.wing_area * lift_coefficient;
@@ -60,19 +60,21 @@ pub fn linearize(
     let path_pitch = (lift_alpha + thrust * cos_alpha) / momentum;
     let path_path = (-lift_alpha - thrust * cos_alpha + a.mass * GRAVITY * sin_path) / momentum;
     let path_thrust = sin_alpha / momentum;
+    let path_elevator = pressure_area * a.lift_elevator / momentum;
 
-    // theta'' = q S l / I (C_M0 + C_Ma alpha + C_Ma' (theta' - gamma') + C_Me delta_e)
+    // theta'' = q S l / I (C_M0 + C_Ma alpha + C_Ma' (theta' - gamma') + C_Mq theta' + C_Me delta_e)
     let moment_scale = pressure_area * a.moment_length / a.pitch_inertia;
     let moment_coefficient = a.moment_zero
         + a.moment_alpha * alpha
         + a.moment_alpha_rate * (state.pitch_rate - path_rate)
+        + a.moment_pitch_rate * state.pitch_rate
         + a.moment_elevator * control.elevator;
     let moment_v =
         a.air_density * v * a.wing_area * a.moment_length / a.pitch_inertia * moment_coefficient;
     let (pitch_v, pitch_rate, pitch_thrust) = match form {
         JacobianForm::Exact => (
             moment_v - moment_scale * a.moment_alpha_rate * path_v,
-            moment_scale * a.moment_alpha_rate,
+            moment_scale * (a.moment_alpha_rate + a.moment_pitch_rate),
             -moment_scale * a.moment_alpha_rate * path_thrust,
         ),
         #[cfg(feature = "paper")]
@@ -83,6 +85,8 @@ pub fn linearize(
 
     // v' = (-D - m g sin(gamma) + T cos(alpha)) / m
     let speed_alpha = (-drag_alpha - thrust * sin_alpha) / a.mass;
+    let drag_elevator = 2.0 * a.drag_induced * pressure_area * lift_coefficient * a.lift_elevator;
+    let pitch_elevator = moment_scale * (a.moment_elevator - a.moment_alpha_rate * path_elevator);
     #[rustfmt::skip]
     let state_jacobian = Matrix4::new(
         -drag_v / a.mass, speed_alpha, 0.0,        -speed_alpha - GRAVITY * cos_path,
@@ -92,10 +96,10 @@ pub fn linearize(
     );
     #[rustfmt::skip]
     let control_jacobian = Matrix4x2::new(
-        cos_alpha / a.mass, 0.0,
+        cos_alpha / a.mass, -drag_elevator / a.mass,
         0.0,                0.0,
-        pitch_thrust,       moment_scale * a.moment_elevator,
-        path_thrust,        0.0,
+        pitch_thrust,       pitch_elevator,
+        path_thrust,        path_elevator,
     );
     Linearization {
         a: state_jacobian,

@@ -2,13 +2,14 @@
 //! this balance within a tenth of a second. Roll-outs of plans use this model.
 //!
 //! The angle of attack is a state, and its rate is a control. A plan therefore never asks for a jump of
-//! the lift.
+//! the lift. The airframe of these functions is a [balanced](Airframe::balanced) one.
 
 use super::{AirState, Airframe, Control, GRAVITY, VehicleState, Wind};
 use nalgebra::{Matrix5, SMatrix};
 
-/// Least airspeed of a roll-out [m/s]. It keeps the divisor of the equations away from zero.
-const LEAST_AIRSPEED: f64 = 3.0;
+/// Least airspeed of a roll-out [m/s]. It keeps the divisor of the equations away from zero, also in
+/// the motion of an aircraft that cruises at 3 m/s.
+const LEAST_AIRSPEED: f64 = 0.5;
 
 /// State of the point mass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -124,15 +125,18 @@ impl PathState {
         let a = airframe;
         let alpha = self.angle_of_attack;
         let rate = self.rate(airframe, control);
-        let moment =
-            a.moment_zero + a.moment_alpha * alpha + a.moment_alpha_rate * rate.angle_of_attack;
+        let turn = rate.flight_path + rate.angle_of_attack;
+        let moment = a.moment_zero
+            + a.moment_alpha * alpha
+            + a.moment_alpha_rate * rate.angle_of_attack
+            + a.moment_pitch_rate * turn;
         let state = VehicleState {
             x: self.x,
             z: self.z,
             air: AirState {
                 airspeed: self.airspeed,
                 pitch: self.flight_path + alpha,
-                pitch_rate: rate.flight_path + rate.angle_of_attack,
+                pitch_rate: turn,
                 flight_path: self.flight_path,
             },
         };

@@ -88,7 +88,7 @@ impl Trim {
     /// # Errors
     /// [`TrimError`] if the iteration finds no such flight.
     pub fn at_speed(airframe: &Airframe, airspeed: f64, path: f64) -> Result<Self, TrimError> {
-        let a = airframe;
+        let a = &airframe.balanced();
         if !(airspeed > 0.0 && airspeed.is_finite()) {
             return Err(TrimError::Airspeed);
         }
@@ -119,10 +119,10 @@ impl Trim {
                         elevator: a.elevator_for(alpha),
                     },
                 };
-                return trim.checked(a, path);
+                return trim.checked(airframe, path);
             }
         }
-        Err(cause(a, path, TrimError::NotConverged))
+        Err(cause(airframe, path, TrimError::NotConverged))
     }
 
     /// Steady level flight at an angle of attack \[rad\]. Airspeed and thrust follow from
@@ -132,7 +132,7 @@ impl Trim {
     /// [`TrimError`]: for example [`TrimError::NotCarried`] if the wing does not carry the aircraft at that
     /// angle.
     pub fn at_angle_of_attack(airframe: &Airframe, alpha: f64) -> Result<Self, TrimError> {
-        let a = airframe;
+        let a = &airframe.balanced();
         let (sin_alpha, cos_alpha) = libm::sincos(alpha);
         let lift = a.lift_zero + a.lift_alpha * alpha;
         let drag = a.drag_zero + a.drag_induced * lift * lift;
@@ -151,7 +151,7 @@ impl Trim {
                 elevator: a.elevator_for(alpha),
             },
         };
-        trim.checked(a, alpha)
+        trim.checked(airframe, alpha)
     }
 
     /// Returns the trim if all its numbers are finite, and otherwise the cause.

@@ -35,6 +35,6 @@ pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
 /// The distance field of a map.
 pub(crate) fn field(map: &MemoryMap) -> ClearanceField {
     let mut field = ClearanceField::new();
-    field.build(map);
+    field.build(map, 0.0);
     field
 }

@@ -52,13 +52,13 @@ mod tests {
     use super::super::Pace;
     use super::*;
     use hil_protocol::{
-        ActuatorLimits, AirData, AirframeId, Configure, Decoder, Message, Preset, SensorFrame,
+        ActuatorLimits, AirData, Aircraft, Configure, Decoder, Message, Preset, SensorFrame,
     };
     use mpp_core::flight::FlightLoop;
 
     const CONFIGURE: Configure = Configure {
         preset: Preset::Flight,
-        airframe: AirframeId::Reference,
+        aircraft: Aircraft::REFERENCE,
         paths: 25,
         seed: 0,
         replan_period_ticks: 100,
@@ -67,12 +67,7 @@ mod tests {
         beams: 100,
         range_max: 45.0,
         altitude: 50.0,
-        actuators: ActuatorLimits {
-            thrust_max: None,
-            thrust_lag: None,
-            elevator_range: None,
-            elevator_rate: None,
-        },
+        actuators: ActuatorLimits::NONE,
     };
 
     fn in_flight() -> StepTask {

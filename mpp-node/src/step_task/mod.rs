@@ -84,7 +84,7 @@ struct Flight {
 ///
 /// ```
 /// use hil_protocol::{
-///     ActuatorLimits, AirData, AirframeId, Configure, Decoder, EncodeError, Hello, MAX_FRAME, Message, Preset,
+///     ActuatorLimits, AirData, Aircraft, Configure, Decoder, EncodeError, Hello, MAX_FRAME, Message, Preset,
 ///     Role, SensorFrame, encode,
 /// };
 /// use mpp_node::{Pace, PlanTask, Progress, StepTask};
@@ -111,7 +111,7 @@ struct Flight {
 /// let (role, software) = (Role::Harness, [0, 1, 0]);
 /// ask(Message::Hello(Hello { role, software, tick_period_us: 10_000, beams_max: 128, stages: 0 }))?;
 /// ask(Message::Configure(Configure {
-///     preset: Preset::Flight, airframe: AirframeId::Reference, paths: 25, seed: 0,
+///     preset: Preset::Flight, aircraft: Aircraft::REFERENCE, paths: 25, seed: 0,
 ///     replan_period_ticks: 100, latency_ticks: 50, slices_per_tick: 100,
 ///     beams: 100, range_max: 45.0, altitude: 50.0, actuators: ActuatorLimits::default(),
 /// }))?;

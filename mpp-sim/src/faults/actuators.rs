@@ -1,6 +1,6 @@
 //! The actuators. The motor and the elevator's servo turn a command into the control that acts.
 
-use mpp_core::vehicle::Control;
+use mpp_core::vehicle::{ActuatorLimits as Limits, Control};
 use serde::{Deserialize, Serialize};
 
 /// Limits of the actuators; each may be absent.
@@ -22,15 +22,15 @@ pub struct ActuatorLimits {
 }
 
 impl ActuatorLimits {
-    /// The limits in the form that goes to the core.
+    /// The limits in the core's form.
     #[must_use]
-    pub fn told(&self) -> hil_protocol::ActuatorLimits {
-        let narrow = |limit: Option<f64>| limit.map(|limit| limit as f32);
-        hil_protocol::ActuatorLimits {
-            thrust_max: narrow(self.thrust_max),
-            thrust_lag: narrow(self.thrust_lag),
-            elevator_range: narrow(self.elevator_range),
-            elevator_rate: narrow(self.elevator_rate),
+    pub fn limits(&self) -> Limits {
+        Limits {
+            thrust_max: self.thrust_max,
+            thrust_lag: self.thrust_lag,
+            elevator_below: self.elevator_range,
+            elevator_above: self.elevator_range,
+            elevator_rate: self.elevator_rate,
         }
     }
 }
@@ -38,7 +38,7 @@ impl ActuatorLimits {
 /// The actuators of one flight.
 #[derive(Clone, Copy, Debug)]
 pub struct Actuators {
-    limits: ActuatorLimits,
+    limits: Limits,
     trim: Control,
     /// The control that the actuators gave last.
     given: Control,
@@ -47,7 +47,7 @@ pub struct Actuators {
 impl Actuators {
     /// Actuators that rest at a trim.
     #[must_use]
-    pub fn new(limits: ActuatorLimits, trim: Control) -> Self {
+    pub fn new(limits: Limits, trim: Control) -> Self {
         Self {
             limits,
             trim,
@@ -67,9 +67,12 @@ impl Actuators {
             let share = 1.0 - libm::exp(-dt / lag);
             given.thrust = self.given.thrust + share * (given.thrust - self.given.thrust);
         }
-        if let Some(range) = limits.elevator_range {
-            let trim = self.trim.elevator;
-            given.elevator = given.elevator.clamp(trim - range, trim + range);
+        let trim = self.trim.elevator;
+        if let Some(below) = limits.elevator_below {
+            given.elevator = given.elevator.max(trim - below);
+        }
+        if let Some(above) = limits.elevator_above {
+            given.elevator = given.elevator.min(trim + above);
         }
         if let Some(rate) = limits.elevator_rate {
             let (last, most) = (self.given.elevator, rate * dt);
@@ -95,7 +98,7 @@ mod tests {
 
     #[test]
     fn without_limits_a_command_is_what_is_given() {
-        let mut actuators = Actuators::new(ActuatorLimits::default(), TRIM);
+        let mut actuators = Actuators::new(Limits::NONE, TRIM);
         for command in [control(1e3, -1e3), control(0.1 + 0.2, 1.0 / 3.0)] {
             assert_eq!(actuators.give(command, 0.01), command);
         }
@@ -108,7 +111,7 @@ mod tests {
             thrust_lag: Some(0.2),
             ..ActuatorLimits::default()
         };
-        let mut actuators = Actuators::new(limits, TRIM);
+        let mut actuators = Actuators::new(limits.limits(), TRIM);
         let step: Vec<f64> = (0..200)
             .map(|_| actuators.give(control(100.0, 3.8), 0.01).thrust)
             .collect();
@@ -131,7 +134,7 @@ mod tests {
             elevator_rate: Some(20.0),
             ..ActuatorLimits::default()
         };
-        let mut actuators = Actuators::new(limits, TRIM);
+        let mut actuators = Actuators::new(limits.limits(), TRIM);
         let mut last = TRIM.elevator;
         for tick in 0..100 {
             let wanted = if tick < 50 { 100.0 } else { -100.0 };

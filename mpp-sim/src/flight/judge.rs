@@ -24,9 +24,9 @@ pub(super) struct Judge {
 
 impl Judge {
     /// A judge before the first tick.
-    pub(super) fn new() -> Self {
+    pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
-            score: Score::new(ALTITUDE),
+            score: Score::new(ALTITUDE, scenario.band()),
             inquest: Inquest::default(),
             last: ((0.0, 0.0), (0.0, 0.0)),
             holds_trim: true,

@@ -74,7 +74,8 @@ fn example() -> FlightLog {
             obstacles: 1,
             paths: 25,
             preset: "paper".into(),
-            airframe: "reference".into(),
+            aircraft: AircraftModel::reference().file,
+            world_scale: 1.0,
             replan_hz: 1.0,
             latency: 0.0,
             slices_per_tick: None,
@@ -134,7 +135,7 @@ fn a_log_reads_back_as_it_was() {
 fn the_layout_is_frozen() {
     let text = String::from_utf8(example().to_json().unwrap()).unwrap();
     assert!(text.starts_with(
-        r#"{"schema":3,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
+        r#"{"schema":4,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
     ));
     for part in [
         r#""field":[{"x":25.0,"z":47.5,"radius":1.0}]},"ticks":{"t":[0.0,0.01],"#,
@@ -165,7 +166,7 @@ fn another_schema_is_refused_by_name() {
     assert!(matches!(error, LogError::Schema(9)));
     assert_eq!(
         error.to_string(),
-        "flight log has schema 9, this program reads 3"
+        "flight log has schema 9, this program reads 4"
     );
     assert!(matches!(
         FlightLog::from_json(b"nonsense"),

@@ -5,10 +5,11 @@
 mod navigation;
 mod overlay;
 
-use super::error::{ScenarioError, ensure};
-use super::{AirframeName, Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
+use super::{Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
+use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::faults::Faults;
 use crate::field::Obstacle;
+use crate::file_error::{ScenarioError, ensure};
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
@@ -28,9 +29,18 @@ pub struct ScenarioFile {
     /// The core's preset; by default `flight`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub preset: Option<Preset>,
-    /// The aircraft; by default `reference`.
+    /// The aircraft: the name of one that comes with the project, or a table with the keys of an aircraft
+    /// file; by default `reference`.
+    #[serde(
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "AircraftFile::named_or_table"
+    )]
+    pub aircraft: Option<AircraftFile>,
+    /// Factor on the lengths of random field, scene, lidar and strict band [-], and the square of the factor on the
+    /// duration. By default it is that of the aircraft's speed squared over that of the reference aircraft.
+    /// Placed obstacles and lengths that are given keep their sizes.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub airframe: Option<AirframeName>,
+    pub world_scale: Option<f64>,
     /// Seed of the field, of all noise and of the planner; by default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
@@ -126,7 +136,22 @@ impl ScenarioFile {
             Some(rate) => replan_ticks(rate)?,
             None => base.replan_ticks,
         };
-        let duration = self.duration.unwrap_or(base.ticks / TICKS_PER_SECOND);
+        let aircraft = match &self.aircraft {
+            Some(file) => AircraftModel::new(file.clone())?,
+            None => base.aircraft.clone(),
+        };
+        let world_scale = match (self.world_scale, preset) {
+            (Some(scale), _) => scale,
+            (None, Preset::Flight) => aircraft.units().length,
+            (None, Preset::Reference | Preset::Paper) => 1.0,
+        };
+        ensure(
+            (1e-3..=1e3).contains(&world_scale),
+            "world_scale",
+            "give 0.001 to 1000",
+        )?;
+        let usual = f64::from(base.ticks / TICKS_PER_SECOND) * world_scale.sqrt();
+        let duration = self.duration.unwrap_or(usual.ceil() as u32);
         ensure(
             (1..=MAX_DURATION).contains(&duration),
             "duration",
@@ -138,7 +163,8 @@ impl ScenarioFile {
                 .unwrap_or(if alone { base.obstacles } else { 0 }),
             scene: self.scene,
             placed: self.placed.clone(),
-            airframe: self.airframe.unwrap_or(base.airframe),
+            aircraft,
+            world_scale,
             paths: self.paths.unwrap_or(base.paths),
             replan_ticks,
             latency_ticks: match self.latency_ms {
@@ -147,7 +173,10 @@ impl ScenarioFile {
             },
             slices_per_tick: self.slices_per_tick.unwrap_or(base.slices_per_tick),
             ticks: duration * TICKS_PER_SECOND,
-            lidar: self.lidar.over(base.lidar),
+            lidar: self.lidar.over(LidarConfig {
+                range_max: base.lidar.range_max * world_scale,
+                ..base.lidar
+            }),
             air_data: self.air_data.over(base.air_data),
             navigation: self.navigation.over(base.navigation)?,
             faults: self.faults,
@@ -167,12 +196,14 @@ impl ScenarioFile {
 
 fn replan_ticks(rate: f64) -> Result<u32, ScenarioError> {
     let period = f64::from(TICKS_PER_SECOND) / rate;
-    let whole = (1.0..=f64::from(u16::MAX)).contains(&period) && period.fract() == 0.0;
+    // A rate with many digits gives a period with rounding errors.
+    let whole = (0.5..=f64::from(u16::MAX)).contains(&period)
+        && (period - period.round()).abs() < 1e-9 * period;
     let advice = format!(
         "give a rate of which {TICKS_PER_SECOND} Hz is a whole multiple, such as 0.5, 1, 2, 4, 5 or 10"
     );
     ensure(whole, "replan_hz", advice)?;
-    Ok(period as u32)
+    Ok(period.round() as u32)
 }
 
 fn latency_ticks(latency_ms: u32, replan_ticks: u32) -> Result<u32, ScenarioError> {

@@ -1,9 +1,9 @@
 //! A scenario found again in what a log says of it, by the limits of a scenario file.
 
-use super::error::{ScenarioError, ensure};
 use super::file::{MAX_DURATION, check};
 use super::{Scenario, TICKS_PER_SECOND};
 use crate::field::Obstacle;
+use crate::file_error::{ScenarioError, ensure};
 
 /// Times of a flight as its log has them.
 #[derive(Clone, Copy, Debug)]

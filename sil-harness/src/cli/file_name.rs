@@ -3,8 +3,8 @@
 use mpp_sim::scenario::{Scenario, TICK_MS, TICKS_PER_SECOND};
 
 /// Preset and seed, then whatever differs from that preset's flight: scene, `o` obstacles, `p` paths,
-/// replanning rate, latency, slices per tick, duration, airframe; what has no short name (lidar,
-/// sensors, faults, placed obstacles) as a number that stands for it.
+/// replanning rate, latency, slices per tick, duration, aircraft; what has no short name (lidar,
+/// sensors, faults, placed obstacles, numbers of another aircraft) as a number that stands for it.
 pub(super) fn file_name(scenario: &Scenario) -> String {
     let mut usual = Scenario::new(scenario.preset, scenario.seed);
     let mut name = format!("{}-seed{}", scenario.preset, scenario.seed);
@@ -43,8 +43,8 @@ pub(super) fn file_name(scenario: &Scenario) -> String {
         ),
         (scenario.ticks != usual.ticks, format!("{seconds}s")),
         (
-            scenario.airframe != usual.airframe,
-            format!("{}-airframe", scenario.airframe),
+            scenario.aircraft != usual.aircraft,
+            scenario.aircraft.file.name.clone(),
         ),
     ] {
         if differs {
@@ -66,9 +66,21 @@ fn rest(scenario: &Scenario) -> Vec<u8> {
         navigation,
         faults,
         placed,
+        aircraft,
+        world_scale,
         ..
     } = scenario;
-    serde_json::to_vec(&(lidar, air_data, navigation, faults, placed)).unwrap_or_default()
+    let aircraft = &aircraft.file;
+    serde_json::to_vec(&(
+        lidar,
+        air_data,
+        navigation,
+        faults,
+        placed,
+        aircraft,
+        world_scale,
+    ))
+    .unwrap_or_default()
 }
 
 /// FNV-1a, 32 bits: the same on every machine.
@@ -89,7 +101,7 @@ mod tests {
 
     #[test]
     fn what_differs_stands_in_the_name() {
-        let rest = "obstacles = 40\npaths = 5\nreplan_hz = 2\nlatency_ms = 200\nslices_per_tick = 37\nduration = 9\nairframe = \"paper\"";
+        let rest = "obstacles = 40\npaths = 5\nreplan_hz = 2\nlatency_ms = 200\nslices_per_tick = 37\nduration = 9\naircraft = \"paper\"";
         for (text, expected) in [
             ("", "flight-seed1"),
             ("preset = \"paper\"\nseed = 7", "paper-seed7"),
@@ -106,7 +118,7 @@ mod tests {
             ("replan_hz = 0.5", "flight-seed1-0.5hz"),
             (
                 rest,
-                "flight-seed1-o40-p5-2hz-200ms-37slices-9s-paper-airframe",
+                "flight-seed1-o40-p5-2hz-200ms-37slices-9s-paper-00000000",
             ),
         ] {
             assert_eq!(name(text), expected, "{text}");

@@ -139,7 +139,7 @@ fn connect(text: &str, patience: Duration) -> Result<Box<dyn Link>, Failure> {
 struct ResultLine<'a> {
     seed: u64,
     preset: &'a str,
-    airframe: &'a str,
+    aircraft: &'a str,
     obstacles: usize,
     paths: usize,
     #[serde(flatten)]
@@ -240,7 +240,7 @@ fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
     let line = ResultLine {
         seed: log.header.seed,
         preset: &log.header.preset,
-        airframe: &log.header.airframe,
+        aircraft: &log.header.aircraft.name,
         obstacles: log.header.obstacles,
         paths: log.header.paths,
         summary: log.summary,

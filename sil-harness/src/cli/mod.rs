@@ -3,6 +3,7 @@
 //! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link,
 //! 8 terminated from the ground, 130 and 143 interrupted.
 
+mod aircraft;
 mod answer;
 mod bench;
 mod campaign;
@@ -40,6 +41,9 @@ enum Command {
     Fly(fly::FlyArgs),
     /// Fly many times over a grid, in parallel, and give success rates with their intervals
     Campaign(campaign::CampaignArgs),
+    /// Tell what follows from an aircraft file: trim, modes, what the planner makes of it; with --flights, how
+    /// well it flies
+    Aircraft(aircraft::AircraftArgs),
     /// Draw counterparts of the paper's figures
     Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
@@ -63,6 +67,7 @@ pub fn run() -> ExitCode {
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Campaign(args)) if args.faults.is_empty() => campaign::run(&args),
         Some(Command::Campaign(args)) => fault_campaign::run(&args),
+        Some(Command::Aircraft(args)) => aircraft::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

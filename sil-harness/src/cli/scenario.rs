@@ -2,11 +2,9 @@
 //! it.
 
 use super::answer::{Failure, USAGE};
-use super::values::{airframe, navigation, scene};
-use crate::files::read_scenario;
-use mpp_sim::scenario::{
-    AirframeName, NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND,
-};
+use super::values::{navigation, scene};
+use crate::files::{read_aircraft, read_scenario};
+use mpp_sim::scenario::{NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND};
 use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
@@ -18,9 +16,14 @@ pub(super) struct ScenarioArgs {
     /// Challenge scene; it stands alone unless --obstacles is given
     #[arg(long, value_parser = scene())]
     scene: Option<Scene>,
-    /// Airframe, both of the aircraft and of the core's model [default: reference]
-    #[arg(long, value_parser = airframe())]
-    airframe: Option<AirframeName>,
+    /// Aircraft, of plant and core: reference, paper, aerosonde, zagi, cessna182, or a file (TOML, as
+    /// docs/aircraft.md describes) [default: reference]
+    #[arg(long, value_name = "NAME|FILE")]
+    aircraft: Option<String>,
+    /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's
+    /// speed squared]
+    #[arg(long, value_name = "FACTOR")]
+    world_scale: Option<f64>,
     /// Source of positions: their rate, errors and delay [default: rtk; of presets paper and reference: ideal]
     #[arg(long, value_parser = navigation())]
     navigation: Option<NavigationSource>,
@@ -43,7 +46,11 @@ impl ScenarioArgs {
             None => ScenarioFile::default(),
         };
         replace(&mut file.scene, self.scene);
-        replace(&mut file.airframe, self.airframe);
+        if let Some(aircraft) = &self.aircraft {
+            file.aircraft =
+                Some(read_aircraft(aircraft).map_err(|error| Failure::new(USAGE, error))?);
+        }
+        replace(&mut file.world_scale, self.world_scale);
         replace(&mut file.navigation.source, self.navigation);
         replace(&mut file.latency_ms, self.latency_ms);
         replace(&mut file.slices_per_tick, self.slices_per_tick);
@@ -52,15 +59,19 @@ impl ScenarioArgs {
     }
 
     /// These flags, each with whether it asks for something else than this scenario.
-    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 6] {
+    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 7] {
         let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
         let slices = other(self.slices_per_tick, flown.slices_per_tick);
+        let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
+            read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
+        });
         let seconds = other(self.duration, flown.ticks / TICKS_PER_SECOND);
         [
             ("--scene", self.scene.is_some() && self.scene != flown.scene),
+            ("--aircraft", aircraft),
             (
-                "--airframe",
-                self.airframe.is_some_and(|a| a != flown.airframe),
+                "--world-scale",
+                (self.world_scale).is_some_and(|scale| scale != flown.world_scale),
             ),
             (
                 "--navigation",

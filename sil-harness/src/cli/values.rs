@@ -1,7 +1,7 @@
 //! Named values of flags: their help texts and their parsers.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use mpp_sim::scenario::{AirframeName, NavigationSource, Preset};
+use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use std::error::Error;
 use std::str::FromStr;
@@ -24,7 +24,6 @@ pub(super) fn preset() -> impl TypedValueParser<Value = Preset> {
     named(Preset::ALL.map(|preset| PossibleValue::new(preset.name()).help(help(preset))))
 }
 
-/// Reads an airframe.
 /// Reads a navigation source.
 pub(super) fn navigation() -> impl TypedValueParser<Value = NavigationSource> {
     let help = |source| match source {
@@ -36,16 +35,6 @@ pub(super) fn navigation() -> impl TypedValueParser<Value = NavigationSource> {
         NavigationSource::LidarOdometry => "20 Hz, 0.03 m white, drift of 1 % of the way",
     };
     named(NavigationSource::ALL.map(|source| PossibleValue::new(source.name()).help(help(source))))
-}
-
-pub(super) fn airframe() -> impl TypedValueParser<Value = AirframeName> {
-    let help = |airframe| match airframe {
-        AirframeName::Paper => "The paper's appendix: with chord, `I_yy` = 0.17 kg m^2",
-        AirframeName::Reference => "The authors' code: without chord",
-    };
-    named(
-        AirframeName::ALL.map(|airframe| PossibleValue::new(airframe.name()).help(help(airframe))),
-    )
 }
 
 /// Reads a challenge scene.

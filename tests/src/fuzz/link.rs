@@ -3,7 +3,7 @@
 use super::draw::Draw;
 use super::{ROUND, Report};
 use hil_protocol::{
-    ActuatorCommand, ActuatorLimits, AirData, AirframeId, Configure, ConfigureVerdict, Decoder,
+    ActuatorCommand, ActuatorLimits, AirData, Aircraft, Configure, ConfigureVerdict, Decoder,
     GroundVelocity, Hello, LidarScan, MAX_FRAME, Message, ParameterVerdict, Position, Preset, Role,
     SensorFrame, SetParameter, encode,
 };
@@ -190,8 +190,7 @@ fn hello(beams_max: u16) -> Hello {
 }
 
 fn configure(draw: &mut Draw) -> Configure {
-    let limit =
-        |draw: &mut Draw, plausible| (draw.once_in(2)).then(|| draw.number(plausible) as f32);
+    let limit = |draw: &mut Draw, plausible| (draw.once_in(2)).then(|| draw.number(plausible));
     Configure {
         preset: [
             Preset::Reference,
@@ -199,7 +198,7 @@ fn configure(draw: &mut Draw) -> Configure {
             Preset::Flight,
             Preset::Flight,
         ][draw.below(4)],
-        airframe: [AirframeId::Paper, AirframeId::Reference][draw.below(2)],
+        aircraft: aircraft(draw),
         paths: draw.count(5) as u16,
         replan_period_ticks: draw.count(50),
         latency_ticks: draw.count(5),
@@ -211,10 +210,40 @@ fn configure(draw: &mut Draw) -> Configure {
         actuators: ActuatorLimits {
             thrust_max: limit(draw, 15.0),
             thrust_lag: limit(draw, 0.1),
-            elevator_range: limit(draw, 2.0),
+            elevator_below: limit(draw, 2.0),
+            elevator_above: limit(draw, 2.0),
             elevator_rate: limit(draw, 20.0),
         },
     }
+}
+
+/// The reference aircraft, often with one number that makes little sense.
+fn aircraft(draw: &mut Draw) -> Aircraft {
+    let mut aircraft = Aircraft::REFERENCE;
+    let places = [
+        &mut aircraft.mass,
+        &mut aircraft.pitch_inertia,
+        &mut aircraft.wing_area,
+        &mut aircraft.moment_length,
+        &mut aircraft.air_density,
+        &mut aircraft.lift_zero,
+        &mut aircraft.lift_alpha,
+        &mut aircraft.lift_elevator,
+        &mut aircraft.drag_zero,
+        &mut aircraft.drag_induced,
+        &mut aircraft.moment_zero,
+        &mut aircraft.moment_alpha,
+        &mut aircraft.moment_alpha_rate,
+        &mut aircraft.moment_pitch_rate,
+        &mut aircraft.moment_elevator,
+        &mut aircraft.cruise,
+        &mut aircraft.body_radius,
+    ];
+    let place = draw.below(2 * places.len());
+    if let Some(number) = places.into_iter().nth(place) {
+        *number = draw.number(*number);
+    }
+    aircraft
 }
 
 fn parameter(draw: &mut Draw) -> SetParameter {
@@ -317,9 +346,10 @@ impl Bench {
         let trim = trim.map_err(|error| error.to_string())?;
         let limits = settings.actuators;
         let most = limits.thrust_max.unwrap_or(f64::MAX);
-        let range = limits.elevator_range.unwrap_or(f64::MAX / 4.0) * (1.0 + 1e-9);
+        let side = |side: Option<f64>| side.unwrap_or(f64::MAX / 4.0) * (1.0 + 1e-9);
+        let range = -side(limits.elevator_below)..=side(limits.elevator_above);
         let off = command.elevator - trim.control.elevator;
-        if (0.0..=most).contains(&command.thrust) && off.abs() <= range {
+        if (0.0..=most).contains(&command.thrust) && range.contains(&off) {
             Ok(())
         } else {
             Err(format!(

@@ -25,7 +25,7 @@ impl Candidate {
     /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
     /// attack and the thrust.
     pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
-        let most = limits.rolled_out;
+        let [down, up] = limits.rolled_out;
         let trim = &frame.trim;
         let level = trim.state.angle_of_attack();
         let [first, later @ ..] = &mut self.knots;
@@ -33,7 +33,7 @@ impl Candidate {
         let stages = self.controls.iter_mut().zip(later).zip(&solution.controls);
         for ((control, knot), [rate, thrust]) in stages {
             let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
-            let allowed = aimed.max(level - most).min(level + most);
+            let allowed = aimed.max(level - down).min(level + up);
             let turn = limits.turn_rate * STAGE_PERIOD;
             let slowest = state.angle_of_attack - turn;
             let reached = allowed.max(slowest).min(state.angle_of_attack + turn);

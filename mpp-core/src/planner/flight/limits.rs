@@ -7,11 +7,11 @@ use crate::vehicle::{ActuatorLimits, Airframe};
 /// Limits of plans. They follow from the settings, the actuators and the estimated airframe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
-    /// Greatest distance of the angle of attack from trim in a program \[rad\].
-    pub(super) angle_of_attack: f64,
-    /// Greatest distance of the angle of attack from trim in a roll-out \[rad\]. It is larger than in a
-    /// program, because soft rows may exceed their limit.
-    pub(super) rolled_out: f64,
+    /// Greatest distances of the angle of attack below and above trim in a program \[rad\].
+    pub(super) angle_of_attack: [f64; 2],
+    /// Greatest distances of the angle of attack below and above trim in a roll-out \[rad\]. They are larger
+    /// than in a program, because soft rows may exceed their limit.
+    pub(super) rolled_out: [f64; 2],
     /// Greatest rate of the angle of attack of a roll-out [rad/s].
     pub(super) turn_rate: f64,
     /// Greatest flight path angle \[rad\].
@@ -28,8 +28,8 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) const NONE: Self = Self {
-        angle_of_attack: 0.0,
-        rolled_out: 0.0,
+        angle_of_attack: [0.0; 2],
+        rolled_out: [0.0; 2],
         turn_rate: 0.0,
         flight_path: 0.0,
         thrust_max: 0.0,
@@ -41,21 +41,26 @@ impl Limits {
     pub(super) fn new(own: &FlightSettings, actuators: &ActuatorLimits, a: &Airframe) -> Self {
         let allowed = own.attitude.angle_of_attack;
         let rate = actuators.angle_of_attack_rate(a);
-        let held = actuators.angle_of_attack(a).min(rate * limits::REACH_TIME);
+        let held = (actuators.angle_of_attack(a)).map(|held| held.min(rate * limits::REACH_TIME));
+        let stall = [f64::INFINITY, own.stall.unwrap_or(f64::INFINITY)];
         // Angle of attack that the elevator balances for plans. The regulator needs the rest of the range.
-        let balanced = limits::PLANNED_SHARE * held;
+        let angle_of_attack = held.map(|held| allowed.min(limits::PLANNED_SHARE * held));
+        let [down, up] = angle_of_attack;
         // Share of the allowed angle of attack that the elevator balances for plans; at most 1.
-        let agility = (balanced / allowed).min(1.0);
-        let angle_of_attack = allowed.min(balanced);
+        let agility = down.min(up) / allowed;
+        let rolled_out = |side: usize| {
+            let soft = limits::SOFT_SHARE * angle_of_attack[side] + limits::SOFT_EXTRA;
+            soft.min(held[side]).min(stall[side])
+        };
         Self {
             angle_of_attack,
-            rolled_out: (limits::SOFT_SHARE * angle_of_attack + limits::SOFT_EXTRA).min(held),
+            rolled_out: [rolled_out(0), rolled_out(1)],
             turn_rate: limits::PLANNED_RATE_SHARE * rate,
             flight_path: own.attitude.flight_path,
             thrust_max: own
                 .thrust_max
                 .min(actuators.thrust_max.unwrap_or(f64::INFINITY)),
-            curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * angle_of_attack / a.mass,
+            curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * down.min(up) / a.mass,
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.
             room_price: judgement::ROOM_PRICE * (1.0 - agility),

@@ -42,6 +42,7 @@ use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
 use crate::tuning::candidates::TREE_PATHS;
+use crate::units::Units;
 use crate::vehicle::{
     ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
 };
@@ -78,6 +79,9 @@ pub enum Phase {
 }
 
 /// The flight planner and all its workspaces. Large: place it in a `static` or a box.
+///
+/// It reckons in its [own units](Units): scan, state and settings are converted when they come in, and the
+/// best trajectory when it is kept. Times of trajectories stay in seconds.
 #[derive(Clone, Debug)]
 pub struct FlightPlanner {
     // Values of the set-up.
@@ -87,16 +91,21 @@ pub struct FlightPlanner {
     destination: f64,
     altitude: f64,
     weights: Weights,
+    units: Units,
+    /// Airframe and trim of the set-up in own units, and the airframe in SI units.
     known: (Airframe, Trim),
+    si_airframe: Airframe,
     actuators: ActuatorLimits,
     /// Random numbers of the tree; `None` until the planner is set up.
     random: Option<Pcg64Mcg>,
 
     // Values of the present cycle.
     phase: Phase,
+    /// The estimated wind and lift in SI units.
+    conditions: Conditions,
     /// Where the scan was made.
     pose: Pose,
-    /// When the plan is taken over, and the state that the aircraft will have then.
+    /// When the plan is taken over \[s\], and the state that the aircraft will have then.
     time: f64,
     state: VehicleState,
     wind: Wind,
@@ -145,10 +154,13 @@ impl FlightPlanner {
             destination: 0.0,
             altitude: 0.0,
             weights: Weights::PAPER,
+            units: Units::SI,
             known: (Airframe::REFERENCE, NO_TRIM),
+            si_airframe: Airframe::REFERENCE,
             actuators: ActuatorLimits::NONE,
             random: None,
             phase: Phase::Idle,
+            conditions: Conditions::STILL,
             pose: Pose {
                 x: 0.0,
                 z: 0.0,
@@ -203,10 +215,13 @@ impl FlightPlanner {
         scan: &LidarScan,
     ) {
         self.reckon_with(conditions);
-        self.pose = *pose;
-        self.state = self.taken_over(time, state);
-        self.time = time + self.settings.latency;
+        self.pose = self.units.own_pose(pose);
+        self.state = self.taken_over(time, &self.units.own_state(state));
+        self.time = time + self.settings.latency * self.units.time;
         self.scan.clone_from(scan);
+        for range in &mut self.scan.ranges {
+            *range = (f64::from(*range) / self.units.length) as f32;
+        }
         self.beams = 0;
         // A height beyond the reach of paths is approached in parts. Programs would climb too steeply.
         self.altitude = (self.destination)
@@ -228,25 +243,26 @@ impl FlightPlanner {
     /// the elevator keeps the same range to either side; the airspeed of cruise changes instead.
     fn reckon_with(&mut self, conditions: &Conditions) {
         let (airframe, trim) = &self.known;
-        self.wind = conditions.wind;
-        self.airframe = conditions.airframe(airframe);
+        self.conditions = *conditions;
+        let own = self.units.own_conditions(conditions);
+        self.wind = own.wind;
+        self.airframe = own.airframe(airframe);
         let alpha = trim.state.angle_of_attack();
         self.trim = Trim::at_angle_of_attack(&self.airframe, alpha).unwrap_or(*trim);
         self.limits = Limits::new(&self.settings, &self.actuators, &self.airframe);
     }
 
-    /// The state in which the step takes over the plan of a scan at this time \[s\]. The aircraft flies its
+    /// The state, in own units, in which the step takes over the plan of a scan at this time \[s\]. The aircraft flies its
     /// last plan until then, and keeps its present distance from it. Without a last plan it flies on at its
     /// present angle of attack.
     fn taken_over(&self, time: f64, state: &VehicleState) -> VehicleState {
         let latency = self.settings.latency;
-        if let (Some(now), Some(then)) = (self.best.sample(time), self.best.sample(time + latency))
-        {
-            let air =
-                then.state.air.to_vector() + state.air.to_vector() - now.state.air.to_vector();
+        let later = time + latency * self.units.time;
+        if let (Some(now), Some(then)) = (self.last_plan(time), self.last_plan(later)) {
+            let air = then.air.to_vector() + state.air.to_vector() - now.air.to_vector();
             return VehicleState {
-                x: then.state.x + state.x - now.state.x,
-                z: then.state.z + state.z - now.state.z,
+                x: then.x + state.x - now.x,
+                z: then.z + state.z - now.z,
                 air: AirState::from_vector(&air),
             };
         }
@@ -264,10 +280,22 @@ impl FlightPlanner {
         flown.reference(&self.airframe, &control).0
     }
 
+    /// The state, in own units, that the last plan has at a time \[s\].
+    fn last_plan(&self, time: f64) -> Option<VehicleState> {
+        let reference = self.best.sample(time)?;
+        Some(self.units.own_state(&reference.state))
+    }
+
     /// The work of the next slice.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.phase
+    }
+
+    /// The units in which this planner reckons. Trim, clearance, map and candidate are in these units.
+    #[must_use]
+    pub fn units(&self) -> &Units {
+        &self.units
     }
 
     /// Whether a cycle is under way.

@@ -28,7 +28,7 @@ impl FlightPlanner {
                 .insert_beams(&self.scan, beams, self.settings.sight, &pose);
             return;
         }
-        self.field.build(&self.map);
+        self.field.build(&self.map, self.settings.body_radius);
         self.take_up_previous();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
         self.lattice.start(&LatticeTask {

@@ -14,16 +14,16 @@ use crate::vehicle::{PathControl, PathState};
 impl FlightPlanner {
     /// Proposes the rest of the previous plan as a candidate.
     pub(super) fn take_up_previous(&mut self) {
-        if self.best.sample(self.time).is_none() {
+        if self.last_plan(self.time).is_none() {
             return;
         }
         let cruise = self.trim.state.airspeed;
         let mut candidate = self.cruising();
         let mut last = PathState::of(&self.state);
         for (stage, knot) in candidate.knots.iter_mut().enumerate().skip(1) {
-            let time = self.time + STAGE_PERIOD * stage as f64;
-            *knot = match self.best.sample(time) {
-                Some(reference) => PathState::of(&reference.state),
+            let time = self.time + STAGE_PERIOD * stage as f64 * self.units.time;
+            *knot = match self.last_plan(time) {
+                Some(state) => PathState::of(&state),
                 None => PathState {
                     x: last.x + (cruise + self.wind.x) * STAGE_PERIOD,
                     z: last.z,

@@ -4,7 +4,9 @@
 use super::super::shared::STEPS_PER_SLICE;
 use super::super::summary::FEASIBLE;
 use super::candidate::{ANGLE_SCALE, Candidate};
+use super::limits::Limits;
 use super::{FlightPlanner, MAX_CANDIDATES, Phase};
+use crate::config::STAGE_PERIOD;
 use crate::corridor::Keep;
 use crate::qp::Status;
 use crate::tuning::faces::ROUNDING;
@@ -26,6 +28,7 @@ impl FlightPlanner {
         let keep = Keep {
             margin: own.margin + ROUNDING,
             room: self.limits.room,
+            body_radius: own.body_radius,
             floor: self.altitude - own.band,
             ceiling: self.altitude + own.band,
         };
@@ -66,11 +69,14 @@ impl FlightPlanner {
             return;
         }
         self.problem.bounds.set_corridor(&self.corridor);
-        let side = [self.limits.angle_of_attack, self.limits.flight_path];
-        let side = side.map(|limit| ANGLE_SCALE * limit);
-        self.problem
-            .bounds
-            .set_attitude(side, side.map(|limit| -limit));
+        let Limits {
+            angle_of_attack: [down, up],
+            flight_path,
+            ..
+        } = self.limits;
+        let scaled = |limits: [f64; 2]| limits.map(|limit| ANGLE_SCALE * limit);
+        (self.problem.bounds)
+            .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
         self.problem.initial = frame.deviation(&frame.start, 0).into();
         self.solver.start(&self.shared, &self.problem);
         self.phase = Phase::Improve;
@@ -106,12 +112,14 @@ impl FlightPlanner {
             self.best_price = judgement.price;
             self.summary.cost = judgement.effort;
             self.summary.violation = judgement.lack;
+            let units = &self.units;
             self.best.fly_out(
-                &flown.knots,
-                &flown.controls,
-                &self.airframe,
-                &self.wind,
+                &flown.knots.each_ref().map(|knot| units.si_path_state(knot)),
+                &(flown.controls.each_ref()).map(|control| units.si_path_control(control)),
+                &self.conditions.airframe(&self.si_airframe),
+                &self.conditions.wind,
                 self.time,
+                STAGE_PERIOD * units.time,
             );
         }
         if let Some(place) = self.candidates.get_mut(self.at_hand) {

@@ -2,8 +2,9 @@
 
 use super::super::error::{SetupError, check, check_planner};
 use super::{FlightPlanner, Phase};
+use crate::config::{STAGE_PERIOD, STAGES};
 use crate::qp::ModelError;
-use crate::settings::{FlightSettings, Method, PlannerSettings, Settings};
+use crate::settings::{FlightSettings, Method, PlannerSettings, Setting, Settings};
 use crate::vehicle::VehicleState;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -18,17 +19,19 @@ impl FlightPlanner {
         self.random = None;
         self.phase = Phase::Idle;
         let planner = &settings.planner;
-        let airframe = &settings.airframe;
         let trim = check(settings)?;
-        if !airframe
-            .angle_of_attack_for(trim.control.elevator)
-            .is_finite()
-        {
+        let elevator = trim.control.elevator;
+        if !(settings.airframe.angle_of_attack_for(elevator)).is_finite() {
             return Err(SetupError::Model(ModelError));
         }
-        self.known = (*airframe, trim);
+        self.units = settings.units;
+        self.si_airframe = settings.airframe.balanced();
+        self.known = (
+            self.units.own_airframe(&self.si_airframe),
+            self.units.own_trim(&trim),
+        );
         (self.airframe, self.trim) = self.known;
-        self.actuators = settings.actuators;
+        self.actuators = self.units.own_actuators(&settings.actuators);
         self.weights = planner.weights;
         self.adopt(planner, own);
         self.try_program()?;
@@ -47,24 +50,29 @@ impl FlightPlanner {
         planner: &PlannerSettings,
         own: &FlightSettings,
     ) -> Result<(), SetupError> {
-        let own = FlightSettings {
-            penalty: own.penalty,
-            attitude: own.attitude,
-            latency: own.latency,
-            ..self.settings
-        };
         check_planner(&PlannerSettings {
-            method: Method::Flight(own),
+            method: Method::Flight(*own),
             ..*planner
         })?;
-        self.adopt(planner, &own);
+        let horizon = STAGES as f64 * STAGE_PERIOD * self.units.time;
+        if !(0.0..=horizon).contains(&own.latency) {
+            return Err(SetupError::OutOfRange(Setting::Latency));
+        }
+        let kept = self.settings;
+        self.adopt(planner, own);
+        self.settings = FlightSettings {
+            penalty: self.settings.penalty,
+            attitude: self.settings.attitude,
+            latency: self.settings.latency,
+            ..kept
+        };
         Ok(())
     }
 
     fn adopt(&mut self, planner: &PlannerSettings, own: &FlightSettings) {
         self.paths = planner.paths;
-        self.destination = planner.altitude;
-        self.settings = *own;
+        self.destination = planner.altitude / self.units.length;
+        self.settings = self.units.own_settings(own);
     }
 
     /// Checks that the program of level cruise has an optimum with this airframe and these weights.

@@ -1,8 +1,8 @@
 //! The keys of the navigation source.
 
+use crate::file_error::{ScenarioError, ensure};
 use crate::names::{self, UnknownName};
 use crate::navigation::NavigationConfig;
-use crate::scenario::error::{ScenarioError, ensure};
 use crate::scenario::{TICK_MS, TICKS_PER_SECOND};
 use core::fmt;
 use core::str::FromStr;

@@ -1,4 +1,4 @@
-//! The reasons why there is no scenario.
+//! The reasons why a file of a scenario or of an aircraft cannot be flown.
 
 use std::fmt;
 
@@ -41,7 +41,7 @@ impl core::error::Error for ScenarioError {
 }
 
 /// Gives an error with key and advice unless a value is sound.
-pub(super) fn ensure(
+pub(crate) fn ensure(
     sound: bool,
     key: &'static str,
     advice: impl Into<String>,

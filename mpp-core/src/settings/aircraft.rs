@@ -1,0 +1,113 @@
+//! The settings of preset `flight` for any aircraft, by similarity to the reference aircraft.
+
+use super::{Cruise, FlightSettings, Method, PlannerSettings, Settings};
+use crate::control::LqrWeights;
+use crate::estimate::EkfTuning;
+use crate::qp::Weights;
+use crate::units::{REFERENCE_CRUISE, Units};
+use crate::vehicle::{ActuatorLimits, Airframe};
+
+/// What the core must know of an aircraft.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aircraft {
+    /// Mass, inertia and aerodynamics.
+    pub airframe: Airframe,
+    /// Limits of motor and elevator.
+    pub actuators: ActuatorLimits,
+    /// Airspeed of level flight [m/s].
+    pub cruise: f64,
+    /// Radius of the circle that holds the aircraft \[m\].
+    pub body_radius: f64,
+    /// Distance of the stall from the angle of attack of level flight \[rad\], if it is known.
+    pub stall: Option<f64>,
+}
+
+impl Aircraft {
+    /// The aircraft for which the numbers of preset `flight` were tuned.
+    pub const REFERENCE: Self = Self {
+        airframe: Airframe::REFERENCE,
+        actuators: ActuatorLimits::NONE,
+        cruise: REFERENCE_CRUISE,
+        body_radius: 0.0,
+        stall: None,
+    };
+
+    /// Angle of attack that changes the lift by the weight, over that of the reference aircraft [-].
+    #[must_use]
+    pub fn angle_unit(&self) -> f64 {
+        let (own, reference) = (self.airframe.balanced(), Airframe::REFERENCE);
+        (own.level_lift(self.cruise) * reference.lift_alpha)
+            / (reference.level_lift(REFERENCE_CRUISE) * own.lift_alpha)
+    }
+
+    /// Command of the elevator with the effect that a unit of the command has on the reference aircraft.
+    #[must_use]
+    pub fn elevator_unit(&self) -> f64 {
+        let (own, reference) = (&self.airframe, Airframe::REFERENCE);
+        let angle = self.angle_unit();
+        libm::fabs(
+            angle * (own.moment_alpha * reference.moment_elevator)
+                / (reference.moment_alpha * own.moment_elevator),
+        )
+    }
+}
+
+impl Settings {
+    /// Preset `flight` for an aircraft. Tuned lengths, times and weights are those of the reference aircraft,
+    /// in the units of this one.
+    #[must_use]
+    pub fn flight_of(aircraft: &Aircraft) -> Self {
+        let base = Self::flight();
+        let units = Units::of(aircraft.cruise, aircraft.airframe.mass);
+        let (angle, elevator) = (aircraft.angle_unit(), aircraft.elevator_unit());
+        let speed = units.speed();
+        let (speed_squared, time_squared) = (speed * speed, units.time * units.time);
+        let [v, pitch, rate, path] = base.regulator.state;
+        let [v_noise, pitch_noise, rate_noise, path_noise] = base.estimator.process_noise;
+        let [turn, thrust] = base.planner.weights.control;
+        let own = FlightSettings::PRESET;
+        Self {
+            units,
+            airframe: aircraft.airframe,
+            actuators: aircraft.actuators,
+            cruise: Cruise::Airspeed(aircraft.cruise),
+            estimator: EkfTuning {
+                process_noise: [
+                    v_noise * speed_squared,
+                    pitch_noise,
+                    rate_noise / time_squared,
+                    path_noise,
+                ],
+                ..base.estimator
+            },
+            // A wind that changes at random has a standard deviation that grows with the root of time.
+            wind_change: (base.wind_change).map(|change| change * speed / libm::sqrt(units.time)),
+            regulator: LqrWeights {
+                state: [v / speed_squared, pitch, rate * time_squared, path],
+                elevator: base.regulator.elevator / (elevator * elevator),
+            },
+            cross_track: base.cross_track / units.length,
+            airspeed_hold: base.airspeed_hold * units.mass / units.time,
+            planner: PlannerSettings {
+                weights: Weights {
+                    control: [turn / (angle * angle), thrust],
+                    ..base.planner.weights
+                },
+                method: Method::Flight(FlightSettings {
+                    attitude: super::AttitudeLimits {
+                        angle_of_attack: own.attitude.angle_of_attack * angle,
+                        ..own.attitude
+                    },
+                    stall: aircraft.stall,
+                    margin: own.margin * units.length,
+                    body_radius: aircraft.body_radius,
+                    band: own.band * units.length,
+                    thrust_max: own.thrust_max * units.force(),
+                    ..own
+                }),
+                ..base.planner
+            },
+            ..base
+        }
+    }
+}

@@ -1,0 +1,227 @@
+//! From an aircraft file to the numbers of core and plant.
+
+use super::{AircraftFile, Angle, ElevatorUnit};
+use crate::file_error::{ScenarioError, ensure};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::flight::FlightLoop;
+use mpp_core::settings::{Aircraft, Settings};
+use mpp_core::units::Units;
+use mpp_core::vehicle::{ActuatorLimits, Airframe, Trim};
+use std::f64::consts::PI;
+
+/// An aircraft as core and plant need it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AircraftModel {
+    /// The file.
+    pub file: AircraftFile,
+    /// What the core is told.
+    pub known: Aircraft,
+    /// Level flight.
+    pub trim: Trim,
+}
+
+impl AircraftModel {
+    /// The aircraft of a file.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Value`] with the key of the first number that makes no sense.
+    pub fn new(file: AircraftFile) -> Result<Self, ScenarioError> {
+        check(&file)?;
+        let airframe = airframe(&file);
+        let trim = Trim::at_speed(&airframe, file.cruise, 0.0)
+            .map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
+        let (elevator, alpha) = (trim.control.elevator, trim.state.angle_of_attack());
+        let outside = |key, limit: f64| {
+            let advice = format!(
+                "level flight at `cruise` needs {elevator:.4}, which {limit} does not allow"
+            );
+            ScenarioError::Value(key, advice)
+        };
+        let side = |key, limit: Option<f64>, room: fn(f64, f64) -> f64| match limit {
+            Some(limit) if room(limit, elevator) <= 0.0 => Err(outside(key, limit)),
+            limit => Ok(limit.map(|limit| room(limit, elevator))),
+        };
+        let actuators = ActuatorLimits {
+            thrust_max: file.thrust.max,
+            thrust_lag: file.thrust.lag,
+            elevator_below: side("aircraft.elevator.min", file.elevator.min, |least, trim| {
+                trim - least
+            })?,
+            elevator_above: side("aircraft.elevator.max", file.elevator.max, |most, trim| {
+                most - trim
+            })?,
+            elevator_rate: file.elevator.rate,
+        };
+        let stalls = file.lift.stall.is_some_and(|stall| alpha >= stall);
+        let advice = format!(
+            "level flight at `cruise` has an angle of attack of {alpha:.3} rad: fly faster or give a larger wing"
+        );
+        ensure(!stalls, "aircraft.lift.stall", advice)?;
+        let known = Aircraft {
+            airframe,
+            actuators,
+            cruise: file.cruise,
+            body_radius: file.body_radius,
+            stall: file.lift.stall.map(|stall| stall - alpha),
+        };
+        let flies = FlightLoop::new(&Settings::flight_of(&known));
+        flies.map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
+        Ok(Self { file, known, trim })
+    }
+
+    /// The aircraft in the form that goes to the core.
+    #[must_use]
+    pub fn told(&self) -> hil_protocol::Aircraft {
+        let a = &self.known.airframe;
+        hil_protocol::Aircraft {
+            mass: a.mass,
+            pitch_inertia: a.pitch_inertia,
+            wing_area: a.wing_area,
+            moment_length: a.moment_length,
+            air_density: a.air_density,
+            lift_zero: a.lift_zero,
+            lift_alpha: a.lift_alpha,
+            lift_elevator: a.lift_elevator,
+            drag_zero: a.drag_zero,
+            drag_induced: a.drag_induced,
+            moment_zero: a.moment_zero,
+            moment_alpha: a.moment_alpha,
+            moment_alpha_rate: a.moment_alpha_rate,
+            moment_pitch_rate: a.moment_pitch_rate,
+            moment_elevator: a.moment_elevator,
+            cruise: self.known.cruise,
+            body_radius: self.known.body_radius,
+            stall: self.known.stall,
+        }
+    }
+
+    /// The units in which the planner reckons for this aircraft.
+    #[must_use]
+    pub fn units(&self) -> Units {
+        Units::of(self.known.cruise, self.known.airframe.mass)
+    }
+
+    /// The aircraft of the authors' code.
+    #[must_use]
+    #[expect(
+        clippy::missing_panics_doc,
+        clippy::expect_used,
+        reason = "a test reads every known file"
+    )]
+    pub fn reference() -> Self {
+        let file = AircraftFile::known("reference").expect("it is a known aircraft");
+        Self::new(file).expect("it flies")
+    }
+
+    /// The aircraft of the paper's appendix.
+    #[must_use]
+    #[expect(
+        clippy::missing_panics_doc,
+        clippy::expect_used,
+        reason = "a test reads every known file"
+    )]
+    pub fn paper() -> Self {
+        let file = AircraftFile::known("paper").expect("it is a known aircraft");
+        Self::new(file).expect("it flies")
+    }
+}
+
+/// The airframe of a file in the form that the core knows: derivatives per radian and per unit of the
+/// elevator's command, dampings per radian and second at cruise.
+fn airframe(file: &AircraftFile) -> Airframe {
+    let per_radian = |derivative: f64| match file.derivatives {
+        Angle::Radian => derivative,
+        Angle::Degree => derivative * 180.0 / PI,
+    };
+    let per_command = |derivative: f64| match file.elevator.unit {
+        ElevatorUnit::Command => derivative,
+        ElevatorUnit::Rad => per_radian(derivative),
+        ElevatorUnit::Deg => per_radian(derivative) * PI / 180.0,
+    };
+    let time = file.chord / (2.0 * file.cruise);
+    Airframe {
+        mass: file.mass,
+        pitch_inertia: file.pitch_inertia,
+        wing_area: file.wing_area,
+        moment_length: file.chord,
+        air_density: file.air_density,
+        lift_zero: file.lift.zero,
+        lift_alpha: per_radian(file.lift.alpha),
+        lift_elevator: per_command(file.elevator.lift),
+        drag_zero: file.drag.zero,
+        drag_induced: file.drag.induced,
+        moment_zero: file.moment.zero,
+        moment_alpha: per_radian(file.moment.alpha),
+        moment_alpha_rate: per_radian(file.moment.alpha_rate) * time
+            + per_radian(file.moment.alpha_rate_time),
+        moment_pitch_rate: per_radian(file.moment.pitch_rate) * time,
+        moment_elevator: per_command(file.elevator.moment),
+    }
+}
+
+/// Checks each number by itself.
+fn check(file: &AircraftFile) -> Result<(), ScenarioError> {
+    let positive = [
+        (file.mass, "aircraft.mass"),
+        (file.pitch_inertia, "aircraft.pitch_inertia"),
+        (file.wing_area, "aircraft.wing_area"),
+        (file.chord, "aircraft.chord"),
+        (file.air_density, "aircraft.air_density"),
+        (file.cruise, "aircraft.cruise"),
+        (file.lift.alpha, "aircraft.lift.alpha"),
+        (-file.moment.alpha, "aircraft.moment.alpha"),
+        (file.lift.stall.unwrap_or(1.0), "aircraft.lift.stall"),
+        (file.thrust.max.unwrap_or(1.0), "aircraft.thrust.max"),
+        (file.thrust.lag.unwrap_or(1.0), "aircraft.thrust.lag"),
+        (file.elevator.rate.unwrap_or(1.0), "aircraft.elevator.rate"),
+    ];
+    for (value, key) in positive {
+        let advice = if key == "aircraft.moment.alpha" {
+            "give a negative number: the planner flies aircraft that are stable in pitch"
+        } else {
+            "give a number above 0"
+        };
+        ensure(value > 0.0 && value.is_finite(), key, advice)?;
+    }
+    let not_negative = [
+        (file.body_radius, "aircraft.body_radius"),
+        (file.drag.zero, "aircraft.drag.zero"),
+        (file.drag.induced, "aircraft.drag.induced"),
+        (-file.moment.pitch_rate, "aircraft.moment.pitch_rate"),
+        (-file.moment.alpha_rate, "aircraft.moment.alpha_rate"),
+        (
+            -file.moment.alpha_rate_time,
+            "aircraft.moment.alpha_rate_time",
+        ),
+    ];
+    for (value, key) in not_negative {
+        let advice = if key.starts_with("aircraft.moment") {
+            "give 0 or a negative number: a damping"
+        } else {
+            "give 0 or more"
+        };
+        ensure(value >= 0.0 && value.is_finite(), key, advice)?;
+    }
+    let finite = [
+        (file.lift.zero, "aircraft.lift.zero"),
+        (file.moment.zero, "aircraft.moment.zero"),
+        (file.elevator.lift, "aircraft.elevator.lift"),
+        (file.elevator.min.unwrap_or(0.0), "aircraft.elevator.min"),
+        (file.elevator.max.unwrap_or(0.0), "aircraft.elevator.max"),
+    ];
+    for (value, key) in finite {
+        ensure(value.is_finite(), key, "give a finite number")?;
+    }
+    let moves = file.elevator.moment != 0.0 && file.elevator.moment.is_finite();
+    ensure(
+        moves,
+        "aircraft.elevator.moment",
+        "give a finite number other than 0",
+    )?;
+    let slow = file.thrust.lag.is_none_or(|lag| lag >= 0.1 * TICK_PERIOD);
+    ensure(
+        slow,
+        "aircraft.thrust.lag",
+        "give at least 0.001 s, or leave it out",
+    )
+}

@@ -1,0 +1,156 @@
+use super::*;
+use mpp_core::settings::{Aircraft, Settings};
+use mpp_core::units::Units;
+use mpp_core::vehicle::Airframe;
+
+fn known(name: &str) -> AircraftModel {
+    AircraftModel::new(AircraftFile::known(name).unwrap()).unwrap()
+}
+
+#[test]
+fn every_known_aircraft_flies_level_and_is_told_to_the_core() {
+    for (name, _) in AircraftFile::KNOWN {
+        let model = known(name);
+        assert_eq!(model.file.name, name);
+        let told = model.told();
+        assert!((told.cruise - model.trim.state.airspeed).abs() < 1e-12);
+        // A log holds the aircraft as JSON.
+        let text = serde_json::to_string(&model.file).unwrap();
+        assert_eq!(
+            serde_json::from_str::<AircraftFile>(&text).unwrap(),
+            model.file
+        );
+    }
+}
+
+#[test]
+fn the_first_two_are_those_of_the_core_to_the_last_bit() {
+    assert_eq!(known("reference").known, Aircraft::REFERENCE);
+    assert_eq!(known("paper").known.airframe, Airframe::PAPER);
+    assert_eq!(
+        AircraftModel::reference().told(),
+        hil_protocol::Aircraft::REFERENCE
+    );
+}
+
+/// Published derivatives, by hand: C_mq c / 2v, and an elevator per degree.
+#[test]
+fn derivatives_are_converted() {
+    let airframe = known("aerosonde").known.airframe;
+    let damping = -3.6 * 0.18994 / (2.0 * 25.0);
+    assert!((airframe.moment_pitch_rate - damping).abs() < 1e-15);
+    assert!((airframe.moment_elevator + 0.5 / 57.295_779_513).abs() < 1e-9);
+    assert!((airframe.lift_elevator + 0.36 / 57.295_779_513).abs() < 1e-9);
+}
+
+#[test]
+fn nonsense_is_refused_by_the_name_of_its_key() {
+    let usual = include_str!("../../../aircraft/example.toml");
+    for (from, to, key) in [
+        ("mass = 2.0 ", "mass = -2.0 ", "aircraft.mass"),
+        ("mass = 2.0 ", "mass = nan ", "aircraft.mass"),
+        ("cruise = 15.0", "cruise = 0.0", "aircraft.cruise"),
+        ("alpha = -0.9", "alpha = 0.1", "aircraft.moment.alpha"),
+        ("moment = -1.0", "moment = 0.0", "aircraft.elevator.moment"),
+        ("max = 20.0", "max = -5.0", "aircraft.elevator.max"),
+        ("max = 10.0", "max = 0.5", "aircraft"),
+        ("stall = 0.24", "stall = 0.01", "aircraft.lift.stall"),
+        (
+            "pitch_rate = -10.0",
+            "pitch_rate = 10.0",
+            "aircraft.moment.pitch_rate",
+        ),
+        (
+            "body_radius = 0.15",
+            "body_radius = -1.0",
+            "aircraft.body_radius",
+        ),
+        ("lag = 0.1", "lag = inf", "aircraft.thrust.lag"),
+        // So fast that a regulator of 100 Hz does not hold it.
+        (
+            "pitch_inertia = 0.08",
+            "pitch_inertia = 0.00002",
+            "aircraft",
+        ),
+    ] {
+        let text = usual.replacen(from, to, 1);
+        assert_ne!(text, usual, "{from}");
+        let error = AircraftModel::new(AircraftFile::parse("a", &text).unwrap()).unwrap_err();
+        assert!(
+            error.to_string().starts_with(&format!("{key}: ")),
+            "{error}"
+        );
+    }
+    for (from, to, named) in [
+        ("mass = 2.0 ", "", "missing field `mass`"),
+        ("mass = 2.0 ", "mas = 2.0 ", "unknown field `mas`"),
+        (
+            "unit = \"deg\"",
+            "unit = \"degrees\"",
+            "unknown variant `degrees`",
+        ),
+    ] {
+        let error = AircraftFile::parse("my.toml", &usual.replacen(from, to, 1)).unwrap_err();
+        let text = error.to_string();
+        assert!(text.contains("my.toml") && text.contains(named), "{text}");
+    }
+}
+
+/// In own units similar aircraft have the same numbers, and so have their settings.
+#[test]
+fn similar_aircraft_are_one_aircraft_in_own_units() {
+    let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a.abs().max(b.abs());
+    let file = AircraftFile::known("example").unwrap();
+    let own = |scale: f64| {
+        let model = AircraftModel::new(file.similar(scale)).unwrap();
+        let units: Units = model.units();
+        let settings = Settings::flight_of(&model.known);
+        let flight = units.own_settings(settings.planner.flight().unwrap());
+        let a = units.own_airframe(&model.known.airframe);
+        [
+            a.mass,
+            a.pitch_inertia,
+            a.wing_area,
+            a.moment_length,
+            a.air_density,
+            a.moment_pitch_rate,
+            flight.margin,
+            flight.body_radius,
+            flight.band,
+            flight.thrust_max,
+            units
+                .own_actuators(&model.known.actuators)
+                .elevator_rate
+                .unwrap(),
+            settings.regulator.elevator,
+            settings.cross_track * units.length,
+        ]
+    };
+    let first = own(1.0);
+    for scale in [0.25, 4.0, 16.0] {
+        for (index, (a, b)) in first.into_iter().zip(own(scale)).enumerate() {
+            assert!(near(a, b), "{scale}, number {index}: {a} and {b}");
+        }
+    }
+}
+
+/// The unit of the command changes the command, and nothing else.
+#[test]
+fn the_unit_of_the_command_is_a_unit() {
+    for name in ["reference", "example", "cessna182"] {
+        let file = AircraftFile::known(name).unwrap();
+        let model = AircraftModel::new(file.clone()).unwrap();
+        let other = AircraftModel::new(file.with_command(7.0)).unwrap();
+        let (one, many) = (model.trim.control.elevator, other.trim.control.elevator);
+        assert!((many - 7.0 * one).abs() < 1e-9 * many.abs().max(1.0));
+        let unit = other.known.elevator_unit() / model.known.elevator_unit();
+        assert!((unit - 7.0).abs() < 1e-9);
+        let (a, b) = (
+            Settings::flight_of(&model.known),
+            Settings::flight_of(&other.known),
+        );
+        let weights = a.regulator.elevator / b.regulator.elevator;
+        assert!((weights - 49.0).abs() < 1e-6);
+        assert_eq!(a.planner.weights, b.planner.weights);
+    }
+}

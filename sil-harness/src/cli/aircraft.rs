@@ -1,0 +1,186 @@
+//! `aircraft`: what follows from an aircraft file, and how well it flies.
+
+use super::answer::{FAILURE, Failure, USAGE, data};
+use super::campaign::{failure, progress_bar};
+use super::signals::Signals;
+use super::values::navigation;
+use crate::campaign::{CampaignError, run as fly_all};
+use crate::files::read_aircraft;
+use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
+use mpp_analysis::campaign::{Campaign, Lists, Row, Shard, merge, wilson};
+use mpp_sim::aircraft_file::AircraftModel;
+use mpp_sim::scenario::{NavigationSource, ScenarioFile};
+use serde::Serialize;
+use std::sync::{Mutex, PoisonError};
+
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct AircraftArgs {
+    /// Name of an aircraft that comes with the project, or a file (TOML, as docs/aircraft.md describes)
+    #[arg(value_name = "NAME|FILE")]
+    aircraft: String,
+    /// Fly this number of flights in each cell, past obstacles that are scaled to the aircraft
+    #[arg(long, default_value_t = 0)]
+    flights: u32,
+    /// Numbers of obstacles to fly past, a list
+    #[arg(long, value_delimiter = ',', default_values_t = [20, 40])]
+    obstacles: Vec<usize>,
+    /// Fly the aircraft with its elevator's command in five units
+    #[arg(long, conflicts_with = "sizes", requires = "flights")]
+    units: bool,
+    /// Fly the aircraft in four sizes that are similar by Froude's law
+    #[arg(long, requires = "flights")]
+    sizes: bool,
+    /// Let an oracle fly the same fields too
+    #[arg(long, requires = "flights")]
+    oracle: bool,
+    /// Source of positions [default: rtk]
+    #[arg(long, value_parser = navigation())]
+    navigation: Option<NavigationSource>,
+    /// Seed of the first flight
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Number of threads; 0 takes every core
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// Successes of one aircraft past one number of obstacles.
+#[derive(Clone, Debug, Serialize)]
+struct Success {
+    aircraft: String,
+    obstacles: usize,
+    replan_hz: f64,
+    oracle: bool,
+    flights: u32,
+    strict: u32,
+    /// Wilson interval, 95 % \[-\].
+    interval: (f64, f64),
+    /// Collisions, and greatest attitudes that ended a flight.
+    collisions: u32,
+}
+
+#[derive(Debug, Serialize)]
+struct Answer {
+    aircraft: AircraftReport,
+    flights: Vec<Success>,
+}
+
+pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
+    let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
+    let file = read_aircraft(&args.aircraft).map_err(|error| usage(&error))?;
+    let named = |error: &dyn std::fmt::Display| usage(&format!("{}: {error}", args.aircraft));
+    let model = AircraftModel::new(file.clone()).map_err(|error| named(&error))?;
+    let variants = if args.units {
+        in_units(&file)
+    } else if args.sizes {
+        in_sizes(&file)
+    } else {
+        let name = file.name.clone();
+        vec![Variant { name, file }]
+    };
+    let mut answer = Answer {
+        aircraft: AircraftReport::new(&model),
+        flights: Vec::new(),
+    };
+    if !args.json {
+        data(&answer.aircraft)?;
+    }
+    if args.flights > 0 {
+        for variant in &variants {
+            let flown = fly_variant(args, variant)?;
+            if !args.json {
+                flown.iter().try_for_each(print)?;
+            }
+            answer.flights.extend(flown);
+        }
+    }
+    if args.json {
+        data(serde_json::to_string(&answer).map_err(|error| Failure::new(FAILURE, error))?)?;
+    }
+    Ok(0)
+}
+
+fn print(success: &Success) -> Result<(), Failure> {
+    let (low, high) = success.interval;
+    data(format_args!(
+        "{}{}: {} obstacles at {:.3} Hz: {} of {} strict successes [{:.1}, {:.1} %], {} collisions",
+        success.aircraft,
+        if success.oracle { ", oracle" } else { "" },
+        success.obstacles,
+        success.replan_hz,
+        success.strict,
+        success.flights,
+        100.0 * low,
+        100.0 * high,
+        success.collisions
+    ))
+}
+
+/// Flies one aircraft past each number of obstacles.
+fn fly_variant(args: &AircraftArgs, variant: &Variant) -> Result<Vec<Success>, Failure> {
+    let usage = |error| Failure::new(USAGE, error);
+    let model = AircraftModel::new(variant.file.clone()).map_err(usage)?;
+    let mut successes = Vec::new();
+    for (obstacles, replan_hz) in flown_cells(&args.obstacles, model.units().time) {
+        let mut scenario = ScenarioFile {
+            aircraft: Some(variant.file.clone()),
+            oracle: args.oracle.then_some(true),
+            ..ScenarioFile::default()
+        };
+        scenario.navigation.source = args.navigation;
+        let lists = Lists {
+            obstacles: vec![obstacles],
+            replan_hz: vec![replan_hz],
+            ..Lists::default()
+        };
+        let campaign =
+            Campaign::new(scenario, lists, args.flights, Some(args.seed)).map_err(usage)?;
+        let rows = fly(&campaign, args.threads)?;
+        for cell in campaign.cells() {
+            let of_cell = rows.iter().filter(|row| row.cell == cell);
+            let count = |is: fn(&Row) -> bool| of_cell.clone().filter(|row| is(row)).count() as u32;
+            let strict = count(|row| row.summary.strict);
+            successes.push(Success {
+                aircraft: variant.name.clone(),
+                obstacles,
+                replan_hz: cell.replan_hz,
+                oracle: cell.oracle,
+                flights: args.flights,
+                strict,
+                interval: wilson(strict, args.flights),
+                collisions: count(|row| {
+                    row.summary.outcome == mpp_sim::outcome::Outcome::Collision
+                }),
+            });
+        }
+    }
+    Ok(successes)
+}
+
+/// Flies a campaign without a row file.
+fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
+    let signals = Signals::heed()?;
+    let jobs = campaign.jobs(Shard::WHOLE);
+    let progress = progress_bar(jobs.len());
+    let rows = Mutex::new(Vec::new());
+    let flown = fly_all(campaign, &jobs, threads, false, |row| {
+        progress.inc(1);
+        rows.lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .push(row);
+        match signals.raised() {
+            Some(_) => Err(CampaignError::Stopped),
+            None => Ok(()),
+        }
+    });
+    progress.finish_and_clear();
+    flown.map_err(|error| match signals.raised() {
+        Some(code) if matches!(error, CampaignError::Stopped) => Failure::new(code, error),
+        _ => failure(&error),
+    })?;
+    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
+    merge(campaign, rows).map_err(|error| Failure::new(FAILURE, error))
+}
