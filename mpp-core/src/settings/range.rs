@@ -101,7 +101,7 @@ numbers! {
         Mass, "airframe.mass", "kg", [0.01, 1e5], Some(all.airframe.mass);
         PitchInertia, "airframe.pitch_inertia", "kg m^2", [1e-6, 1e6], Some(all.airframe.pitch_inertia);
         WingArea, "airframe.wing_area", "m^2", [1e-3, 100.0], Some(all.airframe.wing_area);
-        MomentLength, "airframe.moment_length", "m", [1e-3, 10.0], Some(all.airframe.moment_length);
+        MomentLength, "airframe.moment_length", "m", [1e-3, 1e2], Some(all.airframe.moment_length);
         AirDensity, "airframe.air_density", "kg/m^3", [0.1, 2.0], Some(all.airframe.air_density);
         LiftZero, "airframe.lift_zero", "1", [-5.0, 5.0], Some(all.airframe.lift_zero);
         LiftAlpha, "airframe.lift_alpha", "1/rad", [0.1, 20.0], Some(all.airframe.lift_alpha);

@@ -30,7 +30,7 @@ fn the_documented_example_holds_every_key() {
     // too.
     let json = serde_json::to_value(&file).unwrap();
     let keys = |value: &serde_json::Value| value.as_object().unwrap().len();
-    assert_eq!(keys(&json), 16);
+    assert_eq!(keys(&json), 17);
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
     assert_eq!(keys(&json["navigation"]), 8);
     assert_eq!(keys(&json["faults"]["actuators"]), 4);
