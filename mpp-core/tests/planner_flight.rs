@@ -176,12 +176,12 @@ fn follows_the_point_mass(trajectory: &Trajectory, state: &VehicleState) {
             angle_of_attack_rate: rise / STAGE_PERIOD,
             thrust: trajectory.knots[stage].feedforward.thrust,
         };
-        let end = knots[stage].after(airframe, &control, STAGE_PERIOD, 2);
+        let end = knots[stage].after(airframe, &control, STAGE_PERIOD, 1);
         assert!(off(&end, &knots[stage + 1]) < 1e-9, "stage {stage}");
         for share in [0.01, 0.3, 0.64, 0.99] {
             let time = trajectory.start + STAGE_PERIOD * (stage as f64 + share);
             let sample = trajectory.sample(time).unwrap();
-            let there = knots[stage].after(airframe, &control, share * STAGE_PERIOD, 2);
+            let there = knots[stage].after(airframe, &control, share * STAGE_PERIOD, 1);
             assert!(off(&PathState::of(&sample.state), &there) < 1e-9);
             let (_, feedforward) = there.reference(airframe, &control);
             assert!((sample.feedforward.thrust - control.thrust).abs() < 1e-12);

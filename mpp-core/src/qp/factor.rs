@@ -1,6 +1,6 @@
 //! A Cholesky factor to which the solver appends rows, and from which it removes rows.
 
-use super::dense::{CONTROLS, dot};
+use super::controls::{CONTROLS, dot};
 use super::triangle::{Triangle, entries};
 
 /// Greatest number of active rows: the number of controls, and some more for rows that yield.

@@ -13,12 +13,12 @@
 //! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`.
 //!
 //! The method is a dual active set (Goldfarb, Idnani: "A numerically stable dual method for
-//! solving strictly convex quadratic programs", 1983). It works on the *outputs*, which are the
-//! quantities that rows bound. Let `H` be the condensed Hessian and `Y` the map from controls to outputs.
-//! The method then needs only the kernel `K = Y H^-1 Y'`, which is computed once.
+//! solving strictly convex quadratic programs", 1983). It works on *normalised controls* `v` and *outputs*.
+//! The controls are those of the feedback that is optimal without rows, plus a multiple of `v`. The cost is
+//! then `v' v / 2` and a constant. The outputs are the quantities that rows bound, `Y v` and a constant.
 
 mod condense;
-mod dense;
+mod controls;
 mod factor;
 mod model;
 mod response;

@@ -127,19 +127,9 @@ impl Dynamics {
     /// The state after the stage.
     #[must_use]
     pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
-        self.step_with(state, control, &self.offset)
-    }
-
-    /// The state after the stage with another offset.
-    pub(super) fn step_with(
-        &self,
-        state: &StageState,
-        control: &StageControl,
-        offset: &Vector6<f64>,
-    ) -> StageState {
         let [elevator, thrust] = *control;
         let control = self.b * Vector2::new(elevator, thrust);
-        (self.a * Vector6::from(*state) + control + offset).into()
+        (self.a * Vector6::from(*state) + control + self.offset).into()
     }
 }
 

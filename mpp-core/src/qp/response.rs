@@ -1,10 +1,11 @@
-//! Response of the outputs to the controls. A row leaves out the controls that come too late to change
-//! its output.
+//! Response of the outputs to the normalised controls. A row leaves out the controls that come too late to
+//! change its output.
 
-use super::rows::{OUTPUTS, reach};
+use super::controls::dot;
+use super::rows::{OUTPUTS, RowPattern, reach};
 
 /// One row for each output, with one entry for each control that can change the output. The length of a
-/// row is rounded up to a multiple of four, after the sums of [`super::dense::dot`]. The sums are then
+/// row is rounded up to a multiple of four, after the sums of [`super::controls::dot`]. The sums are then
 /// identical to the bit with sums over all controls.
 #[derive(Clone, Debug)]
 pub(super) struct Response([f64; ENTRIES]);
@@ -30,20 +31,6 @@ impl Response {
         Self([0.0; ENTRIES])
     }
 
-    /// The rows. Their lengths are multiples of four.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &[f64]> {
-        ROWS.iter().map_while(|(start, reach)| {
-            let end = start + reach.next_multiple_of(4);
-            self.0.get(*start..end)
-        })
-    }
-
-    /// The rows, cut to the controls that reach their outputs and to at most `len` entries.
-    pub(super) fn rows_within(&self, len: usize) -> impl Iterator<Item = &[f64]> {
-        ROWS.iter()
-            .map_while(move |(start, reach)| self.0.get(*start..start + reach.min(&len)))
-    }
-
     /// A row. Its length is a multiple of four.
     pub(super) fn row(&self, output: usize) -> &[f64] {
         let (start, reach) = ROWS.get(output).copied().unwrap_or_default();
@@ -56,11 +43,45 @@ impl Response {
         let end = start + reach.next_multiple_of(4);
         self.0.get_mut(start..end).unwrap_or(&mut [])
     }
+}
 
-    /// Sets a row from the first entries of a row over all controls.
-    pub(super) fn set_row(&mut self, output: usize, row: &[f64]) {
-        for (place, value) in self.row_mut(output).iter_mut().zip(row) {
-            *place = *value;
+/// Products of the responses of two outputs, from which the norms of all rows in these outputs follow.
+pub(super) struct Pair {
+    outputs: (usize, usize),
+    first: f64,
+    both: f64,
+    second: f64,
+}
+
+impl Pair {
+    /// No pair yet.
+    pub(super) const fn none() -> Self {
+        Self {
+            outputs: (OUTPUTS, OUTPUTS),
+            first: 0.0,
+            both: 0.0,
+            second: 0.0,
         }
+    }
+
+    /// Computes the products for the outputs of a row, unless they are those of the row before.
+    pub(super) fn take_up(&mut self, response: &Response, row: &RowPattern) {
+        let outputs = (row.first.0, row.second.0);
+        if self.outputs == outputs {
+            return;
+        }
+        let [one, other] = [outputs.0, outputs.1].map(|output| response.row(output));
+        *self = Self {
+            outputs,
+            first: dot(one, one),
+            both: dot(one, other),
+            second: dot(other, other),
+        };
+    }
+
+    /// Squared norm of a row's response. The row bounds the outputs of this pair.
+    pub(super) fn norm_squared(&self, row: &RowPattern) -> f64 {
+        let (p, q) = (row.first.1, row.second.1);
+        p * p * self.first + 2.0 * p * q * self.both + q * q * self.second
     }
 }

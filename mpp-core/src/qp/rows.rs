@@ -111,56 +111,6 @@ impl RowPattern {
         };
         at(self.first) + at(self.second)
     }
-
-    /// `K c`: change of the outputs with the row's multiplier. The attitudes are left out unless
-    /// `attitude_rows` is true.
-    pub(super) fn column(
-        &self,
-        kernel: &[[f64; OUTPUTS]; OUTPUTS],
-        attitude_rows: bool,
-    ) -> [f64; OUTPUTS] {
-        let mut column = [0.0; OUTPUTS];
-        let rows = (kernel.get(self.first.0), kernel.get(self.second.0));
-        if let (Some(first), Some(second)) = rows {
-            let factors = [self.first.1, self.second.1];
-            add_scaled(&mut column, [first, second], factors, attitude_rows);
-        }
-        column
-    }
-
-    /// `c' K c`.
-    pub(super) fn norm_squared(&self, kernel: &[[f64; OUTPUTS]; OUTPUTS]) -> f64 {
-        let ((first, p), (second, q)) = (self.first, self.second);
-        let entry = |row: usize, col: usize| {
-            let row = kernel.get(row);
-            row.and_then(|row| row.get(col)).copied().unwrap_or(0.0)
-        };
-        p * p * entry(first, first)
-            + 2.0 * p * q * entry(second, first)
-            + q * q * entry(second, second)
-    }
-}
-
-/// Computes `sum += factors . rows`. The attitudes are left out unless `attitude_rows` is true. The
-/// function adds two rows at a time, because the solver needs rows of the kernel in pairs. It then loads
-/// and stores each sum once for both rows.
-pub(super) fn add_scaled(
-    sum: &mut [f64; OUTPUTS],
-    rows: [&[f64; OUTPUTS]; 2],
-    factors: [f64; 2],
-    attitude_rows: bool,
-) {
-    fn add(sum: &mut [f64], one: &[f64], other: &[f64], factors: [f64; 2]) {
-        for ((sum, one), other) in sum.iter_mut().zip(one).zip(other) {
-            *sum += factors[0] * one + factors[1] * other;
-        }
-    }
-    let [one, other] = rows.map(|row| row.split_at(ATTITUDE_OUTPUT));
-    let (first, second) = sum.split_at_mut(ATTITUDE_OUTPUT);
-    add(first, one.0, other.0, factors);
-    if attitude_rows {
-        add(second, one.1, other.1, factors);
-    }
 }
 
 /// Excess of the outputs over the bounds of all rows. The outputs do not contain boundary 0, so its rows
@@ -190,51 +140,56 @@ pub(super) fn excesses(outputs: &[f64; OUTPUTS], bounds: &Bounds) -> [f64; ROWS]
     excess
 }
 
-/// The row with the largest product of excess and `weight`, if any product is positive. The function
-/// leaves out the attitude rows unless `attitude_rows` is true. Bounds of rows with weight 0 must be
-/// finite.
+/// The row whose excess counts most, if any row has an excess. An excess `s` counts as `s^2` times the row's
+/// price if `by_effort` is true, which is twice the cost of its correction. Otherwise it counts as `s^4` times
+/// the price, which is between its size and its effort; this shortens the longest solves of programs with soft
+/// rows. The function leaves out the attitude rows unless `attitude_rows` is true.
 pub(super) fn most_violated(
     outputs: &[f64; OUTPUTS],
     bounds: &Bounds,
-    weight: &[f64; ROWS],
+    prices: &[f64; ROWS],
+    by_effort: bool,
     attitude_rows: bool,
 ) -> Option<usize> {
+    let count = |excess: &mut f64, price: &f64| {
+        let over = excess.max(0.0);
+        let square = over * over;
+        let counted = if by_effort { square } else { square * square };
+        *excess = counted * price;
+    };
     let (position_bounds, attitude_bounds, thrust_bounds) = bounds.parts();
-    let (position_weights, rest) = weight.split_at(POSITION_ROWS);
-    let (attitude_weights, thrust_weights) = rest.split_at(ATTITUDE_ROWS);
+    let (position_prices, rest) = prices.split_at(POSITION_ROWS);
+    let (attitude_prices, thrust_prices) = rest.split_at(ATTITUDE_ROWS);
     let (motion, thrust, attitude) = parts(outputs);
     let mut worst = Worst {
         most: 0.0,
         row: None,
     };
 
-    let weights = position_weights.as_chunks::<DIRECTIONS>().0.iter();
+    let prices = position_prices.as_chunks::<DIRECTIONS>().0.iter();
     let stages = motion
         .iter()
-        .zip(position_bounds.iter().zip(weights).skip(1));
-    for (stage, (at, (bounds, weights))) in stages.enumerate() {
+        .zip(position_bounds.iter().zip(prices).skip(1));
+    for (stage, (at, (bounds, prices))) in stages.enumerate() {
         let mut excess = position_excess(at, bounds);
-        for (excess, weight) in excess.iter_mut().zip(weights) {
-            *excess *= weight;
+        for (excess, price) in excess.iter_mut().zip(prices) {
+            count(excess, price);
         }
         worst.consider(&excess, (stage + 1) * DIRECTIONS);
     }
-    for (stage, ((thrust, bound), weight)) in thrust
-        .iter()
-        .zip(thrust_bounds)
-        .zip(thrust_weights)
-        .enumerate()
-    {
-        let excess = [(-thrust - bound) * weight];
+    let stages = thrust.iter().zip(thrust_bounds.iter().zip(thrust_prices));
+    for (stage, (thrust, (bound, price))) in stages.enumerate() {
+        let mut excess = [-thrust - bound];
+        count(&mut excess[0], price);
         worst.consider(&excess, POSITION_ROWS + ATTITUDE_ROWS + stage);
     }
     if attitude_rows {
-        let weights = attitude_weights.as_chunks::<4>().0;
-        let stages = attitude.iter().zip(attitude_bounds.iter().zip(weights));
-        for (stage, (at, (limits, weights))) in stages.enumerate() {
+        let prices = attitude_prices.as_chunks::<4>().0;
+        let stages = attitude.iter().zip(attitude_bounds.iter().zip(prices));
+        for (stage, (at, (limits, prices))) in stages.enumerate() {
             let mut excess = attitude_excess(at, limits);
-            for (excess, weight) in excess.iter_mut().zip(weights) {
-                *excess *= weight;
+            for (excess, price) in excess.iter_mut().zip(prices) {
+                count(excess, price);
             }
             worst.consider(&excess, POSITION_ROWS + 4 * stage);
         }

@@ -5,7 +5,7 @@
 //! the lift. The airframe of these functions is a [balanced](Airframe::balanced) one.
 
 use super::{AirState, Airframe, Control, GRAVITY, VehicleState, Wind};
-use nalgebra::{Matrix5, SMatrix};
+use nalgebra::{Matrix3, Matrix5, SMatrix};
 
 /// Least airspeed of a roll-out [m/s]. It keeps the divisor of the equations away from zero, also in
 /// the motion of an aircraft that cruises at 3 m/s.
@@ -159,11 +159,25 @@ impl PathState {
     ) -> (Matrix5<f64>, SMatrix<f64, 5, 2>) {
         let middle = self.moved(&self.rate(airframe, control), 0.5 * dt);
         let (state, input) = middle.jacobian(airframe, control);
-        let step = state * dt;
-        let square = step * step;
-        let mean =
-            Matrix5::identity() + step * 0.5 + square * (1.0 / 6.0) + square * step * (1.0 / 24.0);
-        (Matrix5::identity() + step * mean, mean * input * dt)
+        // The position changes nothing, so the exponential is that of the other three states. `second` is the
+        // mean of the mean over the time.
+        let by_motion = state.fixed_columns::<3>(2) * dt;
+        let position = by_motion.fixed_rows::<2>(0).into_owned();
+        let motion = by_motion.fixed_rows::<3>(2).into_owned();
+        let pushes = input.fixed_rows::<3>(2) * dt;
+        let identity = Matrix3::identity();
+        let second = identity * 0.5 + motion * (identity * (1.0 / 6.0) + motion * (1.0 / 24.0));
+        let mean = identity + motion * second;
+        let mut state = Matrix5::identity();
+        let mut rows = state.fixed_columns_mut::<3>(2);
+        rows.fixed_rows_mut::<2>(0).copy_from(&(position * mean));
+        let moved = identity + motion * mean;
+        rows.fixed_rows_mut::<3>(2).copy_from(&moved);
+        let mut input = SMatrix::<f64, 5, 2>::zeros();
+        let passed = position * (second * pushes);
+        input.fixed_rows_mut::<2>(0).copy_from(&passed);
+        input.fixed_rows_mut::<3>(2).copy_from(&(mean * pushes));
+        (state, input)
     }
 
     /// Jacobian of [`Self::rate`] with respect to state and control.
@@ -181,7 +195,8 @@ impl PathState {
         let pressure_area = 0.5 * density_area * (v * v);
         let lift = a.lift_zero + a.lift_alpha * self.angle_of_attack;
         let drag = a.drag_zero + a.drag_induced * (lift * lift);
-        let path_rate = self.rate(airframe, control).flight_path;
+        let path_rate = (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
+            - GRAVITY * cos_path / v;
         let speed_alpha = (-control.thrust * sin_alpha
             - 2.0 * pressure_area * a.drag_induced * lift * a.lift_alpha)
             / a.mass;

@@ -4,14 +4,12 @@ use super::limits::Limits;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::ClearanceField;
 use crate::qp::{Dynamics, Solution, StageState};
+use crate::trajectory::STEPS;
 use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
 use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
 
 /// Angles of the program are in tenths of a radian, so that they have about the same weight as metres.
 pub(super) const ANGLE_SCALE: f64 = 10.0;
-/// Number of integration steps for one stage of a roll-out.
-const STEPS: u8 = 2;
-
 /// A trajectory as the aircraft would fly it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
@@ -102,38 +100,28 @@ impl Frame {
             let (state, input) = knot.sensitivity(&self.airframe, control, STAGE_PERIOD);
             // These columns convert between the program's (pitch, path) and the point mass's (path, angle
             // of attack).
-            let mut a = Matrix6::zeros();
-            let mut b = Matrix6x2::zeros();
-            let columns: [[f64; 5]; 6] = {
-                let column = |index: usize| -> [f64; 5] { state.column(index).into_owned().into() };
-                let [x, z, v, path, alpha] =
-                    [column(0), column(1), column(2), column(3), column(4)];
-                let mut turning = path;
-                for (turning, alpha) in turning.iter_mut().zip(&alpha) {
-                    *turning -= alpha;
-                }
-                let scaled = |column: [f64; 5]| column.map(|entry| entry / ANGLE_SCALE);
-                [x, z, v, scaled(alpha), [0.0; 5], scaled(turning)]
-            };
-            for (index, column) in columns.iter().enumerate() {
-                a.set_column(index, &outputs(column));
+            let [x, z, v, path, alpha] = state.data.0;
+            let mut turning = path;
+            for (turning, alpha) in turning.iter_mut().zip(&alpha) {
+                *turning -= alpha;
             }
-            for index in 0..2 {
-                let column: [f64; 5] = input.column(index).into_owned().into();
-                b.set_column(index, &outputs(&column));
-            }
+            let [alpha, turning] = [alpha, turning].map(|column| column.map(|it| it / ANGLE_SCALE));
+            let a: Matrix6<f64> = [x, z, v, alpha, [0.0; 5], turning]
+                .map(program_state)
+                .into();
+            let b: Matrix6x2<f64> = input.data.0.map(program_state).into();
             let next = self.after(knot, control);
             let thrust = control.thrust - self.trim.control.thrust;
-            let offset = self.deviation(&next, stage + 1)
-                - a * self.deviation(knot, stage)
-                - b * Vector2::new(control.angle_of_attack_rate, thrust);
+            let control = Vector2::new(control.angle_of_attack_rate, thrust);
+            let offset =
+                self.deviation(&next, stage + 1) - a * self.deviation(knot, stage) - b * control;
             *dynamics = Dynamics { a, b, offset };
         }
     }
 }
 
 /// Converts deviations of the point mass to the program's state.
-fn outputs([x, z, v, path, alpha]: &[f64; 5]) -> Vector6<f64> {
+fn program_state([x, z, v, path, alpha]: [f64; 5]) -> StageState {
     let pitch = ANGLE_SCALE * (path + alpha);
-    StageState::into([*x, *z, *v, pitch, 0.0, ANGLE_SCALE * path])
+    [x, z, v, pitch, 0.0, ANGLE_SCALE * path]
 }

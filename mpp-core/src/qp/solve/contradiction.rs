@@ -8,28 +8,15 @@ use super::direction::{Direction, Stand};
 use super::{Active, Solver};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::dense::{ControlVector, dot};
+use crate::qp::controls::{CONTROLS, ControlVector, dot};
 use crate::qp::factor::CAPACITY;
-use crate::qp::rows::{OUTPUTS, RowPattern};
+use crate::qp::rows::RowPattern;
 
 /// Greatest contradiction between rows [m, rad or N] that may come from rounding.
 const NEGLIGIBLE: f64 = 1e-8;
 
 /// Share of the largest rate below which a rate is zero up to rounding.
 const NO_RATE: f64 = 1e-13;
-
-/// Weighted sum of the patterns of rows, by output.
-struct Sum([f64; OUTPUTS]);
-
-impl Sum {
-    fn add(&mut self, pattern: &RowPattern, weight: f64) {
-        for (output, factor) in [pattern.first, pattern.second] {
-            if let Some(sum) = self.0.get_mut(output) {
-                *sum += weight * factor;
-            }
-        }
-    }
-}
 
 impl Solver {
     /// Corrects a direction whose complement is lost in rounding. Returns the relation of the entering row to
@@ -61,11 +48,11 @@ impl Solver {
 
     /// Makes one step of iterative refinement of the rates, and computes the complement as a squared norm.
     fn correct(&self, shared: &Condensed, entering: &Active, direction: &mut Direction) {
-        let outputs = shared.outputs_of_half(&self.remainder(shared, entering, &direction.rates));
+        let rest = self.remainder(shared, entering, &direction.rates);
         let mut missing = [0.0; CAPACITY];
         let active = self.active.iter().zip(&direction.rates);
         for (missing, (active, rate)) in missing.iter_mut().zip(active) {
-            *missing = active.pattern.value(&outputs) - self.elasticity(active) * rate;
+            *missing = shared.change(&active.pattern, &rest) - self.elasticity(active) * rate;
         }
         self.factor.forward(&mut missing);
         for (product, missing) in direction.products.iter_mut().zip(&missing) {
@@ -90,19 +77,21 @@ impl Solver {
         direction.complement = dot(&rest, &rest) + elastic;
     }
 
-    /// `U^-1 Y' (c_p - C_A' r)`
-    fn remainder(
+    /// `Y' (c_p - C_A' r)`
+    pub(super) fn remainder(
         &self,
         shared: &Condensed,
         entering: &Active,
         rates: &[f64; CAPACITY],
     ) -> ControlVector {
-        let mut sum = Sum([0.0; OUTPUTS]);
-        sum.add(&entering.pattern, 1.0);
+        let mut rest = [0.0; CONTROLS];
+        shared.add_normal(&mut rest, &entering.pattern, 1.0);
         for (active, rate) in self.active.iter().zip(rates) {
-            sum.add(&active.pattern, -rate);
+            if *rate != 0.0 {
+                shared.add_normal(&mut rest, &active.pattern, -rate);
+            }
         }
-        shared.half_push(&sum.0)
+        rest
     }
 
     /// The verdict on an entering row that contradicts the active rows. Their weighted left-hand sides cancel
@@ -142,22 +131,22 @@ impl Solver {
     /// that the optimum without rows violates the weighted sum of the certificate's rows, and that a
     /// correction of this violation takes an absurd cost.
     fn proven(&mut self, shared: &Condensed) -> Status {
-        let free = shared.unconstrained(&self.problem.initial, &self.problem.target);
-        let mut sum = Sum([0.0; OUTPUTS]);
+        self.normalised = [0.0; CONTROLS];
+        self.follow(shared);
+        let mut sum = [0.0; CONTROLS];
         let mut excess = 0.0;
         for (row, weight) in &self.certificate {
             if let (Some(pattern), Some(bound)) =
                 (RowPattern::of(*row), self.problem.bounds.0.get(*row))
             {
-                excess += weight * (pattern.value(&free.outputs) - bound);
-                sum.add(&pattern, *weight);
+                excess += weight * (pattern.value(&self.outputs) - bound);
+                shared.add_normal(&mut sum, &pattern, *weight);
             }
         }
-        let half = shared.half_push(&sum.0);
         let valid = self.certificate.iter().all(|(_, weight)| *weight >= 0.0);
         if valid
             && excess > NEGLIGIBLE
-            && excess * excess > 2.0 * self.absurd_rise * dot(&half, &half)
+            && excess * excess > 2.0 * self.absurd_rise * dot(&sum, &sum)
         {
             Status::Infeasible
         } else {

@@ -4,10 +4,12 @@ use crate::qp::factor::CAPACITY;
 
 /// Change of the active rows' multipliers with the multiplier of the entering row.
 pub(super) struct Direction {
-    /// The vector `L^-1 C_A K c_p`.
+    /// The vector `L^-1 C_A Y Y' c_p`.
     pub(super) products: [f64; CAPACITY],
     /// Decrease of the multipliers of the active rows: `L^-T products`.
     pub(super) rates: [f64; CAPACITY],
+    /// Squared norm of the entering row's response, `|Y' c_p|^2`.
+    pub(super) norm: f64,
     /// Schur complement of the entering row against the active rows. It is 0 if the row depends on them.
     pub(super) complement: f64,
 }

@@ -14,12 +14,11 @@ mod contradiction;
 mod direction;
 mod step;
 
-use super::condense::Condensed;
-use super::dense::CONTROLS;
+use super::condense::{Condensed, outputs};
+use super::controls::{CONTROLS, ControlVector};
 use super::factor::{CAPACITY, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
 use super::{Problem, Solution, Status};
-use crate::config::KNOTS;
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -91,12 +90,16 @@ struct Active {
 #[derive(Clone, Debug)]
 pub struct Solver {
     problem: Problem,
-    unconstrained: [f64; CONTROLS],
+    /// The feedforward of the optimum without rows.
+    feedforward: ControlVector,
+    /// The present normalised controls, their trajectory, and the outputs of the trajectory.
+    normalised: ControlVector,
+    trajectory: Solution,
     outputs: [f64; OUTPUTS],
     active: heapless::Vec<Active, CAPACITY>,
     /// Bounds of the rows that may enter, with the tolerance added; infinite for rows that must not enter.
     open: Bounds,
-    /// Whether the program has attitude rows. Without them the solver does not update the attitudes.
+    /// Whether the program has attitude rows.
     attitude_rows: bool,
     entering: Option<Active>,
     factor: Factor,
@@ -121,7 +124,9 @@ impl Solver {
                 penalty: None,
                 cost_limit: f64::INFINITY,
             },
-            unconstrained: [0.0; CONTROLS],
+            feedforward: [0.0; CONTROLS],
+            normalised: [0.0; CONTROLS],
+            trajectory: Solution::new(),
             outputs: [0.0; OUTPUTS],
             active: heapless::Vec::new(),
             open: Bounds::none(),
@@ -141,26 +146,29 @@ impl Solver {
     pub fn start(&mut self, shared: &Condensed, problem: &Problem) {
         self.problem = *problem;
         self.active.clear();
-        let rows = problem.bounds.0.iter().zip(&shared.pricing);
+        let rows = problem.bounds.0.iter().zip(&shared.prices);
         let mut numbers = true;
         for (open, (bound, price)) in self.open.0.iter_mut().zip(rows) {
             numbers &= !bound.is_nan();
-            // An infinite bound times the weight 0 would be NaN.
-            *open = if *price > 0.0 { bound + TOLERANCE } else { 0.0 };
+            *open = if *price > 0.0 {
+                bound + TOLERANCE
+            } else {
+                f64::INFINITY
+            };
         }
         self.attitude_rows = problem.bounds.has_attitude();
         self.entering = None;
         self.factor.clear();
         self.iterations = 0;
         self.certificate.clear();
-        let optimum = shared.unconstrained(&problem.initial, &problem.target);
-        self.unconstrained = optimum.controls;
-        self.outputs = optimum.outputs;
-        self.dual = optimum.cost;
+        self.feedforward = shared.feedforward(&problem.target);
+        self.normalised = [0.0; CONTROLS];
+        self.follow(shared);
+        self.dual = shared.cost(&self.trajectory, &problem.target);
         self.absurd_rise = if problem.penalty.is_some() {
             f64::INFINITY
         } else {
-            0.5 * shared.weights.terminal * ABSURD_MISS * ABSURD_MISS + ABSURD_FACTOR * optimum.cost
+            0.5 * shared.weights.terminal * ABSURD_MISS * ABSURD_MISS + ABSURD_FACTOR * self.dual
         };
         self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)
@@ -169,6 +177,18 @@ impl Solver {
         } else {
             Some(Status::NumericalFailure)
         };
+    }
+
+    /// Computes trajectory and outputs of the present normalised controls.
+    fn follow(&mut self, shared: &Condensed) {
+        let initial = &self.problem.initial;
+        shared.roll_out(
+            initial,
+            &self.feedforward,
+            &self.normalised,
+            &mut self.trajectory,
+        );
+        self.outputs = outputs(&self.trajectory);
     }
 
     /// Makes up to `iterations` steps. Returns the status as soon as there is one.
@@ -218,30 +238,14 @@ impl Solver {
     /// Writes the trajectory that follows from the multipliers. Returns the status, or
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
-        let mut pushes = [0.0; OUTPUTS];
+        let mut normalised = [0.0; CONTROLS];
         for active in &self.active {
-            for (output, factor) in [active.pattern.first, active.pattern.second] {
-                if let Some(push) = pushes.get_mut(output) {
-                    *push += factor * active.multiplier;
-                }
-            }
+            shared.add_normal(&mut normalised, &active.pattern, -active.multiplier);
         }
-        let mut controls = self.unconstrained;
-        for (control, push) in controls.iter_mut().zip(shared.push_back(&pushes)) {
-            *control -= push;
-        }
-        let mut outputs = [0.0; OUTPUTS];
         let initial = &self.problem.initial;
-        shared.roll_out(initial, &controls, &mut solution.states, &mut outputs);
-        for (stage, control) in solution
-            .controls
-            .iter_mut()
-            .zip(controls.as_chunks::<2>().0)
-        {
-            *stage = *control;
-        }
-        let last = &solution.states[KNOTS - 1];
-        solution.cost = shared.cost(&solution.controls, last, &self.problem.target);
+        shared.roll_out(initial, &self.feedforward, &normalised, solution);
+        solution.cost = shared.cost(solution, &self.problem.target);
+        let outputs = outputs(solution);
         let (soft, hard) = self.worst_violations(shared, &outputs);
         solution.violation = soft.max(hard);
         match self.status {
@@ -264,7 +268,7 @@ impl Solver {
             )
         };
         let (soft, hard) = split_soft(&excess);
-        let (soft_prices, hard_prices) = split_soft(&shared.pricing);
+        let (soft_prices, hard_prices) = split_soft(&shared.prices);
         let (soft, hard) = (worst((soft, soft_prices)), worst((hard, hard_prices)));
         if self.problem.penalty.is_some() {
             (soft, hard)

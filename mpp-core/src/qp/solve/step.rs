@@ -4,8 +4,9 @@ use super::direction::{Direction, Stand};
 use super::{Active, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
+use crate::qp::controls::{CONTROLS, add_scaled, dot};
 use crate::qp::factor::CAPACITY;
-use crate::qp::rows::{OUTPUTS, RowPattern, add_scaled, most_violated};
+use crate::qp::rows::{RowPattern, most_violated};
 
 /// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
 /// depends on the active rows.
@@ -34,12 +35,14 @@ impl Solver {
         let entering = match self.entering.take() {
             Some(entering) => entering,
             None => {
-                let pricing = if self.problem.penalty.is_some() {
-                    &shared.soft_pricing
-                } else {
-                    &shared.pricing
-                };
-                let worst = most_violated(&self.outputs, &self.open, pricing, self.attitude_rows);
+                let by_effort = self.problem.penalty.is_none();
+                let worst = most_violated(
+                    &self.outputs,
+                    &self.open,
+                    &shared.prices,
+                    by_effort,
+                    self.attitude_rows,
+                );
                 let Some(row) = worst else {
                     return Some(Status::Optimal);
                 };
@@ -54,9 +57,8 @@ impl Solver {
                 }
             }
         };
-        let column = entering.pattern.column(&shared.kernel, self.attitude_rows);
         let violation = self.violation(&entering);
-        let mut direction = self.direction(&column, &entering);
+        let mut direction = self.direction(shared, &entering);
         let mut full = (violation / direction.complement).max(0.0);
         let mut touches = false;
         if direction.complement <= 0.0 || 0.5 * violation * full > self.absurd_rise {
@@ -70,13 +72,13 @@ impl Solver {
         let (event, length) = self.first_event(&entering, &direction.rates, full);
         if length == f64::INFINITY {
             return if touches {
-                self.touch(entering, &column, &mut direction)
+                self.touch(entering, &mut direction)
             } else {
                 Some(self.contradiction(shared, &entering, &direction.rates))
             };
         }
         self.dual += length * (violation - 0.5 * length * direction.complement);
-        let entering = self.move_by(shared, length, &direction.rates, &column, entering);
+        let entering = self.move_by(shared, length, &direction.rates, entering);
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
         }
@@ -93,14 +95,9 @@ impl Solver {
 
     /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
     /// skips such a row. If the row already has a multiplier, it becomes active instead.
-    fn touch(
-        &mut self,
-        entering: Active,
-        column: &[f64; OUTPUTS],
-        direction: &mut Direction,
-    ) -> Option<Status> {
+    fn touch(&mut self, entering: Active, direction: &mut Direction) -> Option<Status> {
         if entering.multiplier > 0.0 {
-            let floor = FLOOR * entering.pattern.value(column);
+            let floor = FLOOR * direction.norm;
             direction.complement = direction.complement.max(floor);
             return self.activate(entering, direction);
         }
@@ -109,40 +106,41 @@ impl Solver {
         None
     }
 
-    /// The direction of a step for a row. `column` is the row's `K c`.
-    fn direction(&self, column: &[f64; OUTPUTS], own: &Active) -> Direction {
-        let (products, complement) = self.complement(column, own);
+    /// The direction of a step for a row.
+    fn direction(&self, shared: &Condensed, own: &Active) -> Direction {
+        let mut normal = [0.0; CONTROLS];
+        shared.add_normal(&mut normal, &own.pattern, 1.0);
+        let mut products = [0.0; CAPACITY];
+        for (product, active) in products.iter_mut().zip(&self.active) {
+            *product = shared.change(&active.pattern, &normal);
+        }
+        self.factor.forward(&mut products);
         let mut rates = products;
         self.factor.backward(&mut rates);
+        let norm = dot(&normal, &normal);
         Direction {
             products,
             rates,
-            complement,
+            norm,
+            complement: self.complement(own, norm, &products),
         }
     }
 
-    /// The vector `L^-1 C_A K c` and the Schur complement of a row. `column` is the row's `K c`.
-    fn complement(&self, column: &[f64; OUTPUTS], own: &Active) -> ([f64; CAPACITY], f64) {
-        let mut products = [0.0; CAPACITY];
-        for (product, active) in products.iter_mut().zip(&self.active) {
-            *product = active.pattern.value(column);
-        }
-        self.factor.forward(&mut products);
-        let norm = own.pattern.value(column);
+    /// The Schur complement of a row with the norm `norm`.
+    fn complement(&self, own: &Active, norm: f64, products: &[f64; CAPACITY]) -> f64 {
         let explained: f64 = products
             .iter()
             .take(self.active.len())
             .map(|product| product * product)
             .sum();
         let rest = norm - explained;
-        let complement = if self.is_soft(own.row) {
+        if self.is_soft(own.row) {
             rest.max(FLOOR * norm) + self.elasticity(own)
         } else if rest > DEPENDENT * norm {
             rest
         } else {
             0.0
-        };
-        (products, complement)
+        }
     }
 
     /// Excess of a row over its bound, less the amount by which the row yields at its multiplier.
@@ -192,43 +190,21 @@ impl Solver {
         first
     }
 
-    /// Moves multipliers and outputs: `lambda_p += t`, `lambda_A -= t r`,
-    /// `y -= t K (c_p - C_A' r)`.
+    /// Moves multipliers and controls: `lambda_p += t`, `lambda_A -= t r`,
+    /// `v -= t Y' (c_p - C_A' r)`.
     fn move_by(
         &mut self,
         shared: &Condensed,
         length: f64,
         rates: &[f64; CAPACITY],
-        column: &[f64; OUTPUTS],
         mut entering: Active,
     ) -> Active {
-        let mut change = [0.0; OUTPUTS];
-        let mut add = |(output, factor): (usize, f64)| {
-            if let Some(change) = change.get_mut(output) {
-                *change += factor;
-            }
-        };
+        let rest = self.remainder(shared, &entering, rates);
+        add_scaled(&mut self.normalised, &rest, -length);
+        self.follow(shared);
         for (active, rate) in self.active.iter_mut().zip(rates) {
-            let step = length * rate;
             // Rounding may take the multiplier of a row that leaves below zero.
-            active.multiplier = (active.multiplier - step).max(0.0);
-            let RowPattern { first, second } = active.pattern;
-            add((first.0, step * first.1));
-            add((second.0, step * second.1));
-        }
-        for (output, column) in self.outputs.iter_mut().zip(column) {
-            *output -= length * column;
-        }
-        let kernel = shared.kernel.as_chunks::<2>().0;
-        for ([one, other], factors) in kernel.iter().zip(change.as_chunks::<2>().0) {
-            if factors.iter().any(|factor| *factor != 0.0) {
-                add_scaled(
-                    &mut self.outputs,
-                    [one, other],
-                    *factors,
-                    self.attitude_rows,
-                );
-            }
+            active.multiplier = (active.multiplier - length * rate).max(0.0);
         }
         entering.multiplier += length;
         entering
@@ -252,8 +228,7 @@ impl Solver {
             Event::Toggle(index) => {
                 if let Some(mut active) = self.deactivate(index) {
                     active.yielded = !active.yielded;
-                    let column = active.pattern.column(&shared.kernel, self.attitude_rows);
-                    let direction = self.direction(&column, &active);
+                    let direction = self.direction(shared, &active);
                     let failed = self.activate(active, &direction);
                     if failed.is_some() {
                         return failed;

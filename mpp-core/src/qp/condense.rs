@@ -1,0 +1,265 @@
+//! The part of the program that all candidates of a model share. It eliminates the states: under the feedback
+//! that is optimal without rows, the outputs follow from normalised controls whose Hessian is the identity.
+
+mod feedback;
+
+use super::controls::{CONTROLS, ControlVector, add_scaled, dot};
+use super::response::{Pair, Response};
+use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
+use super::{Dynamics, Solution, StageModel, StageState, Weights};
+use crate::config::{KNOTS, STAGES};
+use crate::vehicle::{AirState, Trim};
+use core::fmt;
+use feedback::Feedback;
+use nalgebra::Vector6;
+
+/// Value of `|y|^2` below which a row with the response `y` is constant up to rounding. In the paper's model the
+/// first position rows are constant, because a control changes the position only two stages later.
+const UNCHANGEABLE: f64 = 1e-20;
+
+/// Index in the state, and first place among the outputs, of the outputs that are states: x, z, pitch and
+/// flight path.
+const MOTION_OUTPUTS: [(usize, usize); 4] = [
+    (0, 0),
+    (1, 1),
+    (3, ATTITUDE_OUTPUT),
+    (5, ATTITUDE_OUTPUT + 1),
+];
+
+/// The part of the program that all candidates of a model share.
+#[derive(Clone, Debug)]
+pub struct Condensed {
+    model: StageModel,
+    dynamics: [Dynamics; STAGES],
+    pub(super) weights: Weights,
+    feedback: [Feedback; STAGES],
+    /// Response of the outputs to the normalised controls.
+    response: Response,
+    /// Price of each row: `1 / |y|^2` for the row's response `y`, and 0 if the controls cannot change the row. A
+    /// violation `s` takes a cost of `s^2 / 2` times the price to correct.
+    pub(super) prices: [f64; ROWS],
+    /// The rows with price 0, which the controls cannot change.
+    pub(super) constant_rows: heapless::Vec<usize, ROWS>,
+}
+
+/// The cost has no single optimum: a weight is not positive, or the model is not finite. The planner then
+/// does not start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CondenseError;
+
+impl fmt::Display for CondenseError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "the plan's cost has no single optimum: give the controls positive weights, and the \
+             terminal state one that is not negative",
+        )
+    }
+}
+
+impl core::error::Error for CondenseError {}
+
+impl Condensed {
+    /// An empty workspace.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            model: StageModel::at_rest(),
+            dynamics: [Dynamics::at_rest(); STAGES],
+            weights: Weights::PAPER,
+            feedback: [Feedback::none(); STAGES],
+            response: Response::new(),
+            prices: [0.0; ROWS],
+            constant_rows: heapless::Vec::new(),
+        }
+    }
+
+    /// Condenses a model that is the same in every stage.
+    ///
+    /// # Errors
+    /// [`CondenseError`] if the cost has no single optimum.
+    pub fn condense(&mut self, model: &StageModel, weights: &Weights) -> Result<(), CondenseError> {
+        self.model = *model;
+        self.dynamics.fill(model.dynamics());
+        self.condense_stages(weights)
+    }
+
+    /// Condenses a different model for each stage. `linearise` writes the models in place, because they are
+    /// large.
+    ///
+    /// # Errors
+    /// [`CondenseError`] if the cost has no single optimum.
+    pub fn condense_varying(
+        &mut self,
+        weights: &Weights,
+        linearise: impl FnOnce(&mut [Dynamics; STAGES]),
+    ) -> Result<(), CondenseError> {
+        linearise(&mut self.dynamics);
+        self.condense_stages(weights)
+    }
+
+    fn condense_stages(&mut self, weights: &Weights) -> Result<(), CondenseError> {
+        self.weights = *weights;
+        feedback::design(&self.dynamics, weights, &mut self.feedback).ok_or(CondenseError)?;
+        self.write_response();
+        self.write_prices();
+        Ok(())
+    }
+
+    /// Writes the response of the outputs to the normalised controls. It follows the response of the state
+    /// from stage to stage, with a column for each control so far.
+    fn write_response(&mut self) {
+        let mut columns = [Vector6::zeros(); CONTROLS];
+        let stages = self.dynamics.iter().zip(&self.feedback).enumerate();
+        for (stage, (dynamics, feedback)) in stages {
+            let so_far = 2 * stage;
+            let thrusts = self.response.row_mut(THRUST_OUTPUT + stage);
+            thrusts.fill(0.0);
+            let gain = feedback.gain.row(1);
+            for (thrust, column) in thrusts.iter_mut().zip(&columns).take(so_far) {
+                *thrust = -(gain * column).x;
+            }
+            if let Some([elevator, thrust, ..]) = thrusts.get_mut(so_far..) {
+                [*elevator, *thrust] = feedback.scale.row(1).into_owned().into();
+            }
+            let closed = feedback.closed(dynamics);
+            for column in columns.iter_mut().take(so_far) {
+                *column = closed * *column;
+            }
+            if let Some(own) = columns.as_chunks_mut::<2>().0.get_mut(stage) {
+                let first = dynamics.b * feedback.scale;
+                *own = [first.column(0).into_owned(), first.column(1).into_owned()];
+            }
+            for (state, output) in MOTION_OUTPUTS {
+                let row = self.response.row_mut(output + so_far);
+                for (entry, column) in row.iter_mut().zip(&columns) {
+                    *entry = column[state];
+                }
+            }
+        }
+    }
+
+    /// Writes the price of each row.
+    fn write_prices(&mut self) {
+        self.constant_rows.clear();
+        let mut pair = Pair::none();
+        for (row, price) in self.prices.iter_mut().enumerate() {
+            let squared = RowPattern::of(row).map_or(0.0, |pattern| {
+                pair.take_up(&self.response, &pattern);
+                pair.norm_squared(&pattern)
+            });
+            *price = if squared > UNCHANGEABLE {
+                1.0 / squared
+            } else {
+                // The list has as many places as there are rows, so the push cannot fail.
+                let _ = self.constant_rows.push(row);
+                0.0
+            };
+        }
+    }
+
+    /// The condensed dynamics of every stage.
+    #[must_use]
+    pub fn stages(&self) -> &[Dynamics; STAGES] {
+        &self.dynamics
+    }
+
+    /// The condensed model. It is valid only if the model is the same in every stage.
+    #[must_use]
+    pub fn model(&self) -> &StageModel {
+        &self.model
+    }
+
+    /// The plan's first state for an estimated motion: the deviation from trim, at the origin.
+    #[must_use]
+    pub fn initial_state(&self, trim: &Trim, estimate: &AirState) -> StageState {
+        let d = estimate.to_vector() - trim.state.to_vector();
+        (self.model.initial * Vector6::new(0.0, 0.0, d.x, d.y, d.z, d.w)).into()
+    }
+
+    /// Computes the feedforward of every stage for a target.
+    pub(super) fn feedforward(&self, target: &StageState) -> ControlVector {
+        feedback::feedforward(&self.dynamics, &self.weights, &self.feedback, target)
+    }
+
+    /// Adds the normalised controls `weight Y' c` for the pattern `c` of a row. The squared norm of a sum of such
+    /// terms keeps its digits where a product with a Gram matrix would cancel them.
+    pub(super) fn add_normal(&self, sum: &mut ControlVector, row: &RowPattern, weight: f64) {
+        for (output, factor) in [row.first, row.second] {
+            if factor != 0.0 {
+                add_scaled(sum, self.response.row(output), weight * factor);
+            }
+        }
+    }
+
+    /// Change of a row's left-hand side with normalised controls.
+    pub(super) fn change(&self, row: &RowPattern, normalised: &ControlVector) -> f64 {
+        let by = |(output, factor): (usize, f64)| {
+            if factor == 0.0 {
+                0.0
+            } else {
+                factor * dot(normalised, self.response.row(output))
+            }
+        };
+        by(row.first) + by(row.second)
+    }
+
+    /// Computes states and controls from the normalised controls.
+    pub(super) fn roll_out(
+        &self,
+        initial: &StageState,
+        feedforward: &ControlVector,
+        normalised: &ControlVector,
+        solution: &mut Solution,
+    ) {
+        let [first, later @ ..] = &mut solution.states;
+        *first = *initial;
+        let mut state: &StageState = first;
+        let feedforward = feedforward.as_chunks::<2>().0.iter();
+        let pushes = feedforward.zip(normalised.as_chunks::<2>().0);
+        let stages = self.dynamics.iter().zip(&self.feedback).zip(pushes);
+        let places = solution.controls.iter_mut().zip(later);
+        for (stage, (control, next)) in stages.zip(places) {
+            let ((dynamics, feedback), (feedforward, normalised)) = stage;
+            *control = feedback.control(state, feedforward, normalised);
+            *next = dynamics.step(state, control);
+            state = next;
+        }
+    }
+
+    /// Cost of a trajectory without penalties.
+    pub(super) fn cost(&self, solution: &Solution, target: &StageState) -> f64 {
+        let [elevator, thrust] = self.weights.control;
+        let efforts = solution
+            .controls
+            .iter()
+            .map(|u| elevator * (u[0] * u[0]) + thrust * (u[1] * u[1]));
+        let missing = solution.states[KNOTS - 1]
+            .iter()
+            .zip(target)
+            .map(|(x, goal)| (x - goal) * (x - goal));
+        0.5 * (efforts.sum::<f64>() + self.weights.terminal * missing.sum::<f64>())
+    }
+}
+
+impl Default for Condensed {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The outputs of a trajectory.
+pub(super) fn outputs(solution: &Solution) -> [f64; OUTPUTS] {
+    let mut outputs = [0.0; OUTPUTS];
+    let (motion, rest) = outputs.split_at_mut(THRUST_OUTPUT);
+    let (thrusts, attitudes) = rest.split_at_mut(STAGES);
+    let places = motion.as_chunks_mut::<2>().0.iter_mut().zip(thrusts);
+    let places = places.zip(attitudes.as_chunks_mut::<2>().0);
+    let stages = solution.controls.iter().zip(solution.states.iter().skip(1));
+    for (((motion, thrust), attitude), (control, state)) in places.zip(stages) {
+        let [x, z, _, pitch, _, flight_path] = *state;
+        *motion = [x, z];
+        *thrust = control[1];
+        *attitude = [pitch, flight_path];
+    }
+    outputs
+}

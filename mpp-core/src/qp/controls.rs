@@ -1,0 +1,34 @@
+//! Vectors over the controls of the horizon.
+
+use crate::config::STAGES;
+
+/// Number of controls in the whole horizon. They are ordered by stage.
+pub(super) const CONTROLS: usize = 2 * STAGES;
+
+pub(super) type ControlVector = [f64; CONTROLS];
+
+/// `sum += factor term`
+pub(super) fn add_scaled(sum: &mut [f64], term: &[f64], factor: f64) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
+    }
+}
+
+/// Product of `b` with the first entries of `a`. The function keeps four independent sums, which need not
+/// wait for each other.
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (chunks, rest) = b.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (a, b) in a.as_chunks::<4>().0.iter().zip(chunks) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += a * b;
+        }
+    }
+    let tail: f64 = a
+        .iter()
+        .skip(4 * chunks.len())
+        .zip(rest)
+        .map(|(a, b)| a * b)
+        .sum();
+    sums[0] + sums[1] + (sums[2] + sums[3]) + tail
+}
