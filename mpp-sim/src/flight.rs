@@ -85,13 +85,14 @@ pub fn fly_in(
     let mut sensing = Sensing::new(scenario);
     let mut exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
     let mut trust = SensorStates::default();
-    let mut judge = Judge::new();
+    let mut judge = Judge::new(scenario.body_radius);
     let mut steering = Steering::new(scenario)?;
     ground.begin(&steering.tuning, plant.state());
     steering.wait(&mut session, ground)?;
     while judge.flown < scenario.ticks && judge.end.is_none() {
         let flown = judge.flown;
         session.tick = flown;
+        field.move_to(Scenario::time(flown));
         steering.obey(&mut session, ground)?;
         if steering.terminated {
             judge.end = Some(Outcome::Terminated);

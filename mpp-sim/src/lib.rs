@@ -16,7 +16,7 @@
 //!
 //! ```text
 //! names, random              named values; the only source of random numbers
-//! field, scene               the obstacles: the paper's circles, the challenge scenes
+//! field, generator, scene    the obstacles: shapes and files of them, generators, the challenge scenes
 //! lidar, sensors, navigation the sensors, with noise from seeded streams
 //! plant, dynamics            the interface of an aircraft, and this crate's equations of motion
 //! faults                     faults and disturbances
@@ -57,6 +57,8 @@ pub mod names;
 pub mod random;
 
 pub mod field;
+
+pub mod generator;
 
 pub mod scene;
 

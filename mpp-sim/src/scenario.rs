@@ -7,6 +7,7 @@ mod recorded;
 
 use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
+use crate::generator::Generator;
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::names::{self, UnknownName};
 use crate::navigation::NavigationConfig;
@@ -23,7 +24,9 @@ use serde::{Deserialize, Serialize};
 pub(crate) use recorded::Times;
 
 pub use error::ScenarioError;
-pub use file::{AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile};
+pub use file::{
+    AirDataTable, GeneratorTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile,
+};
 
 /// The height at which flights start and which the planner returns to \[m\].
 pub const ALTITUDE: f64 = 50.0;
@@ -143,12 +146,17 @@ impl FromStr for AirframeName {
 pub struct Scenario {
     /// Seed of the field, of all noise and of the planner.
     pub seed: u64,
-    /// Number of random obstacles in the field.
+    /// Number of random obstacles in the field, over 215 m.
     pub obstacles: usize,
+    /// The generator of the random obstacles.
+    pub generator: Generator,
     /// Challenge scene in the field.
     pub scene: Option<Scene>,
     /// Further obstacles in the field, placed one by one.
     pub placed: Vec<Obstacle>,
+    /// Radius of the aircraft's body \[m\]. An obstacle that is nearer to the aircraft's place has been
+    /// hit.
+    pub body_radius: f64,
     /// The core's preset.
     pub preset: Preset,
     /// The airframe that the core knows. The true airframe differs from it only by its model error.
@@ -186,8 +194,10 @@ impl Scenario {
         Self {
             seed,
             obstacles: 20,
+            generator: Generator::PAPER,
             scene: None,
             placed: Vec::new(),
+            body_radius: 0.0,
             preset,
             airframe: AirframeName::Reference,
             paths: 25,
@@ -245,14 +255,27 @@ impl Scenario {
     /// Every obstacle: the random ones, the scene's, the placed ones.
     #[must_use]
     pub fn field(&self) -> ObstacleField {
-        let mut field = ObstacleField::generate(self.seed, self.obstacles, 0.0, ALTITUDE);
+        let mut obstacles = self.drawn();
+        obstacles.extend(self.placed.iter().cloned());
+        ObstacleField::new(obstacles)
+    }
+
+    /// The obstacles that the seed draws: the random ones and the scene's.
+    fn drawn(&self) -> Vec<Obstacle> {
+        let (seed, duration) = (self.seed, self.duration());
+        let mut obstacles = self
+            .generator
+            .obstacles(seed, self.obstacles, ALTITUDE, duration);
         if let Some(scene) = self.scene {
-            field
-                .obstacles
-                .extend(scene.obstacles(self.seed, 0.0, ALTITUDE));
+            obstacles.extend(scene.obstacles(seed, 0.0, ALTITUDE));
         }
-        field.obstacles.extend(&self.placed);
-        field
+        obstacles
+    }
+
+    /// Length of the flight \[s\].
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        Self::time(self.ticks)
     }
 
     /// Replanning rate \[Hz\].
