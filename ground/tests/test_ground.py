@@ -84,7 +84,7 @@ def test_what_is_heard_is_what_is_logged(simulate):
         })
         for x, z in hits:
             # The return is on the edge of an obstacle of the log, except for the lidar's noise.
-            edge = min(abs(((x - o["x"]) ** 2 + (z - o["z"]) ** 2) ** 0.5 - o["radius"]) for o in log["header"]["field"])
+            edge = min(abs(((x - o["x"]) ** 2 + (z - o["z"]) ** 2) ** 0.5 - o["radius"]) for o in log["header"]["field"]["circle"])
             assert edge < 1.5, (scan.tick, x, z)
 
 

@@ -1,31 +1,12 @@
-//! The entries of a flight's log: obstacles, ticks, plans, refused inputs.
+//! The entries of a flight's log: ticks, plans, refused inputs.
 //!
 //! JSON has no NaN and no infinity. A field where they can occur is an `Option`, and the log then
 //! holds `null`.
 
-use crate::field::Obstacle;
 use crate::sensors::Measurement;
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{Control, VehicleState};
 use serde::{Deserialize, Serialize};
-
-/// A circular obstacle.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ObstacleEntry {
-    /// Centre, downrange \[m\].
-    pub x: f64,
-    /// Centre, height \[m\].
-    pub z: f64,
-    /// Radius \[m\].
-    pub radius: f64,
-}
-
-impl From<&Obstacle> for ObstacleEntry {
-    fn from(obstacle: &Obstacle) -> Self {
-        let &Obstacle { x, z, radius } = obstacle;
-        Self { x, z, radius }
-    }
-}
 
 /// The logged values of one tick. Every value except the reference must be finite.
 #[derive(Clone, Copy, Debug, PartialEq)]

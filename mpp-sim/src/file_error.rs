@@ -1,5 +1,6 @@
 //! The reasons why a file of a scenario or of an aircraft cannot be flown.
 
+use crate::field::FieldError;
 use std::fmt;
 
 /// The reason why there is no scenario.
@@ -9,6 +10,8 @@ pub enum ScenarioError {
     Toml(String, Box<toml::de::Error>),
     /// A value is invalid. Holds the key and what to give instead.
     Value(&'static str, String),
+    /// The field cannot be flown through.
+    Field(FieldError),
 }
 
 /// Greatest length of a message that repeats a line of the file \[bytes\].
@@ -26,6 +29,7 @@ impl fmt::Display for ScenarioError {
                 let place = error.span().map_or(0, |span| span.start);
                 write!(f, "scenario {path}, byte {place}: {}", error.message())
             }
+            Self::Field(error) => write!(f, "{error}"),
             Self::Value(key, advice) => write!(f, "{key}: {advice}"),
         }
     }
@@ -35,7 +39,19 @@ impl core::error::Error for ScenarioError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::Toml(_, error) => Some(error),
+            Self::Field(error) => Some(error),
             Self::Value(..) => None,
+        }
+    }
+}
+
+impl ScenarioError {
+    /// The same error, where a field that is at fault is that of the file with this name.
+    #[must_use]
+    pub fn of_field(self, file: Option<&str>) -> Self {
+        match (self, file) {
+            (Self::Field(error), Some(file)) => Self::Field(error.named(file)),
+            (error, _) => error,
         }
     }
 }

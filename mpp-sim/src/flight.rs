@@ -92,6 +92,7 @@ pub fn fly_in(
     while judge.flown < scenario.ticks && judge.end.is_none() {
         let flown = judge.flown;
         session.tick = flown;
+        field.move_to(Scenario::time(flown));
         steering.obey(&mut session, ground)?;
         if steering.terminated {
             judge.end = Some(Outcome::Terminated);

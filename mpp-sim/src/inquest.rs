@@ -4,16 +4,16 @@
 //! first rule that applies gives the cause:
 //!
 //! 1. no plan was flown ([`Class::NoPlan`]): [`Cause::NoPlan`];
-//! 2. the plan passes the true circle at [`KEPT`] or more: [`Cause::Tracking`];
+//! 2. the plan passes the true obstacle at [`KEPT`] or more: [`Cause::Tracking`];
 //! 3. no beam had met the obstacle when the plan was made, or the first plan that could know it was
 //!    taken over less than [`REACTION`] before impact: [`Cause::Hidden`];
 //! 4. a candidate of the plan's cycle kept every margin in the map: [`Cause::Misjudged`];
-//! 5. the last plan before whose cycle had such a candidate passes an obstacle that no beam had met
 //! 5. the last earlier plan whose cycle had such a candidate passes nearer than [`MARGIN`] to an
 //!    obstacle that no beam had met then and that stands within [`ALLEY`] of the one that was hit:
 //!    [`Cause::BlindAlley`];
 //!
-//! For other failures the cause is the class.
+//! For other failures the cause is the class. Every distance is that of the body's edge, and of an
+//! obstacle where it is at that time.
 
 use crate::field::{Field, Obstacle, Point};
 use crate::lidar::RANGE_MIN;
@@ -21,13 +21,14 @@ use crate::moment::Moment;
 use crate::outcome::Class;
 use crate::scenario::Scenario;
 use hil_protocol::LidarScan;
+use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::VehicleState;
 use serde::{Deserialize, Serialize};
 
-/// Least distance from a true circle at which a plan counts as one that kept its margin \[m\]. The
+/// Least distance from a true obstacle at which a plan counts as one that kept its margin \[m\]. The
 /// value allows for the coarseness of cells and knots.
 pub const KEPT: f64 = 0.2;
-/// Distance from a true circle that every plan keeps if it knows the circle \[m\].
+/// Distance from a true obstacle that every plan keeps if it knows the obstacle \[m\].
 pub const MARGIN: f64 = 0.8;
 /// Distance along the track, in both directions, within which an obstacle can close the way past
 /// another \[m\]. It is one second of flight.
@@ -112,6 +113,8 @@ struct Plan {
     used: f64,
     /// Whether a candidate of its cycle kept every margin.
     feasible: bool,
+    /// Time from a position to the next \[s\].
+    period: f64,
     /// Positions along the plan.
     path: Vec<Point>,
 }
@@ -137,6 +140,7 @@ impl Inquest {
                 made: Scenario::time(report.scan_tick),
                 used: Scenario::time(report.used_from_tick),
                 feasible: report.feasible > 0,
+                period: f64::from(trajectory.period),
                 path: knots
                     .map(|[x, z, _]| (f64::from(*x), f64::from(*z)))
                     .collect(),
@@ -147,23 +151,26 @@ impl Inquest {
     /// Time from the first scan that met the obstacle nearest to a place until `t_end` \[s\]. Returns `None` if
     /// no beam met it.
     pub(crate) fn seen_before(&self, field: &[Obstacle], place: Point, t_end: f64) -> Option<f64> {
-        let clearance = |index: &usize| field[*index].clearance(place);
+        let clearance = |index: &usize| field[*index].clearance(place, t_end);
         let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
         self.first_seen(field)[hit].map(|t| t_end - t)
     }
 
-    /// The failure of a flight that ended at `t_end` \[s\]. `last` holds the positions before and
-    /// after the last tick. Returns `None` if the flight did not fail by itself.
+    /// The failure of a flight that ended at `t_end` \[s\], of a body of a radius \[m\]. `last` holds the
+    /// positions before and after the last tick. Returns `None` if the flight did not fail by itself.
     pub(crate) fn conclude(
         &self,
         class: Class,
         field: &dyn Field,
         last: (Point, Point),
         t_end: f64,
+        body_radius: f64,
     ) -> Option<Failure> {
         let cause = match class {
             Class::Success | Class::Terminated | Class::Interrupted => return None,
-            Class::Collision => return Some(self.collision(field.obstacles(), last, t_end)),
+            Class::Collision => {
+                return Some(self.collision(field.obstacles(), last, t_end, body_radius));
+            }
             Class::LeftBand => Cause::LeftBand,
             Class::Pitch => Cause::Pitch,
             Class::FlightPath => Cause::FlightPath,
@@ -177,9 +184,16 @@ impl Inquest {
         })
     }
 
-    fn collision(&self, field: &[Obstacle], last: (Point, Point), t_end: f64) -> Failure {
+    fn collision(
+        &self,
+        field: &[Obstacle],
+        last: (Point, Point),
+        t_end: f64,
+        body_radius: f64,
+    ) -> Failure {
         let seen = self.first_seen(field);
-        let clearance = |index: &usize| field[*index].clearance_of_segment(last.0, last.1);
+        let times = [t_end - TICK_PERIOD, t_end];
+        let clearance = |index: &usize| field[*index].clearance_of_motion(last.0, last.1, times);
         let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)));
         // A field that does not consist of circles may have none. Then no beam has met the obstacle
         // that was hit.
@@ -194,10 +208,10 @@ impl Inquest {
             return failure;
         };
         let (x, z) = last.1;
-        let aircraft = Obstacle { x, z, radius: 0.0 };
-        let clearance = hit.map(|hit| passes(&field[hit], &flown.path));
+        let aircraft = Obstacle::circle(x, z, 0.0);
+        let clearance = hit.map(|hit| passes(&field[hit], flown) - body_radius);
         failure.plan_clearance = clearance;
-        failure.off_plan = Some(passes(&aircraft, &flown.path));
+        failure.off_plan = Some(passes(&aircraft, flown));
         let knowing = |plan: &&Plan| first_met.is_some_and(|t| t <= plan.made);
         let first_knowing = self.plans.iter().find(knowing);
         let in_time = first_knowing.is_some_and(|plan| t_end - plan.used >= REACTION);
@@ -211,7 +225,9 @@ impl Inquest {
             .iter()
             .rfind(|plan| plan.feasible)
             .zip(hit)
-            .is_some_and(|(plan, hit)| leads_into_the_dark(plan, field, &seen, &field[hit]))
+            .is_some_and(|(plan, hit)| {
+                leads_into_the_dark(plan, field, &seen, &field[hit], body_radius)
+            })
         {
             Cause::BlindAlley
         } else {
@@ -234,14 +250,14 @@ impl Inquest {
 
 /// The obstacles from which a scan's returns come.
 fn met(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
-    let Sight { state, scan, .. } = sight;
+    let Sight { t, state, scan } = sight;
     let obstacle_of = |(beam, range): (usize, &f32)| {
         let range = f64::from(*range);
         let increment = f64::from(scan.angle_increment) * beam as f64;
         let angle = state.air.pitch + f64::from(scan.angle_min) + increment;
         let (up, ahead) = libm::sincos(angle);
         let entries = field.iter().enumerate().filter_map(|(index, obstacle)| {
-            let entry = obstacle.range((state.x, state.z), (ahead, up))?;
+            let entry = obstacle.range((state.x, state.z), (ahead, up), *t)?;
             Some((index, entry.max(RANGE_MIN)))
         });
         let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
@@ -262,19 +278,23 @@ fn leads_into_the_dark(
     field: &[Obstacle],
     seen: &[Option<f64>],
     hit: &Obstacle,
+    body_radius: f64,
 ) -> bool {
     let obstacles = field.iter().zip(seen);
     obstacles
         .filter(|(_, seen)| seen.is_none_or(|t| t > plan.made))
-        .filter(|(obstacle, _)| (obstacle.x - hit.x).abs() <= ALLEY)
-        .any(|(obstacle, _)| passes(obstacle, &plan.path) < MARGIN)
+        .filter(|(obstacle, _)| (obstacle.middle() - hit.middle()).abs() <= ALLEY)
+        .any(|(obstacle, _)| passes(obstacle, plan) - body_radius < MARGIN)
 }
 
-/// Least distance of a path from a circle \[m\].
-fn passes(circle: &Obstacle, path: &[Point]) -> f64 {
-    let legs = path.iter().zip(path.iter().skip(1));
-    legs.map(|(from, to)| circle.clearance_of_segment(*from, *to))
-        .fold(f64::INFINITY, f64::min)
+/// Least distance of a plan from an obstacle \[m\], at the times at which the plan is flown.
+fn passes(obstacle: &Obstacle, plan: &Plan) -> f64 {
+    let legs = plan.path.windows(2).zip(0_u32..);
+    legs.map(|(leg, number)| {
+        let begin = plan.used + plan.period * f64::from(number);
+        obstacle.clearance_of_motion(leg[0], leg[1], [begin, begin + plan.period])
+    })
+    .fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]

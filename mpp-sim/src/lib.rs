@@ -15,9 +15,9 @@
 //! from those before it:
 //!
 //! ```text
-//! names, random, file_error  named values; the only source of random numbers; errors of files
-//! aircraft_file              an aircraft as TOML, and the numbers that core and plant take from it
-//! field, scene               the obstacles: the paper's circles, the challenge scenes
+//! names, random              named values; the only source of random numbers
+//! field, generator, scene    the obstacles: shapes and files of them, generators, the challenge scenes
+//! file_error, aircraft_file  an aircraft as TOML, and the numbers that core and plant take from it
 //! lidar, sensors, navigation the sensors, with noise from seeded streams
 //! plant, dynamics            the interface of an aircraft, and this crate's equations of motion
 //! faults                     faults and disturbances
@@ -57,13 +57,15 @@ pub mod names;
 
 pub mod random;
 
+pub mod field;
+
+pub mod generator;
+
+pub mod scene;
+
 mod file_error;
 
 pub mod aircraft_file;
-
-pub mod field;
-
-pub mod scene;
 
 pub mod lidar;
 

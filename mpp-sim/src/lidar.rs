@@ -1,7 +1,7 @@
 //! Lidars: the interface of a sensor that scans a field, and a fan of beams in the vertical plane
 //! that is fixed to the body axis.
 
-use crate::field::{Field, Obstacle, Point, evenly_spaced};
+use crate::field::{Field, Point, Shape, evenly_spaced};
 use crate::random::{self, Stream};
 use hil_protocol::LidarScan;
 use mpp_core::vehicle::VehicleState;
@@ -88,17 +88,22 @@ impl LidarConfig {
         }
     }
 
-    /// The obstacles that the authors' code passes on to its beams.
-    fn seen_by_authors(&self, state: &VehicleState, field: &dyn Field) -> Vec<Obstacle> {
+    /// The circles that the authors' code passes on to its beams: centre and radius \[m\]. It knows
+    /// nothing else, and nothing that moves.
+    fn seen_by_authors(&self, state: &VehicleState, field: &dyn Field) -> Vec<(Point, f64)> {
         let half_fan = 0.5 * self.field_of_view;
         let upper = libm::tan(state.air.pitch + half_fan);
         let lower = libm::tan(state.air.pitch - half_fan);
-        let seen = |obstacle: &&Obstacle| {
-            let (dx, dz) = (obstacle.x - state.x, obstacle.z - state.z);
+        let seen = |&((x, z), _): &(Point, f64)| {
+            let (dx, dz) = (x - state.x, z - state.z);
             let in_range = (dx * dx + dz * dz).sqrt() <= self.range_max;
             dx >= 0.0 && in_range && lower * dx <= dz && dz <= upper * dx
         };
-        field.obstacles().iter().filter(seen).copied().collect()
+        let circles = field.obstacles().iter().filter_map(|one| match one.shape {
+            Shape::Circle { centre, radius } => Some((centre, radius)),
+            _ => None,
+        });
+        circles.filter(seen).collect()
     }
 
     /// A scan of this lidar as it goes over the link.
@@ -127,9 +132,9 @@ fn nearest_range(from: Point, direction: Point, range_max: f64, field: &dyn Fiel
 }
 
 /// Range by the authors' rule \[m\], 0 = none.
-fn authors_range(from: Point, direction: Point, seen: &[Obstacle]) -> f64 {
+fn authors_range(from: Point, direction: Point, seen: &[(Point, f64)]) -> f64 {
     seen.iter()
-        .filter_map(|obstacle| authors_hit(from, direction, obstacle))
+        .filter_map(|(centre, radius)| authors_hit(from, direction, *centre, *radius))
         .map(|(x, z)| ((x - from.0) * (x - from.0) + (z - from.1) * (z - from.1)).sqrt())
         .reduce(f64::min)
         .unwrap_or(0.0)
@@ -137,9 +142,9 @@ fn authors_range(from: Point, direction: Point, seen: &[Obstacle]) -> f64 {
 
 /// The point where the infinite line of a beam cuts an obstacle. Of the two points it is the one
 /// nearer to the world origin; at a tie it is the lower one. `direction` is a unit vector.
-fn authors_hit(from: Point, direction: Point, obstacle: &Obstacle) -> Option<Point> {
-    let aside = (obstacle.x - from.0) * direction.1 - (obstacle.z - from.1) * direction.0;
-    let half_chord_squared = obstacle.radius * obstacle.radius - aside * aside;
+fn authors_hit(from: Point, direction: Point, centre: Point, radius: f64) -> Option<Point> {
+    let aside = (centre.0 - from.0) * direction.1 - (centre.1 - from.1) * direction.0;
+    let half_chord_squared = radius * radius - aside * aside;
     if half_chord_squared < 0.0 {
         return None;
     }
@@ -151,8 +156,8 @@ fn authors_hit(from: Point, direction: Point, obstacle: &Obstacle) -> Option<Poi
     };
     let along = upwards * half_chord_squared.sqrt();
     let middle = (
-        obstacle.x - aside * direction.1,
-        obstacle.z + aside * direction.0,
+        centre.0 - aside * direction.1,
+        centre.1 + aside * direction.0,
     );
     let upper = (
         middle.0 + along * direction.0,

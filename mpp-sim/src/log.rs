@@ -10,9 +10,10 @@ mod summary;
 pub use summary::Summary;
 
 use crate::aircraft_file::{AircraftFile, AircraftModel};
-use crate::entries::{Columns, ObstacleEntry, PlanEntry, RejectionEntry, SensorEntry};
+use crate::entries::{Columns, PlanEntry, RejectionEntry, SensorEntry};
 use crate::faults::Faults;
-use crate::field::{Field, Obstacle};
+use crate::field::{Field, FieldFile};
+use crate::generator::Generator;
 use crate::lidar::LidarConfig;
 use crate::names::UnknownName;
 use crate::navigation::NavigationConfig;
@@ -62,8 +63,11 @@ pub struct Header {
     pub package_version: String,
     /// Seed of the field and of all noise.
     pub seed: u64,
-    /// Number of obstacles.
+    /// Number of random obstacles.
     pub obstacles: usize,
+    /// The generator of the random obstacles; not written if it is the paper's.
+    #[serde(default = "papers", skip_serializing_if = "Generator::is_papers")]
+    pub generator: Generator,
     /// Number of candidate paths that the planner asks for.
     pub paths: usize,
     /// Name of the planner's preset.
@@ -95,8 +99,19 @@ pub struct Header {
     /// Whether an oracle flew; not written if this is false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub oracle: bool,
-    /// The obstacles.
-    pub field: Vec<ObstacleEntry>,
+    /// Radius of the aircraft's body \[m\]; not written if it is 0.
+    #[serde(default, skip_serializing_if = "is_point")]
+    pub body_radius: f64,
+    /// All obstacles, as in a field file.
+    pub field: FieldFile,
+}
+
+fn papers() -> Generator {
+    Generator::PAPER
+}
+
+fn is_point(radius: &f64) -> bool {
+    *radius <= 0.0
 }
 
 fn ideal() -> NavigationConfig {
@@ -115,6 +130,7 @@ impl Header {
             package_version: env!("CARGO_PKG_VERSION").to_owned(),
             seed: scenario.seed,
             obstacles: scenario.obstacles,
+            generator: scenario.generator,
             paths: usize::from(scenario.paths),
             preset: scenario.preset.name().to_owned(),
             aircraft: scenario.aircraft.file.clone(),
@@ -129,7 +145,8 @@ impl Header {
             faults: scenario.faults,
             scene: scenario.scene,
             oracle: scenario.oracle,
-            field: field.obstacles().iter().map(ObstacleEntry::from).collect(),
+            body_radius: scenario.body_radius,
+            field: FieldFile::of(field.obstacles()),
         }
     }
 
@@ -147,7 +164,9 @@ impl Header {
             .map_err(|error| unknown("preset", error))?;
         let scenario = Scenario {
             obstacles: self.obstacles,
+            generator: self.generator,
             scene: self.scene,
+            body_radius: self.body_radius,
             aircraft: AircraftModel::new(self.aircraft.clone()).map_err(LogError::Header)?,
             world_scale: self.world_scale,
             // Too many for the type are too many for a scenario.
@@ -165,9 +184,9 @@ impl Header {
             latency: self.latency,
             duration: self.duration,
         };
-        let field = self.field.iter();
-        let field = field.map(|&ObstacleEntry { x, z, radius }| Obstacle { x, z, radius });
-        scenario.recorded(times, field).map_err(LogError::Header)
+        scenario
+            .recorded(times, &self.field)
+            .map_err(LogError::Header)
     }
 }
 

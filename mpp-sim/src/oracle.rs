@@ -4,18 +4,20 @@
 //! with these differences:
 //!
 //! * its planner starts from the true position with the true velocity over ground; its map holds
-//!   every circle of the field, and everything else is free, so that nothing is hidden or unknown;
+//!   every obstacle of the field where it is at that time, thin ones too, and everything else is
+//!   free, so that nothing is hidden or unknown;
 //! * its sensors are exact, so that the regulator tracks by an estimate without noise;
 //! * it replans at [`crate::scenario::ORACLE_REPLAN_HZ`], its plans are flown a tick later, and
 //!   every candidate gets all rounds of linearisation.
 //!
-//! The oracle knows no future gust and no fault of the actuators. A flight that the oracle fails is
+//! The oracle knows no future gust, no fault of the actuators, and not where an obstacle moves. A flight that the oracle fails is
 //! not proven to be impossible: the planner's horizon, window and margin limit the oracle.
 
-use crate::field::{Field, Obstacle};
+use crate::field::{Field, Obstacle, Point, Shape};
 use crate::scenario::ALTITUDE;
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
+use mpp_core::tuning::memory::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::Order;
 
@@ -56,6 +58,7 @@ impl Oracle {
                 state,
                 conditions,
                 scan,
+                time,
                 ..
             } => {
                 if let Some((truth, wind)) = &self.truth {
@@ -73,14 +76,15 @@ impl Oracle {
                 // Beams would clear occupied cells that they graze.
                 scan.ranges.clear();
                 let length = planner.flight().map_or(1.0, |own| own.units().length);
-                let near = |obstacle: &&Obstacle| (obstacle.x - state.x).abs() < REACH * length;
+                let place = (state.x, state.z);
+                let near = |one: &&Obstacle| one.clearance(place, *time) < REACH * length;
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
                 if let Some(planner) = planner.flight_mut() {
                     let map = planner.map_mut();
                     map.roll(state.x / length, ALTITUDE / length);
                     map.know(|x, z| {
-                        let at = (x * length, z * length);
-                        near.iter().any(|obstacle| obstacle.clearance(at) <= 0.0)
+                        let (at, cell) = ((x * length, z * length), CELL * length);
+                        near.iter().any(|one| occupies(one, at, cell, *time))
                     });
                 }
             }
@@ -88,9 +92,24 @@ impl Oracle {
     }
 }
 
+/// Whether an obstacle occupies the cell with this centre and edge \[m\] at a time \[s\]: it covers the centre, or it
+/// touches the cell and may be too thin to cover any centre.
+fn occupies(obstacle: &Obstacle, centre: Point, cell: f64, time: f64) -> bool {
+    // A circle or a line of at least half the diagonal covers the centre of a cell, wherever it stands.
+    let half_diagonal = 0.5 * cell * core::f64::consts::SQRT_2;
+    let thick = match obstacle.shape {
+        Shape::Circle { radius, .. } | Shape::Line { radius, .. } => radius >= half_diagonal,
+        Shape::Polygon { .. } | Shape::Ground(_) | Shape::Ceiling(_) => false,
+    };
+    if thick {
+        return obstacle.clearance(centre, time) <= 0.0;
+    }
+    obstacle.touches_square(centre, 0.5 * cell, time)
+}
+
 #[cfg(test)]
 mod tests {
-    use crate::field::Obstacle;
+    use crate::field::{Obstacle, Shape};
     use crate::flight::{FlyError, fly};
     use crate::link::LinkError;
     use crate::outcome::Outcome;
@@ -106,8 +125,7 @@ mod tests {
         };
         scenario.lidar.range_max = 2.0;
         for x in [40.0, 70.0] {
-            let (z, radius) = (50.0, 2.0);
-            scenario.placed.push(Obstacle { x, z, radius });
+            scenario.placed.push(Obstacle::circle(x, 50.0, 2.0));
         }
         scenario
     }
@@ -129,15 +147,33 @@ mod tests {
     fn an_oracle_does_not_fly_through_walls() {
         let mut scenario = in_the_dark();
         scenario.placed = (0..30)
-            .map(|row| Obstacle {
-                x: 40.0,
-                z: 35.5 + f64::from(row),
-                radius: 1.0,
-            })
+            .map(|row| Obstacle::circle(40.0, 35.5 + f64::from(row), 1.0))
             .collect();
         let scenario = scenario.informed();
         let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
         assert!(!log.summary.strict);
+    }
+
+    /// Circles that lie between the centres of four cells, and a bar between two rows of them.
+    #[test]
+    fn an_oracle_knows_thin_obstacles() {
+        let post = |radius| Obstacle::circle(60.0, 50.0, radius);
+        let bar = Obstacle::at_rest(Shape::Line {
+            points: vec![(60.0, 47.0), (60.0, 53.0)],
+            radius: 0.05,
+        });
+        for thin in [post(0.3), post(0.05), bar] {
+            let mut scenario = in_the_dark().informed();
+            scenario.seed = 8_840_000;
+            scenario.placed = vec![thin];
+            let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+            assert_eq!(log.summary.outcome, Outcome::Survived);
+            assert!(
+                log.summary.min_clearance.unwrap() > 0.2,
+                "{:?}",
+                scenario.placed
+            );
+        }
     }
 
     #[test]

@@ -6,6 +6,8 @@
 //! flight goes on until the paper's rule ends it.
 
 use crate::field::Field;
+use crate::generator;
+use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::VehicleState;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +18,7 @@ pub const PITCH_LIMIT: f64 = 60_f64.to_radians();
 pub const FLIGHT_PATH_LIMIT: f64 = 45_f64.to_radians();
 /// Distance from the initial altitude beyond which a flight is not strict \[m\]: the obstacles' centres
 /// lie within 10 m of it, and their radius is 1 m.
-pub const ALTITUDE_BAND: f64 = 11.0;
+pub const ALTITUDE_BAND: f64 = generator::BAND;
 
 /// The outcome of a flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -138,7 +140,9 @@ pub struct Score {
     pub altitude: f64,
     /// Greatest distance from the altitude of a strict success \[m\].
     pub band: f64,
-    /// Least distance to an obstacle's edge \[m\]: negative inside, infinite without obstacles.
+    /// Radius of the aircraft's body \[m\].
+    pub body_radius: f64,
+    /// Least distance from the body to an obstacle's edge \[m\]: negative inside, infinite without obstacles.
     pub min_clearance: f64,
     /// Greatest `|pitch|` \[rad\].
     pub max_pitch: f64,
@@ -149,12 +153,14 @@ pub struct Score {
 }
 
 impl Score {
-    /// The score of a flight that has not begun and should keep within `band` of this altitude \[m\].
+    /// The score of a flight that has not begun, of a body of this radius \[m\] that should keep within
+    /// `band` of this altitude \[m\].
     #[must_use]
-    pub fn new(altitude: f64, band: f64) -> Self {
+    pub fn new(altitude: f64, band: f64, body_radius: f64) -> Self {
         Self {
             altitude,
             band,
+            body_radius,
             min_clearance: f64::INFINITY,
             max_pitch: 0.0,
             max_flight_path: 0.0,
@@ -168,15 +174,16 @@ impl Score {
         self.max_altitude_deviation <= self.band
     }
 
-    /// Adds one tick's motion, with the straight path between the two states. Returns the outcome
-    /// if the flight ended. A collision takes precedence over an extreme attitude.
+    /// Adds the motion of the tick that begins at the field's time, with the straight path between the
+    /// two states. Returns the outcome if the flight ended. A collision takes precedence over an extreme attitude.
     pub fn update(
         &mut self,
         field: &dyn Field,
         from: &VehicleState,
         to: &VehicleState,
     ) -> Option<Outcome> {
-        let clearance = field.clearance_of_segment((from.x, from.z), (to.x, to.z));
+        let (start, end) = ((from.x, from.z), (to.x, to.z));
+        let clearance = field.clearance_of_motion(start, end, TICK_PERIOD) - self.body_radius;
         let (pitch, flight_path) = (to.air.pitch.abs(), to.air.flight_path.abs());
         self.min_clearance = self.min_clearance.min(clearance);
         self.max_pitch = self.max_pitch.max(pitch);
@@ -215,17 +222,11 @@ mod tests {
     }
 
     fn field() -> ObstacleField {
-        ObstacleField {
-            obstacles: vec![Obstacle {
-                x: 10.0,
-                z: 50.0,
-                radius: 1.0,
-            }],
-        }
+        ObstacleField::new(vec![Obstacle::circle(10.0, 50.0, 1.0)])
     }
 
     fn end(from: VehicleState, to: VehicleState) -> Option<Outcome> {
-        Score::new(50.0, ALTITUDE_BAND).update(&field(), &from, &to)
+        Score::new(50.0, ALTITUDE_BAND, 0.0).update(&field(), &from, &to)
     }
 
     #[test]
@@ -253,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_score_keeps_the_extremes() {
-        let mut score = Score::new(50.0, ALTITUDE_BAND);
+        let mut score = Score::new(50.0, ALTITUDE_BAND, 0.0);
         let path = [
             state(0.0, 50.0, -20.0, 5.0),
             state(10.0, 53.0, 10.0, -8.0),
@@ -265,15 +266,15 @@ mod tests {
         assert!((score.max_pitch - 10_f64.to_radians()).abs() < 1e-12);
         assert!((score.max_flight_path - 8_f64.to_radians()).abs() < 1e-12);
         assert!((score.max_altitude_deviation - 3.0).abs() < 1e-12);
-        let expected = field().clearance_of_segment((0.0, 50.0), (10.0, 53.0));
-        let second = field().clearance_of_segment((10.0, 53.0), (20.0, 49.0));
+        let expected = field().clearance_of_motion((0.0, 50.0), (10.0, 53.0), 0.0);
+        let second = field().clearance_of_motion((10.0, 53.0), (20.0, 49.0), 0.0);
         assert!((score.min_clearance - expected.min(second)).abs() < 1e-12);
     }
 
     #[test]
     fn the_band_is_left_at_eleven_metres() {
         for (z, inside) in [(60.9, true), (61.1, false), (39.1, true), (38.9, false)] {
-            let mut score = Score::new(50.0, ALTITUDE_BAND);
+            let mut score = Score::new(50.0, ALTITUDE_BAND, 0.0);
             let at = state(0.0, z, 0.0, 0.0);
             assert_eq!(score.update(&field(), &at, &at), None);
             // A flight that comes back into the band is still not strict.

@@ -42,6 +42,10 @@ pub enum Stream {
     ThrustFault = 15,
     /// Messages that are lost.
     LinkFault = 16,
+    /// Places and sizes of the obstacles of fields that are not the paper's.
+    Generator = 17,
+    /// Directions of moving obstacles.
+    Motion = 18,
 }
 
 /// The generator of one subsystem in the flight with this seed.
@@ -75,7 +79,7 @@ pub fn gaussian(generator: &mut ChaCha8Rng) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 16] = [
+    const ALL: [Stream; 18] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -92,6 +96,8 @@ mod tests {
         Stream::ElevatorFault,
         Stream::ThrustFault,
         Stream::LinkFault,
+        Stream::Generator,
+        Stream::Motion,
     ];
 
     #[test]
@@ -116,6 +122,8 @@ mod tests {
                 17_143_269_106_807_000_846,
                 18_074_614_959_641_999_106,
                 15_842_934_994_030_001_981,
+                15_784_797_038_420_267_861,
+                13_531_319_370_983_182_927,
             ]
         );
     }

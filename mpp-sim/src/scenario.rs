@@ -7,6 +7,7 @@ mod recorded;
 use crate::aircraft_file::AircraftModel;
 use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
+use crate::generator::Generator;
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::names::{self, UnknownName};
 use crate::navigation::NavigationConfig;
@@ -24,7 +25,9 @@ use serde::{Deserialize, Serialize};
 pub(crate) use recorded::Times;
 
 pub use crate::file_error::ScenarioError;
-pub use file::{AirDataTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile};
+pub use file::{
+    AirDataTable, GeneratorTable, LidarTable, NavigationSource, NavigationTable, ScenarioFile,
+};
 
 /// The height at which flights start and which the planner returns to \[m\].
 pub const ALTITUDE: f64 = 50.0;
@@ -97,12 +100,17 @@ impl FromStr for Preset {
 pub struct Scenario {
     /// Seed of the field, of all noise and of the planner.
     pub seed: u64,
-    /// Number of random obstacles in the field.
+    /// Number of random obstacles in the field, over 215 m.
     pub obstacles: usize,
+    /// The generator of the random obstacles.
+    pub generator: Generator,
     /// Challenge scene in the field.
     pub scene: Option<Scene>,
     /// Further obstacles in the field, placed one by one.
     pub placed: Vec<Obstacle>,
+    /// Radius of the aircraft's body \[m\]. An obstacle that is nearer to the aircraft's place has been
+    /// hit.
+    pub body_radius: f64,
     /// The core's preset.
     pub preset: Preset,
     /// The aircraft. The true one differs from what the core knows by its model error, and by what an
@@ -144,8 +152,10 @@ impl Scenario {
         Self {
             seed,
             obstacles: 20,
+            generator: Generator::PAPER,
             scene: None,
             placed: Vec::new(),
+            body_radius: 0.0,
             preset,
             aircraft: AircraftModel::reference(),
             world_scale: 1.0,
@@ -222,20 +232,34 @@ impl Scenario {
     /// Every obstacle: the random ones, the scene's, the placed ones.
     #[must_use]
     pub fn field(&self) -> ObstacleField {
-        let mut field = ObstacleField::generate(self.seed, self.obstacles, 0.0, ALTITUDE);
+        let mut obstacles = self.drawn();
+        obstacles.extend(self.placed.iter().cloned());
+        ObstacleField::new(obstacles)
+    }
+
+    /// The obstacles that the seed draws: the random ones and the scene's.
+    fn drawn(&self) -> Vec<Obstacle> {
+        // Times are scaled by the root of the lengths.
+        let (seed, duration) = (self.seed, self.duration() / self.world_scale.sqrt());
+        let mut obstacles = self
+            .generator
+            .obstacles(seed, self.obstacles, ALTITUDE, duration);
         if let Some(scene) = self.scene {
-            field
-                .obstacles
-                .extend(scene.obstacles(self.seed, 0.0, ALTITUDE));
+            obstacles.extend(scene.obstacles(seed, 0.0, ALTITUDE));
         }
-        // No other scale than 1 leaves every bit of `z` as it was drawn.
+        // No other scale than 1 leaves every bit as it was drawn.
         if self.world_scale != 1.0 {
-            for obstacle in &mut field.obstacles {
+            for obstacle in &mut obstacles {
                 *obstacle = obstacle.scaled(self.world_scale, ALTITUDE);
             }
         }
-        field.obstacles.extend(&self.placed);
-        field
+        obstacles
+    }
+
+    /// Length of the flight \[s\].
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        Self::time(self.ticks)
     }
 
     /// Replanning rate \[Hz\].
@@ -259,7 +283,10 @@ impl Scenario {
                 Preset::Paper => hil_protocol::Preset::Paper,
                 Preset::Flight => hil_protocol::Preset::Flight,
             },
-            aircraft: self.aircraft.told(),
+            aircraft: hil_protocol::Aircraft {
+                body_radius: self.body_radius,
+                ..self.aircraft.told()
+            },
             paths: self.paths,
             replan_period_ticks: self.replan_ticks,
             latency_ticks: self.latency_ticks,

@@ -63,11 +63,7 @@ impl Scene {
         let x = start_x + AHEAD + SHIFT_X * either_way();
         let z = altitude + SHIFT_Z * either_way();
         let upside = if either_way() < 0.0 { -1.0 } else { 1.0 };
-        let circle = |(dx, dz): (f64, f64)| Obstacle {
-            x: x + dx,
-            z: z + upside * dz,
-            radius: RADIUS,
-        };
+        let circle = |(dx, dz): (f64, f64)| Obstacle::circle(x + dx, z + upside * dz, RADIUS);
         self.outline().into_iter().map(circle).collect()
     }
 
@@ -120,11 +116,16 @@ fn wall(from: (f64, f64), to: (f64, f64)) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::field::{Circle, FieldFile};
     use crate::outcome::ALTITUDE_BAND;
 
     const ALTITUDE: f64 = 50.0;
 
-    fn edges(obstacles: &[Obstacle], pick: fn(&Obstacle) -> f64) -> (f64, f64) {
+    fn circles(scene: Scene, seed: u64) -> Vec<Circle> {
+        FieldFile::of(&scene.obstacles(seed, 0.0, ALTITUDE)).circle
+    }
+
+    fn edges(obstacles: &[Circle], pick: fn(&Circle) -> f64) -> (f64, f64) {
         obstacles
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), o| {
@@ -136,7 +137,7 @@ mod tests {
     fn every_scene_bars_the_way_ahead_and_leaves_a_fair_way_round() {
         for scene in Scene::ALL {
             for seed in 0..500 {
-                let obstacles = scene.obstacles(seed, 0.0, ALTITUDE);
+                let obstacles = circles(scene, seed);
                 let (low, high) = edges(&obstacles, |o| o.z);
                 assert!(
                     low < ALTITUDE - 1.0 && high > ALTITUDE + 1.0,
@@ -157,20 +158,20 @@ mod tests {
     #[test]
     fn walls_have_no_gaps_and_the_seed_moves_them() {
         for scene in Scene::ALL {
-            let obstacles = scene.obstacles(1, 0.0, ALTITUDE);
+            let obstacles = circles(scene, 1);
             for pair in obstacles.windows(2) {
                 let gap = libm::hypot(pair[1].x - pair[0].x, pair[1].z - pair[0].z);
                 assert!(gap <= SPACING + 1e-12);
             }
-            assert_eq!(obstacles, scene.obstacles(1, 0.0, ALTITUDE));
-            assert_ne!(obstacles, scene.obstacles(2, 0.0, ALTITUDE));
+            assert_eq!(obstacles, circles(scene, 1));
+            assert_ne!(obstacles, circles(scene, 2));
         }
     }
 
     #[test]
     fn the_flytrap_opens_towards_the_aircraft() {
         for seed in 0..20 {
-            let obstacles = Scene::Flytrap.obstacles(seed, 0.0, ALTITUDE);
+            let obstacles = circles(Scene::Flytrap, seed);
             let middle = &obstacles[obstacles.len() / 2];
             let (first, last) = (&obstacles[0], &obstacles[obstacles.len() - 1]);
             assert!(middle.x > first.x + 4.5 && middle.x > last.x + 4.5);
@@ -183,7 +184,7 @@ mod tests {
     fn the_long_way_leaves_the_band_and_the_seed_turns_it_over() {
         let mut short_way_up = 0;
         for seed in 0..200 {
-            let (low, high) = edges(&Scene::LongWay.obstacles(seed, 0.0, ALTITUDE), |o| o.z);
+            let (low, high) = edges(&circles(Scene::LongWay, seed), |o| o.z);
             let closed_below = low < ALTITUDE - ALTITUDE_BAND;
             let closed_above = high > ALTITUDE + ALTITUDE_BAND;
             assert!(closed_below != closed_above, "{seed}: {low} to {high}");

@@ -1,6 +1,6 @@
 //! What an observer of a flight notes beside its log, for a campaign.
 
-use crate::field::{Obstacle, Point};
+use crate::field::Point;
 use crate::inquest::Inquest;
 use crate::log::FlightLog;
 use crate::moment::Moment;
@@ -69,12 +69,7 @@ impl Witness {
         if log.summary.outcome != Outcome::Collision {
             return false;
         }
-        let field = log.header.field.iter().map(|entry| Obstacle {
-            x: entry.x,
-            z: entry.z,
-            radius: entry.radius,
-        });
-        let field: Vec<Obstacle> = field.collect();
+        let field = log.header.field.obstacles();
         let seen = self
             .inquest
             .seen_before(&field, self.place, log.summary.t_end);

@@ -107,14 +107,14 @@ struct Canyon {
 }
 
 impl Field for Canyon {
-    fn clearance_of_segment(&self, from: Point, to: Point) -> f64 {
+    fn clearance_of_motion(&self, from: Point, to: Point, _lasting: f64) -> f64 {
         (from.1.min(to.1) - self.floor)
             .min(self.ceiling - from.1.max(to.1))
             .min(self.end - from.0.max(to.0))
     }
 
     fn range(&self, from: Point, direction: Point) -> Option<f64> {
-        if self.clearance_of_segment(from, from) < 0.0 {
+        if self.clearance_of_motion(from, from, 0.0) < 0.0 {
             return Some(0.0);
         }
         let along = |distance: f64, speed: f64| (distance / speed).max(0.0);

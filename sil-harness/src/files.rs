@@ -1,8 +1,9 @@
-//! Files: scenarios, logs, programs for solvers, recorded data.
+//! Files: scenarios, fields, logs, programs for solvers, recorded data.
 
 use mpp_analysis::check_reference::{Report, check, recorded_instances};
 use mpp_analysis::instance::{Instance, InstanceError};
 use mpp_sim::aircraft_file::AircraftFile;
+use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{ScenarioError, ScenarioFile};
 use std::fmt;
@@ -18,6 +19,8 @@ pub enum FileError {
     Write(PathBuf, io::Error),
     /// The file is no scenario; the error names the file.
     Scenario(ScenarioError),
+    /// The file is no field; the error names the file.
+    Field(FieldError),
     /// The file is no flight log, or the log cannot be written.
     Log(PathBuf, LogError),
     /// The file holds no programs.
@@ -34,6 +37,7 @@ impl fmt::Display for FileError {
             Self::Read(path, error) => write!(f, "cannot read {}: {error}", path.display()),
             Self::Write(path, error) => write!(f, "cannot write {}: {error}", path.display()),
             Self::Scenario(error) => write!(f, "{error}"),
+            Self::Field(error) => write!(f, "{error}"),
             Self::Log(path, error) => write!(f, "{}: {error}", path.display()),
             Self::Instances(path, error) => write!(f, "{}: {error}", path.display()),
             Self::NoInstances(path) => write!(
@@ -55,6 +59,7 @@ impl std::error::Error for FileError {
         match self {
             Self::Read(_, error) | Self::Write(_, error) => Some(error),
             Self::Scenario(error) => Some(error),
+            Self::Field(error) => Some(error),
             Self::Log(_, error) => Some(error),
             Self::Instances(_, error) => Some(error),
             Self::NoInstances(_) | Self::NoRecords(_) => None,
@@ -64,6 +69,8 @@ impl std::error::Error for FileError {
 
 /// Greatest size of a file that people write: scenarios, parameters, keys \[bytes\].
 pub const MOST_WRITTEN: u64 = 1 << 20;
+/// Greatest size of a field, which has at most 10,000 points \[bytes\].
+const MOST_FIELD: u64 = 4 << 20;
 /// Greatest size of a file that a program writes: logs, rows, programs \[bytes\].
 pub const MOST_RECORDED: u64 = 1 << 30;
 /// Greatest number of bytes from a pipe or a device, which may have no end.
@@ -136,6 +143,25 @@ pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
     }
     let text = read(Path::new(name_or_path), MOST_WRITTEN)?;
     AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)
+}
+
+/// Reads a field.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Field`].
+pub fn read_field(path: &Path) -> Result<FieldFile, FileError> {
+    let name = path.display().to_string();
+    FieldFile::parse(&name, &read(path, MOST_FIELD)?).map_err(FileError::Field)
+}
+
+/// Writes a field.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn write_field(path: &Path, field: &FieldFile) -> Result<(), FileError> {
+    let failed = |error| FileError::Write(path.to_owned(), io::Error::other(error));
+    let text = field.to_toml().map_err(failed)?;
+    write_whole(path, text.as_bytes())
 }
 
 /// Reads a flight's log.

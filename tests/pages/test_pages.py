@@ -202,14 +202,14 @@ def test_what_the_planner_considered_is_what_it_reported(flags, open_page, tmp_p
 
 def test_what_counts_as_occupied_is_where_obstacles_are(flight):
     page, log = flight
-    seen = [o for o in log["header"]["field"] if o["x"] < 200]
+    seen = [o for o in log["header"]["field"]["circle"] if o["x"] < 200]
     cells = 0
     for detail in data_of(page)["details"]:
         edge = detail["map"]["cell"]
         for x, z, length in detail["map"]["occupied"]:
             for number in range(round(length / edge)):
                 u, v = x + edge * (number + 0.5), z + edge / 2
-                near = min(((u - o["x"]) ** 2 + (v - o["z"]) ** 2) ** 0.5 - o["radius"] for o in log["header"]["field"])
+                near = min(((u - o["x"]) ** 2 + (v - o["z"]) ** 2) ** 0.5 - o["radius"] for o in log["header"]["field"]["circle"])
                 # Errors of the lidar, and hidden parts that the map completes.
                 assert near < 2.5, (detail["tick"], u, v)
                 cells += 1

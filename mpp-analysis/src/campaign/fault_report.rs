@@ -66,14 +66,14 @@ impl FaultReport {
     /// The report of a campaign whose jobs came to these ends, in the order of the jobs.
     #[must_use]
     pub fn new(campaign: &FaultCampaign, flown: &[(FaultJob, Flown)]) -> Self {
-        let of = |fault: Option<usize>, cell: Cell| -> Vec<&Flown> {
+        let of = |fault: Option<usize>, cell: &Cell| -> Vec<&Flown> {
             let these = flown.iter();
-            let these = these.filter(|(job, _)| job.fault == fault && job.cell == cell);
+            let these = these.filter(|(job, _)| job.fault == fault && job.cell == *cell);
             these.map(|(_, flown)| flown).collect()
         };
         let mut faults = Vec::new();
         for (number, variant) in campaign.faults.iter().enumerate() {
-            for &cell in &variant.cells {
+            for cell in &variant.cells {
                 let (clean, faulty) = (of(None, cell), of(Some(number), cell));
                 let row = FaultRow::new(variant.fault.name, cell, &clean, &faulty);
                 faults.push(FaultRow {
@@ -88,7 +88,7 @@ impl FaultReport {
 
 impl FaultRow {
     /// The row of flights without and with a fault, seed for seed.
-    fn new(name: &'static str, cell: Cell, clean: &[&Flown], faulty: &[&Flown]) -> Self {
+    fn new(name: &'static str, cell: &Cell, clean: &[&Flown], faulty: &[&Flown]) -> Self {
         let both = || clean.iter().zip(faulty);
         let count = |is: fn(bool, bool) -> bool| {
             both()

@@ -111,7 +111,7 @@ pub(super) struct Variant {
 }
 
 /// One flight of a campaign of faults.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FaultJob {
     /// Number of the fault in the campaign; `None` without a fault.
     pub(super) fault: Option<usize>,
@@ -151,11 +151,10 @@ impl FaultCampaign {
         cells.retain(|cell| !cell.oracle);
         if !given {
             let paired = |cell: &Cell| {
-                let cell = *cell;
                 DEFAULT_PAIRS.map(|(obstacles, replan_hz)| Cell {
                     obstacles,
                     replan_hz,
-                    ..cell
+                    ..cell.clone()
                 })
             };
             cells = cells.iter().flat_map(paired).collect();
@@ -168,7 +167,7 @@ impl FaultCampaign {
                 let cell = Cell {
                     obstacles: own.obstacles.unwrap_or(cell.obstacles),
                     replan_hz: own.replan_hz.unwrap_or(cell.replan_hz),
-                    ..*cell
+                    ..cell.clone()
                 };
                 if !paired.contains(&cell) {
                     paired.push(cell);
@@ -199,14 +198,19 @@ impl FaultCampaign {
         let mut faulty = Vec::new();
         for (number, variant) in self.faults.iter().enumerate() {
             for cell in &variant.cells {
-                if !clean.contains(&(None, *cell)) {
-                    clean.push((None, *cell));
+                if !clean.contains(&(None, cell.clone())) {
+                    clean.push((None, cell.clone()));
                 }
-                faulty.push((Some(number), *cell));
+                faulty.push((Some(number), cell.clone()));
             }
         }
         let all = clean.into_iter().chain(faulty);
-        all.flat_map(|(fault, cell)| self.seeds().map(move |seed| FaultJob { fault, cell, seed }))
+        let job = |fault, cell: &Cell, seed| FaultJob {
+            fault,
+            cell: cell.clone(),
+            seed,
+        };
+        all.flat_map(|(fault, cell)| self.seeds().map(move |seed| job(fault, &cell, seed)))
             .collect()
     }
 
@@ -251,7 +255,7 @@ mod tests {
         for variant in &all.faults {
             let job = |fault| FaultJob {
                 fault,
-                cell: variant.cells[0],
+                cell: variant.cells[0].clone(),
                 seed: 5,
             };
             let number = all.faults.iter().position(|one| one.fault == variant.fault);

@@ -1,15 +1,25 @@
 //! The flights of a campaign: a scenario, the lists that vary it, and the seeds.
 
-use mpp_sim::scenario::{ORACLE_REPLAN_HZ, Preset, Scenario, ScenarioError, ScenarioFile};
+use mpp_sim::field::FieldFile;
+use mpp_sim::generator::GeneratorName;
+use mpp_sim::scenario::{
+    GeneratorTable, ORACLE_REPLAN_HZ, Preset, Scenario, ScenarioError, ScenarioFile,
+};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 
 /// One combination of the grid.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
     /// The core's preset.
     pub preset: Preset,
+    /// Name of the field file; not written without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+    /// Generator of the random obstacles; not written if it is the paper's.
+    #[serde(default, skip_serializing_if = "GeneratorName::is_papers")]
+    pub generator: GeneratorName,
     /// Number of random obstacles in the field.
     pub obstacles: usize,
     /// Number of candidate paths of a cycle.
@@ -21,21 +31,39 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The cell of the oracle's flights past this number of random obstacles.
-    fn oracle(obstacles: usize) -> Self {
+    /// The cell of the oracle's flights through the fields of a cell.
+    fn oracle(fields: &Self) -> Self {
         Self {
             preset: Preset::Flight,
-            obstacles,
+            field: fields.field.clone(),
+            generator: fields.generator,
+            obstacles: fields.obstacles,
             // This is more than the oracle's candidates.
             paths: 25,
             replan_hz: ORACLE_REPLAN_HZ,
             oracle: true,
         }
     }
+
+    /// The kind of its fields, for a table: file, generator, or both.
+    #[must_use]
+    pub fn kind(&self) -> String {
+        match &self.field {
+            None => self.generator.to_string(),
+            Some(file) if self.obstacles == 0 => file.clone(),
+            Some(file) => format!("{file}, {}", self.generator),
+        }
+    }
 }
 
 impl fmt::Display for Cell {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.field {
+            write!(f, "--field {file} ")?;
+        }
+        if !self.generator.is_papers() {
+            write!(f, "--generator {} ", self.generator)?;
+        }
         write!(
             f,
             "--preset {} --obstacles {} --paths {} --replan-hz {}",
@@ -48,6 +76,16 @@ impl fmt::Display for Cell {
     }
 }
 
+/// A field and the name of its file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct NamedField {
+    /// Name of the file.
+    pub name: String,
+    /// Its content.
+    pub content: FieldFile,
+}
+
 /// The flights of a campaign: a scenario, and the lists that vary it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -56,6 +94,12 @@ pub struct Campaign {
     pub scenario: ScenarioFile,
     /// Presets.
     pub preset: Vec<Preset>,
+    /// Fields of files; without one, the scenario's.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub field: Vec<NamedField>,
+    /// Generators of random obstacles.
+    #[serde(default)]
+    pub generator: Vec<GeneratorName>,
     /// Numbers of random obstacles.
     pub obstacles: Vec<usize>,
     /// Numbers of candidate paths.
@@ -75,6 +119,10 @@ pub struct Campaign {
 pub struct Lists {
     /// Presets.
     pub preset: Vec<Preset>,
+    /// Fields of files.
+    pub field: Vec<NamedField>,
+    /// Generators of random obstacles.
+    pub generator: Vec<GeneratorName>,
     /// Numbers of random obstacles.
     pub obstacles: Vec<usize>,
     /// Numbers of candidate paths.
@@ -96,12 +144,21 @@ impl Campaign {
         seed: Option<u64>,
     ) -> Result<Self, ScenarioError> {
         let oracle = scenario.oracle.take().unwrap_or(false);
-        let base = scenario.build()?;
+        // Fields of files stand alone, as the field of a scenario does.
+        let first = lists.field.first().map(|field| field.content.clone());
+        let base = ScenarioFile {
+            field: first.unwrap_or_else(|| scenario.field.clone()),
+            ..scenario.clone()
+        };
+        let name = lists.field.first().map(|field| field.name.as_str());
+        let base = base.build().map_err(|error| error.of_field(name))?;
         let campaign = Self {
-            preset: listed(lists.preset, base.preset),
-            obstacles: listed(lists.obstacles, base.obstacles),
-            paths: listed(lists.paths, base.paths),
-            replan_hz: listed(lists.replan_hz, base.replan_hz()),
+            preset: listed_or(lists.preset, base.preset),
+            field: listed(lists.field),
+            generator: listed_or(lists.generator, base.generator.name),
+            obstacles: listed_or(lists.obstacles, base.obstacles),
+            paths: listed_or(lists.paths, base.paths),
+            replan_hz: listed_or(lists.replan_hz, base.replan_hz()),
             trials,
             seed: seed.unwrap_or(base.seed),
             oracle,
@@ -120,28 +177,52 @@ impl Campaign {
         for &preset in &self.preset {
             for &replan_hz in &self.replan_hz {
                 for &paths in &self.paths {
-                    for &obstacles in &self.obstacles {
-                        cells.push(Cell {
-                            preset,
-                            obstacles,
-                            paths,
-                            replan_hz,
-                            oracle: false,
-                        });
-                    }
+                    let fields = self.fields().into_iter();
+                    cells.extend(fields.map(|(field, generator, obstacles)| Cell {
+                        preset,
+                        field,
+                        generator,
+                        obstacles,
+                        paths,
+                        replan_hz,
+                        oracle: false,
+                    }));
                 }
             }
         }
         if self.oracle {
-            cells.extend(self.obstacles.iter().copied().map(Cell::oracle));
+            let mut oracles: Vec<Cell> = Vec::new();
+            for oracle in cells.iter().map(Cell::oracle) {
+                if !oracles.contains(&oracle) {
+                    oracles.push(oracle);
+                }
+            }
+            cells.extend(oracles);
         }
         cells
+    }
+
+    /// Every kind of field: file, generator and number of random obstacles.
+    fn fields(&self) -> Vec<(Option<String>, GeneratorName, usize)> {
+        let mut files: Vec<_> = self.field.iter().map(|field| Some(&field.name)).collect();
+        if files.is_empty() {
+            files.push(None);
+        }
+        let mut fields = Vec::new();
+        for file in files {
+            for &generator in &self.generator {
+                for &count in &self.obstacles {
+                    fields.push((file.cloned(), generator, count));
+                }
+            }
+        }
+        fields
     }
 
     /// The oracle's cell with the fields of this cell. Returns `None` if this cell is the oracle's
     /// own, or if the campaign has no oracle.
     pub(super) fn oracle_beside(&self, cell: &Cell) -> Option<Cell> {
-        (self.oracle && !cell.oracle).then(|| Cell::oracle(cell.obstacles))
+        (self.oracle && !cell.oracle).then(|| Cell::oracle(cell))
     }
 
     /// The scenario of one flight of a cell.
@@ -149,7 +230,17 @@ impl Campaign {
     /// # Errors
     /// [`ScenarioError`].
     pub fn scenario(&self, cell: &Cell, seed: u64) -> Result<Scenario, ScenarioError> {
+        let of_file = self
+            .field
+            .iter()
+            .find(|field| Some(&field.name) == cell.field.as_ref());
+        let content = of_file.map(|field| field.content.clone());
         let file = ScenarioFile {
+            field: content.unwrap_or_else(|| self.scenario.field.clone()),
+            generator: GeneratorTable {
+                name: Some(cell.generator),
+                ..self.scenario.generator
+            },
             preset: Some(cell.preset),
             obstacles: Some(cell.obstacles),
             paths: Some(cell.paths),
@@ -159,6 +250,7 @@ impl Campaign {
             ..self.scenario.clone()
         };
         file.build()
+            .map_err(|error| error.of_field(cell.field.as_deref()))
     }
 
     /// Every flight of a shard.
@@ -168,7 +260,7 @@ impl Campaign {
         let cells = self.cells();
         let all = cells
             .iter()
-            .flat_map(|cell| seeds.clone().map(|seed| (*cell, seed)));
+            .flat_map(|cell| seeds.clone().map(|seed| (cell.clone(), seed)));
         all.skip(shard.index - 1).step_by(shard.of).collect()
     }
 
@@ -182,14 +274,20 @@ impl Campaign {
     }
 }
 
-/// The values without repetitions, in their order. Without values, the list holds the default.
-fn listed<T: PartialEq>(values: Vec<T>, default: T) -> Vec<T> {
+/// The values without repetitions, in their order.
+fn listed<T: PartialEq>(values: Vec<T>) -> Vec<T> {
     let mut list = Vec::new();
     for value in values {
         if !list.contains(&value) {
             list.push(value);
         }
     }
+    list
+}
+
+/// The same; without values, the list holds the default.
+fn listed_or<T: PartialEq>(values: Vec<T>, default: T) -> Vec<T> {
+    let mut list = listed(values);
     if list.is_empty() {
         list.push(default);
     }

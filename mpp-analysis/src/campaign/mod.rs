@@ -19,7 +19,7 @@ mod taxonomy;
 pub use causes::CauseReport;
 pub use fault_report::{FaultReport, FaultRow, Flown};
 pub use faults::{FaultCampaign, FaultJob, NamedFault};
-pub use grid::{Campaign, Cell, Lists, NoShard, Shard};
+pub use grid::{Campaign, Cell, Lists, NamedField, NoShard, Shard};
 pub use merge::{Disagreement, merge};
 pub use pairs::AgainstOracle;
 pub use report::{CellReport, Outcomes, Report};

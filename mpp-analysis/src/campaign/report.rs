@@ -103,7 +103,7 @@ impl Report {
             flown: rows.len(),
             cells: cells
                 .iter()
-                .map(|cell| CellReport::new(campaign, *cell, rows))
+                .map(|cell| CellReport::new(campaign, cell, rows))
                 .collect(),
             campaign: campaign.clone(),
         }
@@ -111,10 +111,11 @@ impl Report {
 }
 
 impl CellReport {
-    fn new(campaign: &Campaign, cell: Cell, all: &[Row]) -> Self {
-        let of = |cell: Cell| -> Vec<&Row> { all.iter().filter(|row| row.cell == cell).collect() };
+    fn new(campaign: &Campaign, cell: &Cell, all: &[Row]) -> Self {
+        let of =
+            |cell: &Cell| -> Vec<&Row> { all.iter().filter(|row| row.cell == *cell).collect() };
         let rows = of(cell);
-        let oracle = campaign.oracle_beside(&cell).map(of);
+        let oracle = campaign.oracle_beside(cell).map(|cell| of(&cell));
         let trials = rows.len() as u32;
         let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count() as u32;
         let (successes, strict_successes) =
@@ -129,7 +130,7 @@ impl CellReport {
         let replans = rows.iter().map(|row| u64::from(row.summary.replans)).sum();
         let times: Option<f64> = rows.iter().map(|row| row.core_ms).sum();
         Self {
-            cell,
+            cell: cell.clone(),
             trials,
             successes,
             success_rate: share(successes),

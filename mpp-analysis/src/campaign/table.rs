@@ -8,10 +8,13 @@ use std::fmt;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds: Vec<String> = self.cells.iter().map(|cell| cell.cell.kind()).collect();
+        let wide = kinds.iter().map(String::len).max().unwrap_or(0).max(5);
         writeln!(
             f,
-            "{:<9} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+            "{:<9} {:<wide$} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
             "preset",
+            "field",
             "Hz",
             "paths",
             "obstacles",
@@ -25,18 +28,19 @@ impl fmt::Display for Report {
             "no-plan",
             "clearance",
         )?;
-        for cell in &self.cells {
-            let Cell {
+        for (cell, kind) in self.cells.iter().zip(&kinds) {
+            let &Cell {
                 preset,
                 obstacles,
                 paths,
                 replan_hz,
                 oracle,
-            } = cell.cell;
+                ..
+            } = &cell.cell;
             let outcomes = |class| cell.outcomes.of(class);
             writeln!(
                 f,
-                "{:<9} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+                "{:<9} {kind:<wide$} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
                 if oracle { "oracle" } else { preset.name() },
                 cell.trials,
                 percent(cell.success_rate, cell.wilson_low, cell.wilson_high),

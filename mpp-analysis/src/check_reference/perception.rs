@@ -40,17 +40,9 @@ pub(super) fn check_lidar(text: &str) -> Result<Vec<Comparison>, serde_json::Err
         .iter()
         .map(|[dx, dz]| libm::sqrt(dx * dx + dz * dz))
         .collect();
-    let field = ObstacleField {
-        obstacles: file
-            .obstacles
-            .iter()
-            .map(|[x, z, radius]| Obstacle {
-                x: *x,
-                z: *z,
-                radius: *radius,
-            })
-            .collect(),
-    };
+    let obstacles = file.obstacles.iter();
+    let field = obstacles.map(|[x, z, radius]| Obstacle::circle(*x, *z, *radius));
+    let field = ObstacleField::new(field.collect());
     let lidar = LidarConfig {
         beams: file.n_rays,
         field_of_view: file.fov,

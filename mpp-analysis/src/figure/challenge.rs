@@ -1,6 +1,7 @@
 //! Pictures of flights through the challenge scenes (paper, Figure 1).
 
 use super::error::FigureError;
+use super::field;
 use super::page::{COLUMN, Sample, document, legend, legend_height, to_scale};
 use super::palette::{FLOWN, OBSTACLE};
 use super::panel::{Axis, BELOW_SAVED, Curve, Panel};
@@ -83,10 +84,7 @@ fn panel(scene: Scene, logs: &[FlightLog], labelled: bool) -> Panel {
         panel.area(BAND.to_rgba(), &corners.map(|(x, off)| (x, edge + off)));
     }
     for log in logs {
-        let circles = log.header.field.iter();
-        panel
-            .circles
-            .extend(circles.map(|o| ((o.x, o.z), (o.radius / scale).round() as u32, OBSTACLE)));
+        field::add(&mut panel, &field::drawn(log), scale);
         let ticks = log.ticks.x.iter().copied().zip(log.ticks.z.iter().copied());
         let path: Vec<(f64, f64)> = ticks.step_by(4).collect();
         panel.line(FLOWN, Curve::FLOWN_WIDTH, &path);

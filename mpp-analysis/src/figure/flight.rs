@@ -2,11 +2,11 @@
 //! over time below it.
 
 use super::error::FigureError;
+use super::field;
 use super::page::{document, to_scale};
 use super::palette::{FLOWN, OBSTACLE, REFERENCE};
 use super::panel::{self, Axis, Canvas, Curve, DrawingError, Panel};
 use super::range::{bounds, widened};
-use mpp_sim::entries::ObstacleEntry;
 use mpp_sim::log::FlightLog;
 use plotters::prelude::*;
 use std::ops::Range;
@@ -105,26 +105,25 @@ pub(super) fn field_panel(log: &FlightLog) -> Panel {
         Curve::flown(FLOWN, &t.x, &t.z),
         Curve::planned(REFERENCE, &t.ref_x, &t.ref_z, &unbroken(log)),
     ];
-    let edges = |pick: fn(&ObstacleEntry) -> f64| {
-        let obstacles = log.header.field.iter();
-        obstacles.flat_map(move |o| [pick(o) - o.radius, pick(o) + o.radius])
+    let shapes = field::drawn(log);
+    let edges = |pick: fn(&(f64, f64)) -> f64| {
+        let extents = shapes.iter().flat_map(field::extent);
+        extents.flat_map(move |(point, room)| [pick(&point) - room, pick(&point) + room])
     };
     let points = |pick: fn(&(f64, f64)) -> f64| curves.iter().flat_map(Curve::points).map(pick);
-    let x = widened(bounds(points(|p| p.0).chain(edges(|o| o.x))), FIELD_MARGIN);
-    let z = widened(bounds(points(|p| p.1).chain(edges(|o| o.z))), FIELD_MARGIN);
+    let x = widened(bounds(points(|p| p.0).chain(edges(|p| p.0))), FIELD_MARGIN);
+    let z = widened(bounds(points(|p| p.1).chain(edges(|p| p.1))), FIELD_MARGIN);
 
     let (x, z, scale) = to_scale((CANVAS.0, FIELD_HEIGHT), true, x, z);
-    let circles = log.header.field.iter();
-    Panel {
-        circles: circles
-            .map(|o| ((o.x, o.z), (o.radius / scale).round() as u32, OBSTACLE))
-            .collect(),
+    let mut panel = Panel {
         curves,
         ..Panel::new(
             Axis::tight("Downrange distance (m)", x, 8),
             Axis::tight("Height (m)", z, 4),
         )
-    }
+    };
+    field::add(&mut panel, &shapes, scale);
+    panel
 }
 
 /// The tick ranges over which the reference is one plan's, from one replan to the next.

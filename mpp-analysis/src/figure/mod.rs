@@ -7,6 +7,7 @@
 
 mod challenge;
 mod error;
+mod field;
 mod flight;
 mod one_replan;
 mod page;

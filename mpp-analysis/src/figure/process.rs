@@ -10,7 +10,7 @@ use mpp_core::config::RAY_LIMIT;
 use mpp_core::config::{GRID_COLS, GRID_ROWS, STAGES};
 use mpp_core::corridor::{DIRECTION_VECTORS, Padding, cast_ray};
 use mpp_core::map::GridPoint;
-use mpp_sim::field::Point;
+use mpp_sim::field::{Circle, FieldFile, Obstacle, Point};
 use plotters::prelude::*;
 use std::ops::Range;
 
@@ -203,10 +203,11 @@ fn axes(labelled: bool, x: Range<f64>, z: Range<f64>) -> (Panel, f64) {
     (Panel::new(x, Axis::tight("Height (m)", z, 5)), scale)
 }
 
-/// Adds the obstacles that lie wholly within the panel. Obstacles that no beam met are rings.
+/// Adds the circles that lie wholly within the panel. Circles that no beam met are rings.
 fn add_obstacles(panel: &mut Panel, cycle: &OneReplan, scale: f64) {
-    for obstacle in &cycle.field.obstacles {
-        let (x, z, radius) = (obstacle.x, obstacle.z, obstacle.radius);
+    for circle in FieldFile::of(&cycle.field.obstacles).circle {
+        let Circle { x, z, radius, .. } = circle;
+        let obstacle = Obstacle::circle(x, z, radius);
         let corners = [(x - radius, z - radius), (x + radius, z + radius)];
         if corners.iter().any(|corner| !panel.holds(*corner)) {
             continue;
@@ -215,7 +216,7 @@ fn add_obstacles(panel: &mut Panel, cycle: &OneReplan, scale: f64) {
         if cycle
             .hits
             .iter()
-            .any(|hit| obstacle.clearance(*hit).abs() < radius)
+            .any(|hit| obstacle.clearance(*hit, 0.0).abs() < radius)
         {
             panel
                 .circles

@@ -7,9 +7,10 @@ use crate::campaign::{Campaign, Lists, Report};
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
 use mpp_sim::dynamics::{Aerodynamics, Dynamics};
-use mpp_sim::entries::{Columns, ObstacleEntry, PlanEntry, Tick};
+use mpp_sim::entries::{Columns, PlanEntry, Tick};
 use mpp_sim::faults::Faults;
-use mpp_sim::field::ObstacleField;
+use mpp_sim::field::{FieldFile, ObstacleField};
+use mpp_sim::generator::Generator;
 use mpp_sim::lidar::LidarConfig;
 use mpp_sim::log::{FlightLog, Header, SCHEMA, Summary};
 use mpp_sim::navigation::NavigationConfig;
@@ -35,8 +36,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         state,
     };
     let mut sensors = AirDataSensors::new(1, AirDataNoise::PAPER);
-    let field = ObstacleField::generate(1, obstacles, 0.0, 50.0);
-    let mut score = Score::new(50.0, 11.0);
+    let field = ObstacleField::new(Generator::PAPER.obstacles(1, obstacles, 50.0, 20.0));
+    let mut score = Score::new(50.0, 11.0, 0.0);
     let mut ticks = Columns::default();
     let mut wanted = state;
     for k in 0..count {
@@ -83,6 +84,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             package_version: "0.0.0".into(),
             seed: 1,
             obstacles,
+            generator: Generator::PAPER,
             paths: 25,
             preset: "paper".into(),
             aircraft: mpp_sim::aircraft_file::AircraftModel::reference().file,
@@ -97,7 +99,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             faults: Faults::default(),
             scene: None,
             oracle: false,
-            field: field.obstacles.iter().map(ObstacleEntry::from).collect(),
+            body_radius: 0.0,
+            field: FieldFile::of(&field.obstacles),
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
@@ -222,7 +225,7 @@ fn success_curves_show_every_cell_and_the_papers_results() {
         preset: vec![Preset::Reference, Preset::Flight],
         obstacles: vec![20, 5, 10],
         paths: vec![1, 25],
-        replan_hz: Vec::new(),
+        ..Lists::default()
     };
     let mut campaign = Campaign::new(ScenarioFile::default(), lists, 4, None).unwrap();
     let report = Report::new(&campaign, &[]);

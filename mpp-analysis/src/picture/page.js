@@ -64,12 +64,49 @@ function line(pen, points, style, width, dash = []) {
   pen.setLineDash([]);
 }
 
+// Downrange places of the obstacles that have an end.
+function extents(field) {
+  const of = (kind, places) => (field[kind] || []).flatMap(places);
+  return [...of("circle", o => o.x), ...of("capsule", o => [o.from[0], o.to[0]]),
+    ...of("polygon", o => o.points.map(p => p[0])), ...of("polyline", o => o.points.map(p => p[0]))];
+}
+
+// The obstacles where they are at a time. Thin ones are drawn a pixel wide at least.
+function drawField(pen, field, time, at, scale, width, height) {
+  const of = kind => field[kind] || [];
+  const moved = (o, [x, z]) => at(x + (o.velocity ? o.velocity[0] : 0) * time, z + (o.velocity ? o.velocity[1] : 0) * time);
+  pen.fillStyle = pen.strokeStyle = colour.obstacle;
+  pen.lineCap = pen.lineJoin = "round";
+  const path = points => {
+    pen.beginPath();
+    for (const [u, v] of points) pen.lineTo(u, v);
+  };
+  for (const o of of("circle")) {
+    pen.beginPath(); pen.arc(...moved(o, [o.x, o.z]), Math.max(o.radius * scale, 1), 0, 7); pen.fill();
+  }
+  const stroke = (o, points, thickness) => {
+    path(points.map(p => moved(o, p))); pen.lineWidth = Math.max(thickness * scale, 1); pen.stroke();
+  };
+  for (const o of of("capsule")) stroke(o, [o.from, o.to], 2 * o.radius);
+  for (const o of of("polyline")) stroke(o, o.points, o.thickness);
+  for (const o of of("polygon")) { path(o.points.map(p => moved(o, p))); pen.fill(); }
+  // Beyond its ends a line goes on level, to the edges of the view.
+  const sheet = (o, edge) => {
+    const line = o.points.map(p => at(...p)), first = line[0], last = line[line.length - 1];
+    const left = Math.min(0, first[0]), right = Math.max(width, last[0]);
+    path([[left, edge], [left, first[1]], ...line, [right, last[1]], [right, edge]]); pen.fill();
+  };
+  for (const o of of("ground")) sheet(o, height + 1e4);
+  for (const o of of("ceiling")) sheet(o, -1e4);
+  pen.lineCap = "butt"; pen.lineJoin = "miter";
+}
+
 function drawView() {
   const [pen, width, height] = canvas("view");
   if (!T.t.length) return;
   const follow = $("follow").checked;
   const last = T.t.length - 1;
-  const end = Math.max(...log.header.field.map(o => o.x), T.x[last]) + 20;
+  const end = Math.max(...extents(log.header.field), T.x[last]) + 20;
   const scale = follow ? Math.min(width / 62, height / 26) : width / (end + 10);
   const x0 = follow ? T.x[now] - 0.22 * width / scale : -8;
   const z0 = follow ? T.z[now] : 50;
@@ -107,10 +144,7 @@ function drawView() {
     pen.globalAlpha = 1;
   }
   if (on.field) {
-    pen.fillStyle = colour.obstacle;
-    for (const o of log.header.field) {
-      pen.beginPath(); pen.arc(...at(o.x, o.z), o.radius * scale, 0, 7); pen.fill();
-    }
+    drawField(pen, log.header.field, T.t[now], at, scale, width, height);
   }
   if (on.occupancy && detail) {
     $("occupancy").textContent = detail.map.cell < 1 ? MEMORY : GRID;

@@ -26,7 +26,7 @@ impl Judge {
     /// A judge before the first tick.
     pub(super) fn new(scenario: &Scenario) -> Self {
         Self {
-            score: Score::new(ALTITUDE, scenario.band()),
+            score: Score::new(ALTITUDE, scenario.band(), scenario.body_radius),
             inquest: Inquest::default(),
             last: ((0.0, 0.0), (0.0, 0.0)),
             holds_trim: true,
@@ -57,10 +57,12 @@ impl Judge {
         let outcome = self.end.unwrap_or(Outcome::Survived);
         let t_end = Scenario::time(self.flown);
         let summary = Summary::new(plans, outcome, &self.score, self.holds_trim);
+        let body = self.score.body_radius;
+        let failure = self
+            .inquest
+            .conclude(summary.class, field, self.last, t_end, body);
         Summary {
-            failure: self
-                .inquest
-                .conclude(summary.class, field, self.last, t_end),
+            failure,
             t_end,
             x_end,
             ..summary

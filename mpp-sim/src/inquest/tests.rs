@@ -7,18 +7,17 @@ use crate::scenario::Preset;
 use mpp_core::vehicle::AirState;
 
 /// The obstacle that is hit.
-const WALL: Obstacle = Obstacle {
-    x: 60.0,
-    z: 50.0,
-    radius: 1.0,
-};
+fn wall() -> Obstacle {
+    Obstacle::circle(60.0, 50.0, 1.0)
+}
+
 /// Positions of the aircraft a tick before impact and at impact.
 const LAST: (Point, Point) = ((58.95, 50.0), (59.07, 50.0));
 
 fn field(others: &[Obstacle]) -> ObstacleField {
     let mut obstacles = others.to_vec();
-    obstacles.push(WALL);
-    ObstacleField { obstacles }
+    obstacles.push(wall());
+    ObstacleField::new(obstacles)
 }
 
 /// Scans of a level flight at a height of 50 m and 12 m/s, taken at 4 Hz from the time `from` on.
@@ -56,13 +55,14 @@ fn plan(made: f64, height: f64, feasible: bool) -> Plan {
         made,
         used: made + 0.01,
         feasible,
+        period: 0.25,
         path: (0..19).map(place).collect(),
     }
 }
 
 fn cause(field: &ObstacleField, sights: Vec<Sight>, plans: Vec<Plan>) -> Failure {
     let inquest = Inquest { sights, plans };
-    let failure = inquest.conclude(Class::Collision, field, LAST, 4.92);
+    let failure = inquest.conclude(Class::Collision, field, LAST, 4.92, 0.0);
     failure.unwrap()
 }
 
@@ -79,7 +79,7 @@ fn a_plan_that_kept_clear_was_not_tracked() {
 fn what_no_beam_met_was_hidden() {
     // The screen stands directly in front of the wall. The aircraft passes it only after the last
     // scan, so the wall is in its shadow until the end.
-    let screen = Obstacle { x: 57.5, ..WALL };
+    let screen = Obstacle::circle(57.5, 50.0, 1.0);
     let both = field(&[screen]);
     let failure = cause(&both, sights(&both, 0.0), vec![plan(4.5, 50.0, true)]);
     assert_eq!((failure.cause, failure.seen_before), (Cause::Hidden, None));
@@ -115,11 +115,7 @@ fn a_known_obstacle_that_a_feasible_cycle_flies_into_was_misjudged() {
 fn a_way_that_something_hidden_closed_was_a_blind_alley() {
     // This obstacle is off the way to impact but on the way of the earlier plan. Beams meet it only
     // from 3 s on.
-    let late = Obstacle {
-        x: 70.0,
-        z: 58.0,
-        radius: 1.0,
-    };
+    let late = Obstacle::circle(70.0, 58.0, 1.0);
     let both = field(&[late]);
     let mut seen = sights(&field(&[]), 0.0);
     seen.retain(|sight| sight.t < 3.0);
@@ -128,7 +124,7 @@ fn a_way_that_something_hidden_closed_was_a_blind_alley() {
     let failure = cause(&both, seen, open(2.75));
     assert_eq!(failure.cause, Cause::BlindAlley);
     // An obstacle that stands far behind the wall is not the cause.
-    let far = field(&[Obstacle { x: 80.0, ..late }]);
+    let far = field(&[Obstacle::circle(80.0, 58.0, 1.0)]);
     assert_eq!(
         cause(&far, sights(&field(&[]), 0.0), open(2.75)).cause,
         Cause::NoWay
@@ -147,12 +143,12 @@ fn other_failures_have_their_class_for_a_cause() {
         (Class::FlightPath, Cause::FlightPath),
         (Class::NoPlan, Cause::NoPlan),
     ] {
-        let failure = inquest.conclude(class, &field, LAST, 4.92).unwrap();
+        let failure = inquest.conclude(class, &field, LAST, 4.92, 0.0).unwrap();
         assert_eq!((failure.cause, cause.name()), (cause, class.name()));
         assert_eq!(serde_json::to_value(cause).unwrap(), cause.name());
     }
     for class in [Class::Success, Class::Terminated, Class::Interrupted] {
-        assert_eq!(inquest.conclude(class, &field, LAST, 4.92), None);
+        assert_eq!(inquest.conclude(class, &field, LAST, 4.92, 0.0), None);
     }
 }
 
@@ -167,6 +163,6 @@ fn the_reaction_time_is_the_airframes() {
     );
     let lift = 0.5 * a.air_density * a.wing_area * a.lift_alpha * 12.0 * 12.0;
     let acceleration = lift * limits.angle_of_attack / a.mass;
-    let aside = (2.0 * WALL.radius / acceleration).sqrt();
+    let aside = (2.0 * 1.0 / acceleration).sqrt();
     assert!((0.1..0.3).contains(&(REACTION - aside)), "{aside} s");
 }

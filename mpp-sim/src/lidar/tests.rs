@@ -1,7 +1,8 @@
 //! Tests the lidar against slow, simple computations.
 
 use super::*;
-use crate::field::ObstacleField;
+use crate::field::{Obstacle, ObstacleField};
+use crate::generator::Generator;
 use mpp_core::vehicle::AirState;
 use proptest::prelude::*;
 
@@ -22,9 +23,12 @@ fn pose(x: f64, z: f64, pitch: f64) -> VehicleState {
 }
 
 fn one_obstacle(x: f64, z: f64) -> ObstacleField {
-    ObstacleField {
-        obstacles: vec![Obstacle { x, z, radius: 1.0 }],
-    }
+    ObstacleField::new(vec![Obstacle::circle(x, z, 1.0)])
+}
+
+/// The paper's field.
+fn papers(seed: u64, count: usize) -> ObstacleField {
+    ObstacleField::new(Generator::PAPER.obstacles(seed, count, 50.0, 20.0))
 }
 
 /// One beam along the body axis.
@@ -121,13 +125,7 @@ fn authors_rule_takes_the_far_face_where_it_is_nearer_to_the_origin() {
 #[test]
 fn a_seed_is_a_scan_and_the_error_grows_with_range() {
     let state = pose(0.0, 50.0, 0.0);
-    let wall = ObstacleField {
-        obstacles: vec![Obstacle {
-            x: 130.0,
-            z: 50.0,
-            radius: 100.0,
-        }],
-    };
+    let wall = ObstacleField::new(vec![Obstacle::circle(130.0, 50.0, 100.0)]);
     let scan = |seed| FanLidar::new(seed, LidarConfig::PAPER).scan(&state, &wall);
     assert_eq!(scan(1), scan(1));
     assert_ne!(scan(1), scan(2));
@@ -153,7 +151,7 @@ fn a_seed_is_a_scan_and_the_error_grows_with_range() {
 
 #[test]
 fn without_error_a_scan_is_the_exact_ranges() {
-    let field = ObstacleField::generate(9, 20, 0.0, 50.0);
+    let field = papers(9, 20);
     let state = pose(20.0, 50.0, 0.15);
     for config in [EXACT, LidarConfig::AUTHORS] {
         let exact = config.exact_ranges(&state, &field);
@@ -171,7 +169,7 @@ fn marched_range(from: Point, direction: Point, field: &ObstacleField, step: f64
         .map(|k| k as f64 * step)
         .find(|t| {
             let point = (from.0 + t * direction.0, from.1 + t * direction.1);
-            field.clearance_of_segment(point, point) <= 0.0
+            field.clearance_of_motion(point, point, 0.0) <= 0.0
         })
         .unwrap_or(0.0)
 }
@@ -186,8 +184,8 @@ proptest! {
         pitch in -0.6..0.6,
     ) {
         const STEP: f64 = 0.002;
-        let field = ObstacleField::generate(seed, 40, 0.0, 50.0);
-        prop_assume!(field.clearance_of_segment((x, z), (x, z)) > 0.1);
+        let field = papers(seed, 40);
+        prop_assume!(field.clearance_of_motion((x, z), (x, z), 0.0) > 0.1);
         let config = LidarConfig { beams: 12, ..EXACT };
         let ranges = config.exact_ranges(&pose(x, z, pitch), &field);
         for (index, range) in ranges.into_iter().enumerate() {
@@ -199,7 +197,7 @@ proptest! {
             let grazes = || {
                 let middle = (x + range * direction.0, z + range * direction.1);
                 let deeper = (middle.0 + STEP * direction.0, middle.1 + STEP * direction.1);
-                field.clearance_of_segment(deeper, deeper) > 0.0
+                field.clearance_of_motion(deeper, deeper, 0.0) > 0.0
             };
             prop_assert!(
                 (range..=range + STEP).contains(&marched) || grazes() || range > 45.0 - STEP,

@@ -61,17 +61,14 @@ fn example() -> FlightLog {
             ..VehicleState::default()
         }),
     ));
-    let obstacle = Obstacle {
-        x: 25.0,
-        z: 47.5,
-        radius: 1.0,
-    };
+    let obstacle = Obstacle::circle(25.0, 47.5, 1.0);
     FlightLog {
         schema: SCHEMA,
         header: Header {
             package_version: "0.0.0".into(),
             seed: u64::MAX,
             obstacles: 1,
+            generator: Generator::PAPER,
             paths: 25,
             preset: "paper".into(),
             aircraft: AircraftModel::reference().file,
@@ -86,7 +83,8 @@ fn example() -> FlightLog {
             faults: Faults::default(),
             scene: None,
             oracle: false,
-            field: vec![ObstacleEntry::from(&obstacle)],
+            body_radius: 0.0,
+            field: FieldFile::of(&[obstacle]),
         },
         ticks,
         plans: vec![PlanEntry {
@@ -138,7 +136,7 @@ fn the_layout_is_frozen() {
         r#"{"schema":4,"header":{"package_version":"0.0.0","seed":18446744073709551615,"#
     ));
     for part in [
-        r#""field":[{"x":25.0,"z":47.5,"radius":1.0}]},"ticks":{"t":[0.0,0.01],"#,
+        r#""field":{"circle":[{"x":25.0,"z":47.5,"radius":1.0}]}},"ticks":{"t":[0.0,0.01],"#,
         r#""ref_x":[null,0.1],"ref_z":[null,null],"#,
         r#""cost":0.30000000000000004,"violation":null}],"rejections":[{"tick":1,"#,
         r#""summary":{"outcome":"flight-path-limit","strict":false,"class":"flight-path","t_end":0.01,"x_end":0.12,"min_clearance":null,"#,
@@ -147,7 +145,7 @@ fn the_layout_is_frozen() {
     }
     assert_eq!(
         example().hash().unwrap(),
-        "87d77f7e801b35a9",
+        "f5bcdf153619d726",
         "the bytes of a log changed: raise SCHEMA"
     );
 }

@@ -2,22 +2,24 @@
 //! (20 s, 20 obstacles, 25 paths, replanned at 1 Hz). An unknown key gives an error with its name.
 //! `docs/scenarios/example.toml` holds every key with its unit.
 
+mod generator;
 mod navigation;
 mod overlay;
 
-use super::{Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
+use super::{ALTITUDE, Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::faults::Faults;
-use crate::field::Obstacle;
+use crate::field::{FieldFile, MAX_VERTICES, Obstacle, Shape};
 use crate::file_error::{ScenarioError, ensure};
 use crate::lidar::{LidarConfig, LidarRule};
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
+pub use generator::GeneratorTable;
 use mpp_core::config::{MAX_BEAMS, MAX_PATHS};
 pub use navigation::{NavigationSource, NavigationTable};
 use serde::{Deserialize, Serialize};
 
-/// Greatest number of random obstacles in a field, and of placed ones.
+/// Greatest number of random obstacles over 215 m.
 const MAX_OBSTACLES: usize = 1000;
 /// Longest flight \[s\].
 pub(super) const MAX_DURATION: u32 = 3600;
@@ -44,9 +46,12 @@ pub struct ScenarioFile {
     /// Seed of the field, of all noise and of the planner; by default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub seed: Option<u64>,
-    /// Number of random obstacles; by default 20, or 0 if there is a scene or a placed obstacle.
+    /// Number of random obstacles; by default 20, or 0 if there is a scene or a field of one's own.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub obstacles: Option<usize>,
+    /// Radius of the aircraft's body \[m\]; by default 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub body_radius: Option<f64>,
     /// Challenge scene; by default there is no scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<Scene>,
@@ -77,9 +82,12 @@ pub struct ScenarioFile {
     pub navigation: NavigationTable,
     /// Faults and disturbances.
     pub faults: Faults,
+    /// The generator of the random obstacles.
+    #[serde(skip_serializing_if = "GeneratorTable::is_empty")]
+    pub generator: GeneratorTable,
     /// Obstacles placed one by one.
-    #[serde(rename = "obstacle", skip_serializing_if = "Vec::is_empty")]
-    pub placed: Vec<Obstacle>,
+    #[serde(skip_serializing_if = "FieldFile::is_empty")]
+    pub field: FieldFile,
 }
 
 /// The lidar's keys. An absent key takes the preset's value.
@@ -131,7 +139,7 @@ impl ScenarioFile {
     pub fn build(&self) -> Result<Scenario, ScenarioError> {
         let preset = self.preset.unwrap_or(Preset::Flight);
         let base = Scenario::new(preset, self.seed.unwrap_or(1));
-        let alone = self.scene.is_none() && self.placed.is_empty();
+        let alone = self.scene.is_none() && self.field.is_empty();
         let replan_ticks = match self.replan_hz {
             Some(rate) => replan_ticks(rate)?,
             None => base.replan_ticks,
@@ -162,7 +170,9 @@ impl ScenarioFile {
                 .obstacles
                 .unwrap_or(if alone { base.obstacles } else { 0 }),
             scene: self.scene,
-            placed: self.placed.clone(),
+            generator: self.generator.generator()?,
+            placed: self.field.obstacles(),
+            body_radius: self.body_radius.unwrap_or(aircraft.known.body_radius),
             aircraft,
             world_scale,
             paths: self.paths.unwrap_or(base.paths),
@@ -182,6 +192,7 @@ impl ScenarioFile {
             faults: self.faults,
             ..base
         };
+        self.field.check().map_err(ScenarioError::Field)?;
         check(&scenario)?;
         let oracle = self.oracle.unwrap_or(false);
         let advice = "only preset flight has an oracle";
@@ -258,21 +269,41 @@ pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
         ensure(not_negative(value), key, "give 0 or more")?;
     }
     navigation::check(&scenario.navigation)?;
-    ensure(
-        scenario.placed.len() <= MAX_OBSTACLES,
-        "obstacle",
-        format!("give at most {MAX_OBSTACLES}"),
-    )?;
-    for obstacle in &scenario.placed {
-        let finite =
-            obstacle.x.is_finite() && obstacle.z.is_finite() && obstacle.radius.is_finite();
-        let advice = "give finite x and z, and a radius above 0 m";
-        ensure(finite && obstacle.radius > 0.0, "obstacle", advice)?;
-    }
+    check_field(scenario)?;
     match scenario.faults.flaw() {
         Some((key, advice)) => ensure(false, key, advice),
         None => Ok(()),
     }
+}
+
+/// Whether a scenario's field can be drawn and flown through.
+fn check_field(scenario: &Scenario) -> Result<(), ScenarioError> {
+    let body = scenario.body_radius;
+    let sound = body >= 0.0 && body.is_finite();
+    ensure(sound, "body_radius", "give 0 m or more")?;
+    let generator = &scenario.generator;
+    generator::check(generator, body)?;
+    let expected = generator.expected(scenario.obstacles, scenario.duration());
+    let few = expected <= 0.5 * MAX_VERTICES as f64;
+    let advice =
+        format!("give fewer, or fly for less time: the field would have about {expected:.0}");
+    ensure(few, "obstacles", advice)?;
+    let is_circle = |one: &Obstacle| matches!(one.shape, Shape::Circle { .. });
+    let circles = scenario.field().obstacles.iter().all(is_circle);
+    let advice = "the authors' lidar knows circles only: give \"nearest\", or a field of circles";
+    ensure(
+        circles || scenario.lidar.rule == LidarRule::Nearest,
+        "lidar.rule",
+        advice,
+    )?;
+    let start = (0.0, ALTITUDE);
+    let drawn = FieldFile::of(&scenario.drawn()).check_start(start, body);
+    let advice = "give less: what is drawn covers the start of such a body";
+    ensure(drawn.is_ok(), "body_radius", advice)?;
+    let placed = FieldFile::of(&scenario.placed);
+    placed
+        .check_start(start, body)
+        .map_err(ScenarioError::Field)
 }
 
 impl LidarTable {

@@ -2,7 +2,7 @@
 
 use super::file::{MAX_DURATION, check};
 use super::{Scenario, TICKS_PER_SECOND};
-use crate::field::Obstacle;
+use crate::field::FieldFile;
 use crate::file_error::{ScenarioError, ensure};
 
 /// Times of a flight as its log has them.
@@ -18,7 +18,7 @@ impl Scenario {
     pub(crate) fn recorded(
         mut self,
         times: Times,
-        field: impl IntoIterator<Item = Obstacle>,
+        field: &FieldFile,
     ) -> Result<Self, ScenarioError> {
         let rate = f64::from(TICKS_PER_SECOND);
         self.replan_ticks = whole("replan_hz", rate / times.replan_hz, u32::from(u16::MAX))?;
@@ -26,9 +26,10 @@ impl Scenario {
         let longest = MAX_DURATION * TICKS_PER_SECOND;
         self.ticks = whole("duration", rate * times.duration, longest)?;
         // Before anything is drawn: what is asked for may be more than there is memory.
+        field.check().map_err(ScenarioError::Field)?;
         check(&self)?;
-        let drawn = self.field().obstacles.len();
-        self.placed = field.into_iter().skip(drawn).collect();
+        let drawn = FieldFile::of(&self.drawn());
+        self.placed = field.without(&drawn).obstacles();
         check(&self)?;
         Ok(self)
     }

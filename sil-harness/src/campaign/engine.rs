@@ -29,7 +29,7 @@ pub fn fingerprint(campaign: &Campaign) -> Result<String, CampaignError> {
     cells.dedup_by_key(|cell| (cell.preset, cell.oracle));
     let hashes = cells
         .iter()
-        .map(|cell| Ok(flown(&start, *cell, campaign.seed, false)?.log_hash));
+        .map(|cell| Ok(flown(&start, cell, campaign.seed, false)?.log_hash));
     Ok(hashes
         .collect::<Result<Vec<String>, CampaignError>>()?
         .join("-"))
@@ -54,7 +54,7 @@ pub fn run(
         // lists.
         jobs.iter()
             .par_bridge()
-            .try_for_each(|&(cell, seed)| keep(flown(campaign, cell, seed, timed)?))
+            .try_for_each(|(cell, seed)| keep(flown(campaign, cell, *seed, timed)?))
     })
 }
 
@@ -72,7 +72,7 @@ pub fn run_faults(
         let scenario = campaign.scenario(&job).map_err(CampaignError::Scenario)?;
         let (log, witness, _) = witnessed(&scenario).map_err(|error| {
             let fault = campaign.name(&job).unwrap_or("no fault");
-            CampaignError::Faulty(fault, job.cell, job.seed, error)
+            CampaignError::Faulty(fault, Box::new(job.cell.clone()), job.seed, error)
         })?;
         done()?;
         let flown = Flown {
@@ -106,17 +106,17 @@ fn witnessed(scenario: &Scenario) -> Result<(FlightLog, Witness, Duration), FlyE
 }
 
 /// Flies one row.
-fn flown(campaign: &Campaign, cell: Cell, seed: u64, timed: bool) -> Result<Row, CampaignError> {
+fn flown(campaign: &Campaign, cell: &Cell, seed: u64, timed: bool) -> Result<Row, CampaignError> {
     let scenario = campaign
-        .scenario(&cell, seed)
+        .scenario(cell, seed)
         .map_err(CampaignError::Scenario)?;
-    let (log, witness, elapsed) =
-        witnessed(&scenario).map_err(|error| CampaignError::Flight(cell, seed, error))?;
+    let (log, witness, elapsed) = witnessed(&scenario)
+        .map_err(|error| CampaignError::Flight(Box::new(cell.clone()), seed, error))?;
     let hash = log
         .hash()
-        .map_err(|error| CampaignError::Log(cell, seed, error))?;
+        .map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
     let core_ms = timed.then_some(elapsed.as_secs_f64() * 1e3);
-    Ok(Row::new(cell, &log, &witness, hash, core_ms))
+    Ok(Row::new(cell.clone(), &log, &witness, hash, core_ms))
 }
 
 /// A link that measures how long the core works. In this process the core works during `send`.

@@ -12,13 +12,13 @@ pub enum CampaignError {
     /// The scenario is invalid.
     Scenario(ScenarioError),
     /// A flight has no outcome. Holds its cell, its seed and the reason.
-    Flight(Cell, u64, FlyError),
+    Flight(Box<Cell>, u64, FlyError),
     /// A flight of a campaign of faults has no outcome. Holds its fault, its cell, its seed and the reason.
-    Faulty(&'static str, Cell, u64, FlyError),
+    Faulty(&'static str, Box<Cell>, u64, FlyError),
     /// Whoever started a campaign of faults ended it.
     Stopped,
     /// A flight's log cannot be written. Holds its cell, its seed and the reason.
-    Log(Cell, u64, LogError),
+    Log(Box<Cell>, u64, LogError),
     /// A row file cannot be opened or read.
     File(String, std::io::Error),
     /// A row cannot be written: file, rows that it holds, why.

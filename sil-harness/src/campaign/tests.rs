@@ -19,7 +19,7 @@ fn short() -> Campaign {
         preset: vec![Preset::Paper],
         obstacles: vec![20, 60, 20],
         paths: vec![0, 5],
-        replan_hz: Vec::new(),
+        ..Lists::default()
     };
     Campaign::new(scenario, lists, 2, Some(11)).unwrap()
 }
@@ -273,7 +273,7 @@ fn an_oracle_is_paired_field_by_field() {
     let flown = fly_jobs(&campaign, "1/10".parse().unwrap(), 1).remove(0);
     let row = |cell: usize, trial: u64, strict: bool| {
         let mut row = flown.clone();
-        (row.cell, row.seed, row.summary.strict) = (cells[cell], 11 + trial, strict);
+        (row.cell, row.seed, row.summary.strict) = (cells[cell].clone(), 11 + trial, strict);
         row
     };
     // The oracle has not flown our last field yet.
@@ -308,7 +308,8 @@ fn failures_are_sorted_by_cause() {
     let flown = fly_jobs(&campaign, "1/8".parse().unwrap(), 1).remove(0);
     let row = |cell: usize, trial: u64, cause: Option<Cause>| {
         let mut row = flown.clone();
-        (row.cell, row.seed, row.summary.strict) = (cells[cell], 11 + trial, cause.is_none());
+        (row.cell, row.seed, row.summary.strict) =
+            (cells[cell].clone(), 11 + trial, cause.is_none());
         row.summary.failure = cause.map(|cause| Failure {
             cause,
             seen_before: Some(1.5),

@@ -3,10 +3,14 @@
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::preset;
+use super::values::{generator, preset};
 use crate::campaign::{CampaignError, Header, RowFile, read, run as fly_all};
+use crate::files::read_field;
 use indicatif::{ProgressBar, ProgressStyle};
-use mpp_analysis::campaign::{Campaign, Cell, Lists, Report, Row, Shard, Taxonomy, merge};
+use mpp_analysis::campaign::{
+    Campaign, Cell, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
+};
+use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::Preset;
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -16,6 +20,13 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct CampaignArgs {
     #[command(flatten)]
     pub(super) scenario: ScenarioArgs,
+    /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
+    /// --obstacles is given
+    #[arg(long, value_name = "FILE")]
+    field: Vec<PathBuf>,
+    /// Generators of random obstacles, a list [default: the scenario's, else paper]
+    #[arg(long, value_delimiter = ',', value_parser = generator())]
+    generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
     #[arg(long, value_delimiter = ',')]
     obstacles: Vec<usize>,
@@ -130,19 +141,31 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
 }
 
 /// The lists of the command line.
-pub(super) fn lists(args: &CampaignArgs) -> Lists {
-    Lists {
+pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
+    let named = |path: &PathBuf| {
+        Ok(NamedField {
+            name: path.display().to_string(),
+            content: read_field(path).map_err(|error| Failure::new(USAGE, error))?,
+        })
+    };
+    Ok(Lists {
         preset: args.preset.clone(),
+        field: args
+            .field
+            .iter()
+            .map(named)
+            .collect::<Result<_, Failure>>()?,
+        generator: args.generator.clone(),
         obstacles: args.obstacles.clone(),
         paths: args.paths.clone(),
         replan_hz: args.replan_hz.clone(),
-    }
+    })
 }
 
 fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
-    let campaign = Campaign::new(scenario, lists(args), args.trials, args.seed);
+    let campaign = Campaign::new(scenario, lists(args)?, args.trials, args.seed);
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;
     let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
@@ -170,7 +193,7 @@ fn fly_rows(
     let places = known.iter().map(|row| campaign.place(&row.cell, row.seed));
     let places: HashSet<Option<(usize, u64)>> = places.collect();
     let missing = |(cell, seed): &(Cell, u64)| !places.contains(&campaign.place(cell, *seed));
-    let jobs: Vec<(Cell, u64)> = all.iter().copied().filter(missing).collect();
+    let jobs: Vec<(Cell, u64)> = all.iter().filter(|job| missing(job)).cloned().collect();
     if !known.is_empty() {
         talk(format_args!(
             "{} of {} flights are there",

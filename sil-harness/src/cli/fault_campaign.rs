@@ -15,7 +15,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     }
     let faults = NamedFault::of(&args.faults).map_err(|error| usage(&error))?;
     let scenario = args.scenario.file()?;
-    let campaign = FaultCampaign::new(&scenario, &lists(args), args.trials, args.seed, &faults)
+    let campaign = FaultCampaign::new(&scenario, &lists(args)?, args.trials, args.seed, &faults)
         .map_err(|error| usage(&error))?;
     let signals = Signals::heed()?;
     let progress = progress_bar(campaign.jobs().len());

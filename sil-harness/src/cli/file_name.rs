@@ -1,16 +1,22 @@
 //! What the files of a flight are called: two flights that differ in their scenario never share one.
 
+use mpp_sim::field::FieldFile;
+use mpp_sim::generator::Generator;
 use mpp_sim::scenario::{Scenario, TICK_MS, TICKS_PER_SECOND};
 
-/// Preset and seed, then whatever differs from that preset's flight: scene, `o` obstacles, `p` paths,
+/// Preset and seed, then whatever differs from that preset's flight: scene, generator, `o` obstacles, `p` paths,
 /// replanning rate, latency, slices per tick, duration, aircraft; what has no short name (lidar,
-/// sensors, faults, placed obstacles, numbers of another aircraft) as a number that stands for it.
+/// sensors, faults, fields, parameters of generators, numbers of another aircraft) as a number that stands for it.
 pub(super) fn file_name(scenario: &Scenario) -> String {
     let mut usual = Scenario::new(scenario.preset, scenario.seed);
     let mut name = format!("{}-seed{}", scenario.preset, scenario.seed);
     if scenario.oracle {
         usual = usual.informed();
         name += "-oracle";
+    }
+    if !scenario.generator.name.is_papers() {
+        name += &format!("-{}", scenario.generator.name);
+        usual.generator = Generator::named(scenario.generator.name);
     }
     if let Some(scene) = scenario.scene {
         name += &format!("-{scene}");
@@ -66,21 +72,15 @@ fn rest(scenario: &Scenario) -> Vec<u8> {
         navigation,
         faults,
         placed,
+        generator,
+        body_radius,
         aircraft,
         world_scale,
         ..
     } = scenario;
-    let aircraft = &aircraft.file;
-    serde_json::to_vec(&(
-        lidar,
-        air_data,
-        navigation,
-        faults,
-        placed,
-        aircraft,
-        world_scale,
-    ))
-    .unwrap_or_default()
+    let field = (FieldFile::of(placed), generator, body_radius);
+    let aircraft = (&aircraft.file, world_scale);
+    serde_json::to_vec(&(lidar, air_data, navigation, faults, field, aircraft)).unwrap_or_default()
 }
 
 /// FNV-1a, 32 bits: the same on every machine.
@@ -115,6 +115,7 @@ mod tests {
                 "flight-seed1-flytrap-o20",
             ),
             ("oracle = true", "flight-seed1-oracle"),
+            ("[generator]\nname = \"walls\"", "flight-seed1-walls"),
             ("replan_hz = 0.5", "flight-seed1-0.5hz"),
             (
                 rest,
@@ -134,8 +135,10 @@ mod tests {
             "[lidar]\nbeams = 31\n".to_owned(),
             "[air_data]\nairspeed_sigma = 0.1\n".to_owned(),
             "[navigation]\nsource = \"ideal\"\n".to_owned(),
-            "[[obstacle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n".to_owned(),
-            "[[obstacle]]\nx = 61.0\nz = 50.0\nradius = 2.0\n".to_owned(),
+            "[generator]\nradius = 0.5\n".to_owned(),
+            "body_radius = 0.5\n".to_owned(),
+            "[[field.circle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n".to_owned(),
+            "[[field.circle]]\nx = 61.0\nz = 50.0\nradius = 2.0\n".to_owned(),
         ];
         let names: std::collections::BTreeSet<String> = texts.iter().map(|t| name(t)).collect();
         assert_eq!(names.len(), texts.len(), "{names:?}");

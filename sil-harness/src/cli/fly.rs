@@ -5,17 +5,19 @@ use super::file_name::file_name;
 use super::ground::GroundArgs;
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::preset;
-use crate::files::{write_log, write_whole};
+use super::values::{generator, preset};
+use crate::files::{read_field, write_field, write_log, write_whole};
 use crate::link::{FifoLink, PATIENCE, TcpLink};
 use indicatif::{ProgressBar, ProgressStyle};
 use mpp_analysis::figure::flight_svg;
+use mpp_sim::field::FieldFile;
 use mpp_sim::flight::{FlyError, fly_with};
+use mpp_sim::generator::GeneratorName;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::{FlightLog, Header, Summary};
 use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
-use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::scenario::{Preset, Scenario, ScenarioError};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -27,6 +29,15 @@ pub(super) struct FlyArgs {
     /// Seed of the field, of all noise and of the planner [default: 1]
     #[arg(long)]
     seed: Option<u64>,
+    /// Field of obstacles (TOML, as docs/fields.md); it stands alone unless --obstacles is given
+    #[arg(long, value_name = "FILE")]
+    field: Option<PathBuf>,
+    /// Write all obstacles of the flight as a field, for --field
+    #[arg(long, value_name = "FILE")]
+    save_field: Option<PathBuf>,
+    /// Generator of random obstacles [default: paper]
+    #[arg(long, value_parser = generator())]
+    generator: Option<GeneratorName>,
     /// Number of obstacles between 25 m and 240 m downrange [default: 20]
     #[arg(long)]
     obstacles: Option<usize>,
@@ -64,12 +75,27 @@ impl FlyArgs {
     fn scenario(&self) -> Result<Scenario, Failure> {
         let mut file = self.scenario.file()?;
         replace(&mut file.seed, self.seed);
+        if let Some(path) = &self.field {
+            file.field = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+        }
+        replace(&mut file.generator.name, self.generator);
         replace(&mut file.obstacles, self.obstacles);
         replace(&mut file.paths, self.paths);
         replace(&mut file.preset, self.preset);
         replace(&mut file.replan_hz, self.replan_hz);
         replace(&mut file.oracle, self.oracle.then_some(true));
-        file.build().map_err(|error| Failure::new(USAGE, error))
+        let field = self.field.as_ref().map(|path| path.display().to_string());
+        let failed = |error: ScenarioError| Failure::new(USAGE, error.of_field(field.as_deref()));
+        file.build().map_err(failed)
+    }
+
+    /// Whether a field was given that is not that of this scenario.
+    fn other_field(&self, flown: &Scenario) -> Result<bool, Failure> {
+        let Some(path) = &self.field else {
+            return Ok(false);
+        };
+        let asked = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+        Ok(asked != FieldFile::of(&flown.placed))
     }
 
     /// The scenario of a log whose orders are given again.
@@ -79,6 +105,12 @@ impl FlyArgs {
         let rate = |hz: f64| (hz - flown.replan_hz()).abs() > 1e-9;
         let flags = [
             ("--seed", self.seed.is_some_and(|seed| seed != flown.seed)),
+            ("--field", self.other_field(&flown)?),
+            (
+                "--generator",
+                self.generator
+                    .is_some_and(|name| name != flown.generator.name),
+            ),
             (
                 "--obstacles",
                 self.obstacles.is_some_and(|count| count != flown.obstacles),
@@ -158,6 +190,10 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     };
     let signals = Signals::heed()?;
     let mut link = args.connect(&scenario)?;
+    if let Some(path) = &args.save_field {
+        let field = FieldFile::of(&scenario.field().obstacles);
+        write_field(path, &field).map_err(|error| Failure::new(FAILURE, error))?;
+    }
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
         scenario.seed,

@@ -1,6 +1,7 @@
 //! Named values of flags: their help texts and their parsers.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use std::error::Error;
@@ -35,6 +36,21 @@ pub(super) fn navigation() -> impl TypedValueParser<Value = NavigationSource> {
         NavigationSource::LidarOdometry => "20 Hz, 0.03 m white, drift of 1 % of the way",
     };
     named(NavigationSource::ALL.map(|source| PossibleValue::new(source.name()).help(help(source))))
+}
+
+/// Reads a generator of random obstacles.
+pub(super) fn generator() -> impl TypedValueParser<Value = GeneratorName> {
+    let help = |name| match name {
+        GeneratorName::Paper => "Circles, evenly spaced, within 10 m of the altitude",
+        GeneratorName::Sealed => "The same within 12 m: no free lane runs along the band",
+        GeneratorName::Endless => "Circles at random places, as far as the flight goes",
+        GeneratorName::Forest => "Circles of many sizes in clusters",
+        GeneratorName::Canyon => "A winding way between ground and ceiling",
+        GeneratorName::Slalom => "Walls from above and below in turn",
+        GeneratorName::Walls => "Walls across the band, each with one gap",
+        GeneratorName::Wires => "Thin circles, or thin bars",
+    };
+    named(GeneratorName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }
 
 /// Reads a challenge scene.

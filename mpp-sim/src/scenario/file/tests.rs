@@ -30,7 +30,8 @@ fn the_documented_example_holds_every_key() {
     // too.
     let json = serde_json::to_value(&file).unwrap();
     let keys = |value: &serde_json::Value| value.as_object().unwrap().len();
-    assert_eq!(keys(&json), 17);
+    assert_eq!(keys(&json), 19);
+    assert_eq!((keys(&json["generator"]), keys(&json["field"])), (5, 1));
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
     assert_eq!(keys(&json["navigation"]), 8);
     assert_eq!(keys(&json["faults"]["actuators"]), 4);
@@ -60,7 +61,7 @@ fn unknown_keys_are_refused_by_name() {
         ("[faults.link]\nlost = 0.2", "lost"),
         ("[faults.clock]\nback = 1.0", "back"),
         (
-            "[[obstacle]]\nx = 1.0\nz = 1.0\nradius = 1.0\ncolour = 2",
+            "[[field.circle]]\nx = 1.0\nz = 1.0\nradius = 1.0\ncolour = 2",
             "colour",
         ),
     ] {
@@ -106,11 +107,38 @@ fn nonsense_is_refused_by_key() {
         ),
         ("[faults.gusts]\nintensity = -1.0", "faults.gusts.intensity"),
         ("[faults.lidar]\ndropouts = 1.5", "faults.lidar.dropouts"),
-        ("[[obstacle]]\nx = 1.0\nz = 1.0\nradius = 0.0", "obstacle"),
+        ("body_radius = -1.0", "body_radius"),
+        (
+            "duration = 3600\nobstacles = 900\n[generator]\nname = \"endless\"",
+            "obstacles",
+        ),
+        ("[generator]\nradius = 0.0", "generator.radius"),
+        ("[generator]\nvelocity = [nan, 0.0]", "generator.velocity"),
+        (
+            "[generator]\nname = \"forest\"\ncluster = 0",
+            "generator.cluster",
+        ),
+        (
+            "body_radius = 3.0\n[generator]\nname = \"walls\"",
+            "generator.gap",
+        ),
     ] {
         let error = refused(text);
         assert!(error.starts_with(&format!("{key}: give ")), "{error}");
     }
+    let error = refused("[generator]\nname = \"walls\"\nspread = 1.0");
+    let expected = "generator.spread: leave it out: walls takes radius, gap";
+    assert_eq!(error, expected);
+    let error = refused("preset = \"reference\"\n[generator]\nname = \"walls\"");
+    assert!(
+        error.starts_with("lidar.rule: the authors' lidar knows circles only"),
+        "{error}"
+    );
+    let error = refused("[[field.circle]]\nx = 1.0\nz = 50.0\nradius = 2.0");
+    assert!(
+        error.starts_with("field, circle 1, place: it covers the start"),
+        "{error}"
+    );
     assert!(refused("preset = \"best\"").contains("unknown variant `best`"));
 }
 
@@ -124,7 +152,7 @@ fn a_scene_stands_alone_unless_obstacles_are_asked_for() {
         both.field().obstacles.len(),
         scene.field().obstacles.len() + 20
     );
-    let placed = parse("[[obstacle]]\nx = 30.0\nz = 50.0\nradius = 2.0").unwrap();
+    let placed = parse("[[field.circle]]\nx = 30.0\nz = 50.0\nradius = 2.0").unwrap();
     assert_eq!(placed.field().obstacles.len(), 1);
 }
 
