@@ -97,6 +97,8 @@ impl Inspector {
             from: place(state.x, state.z),
             ..PlanDetail::default()
         };
+        // The planner reckons in units of its own.
+        let length = planner.flight().map_or(1.0, |own| own.units().length);
         let mut corridor = None;
         let mut best = f64::INFINITY;
         let mut best_violation = f64::INFINITY;
@@ -106,7 +108,8 @@ impl Inspector {
             if let Some((path, problem)) = planner.candidate()
                 && !refining
             {
-                detail.paths.push(path.map(|(x, z)| place(x, z)).into());
+                let path = path.map(|(x, z)| place(x * length, z * length));
+                detail.paths.push(path.into());
                 corridor = Some(problem.bounds);
             }
             let summary = planner.summary();
@@ -115,7 +118,7 @@ impl Inspector {
                 detail.chosen = detail.paths.len().checked_sub(1);
                 if let (Some(bounds), Some(path)) = (&corridor, detail.paths.last()) {
                     let cruise = planner.trim().state.airspeed;
-                    detail.corridor = polygons(&bounds.0, cruise, path);
+                    detail.corridor = polygons(&bounds.0, cruise, path, length);
                 }
             }
             if !more {
@@ -124,7 +127,7 @@ impl Inspector {
         }
         // A candidate that was begun but not ended at the deadline does not count.
         detail.paths.truncate(planner.summary().candidates);
-        detail.map = map(planner, &state, tuning.settings.planner.altitude);
+        detail.map = map(planner, &state, tuning.settings.planner.altitude, length);
         detail.hits = hits(&scan, &state);
         if best.is_finite() {
             let knots = planner.best().knots.iter();
@@ -155,7 +158,7 @@ fn world(state: &VehicleState, point: GridPoint) -> Place {
     )
 }
 
-fn map(planner: &Planner, state: &VehicleState, altitude: f64) -> Map {
+fn map(planner: &Planner, state: &VehicleState, altitude: f64, length: f64) -> Map {
     if let Some(paper) = planner.paper() {
         let low = world(state, GridPoint { row: 0.0, col: 0.0 });
         let grid = paper.grid();
@@ -169,9 +172,10 @@ fn map(planner: &Planner, state: &VehicleState, altitude: f64) -> Map {
     let Some(known) = planner.flight().map(FlightPlanner::clearance) else {
         return Map::default();
     };
+    // The window in units of the planner.
     let low = (
-        ((state.x + WINDOW[0]) / CELL).floor() * CELL,
-        altitude - HEIGHT,
+        ((state.x / length + WINDOW[0]) / CELL).floor() * CELL,
+        altitude / length - HEIGHT,
     );
     let middle = |at: f64, cells: usize| at + CELL * (cells as f64 + 0.5);
     let extent = [
@@ -179,12 +183,13 @@ fn map(planner: &Planner, state: &VehicleState, altitude: f64) -> Map {
         ((WINDOW[1] - WINDOW[0]) / CELL) as usize,
     ];
     let cells = |is: &dyn Fn(f64, f64) -> bool| {
-        rows(low, CELL, extent, |row, col| {
+        let low_corner = (low.0 * length, low.1 * length);
+        rows(low_corner, CELL * length, extent, |row, col| {
             is(middle(low.0, col), middle(low.1, row))
         })
     };
     Map {
-        cell: CELL,
+        cell: CELL * length,
         occupied: cells(&|x, z| known.is_occupied(x, z)),
         unknown: cells(&|x, z| known.is_unknown(x, z)),
     }
@@ -225,7 +230,8 @@ fn hits(scan: &LidarScan, state: &VehicleState) -> Vec<Place> {
 }
 
 /// The parts that the eight half-planes of each stage boundary leave of a square about its path.
-fn polygons(bounds: &[f64], cruise: f64, path: &[Place]) -> Vec<Vec<Place>> {
+/// Bounds and cruise are in units of `length` \[m\].
+fn polygons(bounds: &[f64], cruise: f64, path: &[Place], length: f64) -> Vec<Vec<Place>> {
     // The half-planes are relative to level flight from the first place of the path.
     let start = path.first().copied().unwrap_or_default();
     let stages = bounds.chunks(DIRECTIONS).take(KNOTS).zip(path).enumerate();
@@ -234,12 +240,15 @@ fn polygons(bounds: &[f64], cruise: f64, path: &[Place]) -> Vec<Vec<Place>> {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
             let mut polygon: Vec<Place> = corners
                 .iter()
-                .map(|(right, up)| (x + SQUARE * right, z + SQUARE * up))
+                .map(|(right, up)| (x + SQUARE * length * right, z + SQUARE * length * up))
                 .collect();
-            let level = (start.0 + cruise * STAGE_PERIOD * stage as f64, start.1);
+            let level = (
+                start.0 + length * cruise * STAGE_PERIOD * stage as f64,
+                start.1,
+            );
             for ([up, ahead], bound) in DIRECTION_VECTORS.iter().zip(bounds) {
                 polygon = cut(&polygon, |(x, z)| {
-                    bound - ahead * (x - level.0) - up * (z - level.1)
+                    length * bound - ahead * (x - level.0) - up * (z - level.1)
                 });
             }
             polygon.iter().map(|(x, z)| place(*x, *z)).collect()

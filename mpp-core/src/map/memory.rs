@@ -37,7 +37,7 @@ const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 /// map.roll(0.0, 50.0);
 /// map.insert(&scan, 45.0, &Pose { x: 0.0, z: 50.2, pitch: 0.0 });
 /// let mut field = Box::new(ClearanceField::new());
-/// field.build(&map);
+/// field.build(&map, 0.0);
 ///
 /// assert!(field.is_occupied(20.1, 50.2) && field.is_occupied(21.1, 50.2));
 /// assert!(!field.is_occupied(10.0, 50.2) && !field.is_unknown(10.0, 50.2));

@@ -145,7 +145,7 @@ fn the_layout_is_frozen() {
     }
     assert_eq!(
         example().hash().unwrap(),
-        "f5bcdf153619d726",
+        "876d383ed83fa7fd",
         "the bytes of a log changed: raise SCHEMA"
     );
 }

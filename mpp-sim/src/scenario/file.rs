@@ -153,11 +153,6 @@ impl ScenarioFile {
             (None, Preset::Flight) => aircraft.units().length,
             (None, Preset::Reference | Preset::Paper) => 1.0,
         };
-        ensure(
-            (1e-3..=1e3).contains(&world_scale),
-            "world_scale",
-            "give 0.001 to 1000",
-        )?;
         let usual = f64::from(base.ticks / TICKS_PER_SECOND) * world_scale.sqrt();
         let duration = self.duration.unwrap_or(usual.ceil() as u32);
         ensure(
@@ -232,6 +227,8 @@ pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
     let Scenario {
         lidar, air_data, ..
     } = scenario;
+    let scale = (1e-3..=1e3).contains(&scenario.world_scale);
+    ensure(scale, "world_scale", "give 0.001 to 1000")?;
     ensure(
         scenario.obstacles <= MAX_OBSTACLES,
         "obstacles",

@@ -48,7 +48,7 @@ fn a_logs_orders_are_flown_with_its_header() {
         ("--latency-ms", "10"),
         ("--duration", "20"),
         ("--scene", "flytrap"),
-        ("--airframe", "paper"),
+        ("--aircraft", "paper"),
         ("--slices-per-tick", "9"),
         ("--scenario", "calm.toml"),
     ] {
@@ -79,10 +79,12 @@ fn a_log_that_cannot_be_flown_is_refused_by_the_field() {
         ("latency", Value::from(1e300)),
         ("slices_per_tick", Value::from(0)),
         ("preset", Value::from("best")),
-        ("airframe", Value::from("a380")),
+        ("world_scale", Value::from(0.0)),
+        ("aircraft.mass", Value::from(-1.0)),
     ] {
         let mut hostile = log.clone();
-        hostile["header"][key] = value;
+        let place = format!("/header/{}", key.replace('.', "/"));
+        *hostile.pointer_mut(&place).unwrap() = value;
         std::fs::write(directory.join("hostile.json"), hostile.to_string()).unwrap();
         for command in [
             "replay hostile.json --out none.html",

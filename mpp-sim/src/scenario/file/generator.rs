@@ -1,7 +1,7 @@
 //! The table `[generator]` of a scenario file.
 
-use crate::file_error::{ScenarioError, ensure};
 use crate::field::Point;
+use crate::file_error::{ScenarioError, ensure};
 use crate::generator::{Generator, GeneratorName};
 use serde::{Deserialize, Serialize};
 
