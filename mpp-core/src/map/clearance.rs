@@ -122,27 +122,47 @@ impl ClearanceField {
         (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
+    /// The field at one place downrange \[m\].
+    pub(crate) fn column(&self, x: f64) -> Column {
+        let (col, right) = split((x - self.first_x) / CELL - 0.5, COLS);
+        let mut column = Column {
+            along: [0.0; ROWS],
+            unknown: [false; ROWS],
+            floor: self.floor,
+        };
+        for (along, distances) in column.along.iter_mut().zip(&self.distance) {
+            let at = |col: usize| f64::from(distances[col % COLS]);
+            *along = at(col) * (1.0 - right) + at(col + 1) * right;
+        }
+        if let Some(col) = cell((x - self.first_x) / CELL).filter(|col| *col < COLS) {
+            for (unknown, cells) in column.unknown.iter_mut().zip(&self.unknown) {
+                *unknown = bit(cells, col);
+            }
+        }
+        column
+    }
+
     /// Whether the cell of a point is in the window and the map knows nothing of it.
     #[must_use]
     pub fn is_unknown(&self, x: f64, z: f64) -> bool {
-        self.bit(&self.unknown, x, z)
+        self.is_set(&self.unknown, x, z)
     }
 
     /// Whether the cell of a point is occupied.
     #[must_use]
     pub fn is_occupied(&self, x: f64, z: f64) -> bool {
-        self.bit(&self.occupied, x, z)
+        self.is_set(&self.occupied, x, z)
     }
 
-    fn bit(&self, rows: &[u128; ROWS], x: f64, z: f64) -> bool {
-        let (col, row) = (
-            libm::floor((x - self.first_x) / CELL),
-            libm::floor((z - self.floor) / CELL),
-        );
-        if !(0.0..COLS as f64).contains(&col) || !(0.0..ROWS as f64).contains(&row) {
+    fn is_set(&self, rows: &[u128; ROWS], x: f64, z: f64) -> bool {
+        let row = cell((z - self.floor) / CELL);
+        let (Some(col), Some(cells)) = (
+            cell((x - self.first_x) / CELL),
+            row.and_then(|row| rows.get(row)),
+        ) else {
             return false;
-        }
-        rows[row as usize % ROWS] >> (col as u32 % u128::BITS) & 1 == 1
+        };
+        col < COLS && bit(cells, col)
     }
 
     /// Visits the centres of the occupied cells in a box that have a free neighbour. `x` and `z` are the
@@ -175,10 +195,45 @@ impl ClearanceField {
     }
 }
 
+/// The clearance field at one place downrange, for callers that ask at many heights.
+pub(crate) struct Column {
+    /// Distances between the cell centres of a row, by row [1 / PARTS m].
+    along: [f64; ROWS],
+    unknown: [bool; ROWS],
+    floor: f64,
+}
+
+impl Column {
+    /// The same as [`ClearanceField::distance`].
+    pub(crate) fn distance(&self, z: f64) -> f64 {
+        let (row, up) = split((z - self.floor) / CELL - 0.5, ROWS);
+        let (low, high) = (self.along[row % ROWS], self.along[(row + 1) % ROWS]);
+        (low * (1.0 - up) + high * up) * (1.0 / PARTS)
+    }
+
+    /// The same as [`ClearanceField::is_unknown`].
+    pub(crate) fn is_unknown(&self, z: f64) -> bool {
+        let row = cell((z - self.floor) / CELL);
+        row.and_then(|row| self.unknown.get(row))
+            .is_some_and(|unknown| *unknown)
+    }
+}
+
 impl Default for ClearanceField {
     fn default() -> Self {
         Self::new()
     }
+}
+
+/// The number of the cell that holds a coordinate in cells. It is `None` below the first cell.
+fn cell(coordinate: f64) -> Option<usize> {
+    (coordinate >= 0.0).then_some(coordinate as usize)
+}
+
+/// Whether a cell of a row is set. A flight computer takes a byte of the row with fewer instructions than it
+/// shifts the row.
+pub(super) fn bit(cells: &u128, col: usize) -> bool {
+    cells.to_le_bytes()[col / 8 % 16] >> (col % 8) & 1 == 1
 }
 
 /// First and last cell of that part of a range \[m\] that lies in the window.

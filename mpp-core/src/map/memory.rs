@@ -4,7 +4,8 @@
 //! A beam is evidence against obstacles on its way, and evidence for an obstacle at its end. No beam sees
 //! the back of an obstacle, so the map knows nothing of it; [`super::ClearanceField`] completes it.
 
-use super::Pose;
+use super::clearance::bit;
+use super::{Pose, rounded_down};
 use crate::sense::LidarScan;
 use crate::tuning::memory::{
     BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,
@@ -81,7 +82,7 @@ impl MemoryMap {
     /// whole cells. At the first call, and when the aircraft is behind the window, the function empties the
     /// map. An aircraft is behind the window after a position that was far wrong.
     pub fn roll(&mut self, x: f64, altitude: f64) {
-        let first = (libm::floor(x / CELL) as i32).saturating_sub(BEHIND);
+        let first = rounded_down(x / CELL).saturating_sub(BEHIND);
         let behind = first < self.first_col.saturating_sub(BEHIND);
         if !self.started || behind {
             self.evidence = [[0; COLS]; ROWS];
@@ -153,8 +154,11 @@ impl MemoryMap {
             let range = f64::from(*range);
             if is_return(range, sight) {
                 self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED);
-                if let Some(evidence) = self.cell_mut(self.locate(at(range))) {
-                    *evidence = weighed(*evidence, HIT);
+                let place = self.slot_at(self.locate(at(range)));
+                if let Some((row, slot)) = place
+                    && let Some(cells) = self.evidence.get_mut(row)
+                {
+                    cells[slot] = weighed(cells[slot], HIT);
                 }
             } else {
                 self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED);
@@ -194,6 +198,8 @@ impl MemoryMap {
     }
 
     /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\].
+    // Both kinds of beams call it, and each would hold a copy.
+    #[inline(never)]
     fn pass(&mut self, at: impl Fn(f64) -> (f64, f64), length: f64, evidence_against: i8) {
         let mut last = None;
         for step in 0..MAX_STEPS {
@@ -206,10 +212,16 @@ impl MemoryMap {
                 continue;
             }
             last = Some(place);
-            if !self.is_lone_hit(place)
-                && let Some(evidence) = self.cell_mut(place)
-            {
-                *evidence = weighed(*evidence, -evidence_against);
+            let Some((row, slot)) = self.slot_at(place) else {
+                continue;
+            };
+            let (Some(cells), Some(lone)) = (self.evidence.get_mut(row), self.lone_hits.get(row))
+            else {
+                continue;
+            };
+            // A beam of this scan that ended in a cell that stands alone says more than others that pass.
+            if !bit(lone, slot) {
+                cells[slot] = weighed(cells[slot], -evidence_against);
             }
         }
     }
@@ -222,13 +234,11 @@ impl MemoryMap {
             let range = f64::from(*range);
             if is_return(range, sight) {
                 let (up, ahead) = libm::sincos(pose.pitch + scan.beam_angle(beam));
-                let (row, col) = self.locate((pose.x + range * ahead, pose.z + range * up));
-                let ahead = col.saturating_sub(self.first_col);
-                let row = usize::try_from(row).ok();
-                if (0..COLS as i32).contains(&ahead)
-                    && let Some(cells) = row.and_then(|row| hits.get_mut(row))
+                let place = (pose.x + range * ahead, pose.z + range * up);
+                if let Some((row, slot)) = self.slot_at(self.locate(place))
+                    && let Some(cells) = hits.get_mut(row)
                 {
-                    *cells |= 1 << slot(col);
+                    *cells |= 1 << slot;
                 }
             }
         }
@@ -249,26 +259,19 @@ impl MemoryMap {
         }
     }
 
-    /// Whether a beam of the scan at hand ended in a cell that stands alone.
-    fn is_lone_hit(&self, (row, col): (i32, i32)) -> bool {
-        let row = usize::try_from(row).ok();
-        row.and_then(|row| self.lone_hits.get(row))
-            .is_some_and(|cells| cells >> slot(col) & 1 == 1)
-    }
-
     /// Row and world column of a point `(x, z)` \[m\].
     fn locate(&self, (x, z): (f64, f64)) -> (i32, i32) {
-        let row = libm::floor((z - self.floor) / CELL) as i32;
-        (row, libm::floor(x / CELL) as i32)
+        (
+            rounded_down((z - self.floor) / CELL),
+            rounded_down(x / CELL),
+        )
     }
 
-    fn cell_mut(&mut self, (row, col): (i32, i32)) -> Option<&mut i8> {
+    /// Row and slot of a cell by its row and world column, if it lies in the window.
+    fn slot_at(&self, (row, col): (i32, i32)) -> Option<(usize, usize)> {
         let ahead = col.checked_sub(self.first_col)?;
-        if !(0..COLS as i32).contains(&ahead) {
-            return None;
-        }
-        let row = self.evidence.get_mut(usize::try_from(row).ok()?)?;
-        Some(&mut row[slot(col)])
+        let inside = (0..COLS as i32).contains(&ahead) && (0..ROWS as i32).contains(&row);
+        inside.then_some((row as usize, slot(col)))
     }
 
     /// Downrange position of the window's near edge \[m\].

@@ -97,20 +97,19 @@ impl OccupancyGrid {
     /// Whether a cell is occupied. A cell outside of the grid counts as free.
     #[must_use]
     pub fn occupied(&self, row: i32, col: i32) -> bool {
-        let Some((word, bit)) = Self::bit(col) else {
+        let (Ok(row), Ok(col)) = (usize::try_from(row), usize::try_from(col)) else {
             return false;
         };
-        usize::try_from(row)
-            .ok()
-            .and_then(|row| self.rows.get(row))
-            .and_then(|cells| cells.get(word))
-            .is_some_and(|cells| cells & bit != 0)
+        let cells = self.rows.get(row).and_then(|cells| cells.get(col / 64));
+        // A flight computer takes a byte of a word with fewer instructions than it shifts the word.
+        let bits = cells.map_or(0, |cells| cells.to_le_bytes()[col / 8 % 8]);
+        col < GRID_COLS && bits >> (col % 8) & 1 == 1
     }
 
     /// Whether the cell that holds a point is occupied.
     #[must_use]
     pub fn occupied_at(&self, point: GridPoint) -> bool {
-        self.occupied(libm::floor(point.row) as i32, libm::floor(point.col) as i32)
+        self.occupied(rounded_down(point.row), rounded_down(point.col))
     }
 
     /// Word and mask of a column, or `None` for a column outside of the grid.
@@ -132,9 +131,9 @@ impl OccupancyGrid {
             if range > 0.0 {
                 let angle = pitch + scan.beam_angle(beam);
                 let (sin, cos) = libm::sincos(angle);
-                // `floor` rounds to the low corner of the cell, whose coordinates are the number of the cell.
-                let row = libm::floor(GridPoint::AIRCRAFT.row + range * sin) as i32;
-                let col = libm::floor(GridPoint::AIRCRAFT.col + range * cos) as i32;
+                // The low corner of a cell has the cell's number as coordinates.
+                let row = rounded_down(GridPoint::AIRCRAFT.row + range * sin);
+                let col = rounded_down(GridPoint::AIRCRAFT.col + range * cos);
                 outside += usize::from(!self.mark(row, col));
             }
         }
@@ -148,6 +147,9 @@ impl OccupancyGrid {
     /// Whether every cell that the segment passes is free.
     #[must_use]
     pub fn segment_is_free(&self, from: GridPoint, to: GridPoint) -> bool {
+        if self.box_is_free(from, to) {
+            return true;
+        }
         let length = from.distance(&to);
         if length <= 0.0 {
             return !self.occupied_at(from);
@@ -157,6 +159,35 @@ impl OccupancyGrid {
             .take(MAX_WALK)
             .take_while(|(_, _, entered)| *entered <= length)
             .all(|(row, col, _)| !self.occupied(row, col))
+    }
+
+    /// Whether every cell of the box about two points is free. A walk between the points stays in this box. The
+    /// slack is far more than the rounding of a walk.
+    fn box_is_free(&self, from: GridPoint, to: GridPoint) -> bool {
+        const SLACK: f64 = 1e-6;
+        let cells = |a: f64, b: f64, count: usize| {
+            let inside = |cell: i32| cell.clamp(0, count as i32) as usize;
+            let low = rounded_down(a.min(b) - SLACK);
+            let high = rounded_down(a.max(b) + SLACK).saturating_add(1);
+            inside(low)..inside(high)
+        };
+        let rows = cells(from.row, to.row, GRID_ROWS);
+        let cols = cells(from.col, to.col, GRID_COLS);
+        let mut masks = [0; WORDS];
+        for (word, mask) in masks.iter_mut().enumerate() {
+            // The bits before a column, of those in this word.
+            let before = |col: usize| match col.saturating_sub(64 * word) {
+                bits @ 0..64 => (1_u64 << bits) - 1,
+                _ => u64::MAX,
+            };
+            *mask = before(cols.end) & !before(cols.start);
+        }
+        let mut rows = self.rows.get(rows).unwrap_or_default().iter();
+        rows.all(|row| {
+            row.iter()
+                .zip(&masks)
+                .all(|(cells, mask)| cells & mask == 0)
+        })
     }
 
     /// Marks the eight neighbours of every occupied cell.
@@ -171,6 +202,14 @@ impl OccupancyGrid {
             below = own;
         }
     }
+}
+
+/// The number of the cell that holds a coordinate in cells: the coordinate, rounded down. Coordinates beyond the
+/// range of numbers give its end. A flight computer does this with far fewer instructions than
+/// `libm::floor`, and the result is the same.
+pub(crate) fn rounded_down(coordinate: f64) -> i32 {
+    let cut = coordinate as i32;
+    cut.saturating_sub(i32::from(f64::from(cut) > coordinate))
 }
 
 impl Default for OccupancyGrid {
@@ -194,4 +233,54 @@ fn widen(cells: &[u64; WORDS]) -> [u64; WORDS] {
     // Bits beyond the last column stay free.
     wide[WORDS - 1] &= u64::MAX >> (WORDS * 64 - GRID_COLS);
     wide
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ClearanceField, MemoryMap, rounded_down};
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    #[test]
+    fn rounding_down_is_the_floor() {
+        let mut random = Pcg64Mcg::seed_from_u64(1);
+        let near = [0.0, 1.0, -1.0, 2_147_483_648.0, -2_147_483_648.0].map(f64::to_bits);
+        for round in 0..200_000_u64 {
+            // All patterns of bits, values of maps, and neighbours of whole numbers and of the ends.
+            let bits = random.next_u64();
+            let value = match round % 3 {
+                0 => f64::from_bits(bits),
+                1 => (bits >> 11) as f64 / (1_u64 << 41) as f64 - 2048.0,
+                _ => f64::from_bits(
+                    near[(bits % 5) as usize]
+                        .wrapping_add((bits >> 8) % 9)
+                        .wrapping_sub(4),
+                ),
+            };
+            assert_eq!(rounded_down(value), libm::floor(value) as i32, "{value:e}");
+        }
+    }
+
+    #[test]
+    fn a_column_is_the_field_at_its_place() {
+        let mut random = Pcg64Mcg::seed_from_u64(2);
+        let mut map = MemoryMap::new();
+        map.roll(100.0, 50.0);
+        map.know(|x, z| (x * 7.0 + z * 3.0) as i64 % 23 == 0);
+        map.roll(108.0, 52.0);
+        let mut field = ClearanceField::new();
+        field.build(&map);
+        let mut unknown = 0;
+        for _ in 0..2000 {
+            let mut between = |least: f64, most: f64| {
+                least + (most - least) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+            };
+            let (x, z) = (between(95.0, 175.0), between(30.0, 75.0));
+            let column = field.column(x);
+            assert_eq!(column.distance(z).to_bits(), field.distance(x, z).to_bits());
+            assert_eq!(column.is_unknown(z), field.is_unknown(x, z));
+            unknown += u32::from(column.is_unknown(z));
+        }
+        assert!(unknown > 100, "{unknown} points were unknown");
+    }
 }

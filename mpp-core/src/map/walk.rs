@@ -1,7 +1,7 @@
 //! The cells that a straight line passes (Amanatides, Woo: "A fast voxel traversal algorithm for
 //! ray tracing", 1987).
 
-use super::GridPoint;
+use super::{GridPoint, rounded_down};
 
 /// Iterates over the cells along a ray: `(row, col, distance at which the cell is entered [m])`.
 ///
@@ -27,8 +27,8 @@ impl CellWalk {
             entered: 0.0,
         };
         for axis in 0..2 {
-            let floor = libm::floor(origin[axis]);
-            walk.cell[axis] = floor as i32;
+            walk.cell[axis] = rounded_down(origin[axis]);
+            let floor = f64::from(walk.cell[axis]);
             let inverse = 1.0 / direction[axis];
             if direction[axis] > 0.0 {
                 walk.step[axis] = 1;

@@ -7,12 +7,16 @@
 //! height. Each minimum of this cost gives a path. These paths differ in the way they pass the obstacles,
 //! or in their heights.
 
+mod edges;
+
 use crate::map::{ClearanceField, split};
 use crate::tuning::lattice::{
-    ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE, SLOPE_PRICE,
-    SPACING, STRETCH, TURN_PRICE,
+    ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE, SPACING,
+    STRETCH,
 };
 use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_PRICE};
+use core::ops::Range;
+use edges::{EDGE_REACH, Edges, NO_PRICES, Prices};
 
 /// Number of stations, the station at the aircraft included.
 pub const STATIONS: usize = 17;
@@ -34,14 +38,13 @@ pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
 const QUARTERS: usize = 4;
 /// Number of heights of these points, in steps of half of [`RISE`].
 const POINTS: usize = 2 * HEIGHTS - 1;
-
 /// Costs are whole numbers of sixteenths, so that sums do not depend on the order of their terms.
 const COST_UNIT: f64 = 16.0;
 const NEVER: u32 = 1 << 28;
 
-type Layer = [[u32; SLOPES]; HEIGHTS];
-type Choice = [[u8; SLOPES]; HEIGHTS];
-
+/// Costs by slope and height.
+type Layer = [[u32; HEIGHTS]; SLOPES];
+type Choice = [[u8; HEIGHTS]; SLOPES];
 /// A path: its height at each station \[m\].
 pub type LatticePath = [f64; STATIONS];
 
@@ -98,10 +101,10 @@ impl Lattice {
             spacing: SPACING,
             slope_step: 0.0,
             station: STATIONS,
-            layer: [[NEVER; SLOPES]; HEIGHTS],
-            to_via: [[NEVER; SLOPES]; HEIGHTS],
-            before: [[[0; SLOPES]; HEIGHTS]; VIA + 1],
-            after: [[[0; SLOPES]; HEIGHTS]; STATIONS - VIA],
+            layer: [[NEVER; HEIGHTS]; SLOPES],
+            to_via: [[NEVER; HEIGHTS]; SLOPES],
+            before: [[[0; HEIGHTS]; SLOPES]; VIA + 1],
+            after: [[[0; HEIGHTS]; SLOPES]; STATIONS - VIA],
         }
     }
 
@@ -115,12 +118,12 @@ impl Lattice {
         self.spacing = SPACING * stretch;
         self.slope_step = 2.0 * RISE / self.spacing;
         self.station = 0;
-        self.layer = [[NEVER; SLOPES]; HEIGHTS];
+        self.layer = [[NEVER; HEIGHTS]; SLOPES];
         let steps =
             libm::round(task.slope / self.slope_step).clamp(-f64::from(LEVEL), LEVEL.into());
         let slope = (steps as i32 + LEVEL) as usize;
-        if let Some(cost) = self.layer[MIDDLE as usize].get_mut(slope) {
-            *cost = 0;
+        if let Some(costs) = self.layer.get_mut(slope) {
+            costs[MIDDLE as usize] = 0;
         }
     }
 
@@ -138,7 +141,7 @@ impl Lattice {
             station @ VIA..LAST => {
                 if station == VIA {
                     self.to_via = self.layer;
-                    self.layer = [[0; SLOPES]; HEIGHTS];
+                    self.layer = [[0; HEIGHTS]; SLOPES];
                 }
                 // The second pass runs from the far end back to the via station.
                 self.backward(field, LAST - 1 - (station - VIA));
@@ -152,23 +155,24 @@ impl Lattice {
     // The function holds a layer on the stack, so it is not inlined.
     #[inline(never)]
     fn forward(&mut self, field: &ClearanceField, station: usize) {
-        let mut points = [[0; POINTS]; QUARTERS];
-        self.write_prices(field, station, &mut points);
-        let mut next: Layer = [[NEVER; SLOPES]; HEIGHTS];
-        for (height, costs) in (0..).zip(&self.layer) {
-            for (slope, cost) in (0..).zip(costs).filter(|(_, cost)| **cost < NEVER) {
-                for edge in edges(height, slope) {
-                    let cost = cost + edge.price(&points);
-                    if let Some(place) = entry(&mut next, edge.to)
-                        && cost < *place
-                    {
-                        *place = cost;
-                        let before = self.before.get_mut(station + 1);
-                        if let Some(choice) = before.and_then(|choice| entry(choice, edge.to)) {
-                            *choice = slope as u8;
-                        }
-                    }
-                }
+        let reached = reached(&self.layer);
+        let mut prices = NO_PRICES;
+        self.write_prices(field, station, &reached, &mut prices);
+        let mut next: Layer = [[NEVER; HEIGHTS]; SLOPES];
+        let choices = self.before.get_mut(station + 1);
+        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
+        for (to, (costs, choices)) in (0..).zip(next.iter_mut().zip(choices)) {
+            // The lowest start comes first: among equal costs the first one stays.
+            for from in [to + 1, to, to - 1] {
+                let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, from)) else {
+                    continue;
+                };
+                let heights = edges.starts(&reached);
+                let ends = edges.ends(&heights);
+                let (costs, choices) = (costs.get_mut(ends.clone()), choices.get_mut(ends));
+                let known = known.get(heights.clone()).unwrap_or_default();
+                let found = (costs.unwrap_or_default(), choices.unwrap_or_default());
+                edges.relax(&prices, heights.start, known, from as u8, found);
             }
         }
         self.layer = next;
@@ -177,51 +181,63 @@ impl Lattice {
     // The function holds a layer on the stack, so it is not inlined.
     #[inline(never)]
     fn backward(&mut self, field: &ClearanceField, station: usize) {
-        let mut points = [[0; POINTS]; QUARTERS];
-        self.write_prices(field, station, &mut points);
-        let mut previous: Layer = [[NEVER; SLOPES]; HEIGHTS];
-        for (height, costs) in (0..).zip(&mut previous) {
-            for (slope, cost) in (0..).zip(costs.iter_mut()) {
-                for edge in edges(height, slope) {
-                    let onward = entry(&mut self.layer, edge.to).map_or(NEVER, |cost| *cost);
-                    let through = onward.saturating_add(edge.price(&points));
-                    if onward < NEVER && through < *cost {
-                        *cost = through;
-                        let after = self.after.get_mut(station - VIA);
-                        if let Some(choice) =
-                            after.and_then(|choice| entry(choice, (height, slope)))
-                        {
-                            *choice = edge.to.1 as u8;
-                        }
-                    }
-                }
+        let all = 0..HEIGHTS;
+        let mut prices = NO_PRICES;
+        self.write_prices(field, station, &all, &mut prices);
+        let mut previous: Layer = [[NEVER; HEIGHTS]; SLOPES];
+        let choices = self.after.get_mut(station - VIA);
+        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
+        for (from, (costs, choices)) in (0..).zip(previous.iter_mut().zip(choices)) {
+            // The edge without a turn comes first: among equal costs the first one stays.
+            for to in [from, from - 1, from + 1] {
+                let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, to)) else {
+                    continue;
+                };
+                let heights = edges.starts(&all);
+                let known = known.get(edges.ends(&heights)).unwrap_or_default();
+                let first = heights.start;
+                let (costs, choices) = (costs.get_mut(heights.clone()), choices.get_mut(heights));
+                let found = (costs.unwrap_or_default(), choices.unwrap_or_default());
+                edges.relax(&prices, first, known, to as u8, found);
             }
         }
         self.layer = previous;
     }
 
-    /// Writes the prices of the points on the edges of a station, by quarter and by height in halves of
-    /// [`RISE`]. The last quarter also contains the price of the height itself.
+    /// Writes the prices of the points on the edges of a station that begin at certain heights. The last quarter
+    /// also contains the price of the height itself.
+    // Both passes call it, and each would hold a copy.
+    #[inline(never)]
     fn write_prices(
         &self,
         field: &ClearanceField,
         station: usize,
-        prices: &mut [[u32; POINTS]; QUARTERS],
+        heights: &Range<usize>,
+        prices: &mut Prices,
     ) {
         let task = &self.task;
+        let first = (2 * heights.start).saturating_sub(EDGE_REACH);
+        let last = (2 * heights.end + EDGE_REACH).min(POINTS);
         for (quarter, prices) in prices.iter_mut().enumerate() {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
             let ahead = self.spacing * (station as f64 + share);
-            for (point, price) in prices.iter_mut().enumerate() {
+            let column = field.column(task.x + ahead);
+            let unknown = if ahead < UNKNOWN_AHEAD {
+                UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD)
+            } else {
+                0.0
+            };
+            let points = prices.iter_mut().skip(EDGE_REACH).enumerate();
+            for (point, price) in points.take(last).skip(first) {
                 let z = task.z + 0.5 * RISE * (point as f64 - f64::from(2 * MIDDLE));
                 let from_altitude = z - task.altitude;
                 let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
-                let distance = field.distance(task.x + ahead, z);
+                let distance = column.distance(z);
                 let lack = (MARGIN - distance).max(0.0) + outside;
                 let crowded = (ROOM - distance).max(0.0);
                 let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
-                if ahead < UNKNOWN_AHEAD && field.is_unknown(task.x + ahead, z) {
-                    cost += UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                if column.is_unknown(z) {
+                    cost += unknown;
                 }
                 if quarter + 1 == QUARTERS {
                     cost += ALTITUDE_PRICE * from_altitude * from_altitude;
@@ -244,8 +260,8 @@ impl Lattice {
         let (height, up) = split((z - self.task.z) / RISE + f64::from(MIDDLE), HEIGHTS);
         let (slope, steeper) = split(slope / self.slope_step + f64::from(LEVEL), SLOPES);
         let at = |height: usize, slope: usize| {
-            let costs = self.layer.get(height);
-            let cost = costs.and_then(|costs| costs.get(slope)).copied();
+            let costs = self.layer.get(slope);
+            let cost = costs.and_then(|costs| costs.get(height)).copied();
             (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(DEAREST_ONWARD)
         };
         let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
@@ -254,12 +270,12 @@ impl Lattice {
 
     /// Writes the paths through the best heights of the via station, the best path first. The call is valid
     /// only after the search.
-    pub fn paths(&mut self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
+    pub fn paths(&self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
         paths.clear();
         let mut through = [(NEVER, 0); HEIGHTS];
         let passes = self.to_via.iter().zip(&self.layer);
-        for (best, (to, from)) in through.iter_mut().zip(passes) {
-            for (slope, (to, from)) in (0..).zip(to.iter().zip(from)) {
+        for (slope, (to, from)) in (0..).zip(passes) {
+            for (best, (to, from)) in through.iter_mut().zip(to.iter().zip(from)) {
                 *best = (*best).min((to.saturating_add(*from), slope));
             }
         }
@@ -286,19 +302,19 @@ impl Lattice {
     }
 
     /// The best path through a height and a slope at the via station.
-    fn path(&mut self, height: i32, slope: i32) -> LatticePath {
+    fn path(&self, height: i32, slope: i32) -> LatticePath {
         let z = |height: i32| self.task.z + RISE * f64::from(height - MIDDLE);
         let mut path = [z(height); STATIONS];
         let (before, onward) = path.split_at_mut(VIA);
         let mut at = (height, slope);
-        for (place, choice) in before.iter_mut().zip(&mut self.before[1..]).rev() {
-            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+        for (place, choices) in before.iter_mut().zip(&self.before[1..]).rev() {
+            let slope = choice(choices, at).unwrap_or(LEVEL);
             at = (at.0 - (slope - LEVEL) - (at.1 - LEVEL), slope);
             *place = z(at.0);
         }
         let mut at = (height, slope);
-        for (place, choice) in onward.iter_mut().skip(1).zip(&mut self.after) {
-            let slope = entry(choice, at).map_or(LEVEL, |slope| i32::from(*slope));
+        for (place, choices) in onward.iter_mut().skip(1).zip(&self.after) {
+            let slope = choice(choices, at).unwrap_or(LEVEL);
             at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
             *place = z(at.0);
         }
@@ -312,46 +328,25 @@ impl Default for Lattice {
     }
 }
 
-/// Connection from a height and a slope at one station to a height and a slope at the next.
-struct Edge {
-    from: (i32, i32),
-    to: (i32, i32),
+/// The heights between the lowest and the highest that a path reaches.
+fn reached(layer: &Layer) -> Range<usize> {
+    let is_reached = |height: &usize| {
+        let mut costs = layer.iter().filter_map(|costs| costs.get(*height));
+        costs.any(|cost| *cost < NEVER)
+    };
+    let mut heights = (0..HEIGHTS).filter(is_reached);
+    let first = heights.next().unwrap_or(0);
+    first..heights.next_back().unwrap_or(first) + 1
 }
 
-/// The edges from a height and a slope. The edge without a turn comes first.
-fn edges(height: i32, slope: i32) -> impl Iterator<Item = Edge> {
-    [slope, slope - 1, slope + 1]
-        .into_iter()
-        .filter(|next| (0..SLOPES as i32).contains(next))
-        .map(move |next| Edge {
-            from: (height, slope),
-            to: (height + (slope - LEVEL) + (next - LEVEL), next),
-        })
-        .filter(|edge| (0..HEIGHTS as i32).contains(&edge.to.0))
+/// A row of a layer by the number of the slope.
+fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
+    layer.get(usize::try_from(slope).ok()?)
 }
 
-impl Edge {
-    /// The price of the edge: that of its points, its slope and its turn.
-    fn price(&self, points: &[[u32; POINTS]; QUARTERS]) -> u32 {
-        const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
-        let (slope, turn) = (self.from.1 - LEVEL, self.to.1 - self.from.1);
-        let mut price = if turn == 0 { 0 } else { TURN };
-        let next = self.to.1 - LEVEL;
-        price += (COST_UNIT * SLOPE_PRICE * f64::from(next * next)) as u32;
-        for (quarter, points) in (1..).zip(points) {
-            // The edge is a parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
-            let height = 2 * self.from.0 + slope * quarter + turn * (quarter * quarter / 8);
-            let place = usize::try_from(height).ok();
-            price += place
-                .and_then(|place| points.get(place))
-                .copied()
-                .unwrap_or(0);
-        }
-        price
-    }
-}
-
-fn entry<T>(layer: &mut [[T; SLOPES]; HEIGHTS], (height, slope): (i32, i32)) -> Option<&mut T> {
-    let row = layer.get_mut(usize::try_from(height).ok()?)?;
-    row.get_mut(usize::try_from(slope).ok()?)
+/// The choice at a height and a slope.
+fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<i32> {
+    let choices = choices.get(usize::try_from(slope).ok()?)?;
+    let choice = choices.get(usize::try_from(height).ok()?)?;
+    Some(i32::from(*choice))
 }

@@ -38,8 +38,6 @@ pub struct Condensed {
     /// Price of each row: `1 / |y|^2` for the row's response `y`, and 0 if the controls cannot change the row. A
     /// violation `s` takes a cost of `s^2 / 2` times the price to correct.
     pub(super) prices: [f64; ROWS],
-    /// The rows with price 0, which the controls cannot change.
-    pub(super) constant_rows: heapless::Vec<usize, ROWS>,
 }
 
 /// The cost has no single optimum: a weight is not positive, or the model is not finite. The planner then
@@ -69,7 +67,6 @@ impl Condensed {
             feedback: [Feedback::none(); STAGES],
             response: Response::new(),
             prices: [0.0; ROWS],
-            constant_rows: heapless::Vec::new(),
         }
     }
 
@@ -140,7 +137,6 @@ impl Condensed {
 
     /// Writes the price of each row.
     fn write_prices(&mut self) {
-        self.constant_rows.clear();
         let mut pair = Pair::none();
         for (row, price) in self.prices.iter_mut().enumerate() {
             let squared = RowPattern::of(row).map_or(0.0, |pattern| {
@@ -150,8 +146,6 @@ impl Condensed {
             *price = if squared > UNCHANGEABLE {
                 1.0 / squared
             } else {
-                // The list has as many places as there are rows, so the push cannot fail.
-                let _ = self.constant_rows.push(row);
                 0.0
             };
         }

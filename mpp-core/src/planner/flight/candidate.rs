@@ -95,8 +95,10 @@ impl Frame {
 
     /// Writes the dynamics of each stage, linearised about a candidate.
     pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
-        let stages = candidate.knots.iter().zip(&candidate.controls);
-        for (stage, (dynamics, (knot, control))) in dynamics.iter_mut().zip(stages).enumerate() {
+        let [_, following @ ..] = &candidate.knots;
+        let knots = candidate.knots.iter().zip(following);
+        let stages = dynamics.iter_mut().zip(knots.zip(&candidate.controls));
+        for (stage, (dynamics, ((knot, following), control))) in stages.enumerate() {
             let (state, input) = knot.sensitivity(&self.airframe, control, STAGE_PERIOD);
             // These columns convert between the program's (pitch, path) and the point mass's (path, angle
             // of attack).
@@ -110,7 +112,12 @@ impl Frame {
                 .map(program_state)
                 .into();
             let b: Matrix6x2<f64> = input.data.0.map(program_state).into();
-            let next = self.after(knot, control);
+            // A roll-out ends each stage in its next knot; a path need not.
+            let next = if candidate.price.is_finite() {
+                *following
+            } else {
+                self.after(knot, control)
+            };
             let thrust = control.thrust - self.trim.control.thrust;
             let control = Vector2::new(control.angle_of_attack_rate, thrust);
             let offset =

@@ -4,7 +4,7 @@
 use super::{FlightPlanner, Phase};
 use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS};
-use crate::map::GridPoint;
+use crate::map::{GridPoint, rounded_down};
 use crate::paths::LatticeTask;
 use crate::tuning::candidates::BEAMS_PER_SLICE;
 
@@ -73,8 +73,8 @@ impl FlightPlanner {
         self.grid.clear();
         let grid = &mut self.grid;
         self.field.surface(window[0], window[1], |x0, z0| {
-            let row = libm::floor(z0 - z + GridPoint::AIRCRAFT.row) as i32;
-            let col = libm::floor(x0 - x + GridPoint::AIRCRAFT.col) as i32;
+            let row = rounded_down(z0 - z + GridPoint::AIRCRAFT.row);
+            let col = rounded_down(x0 - x + GridPoint::AIRCRAFT.col);
             grid.mark(row, col);
         });
     }

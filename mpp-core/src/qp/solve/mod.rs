@@ -284,11 +284,9 @@ impl Solver {
     /// Checks the hard rows that no control can change. If one of them is violated, the problem is
     /// infeasible.
     fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
-        for row in shared.constant_rows.iter().copied() {
-            let Some(bound) = self.problem.bounds.0.get(row) else {
-                continue;
-            };
-            if self.is_soft(row) {
+        let rows = shared.prices.iter().zip(&self.problem.bounds.0);
+        for (row, (price, bound)) in rows.enumerate() {
+            if *price > 0.0 || self.is_soft(row) {
                 continue;
             }
             let value = match (RowKind::of(row), RowPattern::of(row)) {

@@ -1,0 +1,89 @@
+//! The edges between two stations of the lattice, by their slopes.
+
+use super::{COST_UNIT, HEIGHTS, LEVEL, POINTS, QUARTERS, SLOPES};
+use crate::tuning::lattice::{SLOPE_PRICE, TURN_PRICE};
+use core::ops::Range;
+
+/// Farthest point of an edge from the height at which it begins, in steps of half of `RISE`.
+pub(super) const EDGE_REACH: usize = 18;
+
+/// Prices of the points of edges, by quarter and height in halves of `RISE`. The first and the last
+/// [`EDGE_REACH`] places lie outside of the heights and cost nothing. One more place makes pairs of them.
+pub(super) type Prices = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
+pub(super) const NO_PRICES: Prices = [[0; _]; QUARTERS];
+
+/// All edges from a slope at one station to a slope at the next.
+pub(super) struct Edges {
+    /// Slopes, in steps from level.
+    slope: i32,
+    next: i32,
+}
+
+impl Edges {
+    /// The edges between two slopes by their numbers, if both exist.
+    pub(super) fn new(from: i32, to: i32) -> Option<Self> {
+        let slopes = 0..SLOPES as i32;
+        (slopes.contains(&from) && slopes.contains(&to)).then_some(Self {
+            slope: from - LEVEL,
+            next: to - LEVEL,
+        })
+    }
+
+    /// The change of height along an edge, in heights.
+    fn rise(&self) -> i32 {
+        self.slope + self.next
+    }
+
+    /// Those of certain heights from which an edge leads to a height of the lattice.
+    pub(super) fn starts(&self, heights: &Range<usize>) -> Range<usize> {
+        let [down, up] = [-self.rise(), self.rise()].map(|steps| steps.max(0) as usize);
+        heights.start.max(down)..heights.end.min(HEIGHTS - up)
+    }
+
+    /// The heights to which the edges from certain heights lead.
+    pub(super) fn ends(&self, starts: &Range<usize>) -> Range<usize> {
+        let end = |start: usize| start.saturating_add_signed(self.rise() as isize);
+        end(starts.start)..end(starts.end)
+    }
+
+    /// Lowers costs to those over the edges from the height `first` on, which are known costs and the prices of
+    /// points, slope and turn. Notes `choice` where a cost falls.
+    // The callers are few loops over slopes, which would each hold a copy.
+    #[inline(never)]
+    pub(super) fn relax(
+        &self,
+        points: &Prices,
+        first: usize,
+        known: &[u32],
+        choice: u8,
+        (costs, choices): (&mut [u32], &mut [u8]),
+    ) {
+        const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
+        let turn = self.next - self.slope;
+        let own = if turn == 0 { 0 } else { TURN };
+        let own = own + (COST_UNIT * SLOPE_PRICE * f64::from(self.next * self.next)) as u32;
+        let of_quarter = |quarter: usize| {
+            // The edge is a parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
+            let q = quarter as i32 + 1;
+            let rise = self.slope * q + turn * (q * q / 8);
+            let place = (EDGE_REACH + 2 * first).saturating_add_signed(rise as isize);
+            let points = points.get(quarter).and_then(|points| points.get(place..));
+            points.unwrap_or_default().as_chunks::<2>().0.iter()
+        };
+        let [a, b, c, d] = [0, 1, 2, 3].map(of_quarter);
+        let quarters = a.zip(b).zip(c).zip(d);
+        let edges = known.iter().zip(quarters);
+        for ((cost, place), (known, ((([a, _], [b, _]), [c, _]), [d, _]))) in
+            costs.iter_mut().zip(choices).zip(edges)
+        {
+            // The sum cannot overflow: known costs are at most `NEVER`, and prices 5e7.
+            let through = known.wrapping_add(own + a + b + c + d);
+            if through < *cost {
+                *cost = through;
+                *place = choice;
+            }
+        }
+    }
+}
+
+const _: () = assert!(QUARTERS == 4 && EDGE_REACH == QUARTERS * LEVEL as usize + 2);
