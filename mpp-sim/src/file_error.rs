@@ -10,6 +10,8 @@ pub enum ScenarioError {
     Toml(String, Box<toml::de::Error>),
     /// A value is invalid. Holds the key and what to give instead.
     Value(&'static str, String),
+    /// The file with this name is no lidar.
+    Lidar(String, Box<ScenarioError>),
     /// The field cannot be flown through.
     Field(FieldError),
 }
@@ -24,11 +26,12 @@ impl fmt::Display for ScenarioError {
                 let text = error.to_string();
                 // The parser repeats the line, however long it is.
                 if text.len() <= LONGEST_MESSAGE {
-                    return write!(f, "scenario {path}: {}", text.trim_end());
+                    return write!(f, "{path}: {}", text.trim_end());
                 }
                 let place = error.span().map_or(0, |span| span.start);
-                write!(f, "scenario {path}, byte {place}: {}", error.message())
+                write!(f, "{path}, byte {place}: {}", error.message())
             }
+            Self::Lidar(name, error) => write!(f, "lidar {name}, {error}"),
             Self::Field(error) => write!(f, "{error}"),
             Self::Value(key, advice) => write!(f, "{key}: {advice}"),
         }
@@ -39,6 +42,7 @@ impl core::error::Error for ScenarioError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::Toml(_, error) => Some(error),
+            Self::Lidar(_, error) => Some(error),
             Self::Field(error) => Some(error),
             Self::Value(..) => None,
         }

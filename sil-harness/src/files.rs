@@ -5,7 +5,7 @@ use mpp_analysis::instance::{Instance, InstanceError};
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
-use mpp_sim::scenario::{ScenarioError, ScenarioFile};
+use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
 use std::fmt;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -143,6 +143,15 @@ pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
     }
     let text = read(Path::new(name_or_path), MOST_WRITTEN)?;
     AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)
+}
+
+/// Reads a lidar.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Scenario`].
+pub fn read_lidar(path: &Path) -> Result<LidarTable, FileError> {
+    LidarTable::parse(&path.display().to_string(), &read(path, MOST_WRITTEN)?)
+        .map_err(FileError::Scenario)
 }
 
 /// Reads a field.

@@ -269,3 +269,50 @@ fn the_body_counts_in_every_check() {
     assert!((27.9..28.1).contains(&body), "{body}");
     std::fs::remove_dir_all(folder).unwrap();
 }
+
+/// A lidar's file goes before the scenario; a bad one is refused by file and key.
+#[test]
+fn a_lidar_comes_from_a_file() {
+    let folder = scratch("lidar");
+    let (scenario, out) = (folder.join("scenario.toml"), folder.join("out"));
+    std::fs::write(&scenario, "[lidar]\nbeams = 31\nrange_max = 30.0").unwrap();
+    let lidar = folder.join("lidar.toml");
+    std::fs::write(&lidar, "range_max = 60.0\nfield_of_view_deg = 90.0").unwrap();
+    let files = [
+        ("--scenario", scenario.as_path()),
+        ("--lidar", &lidar),
+        ("--out", &out),
+    ];
+    let flown = log(&run(&["fly", "--json", "--duration", "1"], &files));
+    let flown = &flown["header"]["lidar"];
+    assert_eq!(
+        (&flown["beams"], &flown["range_max"]),
+        (&31.into(), &60.0.into())
+    );
+    let view = flown["field_of_view"].as_f64().unwrap();
+    assert!((view - 90_f64.to_radians()).abs() < 1e-12);
+    std::fs::remove_dir_all(&out).unwrap();
+    for (text, hint) in [
+        ("beams = 129", "lidar.beams: give 1 to 128"),
+        ("range_max = nan", "lidar.range_max: give"),
+        ("field_of_view_deg = 400.0", "lidar.field_of_view_deg: give"),
+        ("range_error = -1.0", "lidar.range_error: give"),
+        ("rate = 4.0", "unknown field `rate`"),
+    ] {
+        std::fs::write(&lidar, text).unwrap();
+        let output = run(&["fly"], &[("--lidar", &lidar), ("--out", &out)]);
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{talk}");
+        assert!(
+            talk.contains("lidar.toml") && talk.contains(hint) && !out.exists(),
+            "{talk}"
+        );
+    }
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/lidars/example.toml");
+    let output = run(
+        &["fly", "--duration", "1"],
+        &[("--lidar", &example), ("--out", &out)],
+    );
+    assert!(output.status.success());
+    std::fs::remove_dir_all(folder).unwrap();
+}

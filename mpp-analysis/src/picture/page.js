@@ -253,7 +253,8 @@ function show() {
 
 function title() {
   const h = log.header, s = log.summary;
-  let line = `seed ${h.seed}, preset ${h.preset}, ${h.obstacles} obstacles, ${h.paths} paths`;
+  const obstacles = Object.values(h.field).reduce((count, kind) => count + kind.length, 0);
+  let line = `seed ${h.seed}, preset ${h.preset}, ${obstacles} obstacles, ${h.paths} paths`;
   if (s) line += `: ${s.outcome.replace(/-/g, " ")} after ${s.t_end.toFixed(2)} s, clearance ` +
     (s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m") + `, ${s.replans} replans, ` +
     `${s.candidates} candidates, ${s.feasible} feasible`;

@@ -1,7 +1,7 @@
 //! What a field file must keep to, and the message if it does not.
 
 use super::file::FieldFile;
-use super::geometry::{Point, between_segments, edges, legs};
+use super::geometry::{Point, between_segments, cross, edges, legs, minus};
 use super::obstacle::Obstacle;
 use super::shape::Shape;
 use std::fmt;
@@ -232,7 +232,9 @@ fn flaw_of_polygon(corners: &[Point]) -> Option<Flaw> {
 
 /// Whether two edges from a shared corner leave it in the same direction.
 fn folds_back(shared: Point, one: Point, other: Point) -> bool {
-    use super::geometry::{cross, minus};
     let (a, b) = (minus(one, shared), minus(other, shared));
     cross(a, b) == 0.0 && a.0 * b.0 + a.1 * b.1 > 0.0
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,6 @@
 //! How each generator draws its field.
 
-use super::{Generator, GeneratorName};
+use super::config::{Generator, GeneratorName};
 use crate::field::{Obstacle, Point, Shape, evenly_spaced};
 use crate::random::{self, Stream};
 use rand_chacha::ChaCha8Rng;

@@ -1,7 +1,7 @@
 //! Tests of the generators.
 
 use super::*;
-use crate::field::{Field, ObstacleField, Shape};
+use crate::field::{Field, ObstacleField, Point, Shape};
 
 const ALTITUDE: f64 = 50.0;
 

@@ -3,6 +3,7 @@
 //! `docs/scenarios/example.toml` holds every key with its unit.
 
 mod generator;
+mod lidar;
 mod navigation;
 mod overlay;
 
@@ -15,7 +16,8 @@ use crate::lidar::{LidarConfig, LidarRule};
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
 pub use generator::GeneratorTable;
-use mpp_core::config::{MAX_BEAMS, MAX_PATHS};
+pub use lidar::LidarTable;
+use mpp_core::config::MAX_PATHS;
 pub use navigation::{NavigationSource, NavigationTable};
 use serde::{Deserialize, Serialize};
 
@@ -88,27 +90,6 @@ pub struct ScenarioFile {
     /// Obstacles placed one by one.
     #[serde(skip_serializing_if = "FieldFile::is_empty")]
     pub field: FieldFile,
-}
-
-/// The lidar's keys. An absent key takes the preset's value.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LidarTable {
-    /// Number of beams.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub beams: Option<usize>,
-    /// Field of view \[deg\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub field_of_view_deg: Option<f64>,
-    /// Greatest range \[m\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub range_max: Option<f64>,
-    /// Standard deviation of the range error, as a share of the range [-].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub range_error: Option<f64>,
-    /// Rule by which a beam returns a range.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rule: Option<LidarRule>,
 }
 
 /// The air data sensors' keys. An absent key takes the preset's value.
@@ -224,9 +205,7 @@ fn latency_ticks(latency_ms: u32, replan_ticks: u32) -> Result<u32, ScenarioErro
 
 /// Whether a scenario's values, its times apart, keep to the limits.
 pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
-    let Scenario {
-        lidar, air_data, ..
-    } = scenario;
+    let air_data = &scenario.air_data;
     let scale = (1e-3..=1e3).contains(&scenario.world_scale);
     ensure(scale, "world_scale", "give 0.001 to 1000")?;
     ensure(
@@ -244,27 +223,14 @@ pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
         "slices_per_tick",
         "give at least 1",
     )?;
-    ensure(
-        (1..=MAX_BEAMS).contains(&lidar.beams),
-        "lidar.beams",
-        format!("give 1 to {MAX_BEAMS}"),
-    )?;
-    let view = lidar.field_of_view > 0.0 && lidar.field_of_view <= core::f64::consts::TAU;
-    ensure(
-        view,
-        "lidar.field_of_view_deg",
-        "give more than 0 and at most 360 deg",
-    )?;
-    let range = lidar.range_max > 0.0 && lidar.range_max.is_finite();
-    ensure(range, "lidar.range_max", "give a range above 0 m")?;
     let not_negative = |value: f64| value >= 0.0 && value.is_finite();
     for (value, key) in [
-        (lidar.range_error, "lidar.range_error"),
         (air_data.airspeed_sigma, "air_data.airspeed_sigma"),
         (air_data.pitch_sigma, "air_data.pitch_sigma_deg"),
     ] {
         ensure(not_negative(value), key, "give 0 or more")?;
     }
+    lidar::check(&scenario.lidar)?;
     navigation::check(&scenario.navigation)?;
     check_field(scenario)?;
     match scenario.faults.flaw() {
@@ -301,20 +267,6 @@ fn check_field(scenario: &Scenario) -> Result<(), ScenarioError> {
     placed
         .check_start(start, body)
         .map_err(ScenarioError::Field)
-}
-
-impl LidarTable {
-    fn over(&self, base: LidarConfig) -> LidarConfig {
-        LidarConfig {
-            beams: self.beams.unwrap_or(base.beams),
-            field_of_view: self
-                .field_of_view_deg
-                .map_or(base.field_of_view, f64::to_radians),
-            range_max: self.range_max.unwrap_or(base.range_max),
-            range_error: self.range_error.unwrap_or(base.range_error),
-            rule: self.rule.unwrap_or(base.rule),
-        }
-    }
 }
 
 impl AirDataTable {

@@ -126,7 +126,7 @@ impl FlyArgs {
             ("--replan-hz", self.replan_hz.is_some_and(rate)),
             ("--oracle", self.oracle && !flown.oracle),
         ];
-        let flags = flags.into_iter().chain(self.scenario.other_than(&flown));
+        let flags = flags.into_iter().chain(self.scenario.other_than(&flown)?);
         let mut other = flags.filter_map(|(flag, other)| other.then_some(flag));
         let file = || self.scenario.has_file() && self.scenario().is_ok_and(|asked| asked != flown);
         if let Some(flag) = other.next().or_else(|| file().then_some("--scenario")) {

@@ -3,8 +3,10 @@
 
 use super::answer::{Failure, USAGE};
 use super::values::{navigation, scene};
-use crate::files::{read_aircraft, read_scenario};
-use mpp_sim::scenario::{NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND};
+use crate::files::{read_aircraft, read_lidar, read_scenario};
+use mpp_sim::scenario::{
+    LidarTable, NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND,
+};
 use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
@@ -24,6 +26,9 @@ pub(super) struct ScenarioArgs {
     /// speed squared]
     #[arg(long, value_name = "FACTOR")]
     world_scale: Option<f64>,
+    /// Lidar (TOML, as docs/lidars/example.toml); its keys take precedence over the scenario's
+    #[arg(long, value_name = "FILE")]
+    lidar: Option<PathBuf>,
     /// Source of positions: their rate, errors and delay [default: rtk; of presets paper and reference: ideal]
     #[arg(long, value_parser = navigation())]
     navigation: Option<NavigationSource>,
@@ -45,6 +50,9 @@ impl ScenarioArgs {
             Some(path) => read_scenario(path).map_err(|error| Failure::new(USAGE, error))?,
             None => ScenarioFile::default(),
         };
+        if let Some(lidar) = self.lidar()? {
+            file.lidar = lidar.before(&file.lidar);
+        }
         replace(&mut file.scene, self.scene);
         if let Some(aircraft) = &self.aircraft {
             file.aircraft =
@@ -58,15 +66,30 @@ impl ScenarioArgs {
         Ok(file)
     }
 
+    /// Reads the lidar's file, if there is one.
+    fn lidar(&self) -> Result<Option<LidarTable>, Failure> {
+        let read = |path: &PathBuf| read_lidar(path).map_err(|error| Failure::new(USAGE, error));
+        self.lidar.as_ref().map(read).transpose()
+    }
+
     /// These flags, each with whether it asks for something else than this scenario.
-    pub(super) fn other_than(&self, flown: &Scenario) -> [(&'static str, bool); 7] {
+    ///
+    /// # Errors
+    /// A [`Failure`] when a file cannot be read.
+    pub(super) fn other_than(
+        &self,
+        flown: &Scenario,
+    ) -> Result<[(&'static str, bool); 8], Failure> {
+        let lidar = self.lidar()?;
+        let other_lidar = lidar.is_some_and(|table| table.over(flown.lidar) != flown.lidar);
         let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
         let slices = other(self.slices_per_tick, flown.slices_per_tick);
         let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
             read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
         });
         let seconds = other(self.duration, flown.ticks / TICKS_PER_SECOND);
-        [
+        Ok([
+            ("--lidar", other_lidar),
             ("--scene", self.scene.is_some() && self.scene != flown.scene),
             ("--aircraft", aircraft),
             (
@@ -84,7 +107,7 @@ impl ScenarioArgs {
             ),
             ("--slices-per-tick", slices),
             ("--duration", seconds),
-        ]
+        ])
     }
 
     /// Whether a file was given.

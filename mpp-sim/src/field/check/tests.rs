@@ -1,0 +1,110 @@
+//! Tests of what is refused, and of the message.
+
+use super::*;
+
+fn refused(text: &str) -> String {
+    FieldFile::parse("bad.toml", text).unwrap_err().to_string()
+}
+
+#[test]
+fn a_bad_file_is_refused_by_file_and_key() {
+    let many = format!(
+        "[[polyline]]\nthickness = 1.0\npoints = [{}]",
+        "[0.0, 0.0], ".repeat(MAX_VERTICES + 1)
+    );
+    for (text, key, hint) in [
+        ("[[circle]]\nx = 1.0\nz = 2.0", "`radius`", "missing field"),
+        (
+            "[[circle]]\nx = nan\nz = 2.0\nradius = 1.0",
+            "circle 1, x and z",
+            "give",
+        ),
+        (
+            "[[circle]]\nx = 1.0\nz = 2.0\nradius = -1.0",
+            "circle 1, radius",
+            "give more than 0",
+        ),
+        (
+            "[[circle]]\nx = 1.0\nz = 2.0\nradius = inf",
+            "circle 1, radius",
+            "give more than 0",
+        ),
+        (
+            "[[circle]]\nx = 1.0\nz = 2.0\nradius = 1.0\nvelocity = [nan, 0.0]",
+            "circle 1, velocity",
+            "give at most",
+        ),
+        (
+            "[[circle]]\nx = 1.0\nz = 2.0\nradius = 1.0\ncolour = 1",
+            "`colour`",
+            "unknown field",
+        ),
+        ("[[sphere]]\nx = 1.0", "`sphere`", "unknown field"),
+        (
+            "[[capsule]]\nfrom = [0.0, inf]\nto = [1.0, 1.0]\nradius = 1.0",
+            "capsule 1, from and to",
+            "give numbers",
+        ),
+        (
+            "[[capsule]]\nfrom = [0.0, 1.0]\nto = [1.0, 1.0]\nradius = 0.0",
+            "capsule 1, radius",
+            "give more than 0",
+        ),
+        (
+            "[[polygon]]\npoints = [[0.0, 0.0], [1.0, 0.0]]",
+            "polygon 1, points",
+            "give 3 to",
+        ),
+        (
+            "[[polygon]]\npoints = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]",
+            "polygon 1, points",
+            "does not cut itself",
+        ),
+        (
+            "[[polygon]]\npoints = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]",
+            "polygon 1, points",
+            "does not cut itself",
+        ),
+        (
+            "[[polygon]]\npoints = [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]",
+            "polygon 1, points",
+            "leave one out",
+        ),
+        (
+            "[[polyline]]\npoints = [[0.0, 0.0]]\nthickness = 1.0",
+            "polyline 1, points",
+            "at least 2",
+        ),
+        ("[[ground]]\npoints = []", "ground 1, points", "at least 1"),
+        (
+            "[[ground]]\npoints = [[1.0, 0.0], [1.0, 2.0]]",
+            "ground 1, points",
+            "farther downrange",
+        ),
+        (
+            "[[ceiling]]\npoints = [[1.0, nan]]",
+            "ceiling 1, points",
+            "give numbers",
+        ),
+        (&many, "all, points", "give at most 10000"),
+    ] {
+        let error = refused(text);
+        assert!(error.starts_with("field bad.toml"), "{error}");
+        assert!(error.contains(key) && error.contains(hint), "{error}");
+    }
+}
+
+#[test]
+fn what_covers_the_start_is_refused() {
+    let file = FieldFile::of(&[
+        Obstacle::circle(30.0, 50.0, 1.0),
+        Obstacle::at_rest(Shape::ground(&[(0.0, 49.5)])),
+    ]);
+    let start = (0.0, 50.0);
+    assert!(file.check_start(start, 0.4).is_ok());
+    let error = file.check_start(start, 0.6).unwrap_err().to_string();
+    assert!(
+        error.contains("ground 1") && error.contains("covers the start"),
+        "{error}"
+    );
+}
