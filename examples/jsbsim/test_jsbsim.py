@@ -1,0 +1,72 @@
+"""The fit of the derivatives, and a flight of an aircraft of JSBSim."""
+
+import argparse
+import json
+import tomllib
+from pathlib import Path
+
+import fit
+import fly
+import pytest
+from plane import AIRCRAFT, ALTITUDE, Plane
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def arguments(name, **changes):
+    values = {"name": name, "obstacles": 20, "replan_hz": 4.0, "navigation": "rtk", "body": None,
+              "core": ROOT / "target/release/sil-harness"}
+    return argparse.Namespace(**values | changes)
+
+
+@pytest.mark.parametrize("name", AIRCRAFT)
+def test_level_flight_of_the_file_is_that_of_jsbsim(name):
+    plane = Plane(name)
+    plane.settle()
+    assert abs(plane.z - ALTITUDE) < 0.5 and abs(plane.path) < 1e-3 and abs(plane.airspeed / plane.cruise - 1) < 1e-3
+    alpha, elevator = fly.level_flight(fly.configuration(name))
+    assert alpha == pytest.approx(plane.alpha, abs=2e-3)
+    assert elevator == pytest.approx(plane.elevator, abs=5e-3)
+    assert fly.Throttle(name).of(plane.thrust, plane.cruise) == pytest.approx(plane.throttle, abs=0.02)
+
+
+def test_the_files_are_what_the_command_writes():
+    name = "J3Cub"
+    text, table = fit.fit(name)
+    assert table == json.loads((fit.FOLDER / f"{name}-thrust.json").read_text())
+    assert tomllib.loads(text) == tomllib.loads((fit.FOLDER / f"{name}.toml").read_text())
+
+
+def test_the_fit_finds_the_derivatives_that_the_model_has():
+    """The J3Cub's reference point is its centre of gravity, and its model names these numbers."""
+    level = fit.Coefficients(Plane("J3Cub"))
+    found, named = level.derivatives(), level.plane.fdm
+    force = named["aero/qbar-psf"] * named["metrics/Sw-sqft"]
+    level.at(elevator=0.05)
+    lift = named["aero/force/Lift_elevator"] / (force * (level.elevator + 0.05))
+    assert found["elevator"][0] == pytest.approx(lift, rel=0.02)
+    time = level.chord / (2 * level.plane.cruise)
+    level.at(pitch_rate=0.1)
+    damping = named["aero/moment/Pitch_damp"] / (force * named["metrics/cbarw-ft"] * 0.1 * time)
+    assert found["pitch_rate"][2] == pytest.approx(damping, rel=0.05)
+
+
+def test_a_flight_survives_and_is_the_same_twice():
+    args = arguments("J3Cub")
+    (one,), (two,) = fly.share_of((args, [3])), fly.share_of((args, [3]))
+    assert one.strict and one.clearance > 0.0
+    assert one == two
+
+
+def test_the_body_counts():
+    process, address = fly.serve(arguments("J3Cub"))
+    small = fly.fly(address, arguments("J3Cub", body=0.1, navigation="ideal"), 3)
+    large = fly.fly(address, arguments("J3Cub", body=40.0, navigation="ideal"), 3)
+    process.kill()
+    process.communicate()
+    assert small.end == "survived" and large.end == "collision"
+
+
+def test_the_interval_is_wilsons():
+    """Source: Wilson's score interval, e.g. Brown, Cai, DasGupta 2001: 8 of 10 gives 0.490 to 0.943."""
+    assert fly.wilson(8, 10) == pytest.approx((0.490, 0.943), abs=5e-4)
