@@ -30,6 +30,9 @@ pub(crate) struct PilArgs {
     /// Preset, which is a set of parameters and rules
     #[arg(long, default_value = "flight")]
     preset: String,
+    /// Aircraft, a name or a file
+    #[arg(long, default_value = "reference")]
+    aircraft: String,
     /// Length of each flight, in seconds
     #[arg(long, default_value_t = 20)]
     duration: u32,
@@ -92,12 +95,14 @@ fn scenario(args: &PilArgs, seed: u64) -> Vec<String> {
         obstacles,
         preset,
         duration,
+        aircraft,
         ..
     } = args;
-    format!("--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}")
-        .split(' ')
-        .map(str::to_owned)
-        .collect()
+    let flags =
+        format!("--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}");
+    let mut arguments: Vec<String> = flags.split(' ').map(str::to_owned).collect();
+    arguments.extend(["--aircraft".to_owned(), aircraft.clone()]);
+    arguments
 }
 
 fn print_flight(args: &PilArgs, seed: u64, host: &Outcome, target: &Outcome, counts: &Counts) {
