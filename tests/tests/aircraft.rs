@@ -67,7 +67,7 @@ fn a_report_tells_what_follows_and_what_is_implausible() {
 
     let mut odd = AircraftFile::known("example").unwrap();
     odd.pitch_inertia *= 100.0;
-    odd.air_density = 0.2;
+    odd.air_density = 1.6;
     odd.thrust.max = Some(1.05 * report(odd.clone()).thrust);
     let keys: Vec<&str> = report(odd).doubts.iter().map(|doubt| doubt.key).collect();
     for key in ["pitch_inertia", "air_density", "thrust.max"] {
