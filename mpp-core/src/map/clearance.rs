@@ -1,6 +1,6 @@
 //! Distance to the nearest occupied cell, for every cell of the map with memory.
 
-use super::bit;
+use super::cell::bit;
 use super::memory::{COLS, MemoryMap, ROWS};
 use crate::tuning::memory::CELL;
 
