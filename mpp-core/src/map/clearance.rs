@@ -1,5 +1,6 @@
 //! Distance to the nearest occupied cell, for every cell of the map with memory.
 
+use super::cell::bit;
 use super::memory::{COLS, MemoryMap, ROWS};
 use crate::tuning::memory::CELL;
 
@@ -228,12 +229,6 @@ impl Default for ClearanceField {
 /// The number of the cell that holds a coordinate in cells. It is `None` below the first cell.
 fn cell(coordinate: f64) -> Option<usize> {
     (coordinate >= 0.0).then_some(coordinate as usize)
-}
-
-/// Whether a cell of a row is set. A flight computer takes a byte of the row with fewer instructions than it
-/// shifts the row.
-pub(super) fn bit(cells: &u128, col: usize) -> bool {
-    cells.to_le_bytes()[col / 8 % 16] >> (col % 8) & 1 == 1
 }
 
 /// First and last cell of that part of a range \[m\] that lies in the window.

@@ -4,8 +4,8 @@
 //! A beam is evidence against obstacles on its way, and evidence for an obstacle at its end. No beam sees
 //! the back of an obstacle, so the map knows nothing of it; [`super::ClearanceField`] completes it.
 
-use super::clearance::bit;
-use super::{Pose, rounded_down};
+use super::Pose;
+use super::cell::{bit, rounded_down};
 use crate::sense::LidarScan;
 use crate::tuning::memory::{
     BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,

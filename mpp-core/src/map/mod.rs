@@ -5,6 +5,7 @@
 //! The aircraft is at `(ORIGIN_ROW, ORIGIN_COL)`, the low corner of that cell. The grid does not pitch
 //! with the aircraft.
 
+mod cell;
 mod clearance;
 mod memory;
 mod point;
@@ -14,6 +15,7 @@ use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use crate::sense::LidarScan;
 use crate::vehicle::VehicleState;
+pub(crate) use cell::rounded_down;
 pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
 pub use memory::MemoryMap;
@@ -202,14 +204,6 @@ impl OccupancyGrid {
             below = own;
         }
     }
-}
-
-/// The number of the cell that holds a coordinate in cells: the coordinate, rounded down. Coordinates beyond the
-/// range of numbers give its end. A flight computer does this with far fewer instructions than
-/// `libm::floor`, and the result is the same.
-pub(crate) fn rounded_down(coordinate: f64) -> i32 {
-    let cut = coordinate as i32;
-    cut.saturating_sub(i32::from(f64::from(cut) > coordinate))
 }
 
 impl Default for OccupancyGrid {

@@ -1,7 +1,8 @@
 //! The cells that a straight line passes (Amanatides, Woo: "A fast voxel traversal algorithm for
 //! ray tracing", 1987).
 
-use super::{GridPoint, rounded_down};
+use super::GridPoint;
+use super::cell::rounded_down;
 
 /// Iterates over the cells along a ray: `(row, col, distance at which the cell is entered [m])`.
 ///

@@ -16,7 +16,9 @@ use crate::tuning::lattice::{
 };
 use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
-use edges::{EDGE_REACH, Edges, NO_PRICES, Prices};
+use edges::{
+    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, POINTS, Prices, QUARTERS, SLOPES,
+};
 
 /// Number of stations, the station at the aircraft included.
 pub const STATIONS: usize = 17;
@@ -25,21 +27,10 @@ pub const MAX_LATTICE_PATHS: usize = 6;
 
 /// The station at which the two passes meet.
 const VIA: usize = 6;
-/// Number of heights at a station.
-const HEIGHTS: usize = 97;
-/// Number of slopes at a station.
-const SLOPES: usize = 9;
-const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
 const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
 
 /// Greatest distance of a path in height from where it starts \[m\].
 pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
-/// Number of points of an edge at which the search takes prices.
-const QUARTERS: usize = 4;
-/// Number of heights of these points, in steps of half of [`RISE`].
-const POINTS: usize = 2 * HEIGHTS - 1;
-/// Costs are whole numbers of sixteenths, so that sums do not depend on the order of their terms.
-const COST_UNIT: f64 = 16.0;
 const NEVER: u32 = 1 << 28;
 
 /// Costs by slope and height.

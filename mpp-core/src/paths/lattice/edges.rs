@@ -1,9 +1,19 @@
 //! The edges between two stations of the lattice, by their slopes.
 
-use super::{COST_UNIT, HEIGHTS, LEVEL, POINTS, QUARTERS, SLOPES};
 use crate::tuning::lattice::{SLOPE_PRICE, TURN_PRICE};
 use core::ops::Range;
 
+/// Number of heights at a station.
+pub(super) const HEIGHTS: usize = 97;
+/// Number of slopes at a station.
+pub(super) const SLOPES: usize = 9;
+pub(super) const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
+/// Number of points of an edge at which the search takes prices.
+pub(super) const QUARTERS: usize = 4;
+/// Number of heights of these points, in steps of half of [`RISE`].
+pub(super) const POINTS: usize = 2 * HEIGHTS - 1;
+/// Costs are whole numbers of sixteenths, so that sums do not depend on the order of their terms.
+pub(super) const COST_UNIT: f64 = 16.0;
 /// Farthest point of an edge from the height at which it begins, in steps of half of `RISE`.
 pub(super) const EDGE_REACH: usize = 18;
 
