@@ -194,7 +194,8 @@ fn what_the_elevator_balances_is_the_trim_of_another_angle_of_attack() {
             moment_elevator: -airframe.moment_elevator,
             ..airframe
         };
-        assert_eq!(limits.angle_of_attack(&turned), [up, down]);
+        let exchanged = limits.angle_of_attack(&turned);
+        assert!((exchanged[0] - up).abs() + (exchanged[1] - down).abs() < 1e-15);
     }
     let free = ActuatorLimits::NONE.angle_of_attack(&Airframe::PAPER);
     assert!(free.into_iter().all(f64::is_infinite));

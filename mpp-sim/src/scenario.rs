@@ -248,7 +248,7 @@ impl Scenario {
             obstacles.extend(scene.obstacles(seed, 0.0, ALTITUDE));
         }
         // No other scale than 1 leaves every bit as it was drawn.
-        if self.world_scale != 1.0 {
+        if (self.world_scale - 1.0).abs() > 0.0 {
             for obstacle in &mut obstacles {
                 *obstacle = obstacle.scaled(self.world_scale, ALTITUDE);
             }

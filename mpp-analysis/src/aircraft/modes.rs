@@ -36,7 +36,7 @@ impl Modes {
         let mode = |pair: &[Complex<f64>]| {
             let product: Complex<f64> = pair.iter().product();
             let sum: Complex<f64> = pair.iter().sum();
-            let frequency = product.norm_sqr().powf(0.25);
+            let frequency = product.norm_sqr().sqrt().sqrt();
             Mode {
                 frequency,
                 damping: -0.5 * sum.re / frequency,

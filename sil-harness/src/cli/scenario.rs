@@ -94,7 +94,7 @@ impl ScenarioArgs {
             ("--aircraft", aircraft),
             (
                 "--world-scale",
-                (self.world_scale).is_some_and(|scale| scale != flown.world_scale),
+                (self.world_scale).is_some_and(|scale| (scale - flown.world_scale).abs() > 0.0),
             ),
             (
                 "--navigation",
