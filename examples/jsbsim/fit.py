@@ -53,8 +53,9 @@ class Coefficients:
         # In a bank less of the weight bends the path down: this tells the rate of alpha from the pitch rate.
         states += [{"roll": sign * math.pi / 3} for sign in (-1, 1)]
         rows, values = zip(*(self.at(**state) for state in [{}, *states]))
-        solution = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
-        return dict(zip(("level", "alpha", "elevator", "pitch_rate", "alpha_rate"), solution))
+        slopes = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0][1:]
+        # Level flight itself is kept, where the curves bend.
+        return dict(zip(("level", "alpha", "elevator", "pitch_rate", "alpha_rate"), [np.array(values[0]), *slopes]))
 
     def drag(self, derivatives: dict[str, np.ndarray]) -> tuple[float, float]:
         """Parasitic drag, and factor on the squared lift, with the elevator in balance."""
