@@ -133,8 +133,8 @@ def fit(name: str) -> tuple[str, dict]:
               "[elevator]", 'unit = "rad"', f"moment = {d['elevator'][2]:.3f}", f"lift = {d['elevator'][0]:.3f}",
               f"min = {least:.4f}", f"max = {most:.4f}", "",
               "[thrust]", f"max = {cruise[-1]:.0f}", f"lag = {lag(level, cruise):.2f}", ""]
-    return "\n".join(lines), {"airspeeds": [round(share * plane.cruise, 1) for share in AIRSPEEDS], "throttles": THROTTLES,
-                              "thrust": forces}
+    airspeeds = [round(share * plane.cruise, 1) for share in AIRSPEEDS]
+    return "\n".join(lines), {"airspeeds": airspeeds, "throttles": THROTTLES, "thrust": forces}
 
 
 if __name__ == "__main__":
