@@ -11,8 +11,9 @@ import numpy as np
 from plane import AIRCRAFT, FOOT, SLUG, TICK, Plane
 
 FOLDER = Path(__file__).parent / "aircraft"
-# Sizes of the differences: small against what flights use, large against rounding.
-STEPS = {"alpha": 0.02, "pitch_rate": 0.1, "elevator": 0.02}  # rad, rad/s, rad
+# Sizes of the differences, as far from level flight as plans go: 0.8 g change the angle of attack by about this.
+STEPS = {"alpha": 0.05, "pitch_rate": 0.1, "elevator": 0.05}  # rad, rad/s, rad
+LOADS = np.linspace(0.2, 1.8, 9)  # load factors of the drag polar
 THROTTLES = [n / 10 for n in range(11)]
 AIRSPEEDS = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.3, 1.4]  # of the cruise
 
@@ -52,14 +53,19 @@ class Coefficients:
         # In a bank less of the weight bends the path down: this tells the rate of alpha from the pitch rate.
         states += [{"roll": sign * math.pi / 3} for sign in (-1, 1)]
         rows, values = zip(*(self.at(**state) for state in [{}, *states]))
-        solution = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0]
-        return dict(zip(("level", "alpha", "elevator", "pitch_rate", "alpha_rate"), solution))
+        slopes = np.linalg.lstsq(np.array(rows), np.array(values), rcond=None)[0][1:]
+        # Level flight itself is kept, where the curves bend.
+        return dict(zip(("level", "alpha", "elevator", "pitch_rate", "alpha_rate"), [np.array(values[0]), *slopes]))
 
-    def drag(self) -> tuple[float, float]:
-        """Parasitic drag, and factor on the squared lift, about level flight."""
-        values = [self.at(alpha=alpha)[1] for alpha in np.linspace(-0.06, 0.06, 13)]
-        square, drag = np.array([value[0] ** 2 for value in values]), np.array([value[1] for value in values])
-        factor, zero = np.polyfit(square, drag, 1)
+    def drag(self, derivatives: dict[str, np.ndarray]) -> tuple[float, float]:
+        """Parasitic drag, and factor on the squared lift, with the elevator in balance."""
+        level, values = derivatives["level"], []
+        effects = np.array([[derivatives[key][axis] for key in ("alpha", "elevator")] for axis in (0, 2)])
+        for load in LOADS:
+            alpha, elevator = np.linalg.solve(effects, [(load - 1) * level[0], 0.0])
+            values.append(self.at(alpha=alpha, elevator=elevator)[1])
+        lift, drag, _ = np.array(values).T
+        factor, zero = np.polyfit(lift**2, drag, 1)
         return zero, factor
 
     def stall(self) -> float | None:
@@ -102,7 +108,8 @@ def lag(level: Coefficients, forces: list[float]) -> float:
 def fit(name: str) -> tuple[str, dict]:
     """The aircraft file, and the map of the thrust."""
     level = Coefficients(plane := Plane(name))
-    d, (drag_zero, drag_induced), stall = level.derivatives(), level.drag(), level.stall()
+    d, stall = level.derivatives(), level.stall()
+    drag_zero, drag_induced = level.drag(d)
     forces = thrust_map(level)
     cruise = forces[AIRSPEEDS.index(1.0)]
     zero = d["level"] - d["alpha"] * level.alpha - d["elevator"] * level.elevator
@@ -126,8 +133,8 @@ def fit(name: str) -> tuple[str, dict]:
               "[elevator]", 'unit = "rad"', f"moment = {d['elevator'][2]:.3f}", f"lift = {d['elevator'][0]:.3f}",
               f"min = {least:.4f}", f"max = {most:.4f}", "",
               "[thrust]", f"max = {cruise[-1]:.0f}", f"lag = {lag(level, cruise):.2f}", ""]
-    return "\n".join(lines), {"airspeeds": [round(share * plane.cruise, 1) for share in AIRSPEEDS], "throttles": THROTTLES,
-                              "thrust": forces}
+    airspeeds = [round(share * plane.cruise, 1) for share in AIRSPEEDS]
+    return "\n".join(lines), {"airspeeds": airspeeds, "throttles": THROTTLES, "thrust": forces}
 
 
 if __name__ == "__main__":

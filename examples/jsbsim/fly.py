@@ -23,7 +23,7 @@ from client import STRUCTS, Core, read, sweep  # noqa: E402  it stands in anothe
 FOLDER = Path(__file__).parent / "aircraft"
 GRAVITY = 9.80665
 NAVIGATION = {  # period and delay [ticks], white and wandering error [m], as mpp-sim/src/navigation.rs has them
-    "ideal": (1, 0, 0.0, 0.0), "rtk": (10, 5, 0.02, 0.05), "gnss": (10, 10, 0.1, 0.5)}
+    "ideal": (1, 0, 0.0, 0.0), "rtk": (10, 5, 0.02, 0.05)}
 WANDER_TIME = 30.0  # s
 AIRSPEED_SIGMA, PITCH_SIGMA = 0.5, math.radians(0.25)  # m/s, rad
 RANGE_SIGMA = 0.01  # share of the range

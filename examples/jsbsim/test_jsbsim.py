@@ -30,11 +30,21 @@ def test_level_flight_of_the_file_is_that_of_jsbsim(name):
     assert fly.Throttle(name).of(plane.thrust, plane.cruise) == pytest.approx(plane.throttle, abs=0.02)
 
 
+def numbers(table):
+    """All numbers of a table, by key."""
+    parts = {key: value for key, value in table.items() if isinstance(value, dict)}
+    own = {key: value for key, value in table.items() if isinstance(value, float)}
+    return own | {f"{part}.{key}": value for part, inner in parts.items() for key, value in numbers(inner).items()}
+
+
 def test_the_files_are_what_the_command_writes():
-    name = "J3Cub"
-    text, table = fit.fit(name)
-    assert table == json.loads((fit.FOLDER / f"{name}-thrust.json").read_text())
-    assert tomllib.loads(text) == tomllib.loads((fit.FOLDER / f"{name}.toml").read_text())
+    text, table = fit.fit("J3Cub")
+    kept = json.loads((fit.FOLDER / "J3Cub-thrust.json").read_text())
+    # The last digit may differ between machines.
+    assert [force for row in table["thrust"] for force in row] == pytest.approx(
+        [force for row in kept["thrust"] for force in row], abs=0.2)
+    kept = numbers(tomllib.loads((fit.FOLDER / "J3Cub.toml").read_text()))
+    assert len(kept) > 15 and numbers(tomllib.loads(text)) == pytest.approx(kept, rel=1e-3, abs=2e-3)
 
 
 def test_the_fit_finds_the_derivatives_that_the_model_has():

@@ -97,9 +97,9 @@ class Core:
             if number == IDS[answer]:
                 return read(answer, payload)[0]
 
-    def tick(self, sensors: dict, scan: dict | None = None) -> dict:
+    def tick(self, sensed: dict, scan: dict | None = None) -> dict:
         """Sends the measurements of a tick. Returns the actuator command."""
-        return self.ask((frame("LidarScan", scan) if scan else b"") + frame("SensorFrame", sensors), "ActuatorCommand")
+        return self.ask((frame("LidarScan", scan) if scan else b"") + frame("SensorFrame", sensed), "ActuatorCommand")
 
 
 # Aircraft and session. What is absent is an option without a value.
