@@ -119,7 +119,7 @@ mod tests {
             ("replan_hz = 0.5", "flight-seed1-0.5hz"),
             (
                 rest,
-                "flight-seed1-o40-p5-2hz-200ms-37slices-9s-paper-8ddab8ca",
+                "flight-seed1-o40-p5-2hz-200ms-37slices-9s-paper-da22ad41",
             ),
         ] {
             assert_eq!(name(text), expected, "{text}");
