@@ -1,10 +1,13 @@
 //! Conversion between the messages of the link and the types of the core.
 
+mod aircraft;
+
 use crate::duration;
+use aircraft::{actuators, aircraft};
 use hil_protocol::{
-    ActuatorLimits as WireLimits, Aircraft as WireAircraft, Configure, ConfigureVerdict,
-    ControlMode, LidarScan as WireScan, PlanOutcome, PlanTrajectory, Preset, RejectionCause,
-    SensorFrame as WireFrame, SensorState, SensorStates, Setting as WireSetting, StepReport,
+    Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanOutcome, PlanTrajectory,
+    Preset, RejectionCause, SensorFrame as WireFrame, SensorState, SensorStates,
+    Setting as WireSetting, StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::control::RiccatiError;
@@ -15,7 +18,7 @@ use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
 use mpp_core::settings::{Aircraft, Setting, Settings};
 use mpp_core::trajectory::{Reference, Trajectory};
-use mpp_core::vehicle::{ActuatorLimits, Airframe, TrimError, VehicleState};
+use mpp_core::vehicle::{TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
@@ -97,50 +100,6 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
         return Err(ConfigureVerdict::Actuators);
     }
     Ok(())
-}
-
-fn actuators(wire: &WireLimits) -> ActuatorLimits {
-    let WireLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
-    } = *wire;
-    ActuatorLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
-    }
-}
-
-/// The aircraft of a configuration.
-fn aircraft(wire: &WireAircraft, limits: &WireLimits) -> Aircraft {
-    Aircraft {
-        airframe: Airframe {
-            mass: wire.mass,
-            pitch_inertia: wire.pitch_inertia,
-            wing_area: wire.wing_area,
-            moment_length: wire.moment_length,
-            air_density: wire.air_density,
-            lift_zero: wire.lift_zero,
-            lift_alpha: wire.lift_alpha,
-            lift_elevator: wire.lift_elevator,
-            drag_zero: wire.drag_zero,
-            drag_induced: wire.drag_induced,
-            moment_zero: wire.moment_zero,
-            moment_alpha: wire.moment_alpha,
-            moment_alpha_rate: wire.moment_alpha_rate,
-            moment_pitch_rate: wire.moment_pitch_rate,
-            moment_elevator: wire.moment_elevator,
-        },
-        actuators: actuators(limits),
-        cruise: wire.cruise,
-        body_radius: wire.body_radius,
-        stall: wire.stall,
-    }
 }
 
 /// The verdict on a failed set-up. The match has no catch-all arm, so that each new cause needs a verdict.
@@ -333,7 +292,7 @@ mod tests {
     #[test]
     fn the_reference_aircraft_of_the_link_is_that_of_the_core() {
         let wire = hil_protocol::Aircraft::REFERENCE;
-        let none = WireLimits::NONE;
+        let none = hil_protocol::ActuatorLimits::NONE;
         assert_eq!(aircraft(&wire, &none), Aircraft::REFERENCE);
         let same = Settings::flight_of(&Aircraft::REFERENCE);
         assert_eq!(same, Settings::flight());

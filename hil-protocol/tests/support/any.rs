@@ -1,5 +1,6 @@
 //! Any message, including floats of every bit pattern.
 
+use super::aircraft::{aircraft, limits};
 use hil_protocol::*;
 use proptest::array::{uniform3, uniform4, uniform5, uniform6};
 use proptest::collection::vec;
@@ -67,69 +68,6 @@ fn configure() -> impl Strategy<Value = Configure> {
                 altitude,
                 actuators,
             }
-        },
-    )
-}
-
-fn aircraft() -> impl Strategy<Value = Aircraft> {
-    let numbers = proptest::array::uniform17(f64::ANY);
-    (numbers, proptest::option::of(f64::ANY)).prop_map(|(numbers, stall)| {
-        let [
-            mass,
-            pitch_inertia,
-            wing_area,
-            moment_length,
-            air_density,
-            lift_zero,
-            lift_alpha,
-            lift_elevator,
-            drag_zero,
-            drag_induced,
-            moment_zero,
-            moment_alpha,
-            moment_alpha_rate,
-            moment_pitch_rate,
-            moment_elevator,
-            cruise,
-            body_radius,
-        ] = numbers;
-        Aircraft {
-            mass,
-            pitch_inertia,
-            wing_area,
-            moment_length,
-            air_density,
-            lift_zero,
-            lift_alpha,
-            lift_elevator,
-            drag_zero,
-            drag_induced,
-            moment_zero,
-            moment_alpha,
-            moment_alpha_rate,
-            moment_pitch_rate,
-            moment_elevator,
-            cruise,
-            body_radius,
-            stall,
-        }
-    })
-}
-
-fn limits() -> impl Strategy<Value = ActuatorLimits> {
-    proptest::array::uniform5(proptest::option::of(f64::ANY)).prop_map(
-        |[
-            thrust_max,
-            thrust_lag,
-            elevator_below,
-            elevator_above,
-            elevator_rate,
-        ]| ActuatorLimits {
-            thrust_max,
-            thrust_lag,
-            elevator_below,
-            elevator_above,
-            elevator_rate,
         },
     )
 }

@@ -1,11 +1,12 @@
 //! Hostile frames of the link into a whole flight core.
 
+use super::aircraft::aircraft;
 use super::draw::Draw;
 use super::{ROUND, Report};
 use hil_protocol::{
-    ActuatorCommand, ActuatorLimits, AirData, Aircraft, Configure, ConfigureVerdict, Decoder,
-    GroundVelocity, Hello, LidarScan, MAX_FRAME, Message, ParameterVerdict, Position, Preset, Role,
-    SensorFrame, SetParameter, encode,
+    ActuatorCommand, ActuatorLimits, AirData, Configure, ConfigureVerdict, Decoder, GroundVelocity,
+    Hello, LidarScan, MAX_FRAME, Message, ParameterVerdict, Position, Preset, Role, SensorFrame,
+    SetParameter, encode,
 };
 use mpp_node::FlightNode;
 use mpp_node::parameters::{PARAMETERS, Tuning};
@@ -215,35 +216,6 @@ fn configure(draw: &mut Draw) -> Configure {
             elevator_rate: limit(draw, 20.0),
         },
     }
-}
-
-/// The reference aircraft, often with one number that makes little sense.
-fn aircraft(draw: &mut Draw) -> Aircraft {
-    let mut aircraft = Aircraft::REFERENCE;
-    let places = [
-        &mut aircraft.mass,
-        &mut aircraft.pitch_inertia,
-        &mut aircraft.wing_area,
-        &mut aircraft.moment_length,
-        &mut aircraft.air_density,
-        &mut aircraft.lift_zero,
-        &mut aircraft.lift_alpha,
-        &mut aircraft.lift_elevator,
-        &mut aircraft.drag_zero,
-        &mut aircraft.drag_induced,
-        &mut aircraft.moment_zero,
-        &mut aircraft.moment_alpha,
-        &mut aircraft.moment_alpha_rate,
-        &mut aircraft.moment_pitch_rate,
-        &mut aircraft.moment_elevator,
-        &mut aircraft.cruise,
-        &mut aircraft.body_radius,
-    ];
-    let place = draw.below(2 * places.len());
-    if let Some(number) = places.into_iter().nth(place) {
-        *number = draw.number(*number);
-    }
-    aircraft
 }
 
 fn parameter(draw: &mut Draw) -> SetParameter {

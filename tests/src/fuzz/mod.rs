@@ -5,6 +5,7 @@
 //! can be repeated, and each ends with a good session, which must be answered. The profiles `dev` and
 //! `test` check for overflow, and so does this module: without these checks it refuses to run.
 
+mod aircraft;
 mod draw;
 mod link;
 mod radio;
