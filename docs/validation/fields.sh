@@ -52,7 +52,7 @@ for speed in 1 2 5 10; do
   fly_scenario "head-on-$speed" "[generator]\nvelocity = [-$speed, 0.0]" --obstacles 20
 done
 
-# A body that the planner is not told of [m].
+# A body [m].
 for radius in 0.1 0.25 0.5; do
   fly_scenario "body-$radius" "body_radius = $radius" --obstacles 40,120
 done

@@ -10,8 +10,8 @@ pub enum ScenarioError {
     Toml(String, Box<toml::de::Error>),
     /// A value is invalid. Holds the key and what to give instead.
     Value(&'static str, String),
-    /// The file with this name is no lidar.
-    Lidar(String, Box<ScenarioError>),
+    /// A value of the file with this name is invalid.
+    File(String, Box<ScenarioError>),
     /// The field cannot be flown through.
     Field(FieldError),
 }
@@ -31,7 +31,7 @@ impl fmt::Display for ScenarioError {
                 let place = error.span().map_or(0, |span| span.start);
                 write!(f, "{path}, byte {place}: {}", error.message())
             }
-            Self::Lidar(name, error) => write!(f, "lidar {name}, {error}"),
+            Self::File(name, error) => write!(f, "{name}: {error}"),
             Self::Field(error) => write!(f, "{error}"),
             Self::Value(key, advice) => write!(f, "{key}: {advice}"),
         }
@@ -42,7 +42,7 @@ impl core::error::Error for ScenarioError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::Toml(_, error) => Some(error),
-            Self::Lidar(_, error) => Some(error),
+            Self::File(_, error) => Some(error),
             Self::Field(error) => Some(error),
             Self::Value(..) => None,
         }

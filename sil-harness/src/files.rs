@@ -2,7 +2,7 @@
 
 use mpp_analysis::check_reference::{Report, check, recorded_instances};
 use mpp_analysis::instance::{Instance, InstanceError};
-use mpp_sim::aircraft_file::AircraftFile;
+use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
@@ -133,7 +133,7 @@ pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
         .map_err(FileError::Scenario)
 }
 
-/// Reads an aircraft: one that comes with the project, by its name, or a file.
+/// Reads an aircraft: one that comes with the project, by its name, or a file. Checks that it can be flown.
 ///
 /// # Errors
 /// [`FileError::Read`] or [`FileError::Scenario`].
@@ -142,7 +142,10 @@ pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
         return Ok(known);
     }
     let text = read(Path::new(name_or_path), MOST_WRITTEN)?;
-    AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)
+    let file = AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)?;
+    let in_file = |error| ScenarioError::File(name_or_path.to_owned(), Box::new(error));
+    AircraftModel::new(file.clone()).map_err(|error| FileError::Scenario(in_file(error)))?;
+    Ok(file)
 }
 
 /// Reads a lidar.

@@ -145,6 +145,9 @@ numbers! {
         ElevatorWeight, "regulator.elevator", "1", [1e-6, 1e9], Some(all.regulator.elevator);
         CrossTrack, "cross_track", "rad/m", [0.0, 10.0], Some(all.cross_track);
         AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e6], Some(all.airspeed_hold);
+        // The clearance is known up to 3 of the planner's units of length; the rest is for the margin.
+        BodyRadius, "body_radius", "m over the planner's unit of length", [0.0, 2.0],
+            all.planner.flight().map(|own| own.body_radius / all.units.length);
         // A plan ends at the horizon; it is of no use if the vehicle takes it over later.
         Latency, "latency", "s of the planner's units", [0.0, STAGES as f64 * STAGE_PERIOD],
             all.planner.flight().map(|own| own.latency / all.units.time);
@@ -167,7 +170,6 @@ numbers! {
         Deepened, "deepened", "candidates", [0.0, MAX_PATHS as f64],
             planner.flight().map(|own| own.deepened as f64);
         Margin, "margin", "m", [1e-3, 500.0], planner.flight().map(|own| own.margin);
-        BodyRadius, "body_radius", "m", [0.0, 100.0], planner.flight().map(|own| own.body_radius);
         Stall, "stall", "rad", [1e-3, 1.5], planner.flight().and_then(|own| own.stall);
         Band, "band", "m", [0.1, 1e4], planner.flight().map(|own| own.band);
         PlanThrust, "thrust_max", "N", [0.1, 1e6], planner.flight().map(|own| own.thrust_max);

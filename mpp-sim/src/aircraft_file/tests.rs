@@ -66,6 +66,8 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
             "aircraft.body_radius",
         ),
         ("lag = 0.1", "lag = inf", "aircraft.thrust.lag"),
+        // Wider than the planner's clearance field.
+        ("body_radius = 0.15", "body_radius = 30.0", "aircraft"),
         // So fast that a regulator of 100 Hz does not hold it.
         (
             "pitch_inertia = 0.08",

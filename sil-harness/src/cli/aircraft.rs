@@ -71,8 +71,7 @@ struct Answer {
 pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
     let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
     let file = read_aircraft(&args.aircraft).map_err(|error| usage(&error))?;
-    let named = |error: &dyn std::fmt::Display| usage(&format!("{}: {error}", args.aircraft));
-    let model = AircraftModel::new(file.clone()).map_err(|error| named(&error))?;
+    let model = AircraftModel::new(file.clone()).map_err(|error| usage(&error))?;
     let variants = if args.units {
         in_units(&file)
     } else if args.sizes {

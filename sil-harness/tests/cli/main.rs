@@ -1,5 +1,6 @@
 //! The command line as a user meets it: exit codes, what is printed where, what is written.
 
+mod aircraft;
 mod peers;
 
 use serde_json::Value;

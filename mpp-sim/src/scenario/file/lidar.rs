@@ -30,13 +30,13 @@ impl LidarTable {
     /// Reads a lidar's file from text. An error shows `name` as the name of the text.
     ///
     /// # Errors
-    /// [`ScenarioError::Toml`] or [`ScenarioError::Lidar`].
+    /// [`ScenarioError::Toml`] or [`ScenarioError::File`].
     pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
         let table: Self = toml::from_str(text)
             .map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))?;
         // A sound lidar stays so if absent keys take the values of another sound lidar.
         check(&table.over(LidarConfig::PAPER))
-            .map_err(|error| ScenarioError::Lidar(name.to_owned(), Box::new(error)))?;
+            .map_err(|error| ScenarioError::File(name.to_owned(), Box::new(error)))?;
         Ok(table)
     }
 
