@@ -1,5 +1,6 @@
 //! Tests whole flights by their physical outcome.
 
+use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::flight::fly;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
@@ -69,7 +70,7 @@ fn tracking_paths_without_refinement_is_worse() {
 #[test]
 fn the_paper_airframe_flies_too() {
     let heavy_tail = |seed| Scenario {
-        aircraft: mpp_sim::aircraft_file::AircraftModel::paper(),
+        aircraft: AircraftModel::new(AircraftFile::known("paper").unwrap()).unwrap(),
         ..Scenario::new(Preset::Flight, seed)
     };
     assert!(survivors(20, heavy_tail) >= 19);

@@ -3,6 +3,9 @@
 //! The filter believes its pitch sensor. A sensor that reads too much by `b` therefore tilts the estimated
 //! motion through the air by `b`, and the estimate of the wind takes `-V b` for a downdraught. Gusts change
 //! within seconds, a bias does not. So a mean vertical wind that is far beyond its fluctuations is a bias.
+//!
+//! Speeds are in the planner's [unit](crate::units::Units), so that one angle counts the same at every speed. For
+//! the reference aircraft they are in m/s.
 
 use crate::tuning::bias::{LEAST_WIND, MEMORY, SEEN, STEADY, STILL_WIND};
 

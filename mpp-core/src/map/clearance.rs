@@ -130,6 +130,7 @@ impl ClearanceField {
             along: [0.0; ROWS],
             unknown: [false; ROWS],
             floor: self.floor,
+            body_radius: self.body_radius,
         };
         for (along, distances) in column.along.iter_mut().zip(&self.distance) {
             let at = |col: usize| f64::from(distances[col % COLS]);
@@ -202,6 +203,7 @@ pub(crate) struct Column {
     along: [f64; ROWS],
     unknown: [bool; ROWS],
     floor: f64,
+    body_radius: f64,
 }
 
 impl Column {
@@ -209,7 +211,7 @@ impl Column {
     pub(crate) fn distance(&self, z: f64) -> f64 {
         let (row, up) = split((z - self.floor) / CELL - 0.5, ROWS);
         let (low, high) = (self.along[row % ROWS], self.along[(row + 1) % ROWS]);
-        (low * (1.0 - up) + high * up) * (1.0 / PARTS)
+        (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
     /// The same as [`ClearanceField::is_unknown`].

@@ -263,7 +263,7 @@ mod tests {
         map.know(|x, z| (x * 7.0 + z * 3.0) as i64 % 23 == 0);
         map.roll(108.0, 52.0);
         let mut field = ClearanceField::new();
-        field.build(&map, 0.0);
+        field.build(&map, 0.3);
         let mut unknown = 0;
         for _ in 0..2000 {
             let mut between = |least: f64, most: f64| {

@@ -112,18 +112,6 @@ impl AircraftModel {
         let file = AircraftFile::known("reference").expect("it is a known aircraft");
         Self::new(file).expect("it flies")
     }
-
-    /// The aircraft of the paper's appendix.
-    #[must_use]
-    #[expect(
-        clippy::missing_panics_doc,
-        clippy::expect_used,
-        reason = "a test reads every known file"
-    )]
-    pub fn paper() -> Self {
-        let file = AircraftFile::known("paper").expect("it is a known aircraft");
-        Self::new(file).expect("it flies")
-    }
 }
 
 /// The airframe of a file in the form that the core knows: derivatives per radian and per unit of the

@@ -58,7 +58,7 @@ struct Success {
     strict: u32,
     /// Wilson interval, 95 % \[-\].
     interval: (f64, f64),
-    /// Collisions, and greatest attitudes that ended a flight.
+    /// Flights that hit an obstacle.
     collisions: u32,
 }
 

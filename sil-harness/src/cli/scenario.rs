@@ -18,7 +18,7 @@ pub(super) struct ScenarioArgs {
     /// Challenge scene; it stands alone unless --obstacles is given
     #[arg(long, value_parser = scene())]
     scene: Option<Scene>,
-    /// Aircraft, of plant and core: reference, paper, aerosonde, zagi, cessna182, or a file (TOML, as
+    /// Aircraft, of plant and core: reference, paper, example, zagi, aerosonde, cessna182, or a file (TOML, as
     /// docs/aircraft.md describes) [default: reference]
     #[arg(long, value_name = "NAME|FILE")]
     aircraft: Option<String>,
