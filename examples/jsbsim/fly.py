@@ -43,7 +43,8 @@ def configuration(name: str) -> dict:
     known = {
         "mass": file["mass"], "pitch_inertia": file["pitch_inertia"], "wing_area": file["wing_area"],
         "moment_length": file["chord"], "air_density": file["air_density"], "lift_zero": lift["zero"],
-        "lift_alpha": lift["alpha"], "lift_elevator": elevator["lift"], "drag_zero": drag["zero"],
+        "lift_alpha": lift["alpha"], "lift_alpha_rate": lift["alpha_rate"] * time,
+        "lift_pitch_rate": lift["pitch_rate"] * time, "lift_elevator": elevator["lift"], "drag_zero": drag["zero"],
         "drag_induced": drag["induced"], "moment_zero": moment["zero"], "moment_alpha": moment["alpha"],
         "moment_alpha_rate": moment["alpha_rate"] * time, "moment_pitch_rate": moment["pitch_rate"] * time,
         "moment_elevator": elevator["moment"], "cruise": file["cruise"], "body_radius": file["body_radius"]}
