@@ -96,7 +96,7 @@ fn the_wind_is_told_and_is_in_the_speed_over_ground() {
     });
     let (tick, forward) = speeds[20];
     let tick = tick as usize;
-    let forward_in_air = log.ticks.est_airspeed[tick] * log.ticks.est_flight_path[tick].cos();
+    let forward_in_air = log.ticks.est_airspeed[tick] * libm::cos(log.ticks.est_flight_path[tick]);
     let expected = forward_in_air + log.ticks.est_wind_x[tick];
     assert!(
         (f64::from(forward) - expected).abs() < 1e-3,
