@@ -54,6 +54,8 @@ enum Command {
     Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
+    /// Build the page that flies in the browser: one file, which needs nothing else
+    Web,
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
@@ -68,7 +70,8 @@ fn main() -> ExitCode {
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
         Command::Flips(args) => flips::run(&args),
-        Command::Wasm => wasm::build(),
+        Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
+        Command::Web => wasm::page(),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
     };
