@@ -11,7 +11,6 @@ const GRID = "what the planner took for occupied: the grid of this one scan, cel
 const LAYERS = [["field", "obstacle"], ["scan", "scan"], ["occupancy", "cells"], ["candidates", "candidate"],
   ["corridor", "corridor"], ["plan", "plan"], ["reference", "reference"], ["flown", "flown"]];
 const $ = id => document.getElementById(id);
-const $ = id => document.getElementById(id);
 const degrees = radians => radians * 180 / Math.PI;
 const colour = {};
 
@@ -152,8 +151,9 @@ function drawView(flight, now, look) {
   }
   if (on.field) {
     drawField(pen, flight.header.field, T.t[now], at, scale, width, height);
+    // An order of the next tick is shown at once.
     for (const order of flight.orders)
-      if (order.field && order.tick <= now) drawField(pen, order.field, T.t[now], at, scale, width, height);
+      if (order.field && order.tick <= now + 1) drawField(pen, order.field, T.t[now], at, scale, width, height);
   }
   if (on.occupancy && detail) {
     look.note(detail.map.unknown.length ? MEMORY : GRID);
