@@ -1,7 +1,7 @@
 //! `wasm` and `web`: builds the simulation for browsers, and the page that flies it.
 
 use crate::folders::{root, work};
-use crate::toolchain::{Toolchain, output, succeed};
+use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -57,11 +57,14 @@ pub(crate) fn page() -> Result<()> {
 
 /// Flies scenarios in Node, one a line as JSON. Returns the hash of each log.
 pub(crate) fn fly(module: &Path, scenarios: &[String]) -> Result<Vec<String>> {
+    if Command::new("node").arg("--version").output().is_err() {
+        install(&[("/usr/bin/node", "nodejs")])?;
+    }
     let mut node = Command::new("node");
     node.arg(root().join("bindings/web/fly.mjs"))
         .arg(module)
         .args(scenarios);
-    let text = output(&mut node).context("Node is missing or failed; on Debian 12: nodejs")?;
+    let text = output(&mut node).context("flying in Node")?;
     Ok(text.lines().map(str::to_owned).collect())
 }
 
