@@ -31,7 +31,7 @@ const HOST: &[&str] = &[
 
 /// One entry for each crate of the workspace, the lowest first. An entry may exist before its
 /// crate.
-const RULES: [Rule; 8] = [
+const RULES: [Rule; 9] = [
     Rule {
         name: "mpp-core",
         ours: &[],
@@ -67,6 +67,11 @@ const RULES: [Rule; 8] = [
             "mpp-analysis",
         ],
         not: &["clarabel", "plotters"],
+    },
+    Rule {
+        name: "mpp-web",
+        ours: &["mpp-core", "mpp-node", "mpp-sim"],
+        not: &["clap", "rayon", "indicatif", "clarabel", "plotters"],
     },
     Rule {
         name: "mpp-tests",
