@@ -4,7 +4,7 @@
 use super::StepTask;
 use super::asker::Asker;
 use crate::convert;
-use hil_protocol::{ConfigureVerdict, Message, ParameterReply, ParameterVerdict, SetParameter};
+use hil_protocol::{ConfigureVerdict, ParameterReply, ParameterVerdict, SetParameter};
 use mpp_core::flight::FlightLoop;
 
 impl StepTask {
@@ -80,6 +80,6 @@ impl StepTask {
         send: &mut impl FnMut(&[u8]),
     ) {
         let reply = ParameterReply { parameter, verdict };
-        self.emit(&Message::ParameterReply(reply), send);
+        self.emit(&reply, send);
     }
 }
