@@ -18,7 +18,7 @@ use hil_protocol::{
 };
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::Watch;
-use mpp_core::flight::FlightLoop;
+use mpp_core::flight::{FlightLoop, Regulated};
 use mpp_core::health::Health;
 use mpp_core::sense::LidarScan;
 use spare::Spare;
@@ -200,6 +200,12 @@ impl StepTask {
         self.held.is_some() || self.flight.as_ref().is_some_and(|flight| !flight.ready)
     }
 
+    /// Whether there is an order for the planner.
+    #[must_use]
+    pub fn has_order(&self) -> bool {
+        self.order.is_some()
+    }
+
     /// Takes the order for the planner, if there is one.
     pub fn order(&mut self) -> Option<Order> {
         self.order.take()
@@ -262,7 +268,9 @@ impl StepTask {
             }
             id::CONFIGURE => self.configure(send)?,
             id::SET_PARAMETER => self.set_parameter(&self.decoder.body()?, send),
-            id::HELLO..=id::LAST => self.reject(RejectionCause::UnexpectedMessage { id }, send),
+            id if (id::HELLO..=id::LAST).contains(&id) => {
+                self.reject(RejectionCause::UnexpectedMessage { id }, send);
+            }
             _ => return Err(DecodeError::UnknownId { id }),
         }
         if self.planner_off {
@@ -304,10 +312,10 @@ impl StepTask {
     #[inline(never)]
     fn configure(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
         match self.prepare(&self.decoder.body()?) {
-            Ok(flight) => {
-                self.order_set_up(flight.tuning);
-                self.flight = Some(flight);
+            Ok((tuning, regulated)) => {
+                self.begin(&tuning, &regulated);
                 self.keep_values();
+                self.order_set_up(tuning);
             }
             Err(verdict) => self.reply(verdict, send),
         }
@@ -323,8 +331,9 @@ impl StepTask {
         });
     }
 
-    /// A flight that waits for the planner to be set up.
-    fn prepare(&self, configure: &Configure) -> Result<Flight, ConfigureVerdict> {
+    /// Checks a configuration, and designs the regulator for it.
+    #[inline(never)]
+    fn prepare(&self, configure: &Configure) -> Result<(Tuning, Regulated), ConfigureVerdict> {
         if self.flight.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
@@ -332,14 +341,23 @@ impl StepTask {
             return Err(refusal);
         }
         let tuning = Tuning::new(configure)?;
+        let regulated = Regulated::new(&tuning.settings).map_err(convert::setup_verdict)?;
+        Ok((tuning, regulated))
+    }
+
+    /// Begins a flight, which waits for the planner to be set up.
+    // Not inlined, so that the new flight does not lie on the stack above the design of the regulator.
+    #[inline(never)]
+    fn begin(&mut self, tuning: &Tuning, regulated: &Regulated) {
+        let configure = &tuning.configure;
         let between = configure
             .replan_period_ticks
             .saturating_add(configure.latency_ticks);
-        Ok(Flight {
-            tuning,
+        self.flight = Some(Flight {
+            tuning: *tuning,
             asker: Asker::Configure,
             ready: false,
-            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
+            control: FlightLoop::regulated(&tuning.settings, regulated),
             first_tick: None,
             last_tick: None,
             cycle: None,
@@ -352,7 +370,7 @@ impl StepTask {
             old_ticks: None,
             lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,
-        })
+        });
     }
 
     fn set_up_done(&mut self, result: Result<(), ConfigureVerdict>, send: &mut impl FnMut(&[u8])) {
