@@ -8,15 +8,13 @@ const FAILED: usize = usize::MAX;
 
 static HOST: Owned<Host> = Owned::uninit();
 
-/// Both files, with the bytes that were read but not yet used, and those that wait to be sent.
+/// Both files, with the bytes that were read but not yet used.
 pub struct Host {
     to_core: usize,
     to_harness: usize,
     input: [u8; 512],
     used: usize,
     filled: usize,
-    output: [u8; 512],
-    waiting: usize,
 }
 
 /// Opens both files.
@@ -34,8 +32,6 @@ pub unsafe fn open() {
         input: [0; 512],
         used: 0,
         filled: 0,
-        output: [0; 512],
-        waiting: 0,
     };
     // SAFETY: nothing else runs yet.
     unsafe { HOST.write(host) };
@@ -77,25 +73,9 @@ impl Host {
         self.filled > 0
     }
 
-    /// Puts bytes into the buffer, and sends the buffer whenever it is full.
-    pub fn send(&mut self, bytes: &[u8]) {
-        for byte in bytes {
-            if self.waiting >= self.output.len() {
-                self.flush();
-            }
-            if let Some(place) = self.output.get_mut(self.waiting) {
-                *place = *byte;
-                self.waiting = self.waiting.saturating_add(1);
-            }
-        }
-    }
-
-    /// Sends the buffer.
-    pub fn flush(&mut self) {
-        if self.waiting > 0 {
-            write(self.to_harness, self.output.get(..self.waiting));
-            self.waiting = 0;
-        }
+    /// Sends a frame.
+    pub fn send(&self, frame: &[u8]) {
+        write(self.to_harness, frame);
     }
 }
 
@@ -103,14 +83,14 @@ impl Host {
 pub fn write_file(name: &core::ffi::CStr, words: &[u32]) {
     let file = open_file(name, nr::open::W_TRUNC_BINARY);
     for word in words {
-        write(file, Some(&word.to_le_bytes()));
+        write(file, &word.to_le_bytes());
     }
 }
 
 /// Writes until the host has taken all bytes, or takes no more. In the latter case the reader is gone, and
 /// the next read reports the end of the link.
-fn write(file: usize, bytes: Option<&[u8]>) {
-    let mut rest = bytes.filter(|_| file != FAILED).unwrap_or(&[]);
+fn write(file: usize, bytes: &[u8]) {
+    let mut rest = if file == FAILED { &[] } else { bytes };
     while !rest.is_empty() {
         // SAFETY: the buffer has the given length. The result is the number of bytes not written.
         let left = unsafe { syscall!(WRITE, file, rest.as_ptr(), rest.len()) };

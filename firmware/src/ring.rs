@@ -28,15 +28,17 @@ impl Ring {
         }
     }
 
-    /// Puts in a byte. Returns false if there is no room. Only the producer may call this function.
-    pub fn push(&self, byte: u8) -> bool {
+    /// Puts in bytes. Returns the number of those for which there is no room, the last ones. Only the producer
+    /// may call this function.
+    pub fn push(&self, bytes: &[u8]) -> usize {
         let head = self.head.load(Ordering::Relaxed);
-        if head.wrapping_sub(self.tail.load(Ordering::Acquire)) == PLACES {
-            return false;
+        let used = head.wrapping_sub(self.tail.load(Ordering::Acquire));
+        let taken = bytes.len().min(PLACES.saturating_sub(used));
+        for (index, byte) in bytes.iter().take(taken).enumerate() {
+            self.bytes[head.wrapping_add(index) % PLACES].store(*byte, Ordering::Relaxed);
         }
-        self.bytes[head % PLACES].store(byte, Ordering::Relaxed);
-        self.head.store(head.wrapping_add(1), Ordering::Release);
-        true
+        self.head.store(head.wrapping_add(taken), Ordering::Release);
+        bytes.len().saturating_sub(taken)
     }
 
     /// Number of bytes in the ring, as the caller's priority sees it.

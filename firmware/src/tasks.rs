@@ -111,6 +111,8 @@ impl StepSide {
     }
 
     /// Takes the planner's answer, if there is one.
+    // Not inlined, so that the answer is not on the stack of each byte.
+    #[inline(never)]
     pub fn collect(&mut self, send: impl FnMut(&[u8])) {
         // SAFETY: the step is the consumer.
         if let Some(answer) = unsafe { ANSWERS.take() } {
@@ -172,13 +174,19 @@ impl StepSide {
 
     /// Sends the orders and the time to the planner.
     fn post(&mut self) {
-        if !ORDERS.is_full()
-            && let Some(order) = self.task.order()
-        {
+        if !ORDERS.is_full() && self.task.has_order() {
+            self.post_order();
+        }
+        CLOCK.store(self.task.clock(), Ordering::Release);
+    }
+
+    // Not inlined, so that the order is not on the stack of each byte.
+    #[inline(never)]
+    fn post_order(&mut self) {
+        if let Some(order) = self.task.order() {
             // SAFETY: the step is the producer.
             unsafe { ORDERS.post(order) };
         }
-        CLOCK.store(self.task.clock(), Ordering::Release);
     }
 
     fn end_region(&self, frame: bool, before: Option<u32>) {
@@ -225,18 +233,10 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
     let mut first_slice = false;
     loop {
         pulse();
-        // SAFETY: the thread is the consumer.
-        if let Some(order) = unsafe { ORDERS.take() } {
-            set_up |= matches!(order, Order::SetUp { .. });
-            if set_up {
-                match order {
-                    Order::SetUp { .. } => faults::set_up(pulse),
-                    Order::Begin { .. } => first_slice = true,
-                }
-                mark::begin();
-                task.take(&order);
-                mark::end(Region::Order);
-            }
+        if ORDERS.is_full() {
+            // SAFETY: this is the thread.
+            let begins = unsafe { obey(task, &mut set_up) };
+            first_slice |= begins;
         }
         if !set_up {
             idle();
@@ -259,15 +259,49 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
                 idle();
             }
             Progress::Answered => {
-                if !ANSWERS.is_full()
-                    && let Some(answer) = task.answer()
-                {
-                    // SAFETY: the thread is the producer.
-                    unsafe { ANSWERS.post(answer) };
+                if !ANSWERS.is_full() {
+                    // SAFETY: this is the thread.
+                    unsafe { post_answer(task) };
                 }
                 mark::end(Region::Answer);
                 notify_step();
             }
         }
+    }
+}
+
+/// Takes an order, if the planner is or will be set up. Returns true if a cycle begins.
+///
+/// # Safety
+/// Only the thread may call this function.
+unsafe fn obey(task: &mut PlanTask, set_up: &mut bool) -> bool {
+    let take = |order: &Order| {
+        let begins = matches!(order, Order::Begin { .. });
+        *set_up |= !begins;
+        if !*set_up {
+            return false;
+        }
+        if !begins {
+            faults::set_up(pulse);
+        }
+        mark::begin();
+        task.take(order);
+        mark::end(Region::Order);
+        begins
+    };
+    // SAFETY: the thread is the consumer.
+    unsafe { ORDERS.read(take) }.unwrap_or_default()
+}
+
+/// Posts the answer of the planner.
+///
+/// # Safety
+/// Only the thread may call this function.
+// Not inlined, so that the answer is not on the stack of the slices.
+#[inline(never)]
+unsafe fn post_answer(task: &mut PlanTask) {
+    if let Some(answer) = task.answer() {
+        // SAFETY: the thread is the producer.
+        unsafe { ANSWERS.post(answer) };
     }
 }

@@ -67,11 +67,7 @@ pub fn receive() -> Option<u8> {
 
 /// Puts bytes into the ring; [`kick`] sends them. Only the step may call this function.
 pub fn send(bytes: &[u8]) {
-    for byte in bytes {
-        if !TO_SEND.push(*byte) {
-            count_lost();
-        }
-    }
+    count_lost(TO_SEND.push(bytes));
 }
 
 /// Whether the ring has room for a short report. Only the step may call this function.
@@ -91,8 +87,10 @@ pub fn lost() -> u32 {
     LOST.load(Ordering::Relaxed)
 }
 
-fn count_lost() {
-    LOST.fetch_add(1, Ordering::Relaxed);
+fn count_lost(bytes: usize) {
+    if bytes > 0 {
+        LOST.fetch_add(bytes as u32, Ordering::Relaxed);
+    }
 }
 
 /// Handles an interrupt of the UART, and ignores other interrupts. The watchdog raises one as a warning
@@ -105,9 +103,7 @@ pub fn interrupt(number: i16) {
     write(INTERRUPT, 0b11);
     while read(STATE) & RX_FULL != 0 {
         let byte = read(DATA) as u8;
-        if !RECEIVED.push(byte) {
-            count_lost();
-        }
+        count_lost(RECEIVED.push(&[byte]));
         // The step must also take bytes in time if no delimiter comes.
         if byte == DELIMITER || RECEIVED.len() == HALF {
             SCB::set_pendst();

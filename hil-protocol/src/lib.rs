@@ -41,9 +41,9 @@
 //!    |                                           |
 //!    | -------- [LidarScan] -------------------> |  \
 //!    | -------- SensorFrame -------------------> |   |
-//!    | <------------------- [Rejection] -------- |   |  each tick, 100 Hz;
-//!    | <------------------ [PlanReport] -------- |   |  [..] only when there is one
-//!    | <-------------- [PlanTrajectory] -------- |   |
+//!    | <------------------ [PlanReport] -------- |   |  each tick, 100 Hz;
+//!    | <-------------- [PlanTrajectory] -------- |   |  [..] only when there is one
+//!    | <------------------- [Rejection] -------- |   |
 //!    | <-------------------- StepReport -------- |   |
 //!    | <---------------- [HealthReport] -------- |   |
 //!    | <--------------- ActuatorCommand -------- |  /
@@ -101,7 +101,7 @@ mod message;
 mod version;
 
 pub use error::{DecodeError, EncodeError};
-pub use frame::{Decoder, MAGIC, MAX_FRAME, encode};
+pub use frame::{Decoder, MAGIC, MAX_FRAME, encode, encode_body};
 pub use message::aircraft::{ActuatorLimits, Aircraft};
 pub use message::flight::{
     ActuatorCommand, AirData, ControlMode, GroundVelocity, LidarScan, MAX_BEAMS, Position,
@@ -116,5 +116,5 @@ pub use message::session::{
 };
 pub use message::setting::Setting;
 pub use message::verdict::{ConfigureVerdict, ParameterVerdict};
-pub use message::{MAX_PAYLOAD, Message, id};
+pub use message::{Body, MAX_PAYLOAD, Message, id};
 pub use version::PROTOCOL_VERSION;

@@ -8,9 +8,10 @@ pub(crate) mod setting;
 mod size;
 pub(crate) mod verdict;
 
-use crate::error::{DecodeError, EncodeError};
+use crate::error::DecodeError;
 use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
 use report::{HealthReport, PlanReport, PlanTrajectory, Rejection};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
 
@@ -42,6 +43,39 @@ pub mod id {
     pub const PLAN_TRAJECTORY: u8 = 12;
     /// [`HealthReport`](crate::HealthReport).
     pub const HEALTH_REPORT: u8 = 13;
+    /// The greatest of these numbers. All from [`HELLO`] on are used.
+    pub const LAST: u8 = HEALTH_REPORT;
+}
+
+/// The struct of a message, which a frame carries.
+pub trait Body: Serialize + DeserializeOwned {
+    /// The number that stands for the message in a frame's header, one of [`id`].
+    const ID: u8;
+}
+
+/// Gives structs their numbers.
+macro_rules! bodies {
+    ($($body:ty => $id:ident,)*) => {
+        $(impl Body for $body {
+            const ID: u8 = id::$id;
+        })*
+    };
+}
+
+bodies! {
+    Hello => HELLO,
+    Configure => CONFIGURE,
+    ConfigureReply => CONFIGURE_REPLY,
+    SensorFrame => SENSOR_FRAME,
+    LidarScan => LIDAR_SCAN,
+    ActuatorCommand => ACTUATOR_COMMAND,
+    StepReport => STEP_REPORT,
+    PlanReport => PLAN_REPORT,
+    Rejection => REJECTION,
+    SetParameter => SET_PARAMETER,
+    ParameterReply => PARAMETER_REPLY,
+    PlanTrajectory => PLAN_TRAJECTORY,
+    HealthReport => HEALTH_REPORT,
 }
 
 /// A message of any kind.
@@ -100,59 +134,33 @@ impl Message {
         }
     }
 
-    /// Writes the payload into `buffer` and returns the part of it that was used.
-    pub(crate) fn write<'a>(
-        &self,
-        buffer: &'a mut [u8; MAX_PAYLOAD],
-    ) -> Result<&'a [u8], EncodeError> {
-        let written = match self {
-            Self::Hello(body) => postcard::to_slice(body, buffer),
-            Self::Configure(body) => postcard::to_slice(body, buffer),
-            Self::ConfigureReply(body) => postcard::to_slice(body, buffer),
-            Self::SensorFrame(body) => postcard::to_slice(body, buffer),
-            Self::LidarScan(body) => postcard::to_slice(body, buffer),
-            Self::ActuatorCommand(body) => postcard::to_slice(body, buffer),
-            Self::StepReport(body) => postcard::to_slice(body, buffer),
-            Self::PlanReport(body) => postcard::to_slice(body, buffer),
-            Self::Rejection(body) => postcard::to_slice(body, buffer),
-            Self::SetParameter(body) => postcard::to_slice(body, buffer),
-            Self::ParameterReply(body) => postcard::to_slice(body, buffer),
-            Self::PlanTrajectory(body) => postcard::to_slice(body, buffer),
-            Self::HealthReport(body) => postcard::to_slice(body, buffer),
-        };
-        match written {
-            Ok(payload) => Ok(payload),
-            Err(_) => Err(EncodeError::TooLong { id: self.id() }),
-        }
-    }
-
     /// Reads the payload of the message with this id.
     pub(crate) fn read(id: u8, payload: &[u8]) -> Result<Self, DecodeError> {
         Ok(match id {
-            id::HELLO => Self::Hello(body(id, payload)?),
-            id::CONFIGURE => Self::Configure(body(id, payload)?),
-            id::CONFIGURE_REPLY => Self::ConfigureReply(body(id, payload)?),
-            id::SENSOR_FRAME => Self::SensorFrame(body(id, payload)?),
-            id::LIDAR_SCAN => Self::LidarScan(body(id, payload)?),
-            id::ACTUATOR_COMMAND => Self::ActuatorCommand(body(id, payload)?),
-            id::STEP_REPORT => Self::StepReport(body(id, payload)?),
-            id::PLAN_REPORT => Self::PlanReport(body(id, payload)?),
-            id::REJECTION => Self::Rejection(body(id, payload)?),
-            id::SET_PARAMETER => Self::SetParameter(body(id, payload)?),
-            id::PARAMETER_REPLY => Self::ParameterReply(body(id, payload)?),
-            id::PLAN_TRAJECTORY => Self::PlanTrajectory(body(id, payload)?),
-            id::HEALTH_REPORT => Self::HealthReport(body(id, payload)?),
+            id::HELLO => Self::Hello(read(payload)?),
+            id::CONFIGURE => Self::Configure(read(payload)?),
+            id::CONFIGURE_REPLY => Self::ConfigureReply(read(payload)?),
+            id::SENSOR_FRAME => Self::SensorFrame(read(payload)?),
+            id::LIDAR_SCAN => Self::LidarScan(read(payload)?),
+            id::ACTUATOR_COMMAND => Self::ActuatorCommand(read(payload)?),
+            id::STEP_REPORT => Self::StepReport(read(payload)?),
+            id::PLAN_REPORT => Self::PlanReport(read(payload)?),
+            id::REJECTION => Self::Rejection(read(payload)?),
+            id::SET_PARAMETER => Self::SetParameter(read(payload)?),
+            id::PARAMETER_REPLY => Self::ParameterReply(read(payload)?),
+            id::PLAN_TRAJECTORY => Self::PlanTrajectory(read(payload)?),
+            id::HEALTH_REPORT => Self::HealthReport(read(payload)?),
             _ => return Err(DecodeError::UnknownId { id }),
         })
     }
 }
 
 /// Reads one struct from exactly these bytes.
-fn body<T: DeserializeOwned>(id: u8, payload: &[u8]) -> Result<T, DecodeError> {
+pub(crate) fn read<T: Body>(payload: &[u8]) -> Result<T, DecodeError> {
     match postcard::take_from_bytes(payload) {
         Ok((value, [])) => Ok(value),
-        Ok(_) => Err(DecodeError::TrailingBytes { id }),
-        Err(_) => Err(DecodeError::Payload { id }),
+        Ok(_) => Err(DecodeError::TrailingBytes { id: T::ID }),
+        Err(_) => Err(DecodeError::Payload { id: T::ID }),
     }
 }
 

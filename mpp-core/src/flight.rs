@@ -72,14 +72,14 @@ impl FlightLoop {
     /// # Errors
     /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
     pub fn new(settings: &Settings) -> Result<Self, SetupError> {
-        let (trim, lqr) = regulator(settings)?;
-        Self::regulated(settings, trim, lqr)
+        Ok(Self::regulated(settings, &Regulated::new(settings)?))
     }
 
-    // Not inlined, so that the design of the regulator does not lie on the stack above the new loop.
-    #[inline(never)]
-    fn regulated(settings: &Settings, trim: Trim, lqr: Lqr) -> Result<Self, SetupError> {
-        Ok(Self {
+    /// A loop with a regulator that was designed for these settings.
+    #[must_use]
+    pub fn regulated(settings: &Settings, regulated: &Regulated) -> Self {
+        let Regulated { trim, lqr } = *regulated;
+        Self {
             estimator: Estimator::new(settings, &trim),
             lqr,
             trim,
@@ -88,7 +88,7 @@ impl FlightLoop {
             trajectory: None,
             last: None,
             health: Health::default(),
-        })
+        }
     }
 
     /// Makes one step at a time \[s\]. It predicts the motion since the last step under the last control,
@@ -261,24 +261,36 @@ impl FlightLoop {
     }
 }
 
-/// Checks the settings and designs the regulator about level trim.
-#[inline(never)]
-fn regulator(settings: &Settings) -> Result<(Trim, Lqr), SetupError> {
-    let trim = check(settings)?;
-    let design = Control {
-        thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
-        ..trim.control
-    };
-    let linear = linearize(
-        &settings.airframe,
-        &trim.state,
-        design,
-        settings.design_jacobian,
-    );
-    let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
-    if holds(settings, &trim, &lqr) {
-        Ok((trim, lqr))
-    } else {
-        Err(SetupError::Unstable)
+/// Level trim, and the regulator about it. They take a deep stack to find and a small one to keep.
+#[derive(Clone, Copy, Debug)]
+pub struct Regulated {
+    trim: Trim,
+    lqr: Lqr,
+}
+
+impl Regulated {
+    /// Checks the settings and designs the regulator about level trim.
+    ///
+    /// # Errors
+    /// [`SetupError`] if a setting is not valid, or if trim or gain do not exist.
+    #[inline(never)]
+    pub fn new(settings: &Settings) -> Result<Self, SetupError> {
+        let trim = check(settings)?;
+        let design = Control {
+            thrust: settings.design_thrust.unwrap_or(trim.control.thrust),
+            ..trim.control
+        };
+        let linear = linearize(
+            &settings.airframe,
+            &trim.state,
+            design,
+            settings.design_jacobian,
+        );
+        let lqr = Lqr::design(&linear, &settings.regulator).map_err(SetupError::Regulator)?;
+        if holds(settings, &trim, &lqr) {
+            Ok(Self { trim, lqr })
+        } else {
+            Err(SetupError::Unstable)
+        }
     }
 }

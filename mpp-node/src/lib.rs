@@ -9,10 +9,11 @@
 //!
 //! ```text
 //! LidarScan k      kept until the sensor frame of the same tick
-//! SensorFrame k    1. a cycle whose latency has passed is finished and taken over -> PlanReport
-//!                  2. estimate, reference, control          -> StepReport, ActuatorCommand
-//!                  3. a scan, if it is time to replan, starts a cycle
-//!                  4. the planner runs its slices of this tick
+//! SensorFrame k    1. a plan that tick k - 1 has taken over is told -> PlanReport, PlanTrajectory
+//!                  2. a cycle whose latency has passed is finished and taken over
+//!                  3. estimate, reference, control          -> StepReport, ActuatorCommand
+//!                  4. a scan, if it is time to replan, starts a cycle
+//!                  5. the planner runs its slices of this tick
 //! ```
 //!
 //! The step uses a plan `latency_ticks` after its scan and not earlier, even if the planner was faster.
@@ -21,7 +22,7 @@
 //! # Two tasks
 //!
 //! ```text
-//! bytes -> StepTask --- Order ----> PlanTask     1, 2, 3 | 4
+//! bytes -> StepTask --- Order ----> PlanTask     1, 2, 3, 4 | 5
 //! bytes <-          <-- Answer ---
 //! ```
 //!

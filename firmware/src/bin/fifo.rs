@@ -33,7 +33,6 @@ fn main() -> ! {
             host::open();
             let host = host::get();
             tasks::step_side().announce(|bytes| host.send(bytes));
-            host.flush();
         }
         board::set_priorities(&mut peripherals);
         board::start_timer();
@@ -69,7 +68,6 @@ fn SysTick() {
     }
     let before = side.last_tick();
     side.collect(|bytes| host.send(bytes));
-    host.flush();
     // With the timer the loop reads until it has made one tick of the flight. In lockstep it reads once.
     while !side.waits() && side.last_tick() == before {
         if !take_bytes(host) {
@@ -80,7 +78,6 @@ fn SysTick() {
         {
             side.receive(byte, |bytes| host.send(bytes));
         }
-        host.flush();
         if !timed {
             break;
         }

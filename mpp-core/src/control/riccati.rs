@@ -68,17 +68,18 @@ pub fn solve_riccati(
     let shift = a.norm().max(1.0);
     let shifted = a - Matrix4::identity() * shift;
     let shifted_inverse = inverse(&shifted)?;
-    let w = shifted.transpose() + q * shifted_inverse * g;
+    let w = shifted.transpose() + product(&[q, &shifted_inverse, g]);
     let w_inverse = inverse(&w)?;
     let mut ak = Matrix4::identity() + w_inverse.transpose() * (2.0 * shift);
-    let mut gk = shifted_inverse * g * w_inverse * (2.0 * shift);
-    let mut hk = w_inverse * q * shifted_inverse * (2.0 * shift);
+    let mut gk = product(&[&shifted_inverse, g, &w_inverse]) * (2.0 * shift);
+    let mut hk = product(&[&w_inverse, q, &shifted_inverse]) * (2.0 * shift);
 
     for _ in 0..MAX_DOUBLINGS {
-        let mix = inverse(&(Matrix4::identity() + gk * hk))?;
-        let step = ak.transpose() * hk * mix * ak;
-        gk += ak * mix * gk * ak.transpose();
-        ak = ak * mix * ak;
+        let mix = inverse(&(Matrix4::identity() + product(&[&gk, &hk])))?;
+        let turned = ak.transpose();
+        let step = product(&[&turned, &hk, &mix, &ak]);
+        gk += product(&[&ak, &mix, &gk, &turned]);
+        ak = product(&[&ak, &mix, &ak]);
         hk += step;
         if !hk.iter().all(|value| value.is_finite()) {
             return Err(RiccatiError::NotConverged);
@@ -88,6 +89,15 @@ pub fn solve_riccati(
         }
     }
     Err(RiccatiError::NotConverged)
+}
+
+/// The product of some matrices, from the left to the right.
+// Not inlined, because the image would hold twenty products.
+#[inline(never)]
+fn product(factors: &[&Matrix4<f64>]) -> Matrix4<f64> {
+    let mut factors = factors.iter().copied();
+    let first = factors.next().copied().unwrap_or_default();
+    factors.fold(first, |product, factor| product * factor)
 }
 
 fn inverse(matrix: &Matrix4<f64>) -> Result<Matrix4<f64>, RiccatiError> {
@@ -102,7 +112,7 @@ fn checked(
     q: &Matrix4<f64>,
     x: Matrix4<f64>,
 ) -> Result<Matrix4<f64>, RiccatiError> {
-    let (linear, square) = (a.transpose() * x, x * g * x);
+    let (linear, square) = (product(&[&a.transpose(), &x]), product(&[&x, g, &x]));
     let residual = linear + linear.transpose() - square + q;
     let scale = linear.norm() + square.norm() + q.norm();
     let lifted = x + Matrix4::identity() * (RESIDUAL * x.norm());

@@ -87,6 +87,15 @@ impl Estimator {
         }
     }
 
+    /// Whether the values in memory now are these.
+    #[must_use]
+    pub fn has(&self, design: &EstimatorDesign) -> bool {
+        self.airframe == design.airframe
+            && self.limits == design.limits
+            && *self.air.tuning() == design.filter
+            && self.navigation.wind_change() == design.wind_change
+    }
+
     /// Puts values back that have changed in memory by themselves.
     pub fn restore(&mut self, design: &EstimatorDesign) {
         self.airframe = design.airframe;

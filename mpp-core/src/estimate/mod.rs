@@ -19,7 +19,7 @@ pub use estimator::{Estimator, EstimatorDesign, Sensors};
 pub use history::{History, MOST_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
-use nalgebra::{Matrix4, SMatrix, Vector4};
+use nalgebra::{Matrix4, Vector4};
 pub use navigation::{Navigation, PositionVerdict};
 pub use watch::{Trust, Watch};
 
@@ -256,12 +256,21 @@ impl Ekf {
         state += gain * innovation;
         self.estimate = AirState::from_vector(&state);
 
-        let mut observation = SMatrix::<f64, 1, 4>::zeros();
-        observation[INDEX] = 1.0;
-        let shrink = Matrix4::identity() - gain * observation;
-        self.covariance = symmetric(
-            &(shrink * self.covariance * shrink.transpose() + gain * variance * gain.transpose()),
-        );
+        // `(I - k h') P (I - k h')' + k r k'`, whose products with the zeros of `h` are left out.
+        let known = self.covariance;
+        let kept = 1.0 - gain[INDEX];
+        let shrunk = Matrix4::from_fn(|row, col| match row {
+            row if row == INDEX => kept * known[(INDEX, col)],
+            row => known[(row, col)] - gain[row] * known[(INDEX, col)],
+        });
+        let corrected = Matrix4::from_fn(|row, col| {
+            let part = match col {
+                col if col == INDEX => shrunk[(row, INDEX)] * kept,
+                col => shrunk[(row, col)] - shrunk[(row, INDEX)] * gain[col],
+            };
+            part + gain[row] * variance * gain[col]
+        });
+        self.covariance = symmetric(&corrected);
         Verdict::Accepted
     }
 }

@@ -28,6 +28,16 @@ impl FlightLoop {
         }
     }
 
+    /// Whether the values in memory now are these.
+    #[must_use]
+    pub fn has(&self, design: &Design) -> bool {
+        self.estimator.has(&design.estimator)
+            && self.lqr == design.lqr
+            && self.trim == design.trim
+            && self.cross_track.to_bits() == design.cross_track.to_bits()
+            && self.airspeed_hold.to_bits() == design.airspeed_hold.to_bits()
+    }
+
     /// Puts values back that have changed in memory by themselves.
     pub fn restore(&mut self, design: &Design) {
         self.estimator.restore(&design.estimator);

@@ -43,6 +43,14 @@ impl CellWalk {
         }
         walk
     }
+
+    /// Crosses the next line of an axis.
+    #[inline]
+    fn cross<const AXIS: usize>(&mut self) {
+        self.entered = self.next_line[AXIS];
+        self.cell[AXIS] = self.cell[AXIS].saturating_add(self.step[AXIS]);
+        self.next_line[AXIS] += self.line_spacing[AXIS];
+    }
 }
 
 impl Iterator for CellWalk {
@@ -50,10 +58,12 @@ impl Iterator for CellWalk {
 
     fn next(&mut self) -> Option<Self::Item> {
         let item = (self.cell[0], self.cell[1], self.entered);
-        let axis = usize::from(self.next_line[1] < self.next_line[0]);
-        self.entered = self.next_line[axis];
-        self.cell[axis] = self.cell[axis].saturating_add(self.step[axis]);
-        self.next_line[axis] += self.line_spacing[axis];
+        // Axes by constants stay in registers.
+        if self.next_line[1] < self.next_line[0] {
+            self.cross::<1>();
+        } else {
+            self.cross::<0>();
+        }
         Some(item)
     }
 }

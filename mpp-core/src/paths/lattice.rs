@@ -17,7 +17,8 @@ use crate::tuning::lattice::{
 use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
 use edges::{
-    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, POINTS, Prices, QUARTERS, SLOPES,
+    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, PER_BYTE, POINTS, Place, Prices,
+    QUARTERS, SLOPES,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -35,7 +36,9 @@ const NEVER: u32 = 1 << 28;
 
 /// Costs by slope and height.
 type Layer = [[u32; HEIGHTS]; SLOPES];
-type Choice = [[u8; HEIGHTS]; SLOPES];
+/// The slope at the other end of the best edge for each height and slope, by its difference: [`Place`] tells
+/// where it lies.
+type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
 /// A path: its height at each station \[m\].
 pub type LatticePath = [f64; STATIONS];
 
@@ -94,8 +97,8 @@ impl Lattice {
             station: STATIONS,
             layer: [[NEVER; HEIGHTS]; SLOPES],
             to_via: [[NEVER; HEIGHTS]; SLOPES],
-            before: [[[0; HEIGHTS]; SLOPES]; VIA + 1],
-            after: [[[0; HEIGHTS]; SLOPES]; STATIONS - VIA],
+            before: [[[0; HEIGHTS]; _]; VIA + 1],
+            after: [[[0; HEIGHTS]; _]; STATIONS - VIA],
         }
     }
 
@@ -152,7 +155,7 @@ impl Lattice {
         let mut next: Layer = [[NEVER; HEIGHTS]; SLOPES];
         let choices = self.before.get_mut(station + 1);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
-        for (to, (costs, choices)) in (0..).zip(next.iter_mut().zip(choices)) {
+        for (to, costs) in (0..).zip(next.iter_mut()) {
             // The lowest start comes first: among equal costs the first one stays.
             for from in [to + 1, to, to - 1] {
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, from)) else {
@@ -160,10 +163,21 @@ impl Lattice {
                 };
                 let heights = edges.starts(&reached);
                 let ends = edges.ends(&heights);
-                let (costs, choices) = (costs.get_mut(ends.clone()), choices.get_mut(ends));
+                let place = Place::of(to);
+                let row = choices.get_mut(place.row);
+                let row = row.and_then(|row| row.get_mut(ends.clone()));
                 let known = known.get(heights.clone()).unwrap_or_default();
-                let found = (costs.unwrap_or_default(), choices.unwrap_or_default());
-                edges.relax(&prices, heights.start, known, from as u8, found);
+                let found = (
+                    costs.get_mut(ends).unwrap_or_default(),
+                    row.unwrap_or_default(),
+                );
+                edges.relax(
+                    &prices,
+                    heights.start,
+                    known,
+                    place.choosing(from - to),
+                    found,
+                );
             }
         }
         self.layer = next;
@@ -178,7 +192,7 @@ impl Lattice {
         let mut previous: Layer = [[NEVER; HEIGHTS]; SLOPES];
         let choices = self.after.get_mut(station - VIA);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
-        for (from, (costs, choices)) in (0..).zip(previous.iter_mut().zip(choices)) {
+        for (from, costs) in (0..).zip(previous.iter_mut()) {
             // The edge without a turn comes first: among equal costs the first one stays.
             for to in [from, from - 1, from + 1] {
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, to)) else {
@@ -187,9 +201,14 @@ impl Lattice {
                 let heights = edges.starts(&all);
                 let known = known.get(edges.ends(&heights)).unwrap_or_default();
                 let first = heights.start;
-                let (costs, choices) = (costs.get_mut(heights.clone()), choices.get_mut(heights));
-                let found = (costs.unwrap_or_default(), choices.unwrap_or_default());
-                edges.relax(&prices, first, known, to as u8, found);
+                let place = Place::of(from);
+                let row = choices.get_mut(place.row);
+                let row = row.and_then(|row| row.get_mut(heights.clone()));
+                let found = (
+                    costs.get_mut(heights).unwrap_or_default(),
+                    row.unwrap_or_default(),
+                );
+                edges.relax(&prices, first, known, place.choosing(to - from), found);
             }
         }
         self.layer = previous;
@@ -337,7 +356,7 @@ fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
 
 /// The choice at a height and a slope.
 fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<i32> {
-    let choices = choices.get(usize::try_from(slope).ok()?)?;
-    let choice = choices.get(usize::try_from(height).ok()?)?;
-    Some(i32::from(*choice))
+    let place = Place::of(slope);
+    let choices = choices.get(place.row)?.get(usize::try_from(height).ok()?)?;
+    Some(slope + place.change(*choices))
 }

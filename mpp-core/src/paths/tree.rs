@@ -125,9 +125,10 @@ impl Tree {
             return;
         };
         let point = newest.point;
+        let parent = newest.parent;
         let current = earlier.len() as u16;
         let mut neighbours = heapless::Vec::new();
-        self.find_neighbours(current, point, grid, rules, &mut neighbours);
+        self.find_neighbours((current, point, parent), grid, rules, &mut neighbours);
         let cheapest = neighbours
             .iter()
             .fold(None, |best: Option<(f64, Neighbour)>, n| {
@@ -164,12 +165,11 @@ impl Tree {
         }
     }
 
-    /// Adds the nodes before `current` within the rewiring radius of `point`, with their penalties. The
-    /// caller owns the list, because each return by value would copy it.
+    /// Adds the nodes before the newest one, `(index, point, parent)`, within its rewiring radius, with their
+    /// penalties. The edge from the parent is known to be free. The caller owns the list, because each return by value would copy it.
     fn find_neighbours(
         &self,
-        current: u16,
-        point: GridPoint,
+        (current, point, parent): (u16, GridPoint, Option<u16>),
         grid: &OccupancyGrid,
         rules: Rules,
         neighbours: &mut heapless::Vec<Neighbour, TREE_NODES>,
@@ -182,7 +182,9 @@ impl Tree {
             }
             let distance = node.point.distance(&point);
             let reachable = distance <= REWIRE_RADIUS
-                && (rules.are_authors() || grid.segment_is_free(node.point, point));
+                && (rules.are_authors()
+                    || parent == Some(index)
+                    || grid.segment_is_free(node.point, point));
             if reachable {
                 let cost = self.cost(index);
                 // The list has as many places as the tree has nodes, so the push cannot fail.

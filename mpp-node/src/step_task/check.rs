@@ -1,8 +1,9 @@
 //! The check of the values that only a configuration or a parameter changes. A bit of memory that flips by
-//! itself is noticed at the next tick and repaired by majority; it is never flown unnoticed.
+//! itself is noticed at the next tick, or in a spare copy at the next but one, and repaired by majority; it is
+//! never flown unnoticed.
 
 use super::StepTask;
-use super::spare::{Copies, Spare, compare};
+use super::spare::{Copies, Spare, compare, same};
 use hil_protocol::RejectionCause;
 
 impl StepTask {
@@ -17,8 +18,8 @@ impl StepTask {
 
     /// Checks the values of the flight and repairs them. Returns false if that is not possible: the core then
     /// starts over, as after a restart.
-    pub(super) fn check_values(&mut self, send: &mut impl FnMut(&[u8])) -> bool {
-        let copies = self.compare_values();
+    pub(super) fn check_values(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) -> bool {
+        let copies = self.compare_values(tick);
         if copies != [Copies::Equal; 2] {
             self.reject(RejectionCause::ValuesRepaired, send);
         }
@@ -29,13 +30,26 @@ impl StepTask {
         whole
     }
 
-    // Not inlined, so that its copies are not on the stack of the whole step.
-    #[inline(never)]
-    fn compare_values(&mut self) -> [Copies; 2] {
-        let (flight, spare) = match (&mut self.flight, &mut self.spare) {
+    /// Compares the values in use with one of the copies, in turn: two that agree are right. Only if they do
+    /// not agree, all three are compared.
+    fn compare_values(&mut self, tick: u32) -> [Copies; 2] {
+        let (flight, spare) = match (&self.flight, &self.spare) {
             (Some(flight), Some(spare)) => (flight, spare),
             (None, _) => return [Copies::Equal; 2],
             (Some(_), None) => return [Copies::Lost; 2],
+        };
+        let turn = (tick % 2) as usize;
+        if same(&flight.tuning, &spare.tuning[turn]) && flight.control.has(&spare.design[turn]) {
+            return [Copies::Equal; 2];
+        }
+        self.repair_values()
+    }
+
+    // Not inlined, so that its copies are not on the stack of the whole step.
+    #[inline(never)]
+    fn repair_values(&mut self) -> [Copies; 2] {
+        let (Some(flight), Some(spare)) = (&mut self.flight, &mut self.spare) else {
+            return [Copies::Lost; 2];
         };
         let tuning = compare(&mut flight.tuning, &mut spare.tuning);
         let mut design = flight.control.design();
@@ -52,7 +66,8 @@ mod tests {
     use super::super::Pace;
     use super::*;
     use hil_protocol::{
-        ActuatorLimits, AirData, Aircraft, Configure, Decoder, Message, Preset, SensorFrame,
+        ActuatorLimits, AirData, Aircraft, Body, Configure, Decoder, MAX_FRAME, Message, Preset,
+        SensorFrame, encode_body,
     };
     use mpp_core::flight::FlightLoop;
 
@@ -72,10 +87,17 @@ mod tests {
 
     fn in_flight() -> StepTask {
         let mut task = StepTask::new(Pace::RealTime);
-        task.handle(&Message::Configure(CONFIGURE), &mut |_| {});
+        tell(&mut task, &CONFIGURE, |_| {});
         task.set_up_done(Ok(()), &mut |_| {});
         assert_eq!(tick(&mut task, 0), [false, true]);
         task
+    }
+
+    /// Gives a message to the task.
+    fn tell(task: &mut StepTask, message: &impl Body, mut send: impl FnMut(&[u8])) {
+        for byte in encode_body(message, &mut [0; MAX_FRAME]).unwrap_or_default() {
+            task.receive(*byte, &mut send);
+        }
     }
 
     /// Makes a tick. Returns whether a repair was told, and whether a command came.
@@ -90,7 +112,7 @@ mod tests {
             position: None,
         };
         let (mut decoder, mut told) = (Decoder::new(), [false; 2]);
-        task.handle(&Message::SensorFrame(frame), &mut |bytes| {
+        tell(task, &frame, |bytes| {
             for message in bytes
                 .iter()
                 .filter_map(|byte| decoder.push(*byte))
@@ -125,10 +147,14 @@ mod tests {
                     let copies = [&mut flight.tuning, second, third];
                     flip(&mut copies[copy].settings.cross_track, bit);
                 }
-                for expected in [[true, true], [false, true]] {
-                    at += 1;
-                    assert_eq!(tick(&mut task, at), expected, "bit {bit}, copy {copy}");
-                }
+                // The copy in use is compared at each tick, and a spare copy at every other one.
+                let told = [1, 2, 3].map(|next| tick(&mut task, at + next));
+                at += 3;
+                assert!(told.iter().all(|[_, commanded]| *commanded));
+                let repairs = told.iter().filter(|[repaired, _]| *repaired).count();
+                assert_eq!(repairs, 1, "bit {bit}, copy {copy}");
+                let by = if copy == 0 { 1 } else { 2 };
+                assert!(told.iter().take(by).any(|[repaired, _]| *repaired));
             }
         }
         assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);

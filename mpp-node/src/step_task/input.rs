@@ -2,7 +2,7 @@
 
 use super::StepTask;
 use crate::{convert, ticks};
-use hil_protocol::{LidarScan as WireScan, RejectionCause, SensorFrame as WireFrame};
+use hil_protocol::{DecodeError, LidarScan as WireScan, RejectionCause, SensorFrame as WireFrame};
 use mpp_core::sense::LidarScan;
 
 /// Old ticks in a row after which the sender counts anew: 0.2 s. A frame that comes twice, or late, is alone.
@@ -10,7 +10,14 @@ const ANEW_AFTER: u32 = 20;
 
 impl StepTask {
     /// Checks a scan. It waits for its sensor frame.
-    pub(super) fn take_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
+    // Not inlined, so that the message is not on the stack of each tick.
+    #[inline(never)]
+    pub(super) fn take_scan(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+        self.check_scan(&self.decoder.body()?, send);
+        Ok(())
+    }
+
+    fn check_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
         let Some(flight) = &mut self.flight else {
             return self.reject(RejectionCause::NotConfigured, send);
         };

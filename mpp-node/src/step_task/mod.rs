@@ -13,12 +13,12 @@ use crate::mail::{Answer, Order, Plan};
 use crate::parameters::Tuning;
 use asker::Asker;
 use hil_protocol::{
-    Configure, ConfigureReply, ConfigureVerdict, Decoder, Hello, MAX_FRAME, Message, Rejection,
-    RejectionCause, Role, SensorFrame as WireFrame, encode,
+    Body, Configure, ConfigureReply, ConfigureVerdict, DecodeError, Decoder, Hello, MAX_FRAME,
+    PlanReport, Rejection, RejectionCause, Role, SensorFrame as WireFrame, encode_body, id,
 };
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::Watch;
-use mpp_core::flight::FlightLoop;
+use mpp_core::flight::{FlightLoop, Regulated};
 use mpp_core::health::Health;
 use mpp_core::sense::LidarScan;
 use spare::Spare;
@@ -63,6 +63,8 @@ struct Flight {
     last_scan: Option<u32>,
     /// The tick of the scan from which the present trajectory was planned.
     plan_tick: Option<u32>,
+    /// The report of a plan that the last tick has taken over.
+    untold: Option<PlanReport>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
     /// Jumps of the positions' origin that the planner knows of.
@@ -181,10 +183,14 @@ impl StepTask {
     /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller must not give
     /// bytes to a task that [waits](StepTask::waits).
     pub fn receive(&mut self, byte: u8, mut send: impl FnMut(&[u8])) {
-        match self.decoder.push(byte) {
-            None => {}
-            Some(Ok(message)) => self.handle(&message, &mut send),
-            Some(Err(fault)) => self.reject(RejectionCause::Frame(fault), &mut send),
+        let send = &mut send;
+        let handled = match self.decoder.take(byte) {
+            None => return,
+            Some(Ok(id)) => self.handle(id, send),
+            Some(Err(fault)) => Err(fault),
+        };
+        if let Err(fault) = handled {
+            self.reject(RejectionCause::Frame(fault), send);
         }
     }
 
@@ -192,6 +198,12 @@ impl StepTask {
     #[must_use]
     pub fn waits(&self) -> bool {
         self.held.is_some() || self.flight.as_ref().is_some_and(|flight| !flight.ready)
+    }
+
+    /// Whether there is an order for the planner.
+    #[must_use]
+    pub fn has_order(&self) -> bool {
+        self.order.is_some()
     }
 
     /// Takes the order for the planner, if there is one.
@@ -245,30 +257,38 @@ impl StepTask {
         self.flight.as_ref().map(|flight| flight.control.health())
     }
 
-    fn handle(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
-        match message {
-            Message::Hello(_) => self.greet(send),
-            Message::Configure(configure) => self.configure(configure, send),
-            Message::SetParameter(set) => self.set_parameter(set, send),
-            Message::LidarScan(scan) => self.take_scan(scan, send),
-            Message::SensorFrame(frame) => self.sensor_frame(frame, send),
-            other => self.reject(RejectionCause::UnexpectedMessage { id: other.id() }, send),
+    /// Acts on the message that the decoder has found. Only what comes to a core is read.
+    fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+        match id {
+            id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),
+            id::LIDAR_SCAN => self.take_scan(send)?,
+            id::HELLO => {
+                self.decoder.body::<Hello>()?;
+                self.greet(send);
+            }
+            id::CONFIGURE => self.configure(send)?,
+            id::SET_PARAMETER => self.set_parameter(&self.decoder.body()?, send),
+            id if (id::HELLO..=id::LAST).contains(&id) => {
+                self.reject(RejectionCause::UnexpectedMessage { id }, send);
+            }
+            _ => return Err(DecodeError::UnknownId { id }),
         }
         if self.planner_off {
             self.go_on_without_planner(send);
         }
+        Ok(())
     }
 
-    fn emit(&mut self, message: &Message, send: &mut impl FnMut(&[u8])) {
+    fn emit<T: Body>(&mut self, message: &T, send: &mut impl FnMut(&[u8])) {
         // The buffer holds the longest message, so this cannot fail.
-        if let Ok(frame) = encode(message, &mut self.buffer) {
+        if let Ok(frame) = encode_body(message, &mut self.buffer) {
             send(frame);
         }
     }
 
     fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
         let tick = self.last_tick().unwrap_or(0);
-        self.emit(&Message::Rejection(Rejection { tick, cause }), send);
+        self.emit(&Rejection { tick, cause }, send);
     }
 
     /// Answers a hello. It starts a new session, whatever the state of the last one.
@@ -282,7 +302,7 @@ impl StepTask {
             beams_max: MAX_BEAMS as u16,
             stages: STAGES as u16,
         };
-        self.emit(&Message::Hello(hello), send);
+        self.emit(&hello, send);
         if self.planner_off {
             self.reject(RejectionCause::PlannerOff, send);
         }
@@ -290,15 +310,16 @@ impl StepTask {
 
     // Not inlined, so that a new flight is not on the stack of each tick.
     #[inline(never)]
-    fn configure(&mut self, configure: &Configure, send: &mut impl FnMut(&[u8])) {
-        match self.prepare(configure) {
-            Ok(flight) => {
-                self.order_set_up(flight.tuning);
-                self.flight = Some(flight);
+    fn configure(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+        match self.prepare(&self.decoder.body()?) {
+            Ok((tuning, regulated)) => {
+                self.begin(&tuning, &regulated);
                 self.keep_values();
+                self.order_set_up(tuning);
             }
             Err(verdict) => self.reply(verdict, send),
         }
+        Ok(())
     }
 
     /// Orders the set-up of the planner. It replaces an order that still waits.
@@ -310,8 +331,9 @@ impl StepTask {
         });
     }
 
-    /// A flight that waits for the planner to be set up.
-    fn prepare(&self, configure: &Configure) -> Result<Flight, ConfigureVerdict> {
+    /// Checks a configuration, and designs the regulator for it.
+    #[inline(never)]
+    fn prepare(&self, configure: &Configure) -> Result<(Tuning, Regulated), ConfigureVerdict> {
         if self.flight.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
@@ -319,26 +341,36 @@ impl StepTask {
             return Err(refusal);
         }
         let tuning = Tuning::new(configure)?;
+        let regulated = Regulated::new(&tuning.settings).map_err(convert::setup_verdict)?;
+        Ok((tuning, regulated))
+    }
+
+    /// Begins a flight, which waits for the planner to be set up.
+    // Not inlined, so that the new flight does not lie on the stack above the design of the regulator.
+    #[inline(never)]
+    fn begin(&mut self, tuning: &Tuning, regulated: &Regulated) {
+        let configure = &tuning.configure;
         let between = configure
             .replan_period_ticks
             .saturating_add(configure.latency_ticks);
-        Ok(Flight {
-            tuning,
+        self.flight = Some(Flight {
+            tuning: *tuning,
             asker: Asker::Configure,
             ready: false,
-            control: FlightLoop::new(&tuning.settings).map_err(convert::setup_verdict)?,
+            control: FlightLoop::regulated(&tuning.settings, regulated),
             first_tick: None,
             last_tick: None,
             cycle: None,
             last_cycle: None,
             last_scan: None,
             plan_tick: None,
+            untold: None,
             scan_tick: None,
             restarts: 0,
             old_ticks: None,
             lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,
-        })
+        });
     }
 
     fn set_up_done(&mut self, result: Result<(), ConfigureVerdict>, send: &mut impl FnMut(&[u8])) {
@@ -365,7 +397,7 @@ impl StepTask {
     }
 
     fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
-        self.emit(&Message::ConfigureReply(ConfigureReply { verdict }), send);
+        self.emit(&ConfigureReply { verdict }, send);
     }
 }
 

@@ -36,6 +36,6 @@ pub(super) fn compare<T: Copy + PartialEq>(first: &mut T, others: &mut [T; 2]) -
 
 // Not inlined, so that the comparison of so many numbers is in the image only once.
 #[inline(never)]
-fn same<T: PartialEq>(first: &T, second: &T) -> bool {
+pub(super) fn same<T: PartialEq>(first: &T, second: &T) -> bool {
     first == second
 }

@@ -5,11 +5,8 @@ use crate::convert;
 use crate::mail::Order;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
-use hil_protocol::{
-    ActuatorCommand, HealthReport, Message, PlanOutcome, PlanReport, RejectionCause,
-};
+use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
 use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
-use mpp_core::flight::Adoption;
 use mpp_core::planner::PlanSummary;
 
 /// Ticks from one report of the counters to the next.
@@ -18,9 +15,10 @@ const HEALTH_PERIOD: u32 = 100;
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
     pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        if !self.check_values(send) {
+        if !self.check_values(frame.tick, send) {
             return;
         }
+        self.tell_plan(send);
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {
                 // The planner may use the slices of all ticks before this one.
@@ -70,7 +68,7 @@ impl StepTask {
             ..
         } = plan.summary;
         flight.lidar_good = Some(!blind);
-        let report = PlanReport {
+        flight.untold = Some(PlanReport {
             scan_tick,
             used_from_tick: tick,
             outcome,
@@ -81,16 +79,31 @@ impl StepTask {
             cost,
             violation,
             complete,
-        };
-        let flown = matches!(adoption, Adoption::Feasible | Adoption::LeastViolating)
-            .then(|| convert::trajectory(scan_tick, &plan.trajectory));
+        });
         self.plan = None;
         if blind {
             self.reject(RejectionCause::ScanBlind, send);
         }
-        self.emit(&Message::PlanReport(report), send);
-        if let Some(trajectory) = flown {
-            self.emit(&Message::PlanTrajectory(trajectory), send);
+    }
+
+    /// Tells the plan that the tick before has taken over. The tick that takes over has enough to do.
+    #[inline(never)]
+    fn tell_plan(&mut self, send: &mut impl FnMut(&[u8])) {
+        let Some(report) = self.flight.as_mut().and_then(|flight| flight.untold.take()) else {
+            return;
+        };
+        self.emit(&report, send);
+        let is_new = matches!(
+            report.outcome,
+            PlanOutcome::Adopted | PlanOutcome::LeastViolating
+        );
+        let flown = self
+            .flight
+            .as_ref()
+            .and_then(|flight| flight.control.trajectory());
+        if let Some(trajectory) = flown.filter(|_| is_new) {
+            let trajectory = convert::trajectory(report.scan_tick, trajectory);
+            self.emit(&trajectory, send);
         }
     }
 
@@ -129,9 +142,9 @@ impl StepTask {
         if let Some(cause) = measurement_rejection(output.innovation, output.position) {
             self.reject(cause, send);
         }
-        self.emit(&Message::StepReport(report), send);
+        self.emit(&report, send);
         self.report_health(frame.tick, send);
-        self.emit(&Message::ActuatorCommand(command), send);
+        self.emit(&command, send);
     }
 
     /// Sends the counters once a second, at a tick at which scans and plans are rare.
@@ -141,10 +154,7 @@ impl StepTask {
         }
         if let Some(health) = self.health() {
             let counters = health.counters();
-            self.emit(
-                &Message::HealthReport(HealthReport { tick, counters }),
-                send,
-            );
+            self.emit(&HealthReport { tick, counters }, send);
         }
     }
 

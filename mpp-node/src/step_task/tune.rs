@@ -1,11 +1,12 @@
 //! Changes of parameters. Before the flight the core is set up anew; in flight the next cycle takes the
 //! new value.
 
-use super::StepTask;
 use super::asker::Asker;
+use super::{Flight, StepTask};
 use crate::convert;
-use hil_protocol::{ConfigureVerdict, Message, ParameterReply, ParameterVerdict, SetParameter};
-use mpp_core::flight::FlightLoop;
+use crate::parameters::Tuning;
+use hil_protocol::{ConfigureVerdict, ParameterReply, ParameterVerdict, SetParameter};
+use mpp_core::flight::{FlightLoop, Regulated};
 
 impl StepTask {
     // Not inlined, so that a new flight loop is not on the stack of each tick.
@@ -23,20 +24,18 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return Err(ParameterVerdict::NotConfigured);
         };
-        let before = flight.tuning;
         let in_flight = flight.last_tick.is_some();
-        let tuning = before.with(set.parameter, set.value, in_flight)?;
-        if !in_flight {
+        let tuning = (flight.tuning).with(set.parameter, set.value, in_flight)?;
+        if in_flight {
+            flight.tuning = tuning;
+        } else {
             let failed = |error| ParameterVerdict::SetUp(convert::setup_verdict(error));
-            flight.control = FlightLoop::new(&tuning.settings).map_err(failed)?;
-            flight.ready = false;
-            flight.asker = Asker::Parameter(set.parameter, before);
-        }
-        flight.tuning = tuning;
-        self.keep_values();
-        if !in_flight {
+            let regulated = Regulated::new(&tuning.settings).map_err(failed)?;
+            flight.asker = Asker::Parameter(set.parameter, flight.tuning);
+            flight.refit(&tuning, &regulated);
             self.order_set_up(tuning);
         }
+        self.keep_values();
         Ok(())
     }
 
@@ -60,9 +59,8 @@ impl StepTask {
                 ParameterVerdict::Accepted
             }
             Err(verdict) => {
-                flight.tuning = before;
-                if let Ok(control) = FlightLoop::new(&before.settings) {
-                    flight.control = control;
+                if let Ok(regulated) = Regulated::new(&before.settings) {
+                    flight.refit(&before, &regulated);
                 }
                 flight.asker = Asker::Nobody;
                 self.keep_values();
@@ -80,6 +78,17 @@ impl StepTask {
         send: &mut impl FnMut(&[u8]),
     ) {
         let reply = ParameterReply { parameter, verdict };
-        self.emit(&Message::ParameterReply(reply), send);
+        self.emit(&reply, send);
+    }
+}
+
+impl Flight {
+    /// Takes other values before the flight, with a regulator for them. The planner is not set up for them.
+    // Not inlined, so that the new loop does not lie on the stack above the design of the regulator.
+    #[inline(never)]
+    fn refit(&mut self, tuning: &Tuning, regulated: &Regulated) {
+        self.tuning = *tuning;
+        self.control = FlightLoop::regulated(&tuning.settings, regulated);
+        self.ready = false;
     }
 }

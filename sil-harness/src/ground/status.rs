@@ -3,7 +3,7 @@
 
 use super::commands::mode_number;
 use super::inquiries::{HOME, north};
-use super::vehicle::Vehicle;
+use super::vehicle::{Last, Vehicle};
 use hil_protocol::SensorState;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{MessageData, text};
@@ -19,14 +19,6 @@ const STANDARD_CRUISE: u8 = 3;
 const AUTO_MODE: u32 = 4;
 /// The modes in the order in which they are listed, with their names.
 const MODES: [(Mode, &str); 2] = [(Mode::Auto, "AUTO"), (Mode::Cruise, "CRUISE")];
-
-/// The last message of each event.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Last {
-    pub(super) scan: Option<MPP_LIDAR_SCAN_DATA>,
-    pub(super) plan: Option<MPP_PLAN_STATUS_DATA>,
-    pub(super) trajectory: Option<MPP_TRAJECTORY_DATA>,
-}
 
 impl Vehicle {
     /// Sends the last message of an event again. Returns `false` if there was none.

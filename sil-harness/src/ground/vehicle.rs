@@ -8,7 +8,6 @@ use super::heard::Heard;
 use super::parameter_queue::ParameterQueue;
 use super::security::Security;
 use super::stations::Stations;
-use super::status::Last;
 use super::streams::Streams;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
@@ -63,6 +62,14 @@ pub(super) enum Waiting {
     /// Everybody waits for a parameter's value.
     Parameter(u8),
     Nobody,
+}
+
+/// The last message of each event.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Last {
+    pub(super) scan: Option<MPP_LIDAR_SCAN_DATA>,
+    pub(super) plan: Option<MPP_PLAN_STATUS_DATA>,
+    pub(super) trajectory: Option<MPP_TRAJECTORY_DATA>,
 }
 
 /// The vehicle.

@@ -22,6 +22,37 @@ pub(super) const EDGE_REACH: usize = 18;
 pub(super) type Prices = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
 pub(super) const NO_PRICES: Prices = [[0; _]; QUARTERS];
 
+/// Number of choices in a byte.
+pub(super) const PER_BYTE: usize = 4;
+
+/// The place of the choices of a slope: four slopes share a row of bytes. A choice is the change of the slope by
+/// -1 to 1, as two bits.
+#[derive(Clone, Copy)]
+pub(super) struct Place {
+    pub(super) row: usize,
+    shift: u32,
+}
+
+impl Place {
+    pub(super) fn of(slope: i32) -> Self {
+        let slope = slope as u32;
+        Self {
+            row: slope as usize / PER_BYTE,
+            shift: 2 * (slope % PER_BYTE as u32),
+        }
+    }
+
+    /// What a change of slope keeps of a byte, and what it adds.
+    pub(super) fn choosing(self, change: i32) -> (u8, u8) {
+        (!(3 << self.shift), ((change + 1) as u8) << self.shift)
+    }
+
+    /// The change of slope in a byte.
+    pub(super) fn change(self, byte: u8) -> i32 {
+        i32::from(byte >> self.shift & 3) - 1
+    }
+}
+
 /// All edges from a slope at one station to a slope at the next.
 pub(super) struct Edges {
     /// Slopes, in steps from level.
@@ -57,7 +88,7 @@ impl Edges {
     }
 
     /// Lowers costs to those over the edges from the height `first` on, which are known costs and the prices of
-    /// points, slope and turn. Notes `choice` where a cost falls.
+    /// points, slope and turn. Notes the choice where a cost falls.
     // The callers are few loops over slopes, which would each hold a copy.
     #[inline(never)]
     pub(super) fn relax(
@@ -65,7 +96,7 @@ impl Edges {
         points: &Prices,
         first: usize,
         known: &[u32],
-        choice: u8,
+        (mask, choice): (u8, u8),
         (costs, choices): (&mut [u32], &mut [u8]),
     ) {
         const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
@@ -90,7 +121,7 @@ impl Edges {
             let through = known.wrapping_add(own + a + b + c + d);
             if through < *cost {
                 *cost = through;
-                *place = choice;
+                *place = *place & mask | choice;
             }
         }
     }

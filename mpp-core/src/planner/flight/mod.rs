@@ -36,8 +36,8 @@ use crate::config::{KNOTS, STAGES};
 use crate::corridor::Corridor;
 use crate::estimate::Conditions;
 use crate::map::{ClearanceField, MemoryMap, OccupancyGrid, Pose};
-use crate::paths::{CLIMB, Lattice, MAX_LATTICE_PATHS, Path, Search};
-use crate::qp::{Bounds, Condensed, Dynamics, Problem, Solution, Solver, Weights};
+use crate::paths::{CLIMB, Lattice, MAX_LATTICE_PATHS, Search};
+use crate::qp::{Condensed, Dynamics, Problem, Solution, Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
@@ -122,7 +122,6 @@ pub struct FlightPlanner {
     lattice: Lattice,
     grid: OccupancyGrid,
     search: Search,
-    path: Path,
 
     // From paths to trajectories.
     candidates: heapless::Vec<Candidate, MAX_CANDIDATES>,
@@ -134,7 +133,6 @@ pub struct FlightPlanner {
     at_hand: usize,
     corridor: Corridor,
     shared: Condensed,
-    problem: Problem,
     solver: Solver,
     solution: Solution,
 
@@ -183,20 +181,12 @@ impl FlightPlanner {
             lattice: Lattice::new(),
             grid: OccupancyGrid::new(),
             search: Search::new(),
-            path: Path::new(),
             candidates: heapless::Vec::new(),
             improvements: 0,
             order: [0; MAX_CANDIDATES],
             at_hand: 0,
             corridor: Corridor::new(),
             shared: Condensed::new(),
-            problem: Problem {
-                initial: [0.0; 6],
-                target: [0.0; 6],
-                bounds: Bounds::none(),
-                penalty: None,
-                cost_limit: f64::INFINITY,
-            },
             solver: Solver::new(),
             solution: Solution::new(),
             best: Trajectory::new(),
@@ -227,9 +217,12 @@ impl FlightPlanner {
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
-        self.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
-        self.problem.penalty = Some(self.settings.penalty);
-        self.problem.bounds.set_thrust(self.trim.control.thrust);
+        self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
+        self.solver.problem.penalty = Some(self.settings.penalty);
+        self.solver
+            .problem
+            .bounds
+            .set_thrust(self.trim.control.thrust);
         self.candidates.clear();
         self.improvements = 0;
         self.best_price = f64::INFINITY;
@@ -373,7 +366,7 @@ impl FlightPlanner {
         }
         let candidate = self.candidates.get(self.at_hand)?;
         let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
-        Some((path, &self.problem))
+        Some((path, &self.solver.problem))
     }
 
     /// The dynamics of every stage in the program of [`Self::candidate`].

@@ -43,13 +43,16 @@ impl FlightPlanner {
         self.phase = Phase::Lattice;
     }
 
-    /// Searches one station of the lattice. After the last station the paths of the lattice become
-    /// candidates, and a tree starts in the same map.
-    #[inline(never)]
+    /// Searches one station of the lattice. After the last one a tree starts in the same map.
     pub(super) fn search_lattice(&mut self) {
-        if self.lattice.advance(&self.field) {
-            return;
+        if !self.lattice.advance(&self.field) {
+            self.take_lattice_paths();
         }
+    }
+
+    /// Makes the paths of the lattice candidates, and starts a tree.
+    #[inline(never)]
+    fn take_lattice_paths(&mut self) {
         let mut paths = heapless::Vec::new();
         self.lattice.paths(&mut paths);
         for path in &paths {

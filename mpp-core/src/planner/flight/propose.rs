@@ -7,7 +7,7 @@ use super::{FlightPlanner, Phase};
 use crate::Rules;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
-use crate::paths::{Extension, LatticePath, resample};
+use crate::paths::{Extension, LatticePath, Path, resample};
 use crate::tuning::candidates::TREE_PATHS;
 use crate::vehicle::{PathControl, PathState};
 
@@ -94,6 +94,7 @@ impl FlightPlanner {
     }
 
     /// Draws some samples of the tree. When the tree is complete, it proposes paths of the tree.
+    #[inline(never)]
     pub(super) fn grow_tree(&mut self) {
         let Some(random) = &mut self.random else {
             self.phase = Phase::Done;
@@ -111,14 +112,15 @@ impl FlightPlanner {
     /// obstacle.
     #[inline(never)]
     fn take_tree_paths(&mut self) {
+        let mut path = Path::new();
         let mut from = 0;
         let mut taken = 0;
         while taken < TREE_PATHS {
-            let Some(next) = self.search.next_path(from, &mut self.path) else {
+            let Some(next) = self.search.next_path(from, &mut path) else {
                 break;
             };
             from = next;
-            let points = resample(&self.path, Rules::Corrected);
+            let points = resample(&path, Rules::Corrected);
             let mut candidate = self.cruising();
             let mut before = points[0];
             for (knot, point) in candidate.knots.iter_mut().zip(&points).skip(1) {

@@ -68,17 +68,17 @@ impl FlightPlanner {
             self.phase = Phase::Faces;
             return;
         }
-        self.problem.bounds.set_corridor(&self.corridor);
+        self.solver.problem.bounds.set_corridor(&self.corridor);
         let Limits {
             angle_of_attack: [down, up],
             flight_path,
             ..
         } = self.limits;
         let scaled = |limits: [f64; 2]| limits.map(|limit| ANGLE_SCALE * limit);
-        (self.problem.bounds)
+        (self.solver.problem.bounds)
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
-        self.problem.initial = frame.deviation(&frame.start, 0).into();
-        self.solver.start(&self.shared, &self.problem);
+        self.solver.problem.initial = frame.deviation(&frame.start, 0).into();
+        self.solver.begin(&self.shared);
         self.phase = Phase::Improve;
     }
 

@@ -89,7 +89,8 @@ struct Active {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Solver {
-    problem: Problem,
+    /// The program. Its owner may change it between the end of one and the beginning of the next.
+    pub(crate) problem: Problem,
     /// The feedforward of the optimum without rows.
     feedforward: ControlVector,
     /// The present normalised controls, their trajectory, and the outputs of the trajectory.
@@ -145,7 +146,13 @@ impl Solver {
     /// and the opposite faces.
     pub fn start(&mut self, shared: &Condensed, problem: &Problem) {
         self.problem = *problem;
+        self.begin(shared);
+    }
+
+    /// Starts on the problem that is here already.
+    pub(crate) fn begin(&mut self, shared: &Condensed) {
         self.active.clear();
+        let problem = &self.problem;
         let rows = problem.bounds.0.iter().zip(&shared.prices);
         let mut numbers = true;
         for (open, (bound, price)) in self.open.0.iter_mut().zip(rows) {
@@ -161,11 +168,11 @@ impl Solver {
         self.factor.clear();
         self.iterations = 0;
         self.certificate.clear();
-        self.feedforward = shared.feedforward(&problem.target);
+        self.feedforward = shared.feedforward(&self.problem.target);
         self.normalised = [0.0; CONTROLS];
         self.follow(shared);
-        self.dual = shared.cost(&self.trajectory, &problem.target);
-        self.absurd_rise = if problem.penalty.is_some() {
+        self.dual = shared.cost(&self.trajectory, &self.problem.target);
+        self.absurd_rise = if self.problem.penalty.is_some() {
             f64::INFINITY
         } else {
             0.5 * shared.weights.terminal * ABSURD_MISS * ABSURD_MISS + ABSURD_FACTOR * self.dual
@@ -173,7 +180,7 @@ impl Solver {
         self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)
                 .or_else(|| self.check_opposite_faces())
-                .or_else(|| (self.dual > problem.cost_limit).then_some(Status::Dominated))
+                .or_else(|| (self.dual > self.problem.cost_limit).then_some(Status::Dominated))
         } else {
             Some(Status::NumericalFailure)
         };
