@@ -39,8 +39,14 @@ fn example(flights: u64) -> Result<()> {
     let folder = work("c")?;
     let host = Harness::build(&folder)?;
     let mut cargo = Command::new("cargo");
-    cargo.current_dir(root()).env("CARGO_TARGET_DIR", &folder);
+    cargo.current_dir(root());
     succeed(cargo.args(["build", "--quiet", "--locked", "-p", "mpp-c-plant"]))?;
+    // The harness stands in the folder beside.
+    let built = host
+        .program()
+        .ancestors()
+        .nth(2)
+        .context("no target folder")?;
     install(&[("/usr/bin/cc", "gcc")])?;
     let program = folder.join("fly");
     let mut cc = Command::new("cc");
@@ -48,7 +54,7 @@ fn example(flights: u64) -> Result<()> {
         .args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-O1", "-g"])
         .args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"])
         .args(["-I", "include", "example/fly.c"])
-        .arg(folder.join("debug/libmpp_c_plant.a"))
+        .arg(built.join("debug/libmpp_c_plant.a"))
         .args(["-lm", "-lpthread", "-ldl", "-o"])
         .arg(&program);
     succeed(&mut cc)?;

@@ -12,7 +12,8 @@ pub const MPP_KNOTS: usize = 19;
 /// Counters of events.
 pub const MPP_COUNTERS: usize = 19;
 
-/// The aircraft, by its coefficients: `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
+/// The aircraft, by its coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`,
+/// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
 /// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`. The elevator may be in any unit.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +32,10 @@ pub struct MppAircraft {
     pub lift_zero: f64,
     /// `C_La` [1/rad].
     pub lift_alpha: f64,
+    /// `C_La'` [s/rad].
+    pub lift_alpha_rate: f64,
+    /// `C_Lq` [s/rad].
+    pub lift_pitch_rate: f64,
     /// `C_Le` [1 per unit of elevator].
     pub lift_elevator: f64,
     /// `C_D0` [-].
@@ -221,6 +226,8 @@ impl MppAircraft {
             air_density: own.air_density,
             lift_zero: own.lift_zero,
             lift_alpha: own.lift_alpha,
+            lift_alpha_rate: own.lift_alpha_rate,
+            lift_pitch_rate: own.lift_pitch_rate,
             lift_elevator: own.lift_elevator,
             drag_zero: own.drag_zero,
             drag_induced: own.drag_induced,
@@ -251,6 +258,8 @@ impl MppAircraft {
             air_density: self.air_density,
             lift_zero: self.lift_zero,
             lift_alpha: self.lift_alpha,
+            lift_alpha_rate: self.lift_alpha_rate,
+            lift_pitch_rate: self.lift_pitch_rate,
             lift_elevator: self.lift_elevator,
             drag_zero: self.drag_zero,
             drag_induced: self.drag_induced,
