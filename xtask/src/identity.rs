@@ -232,6 +232,7 @@ fn table(args: &IdentityArgs, rows: &[serde_json::Value]) {
     );
     for row in rows {
         let text = |key: &str| row[key].as_str().unwrap_or_default();
+        let number = |key: &str| row[key].as_u64().unwrap_or_default();
         let (name, how) = (text("name"), text("how"));
         if row["skipped"].is_string() {
             println!("{name:<10} {how:<37} {}", text("skipped"));
@@ -239,10 +240,10 @@ fn table(args: &IdentityArgs, rows: &[serde_json::Value]) {
         }
         println!(
             "{name:<10} {how:<37} {:>7} {:>7} {:<17} {:>8}",
-            row["flights"],
-            row["equal"],
+            number("flights"),
+            number("equal"),
             text("first_hash"),
-            row["seconds"]
+            row["seconds"].as_f64().unwrap_or_default()
         );
         if row["flights"] != row["equal"] {
             println!("{:<10} differs at seeds {}", "", row["different"]);

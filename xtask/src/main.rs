@@ -6,6 +6,7 @@
 
 mod aarch64;
 mod budget;
+mod c;
 mod contents;
 mod counts;
 mod faults;
@@ -57,6 +58,8 @@ enum Command {
     Wasm,
     /// Build the page that flies in the browser: one file, which needs nothing else
     Web,
+    /// Fly the example of the C interface under sanitizers, and link its library, which only links if it cannot panic
+    C(c::CArgs),
     /// Fly the same seeds on this machine, a Cortex-M7, aarch64, WebAssembly and from Python, and compare the hashes
     Identity(identity::IdentityArgs),
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
@@ -75,6 +78,7 @@ fn main() -> ExitCode {
         Command::Flips(args) => flips::run(&args),
         Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
         Command::Web => wasm::page(),
+        Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// Greatest size of the page as a server would send it [bytes].
+/// Greatest size of the page as a server would send it \[bytes\].
 const PAGE_MAX: usize = 500_000;
 /// The parts of the page, in order. The module comes after the last one.
 const PARTS: [&str; 5] = [

@@ -74,7 +74,8 @@ typedef enum mpp_status {
 // A core. Its content is private.
 typedef struct mpp_core mpp_core;
 
-// The aircraft, by its coefficients: `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
+// The aircraft, by its coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`,
+// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
 // `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`. The elevator may be in any unit.
 typedef struct mpp_aircraft {
   // Mass [kg].
@@ -91,9 +92,9 @@ typedef struct mpp_aircraft {
   double lift_zero;
   // `C_La` [1/rad].
   double lift_alpha;
-  // Lift by the rate of the angle of attack [s/rad]: the usual coefficient times `c / 2v` at cruise.
+  // `C_La'` [s/rad].
   double lift_alpha_rate;
-  // Lift by the pitch rate [s/rad]: the usual coefficient times `c / 2v` at cruise.
+  // `C_Lq` [s/rad].
   double lift_pitch_rate;
   // `C_Le` [1 per unit of elevator].
   double lift_elevator;

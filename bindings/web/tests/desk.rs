@@ -20,6 +20,10 @@ fn ask(desk: &mut Desk, question: Value) -> Value {
     serde_json::from_slice(&desk.answer(question.to_string().as_bytes())).unwrap()
 }
 
+#[expect(
+    clippy::needless_pass_by_value,
+    reason = "questions are written where they are asked"
+)]
 fn begin(scenario: Value, orders: Value, details: bool) -> Value {
     json!({ "ask": "begin", "scenario": scenario, "orders": orders, "details": details })
 }

@@ -31,7 +31,7 @@ const HOST: &[&str] = &[
 
 /// One entry for each crate of the workspace, the lowest first. An entry may exist before its
 /// crate.
-const RULES: [Rule; 9] = [
+const RULES: [Rule; 11] = [
     Rule {
         name: "mpp-core",
         ours: &[],
@@ -67,6 +67,16 @@ const RULES: [Rule; 9] = [
             "mpp-analysis",
         ],
         not: &["clarabel", "plotters"],
+    },
+    Rule {
+        name: "mpp-c",
+        ours: &["mpp-core", "hil-protocol", "mpp-node"],
+        not: HOST,
+    },
+    Rule {
+        name: "mpp-c-plant",
+        ours: &["hil-protocol", "mpp-c", "mpp-sim"],
+        not: &["clap", "rayon", "indicatif", "clarabel", "plotters"],
     },
     Rule {
         name: "mpp-web",

@@ -4,8 +4,11 @@
 //! number that is out of range and a call at the wrong time get a code. A core may be used by one thread at a
 //! time; the caller sees to that, as it sees to the size that pointers promise.
 //!
-//!
 #![no_std]
+#![allow(
+    rustdoc::broken_intra_doc_links,
+    reason = "the texts stand in the header too, where a bracket needs no escape"
+)]
 #![expect(
     unsafe_code,
     reason = "a C interface takes pointers; each use says what the caller promises"

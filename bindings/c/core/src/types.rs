@@ -12,7 +12,8 @@ pub const MPP_KNOTS: usize = 19;
 /// Counters of events.
 pub const MPP_COUNTERS: usize = 19;
 
-/// The aircraft, by its coefficients: `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
+/// The aircraft, by its coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`,
+/// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
 /// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`. The elevator may be in any unit.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
@@ -31,9 +32,9 @@ pub struct MppAircraft {
     pub lift_zero: f64,
     /// `C_La` [1/rad].
     pub lift_alpha: f64,
-    /// Lift by the rate of the angle of attack [s/rad]: the usual coefficient times `c / 2v` at cruise.
+    /// `C_La'` [s/rad].
     pub lift_alpha_rate: f64,
-    /// Lift by the pitch rate [s/rad]: the usual coefficient times `c / 2v` at cruise.
+    /// `C_Lq` [s/rad].
     pub lift_pitch_rate: f64,
     /// `C_Le` [1 per unit of elevator].
     pub lift_elevator: f64,
