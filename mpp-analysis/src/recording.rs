@@ -48,7 +48,8 @@ pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
 }
 
 /// A scan of the link as the core takes it.
-pub(crate) fn core_scan(wire: &hil_protocol::LidarScan) -> LidarScan {
+#[must_use]
+pub fn core_scan(wire: &hil_protocol::LidarScan) -> LidarScan {
     LidarScan {
         angle_min: f64::from(wire.angle_min),
         angle_increment: f64::from(wire.angle_increment),
