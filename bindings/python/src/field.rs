@@ -1,10 +1,10 @@
 //! Fields of obstacles.
 
-use crate::errors::input;
+use crate::errors::{input, scenario};
 use crate::input::{finite, rows, table, text, vector};
 use crate::output::plain;
 use mpp_sim::field::{Circle, Field as _, FieldFile, Line, ObstacleField, Polygon, Shape};
-use mpp_sim::scenario::Scenario;
+use mpp_sim::scenario::ScenarioFile;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -38,24 +38,34 @@ impl Field {
         Self::checked(file)
     }
 
-    /// The field that a generator draws for a flight with these keys of a scenario, for example
-    /// `Field.generate("forest", obstacles=60, seed=7, radius=1.5)`. Keys that the generator takes go to it.
+    /// The field that a generator draws for a flight with this seed and this number of obstacles over 215 m, for
+    /// example `Field.generate("forest", obstacles=60, seed=7, radius=1.5)`. The parameters are those that the
+    /// generator takes. The flight lasts for `duration` [s]; lengths are `world_scale` times as long.
     #[staticmethod]
-    #[pyo3(signature = (generator = "paper", **keys))]
+    #[pyo3(signature = (
+        generator = "paper", *, obstacles = 20, seed = 1, duration = None, world_scale = 1.0, **parameters
+    ))]
     fn generate(
         py: Python<'_>,
         generator: &str,
-        keys: Option<&Bound<'_, PyDict>>,
+        obstacles: usize,
+        seed: u64,
+        duration: Option<u32>,
+        world_scale: f64,
+        parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
-        const OWN: [&str; 6] = ["radius", "gap", "spread", "cluster", "length", "velocity"];
-        let (scenario, own) = (PyDict::new(py), PyDict::new(py));
-        own.set_item("name", generator)?;
-        for (key, value) in keys.into_iter().flatten() {
-            let its = OWN.contains(&key.str()?.to_cow()?.as_ref());
-            if its { &own } else { &scenario }.set_item(key, value)?;
-        }
-        scenario.set_item("generator", own)?;
-        Self::of(&crate::scenario::build(&scenario)?)
+        let keys = parameters.map_or_else(|| Ok(PyDict::new(py)), Bound::copy)?;
+        keys.set_item("name", generator)?;
+        let file = ScenarioFile {
+            generator: table("generator", &keys)?,
+            obstacles: Some(obstacles),
+            seed: Some(seed),
+            duration,
+            world_scale: Some(world_scale),
+            ..ScenarioFile::default()
+        };
+        let scenario = py.detach(|| file.build()).map_err(scenario)?;
+        Self::checked(FieldFile::of(&scenario.field().obstacles))
     }
 
     /// A field of arrays \[m\]: circles as rows of x, z, radius; polygons as arrays of corners x, z; ground and
@@ -194,12 +204,5 @@ impl Field {
         slf: &Bound<'py, Self>,
     ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
         Ok((slf.get_type().into_any(), (slf.get().table(slf.py())?,)))
-    }
-}
-
-impl Field {
-    /// The field of a scenario.
-    fn of(scenario: &Scenario) -> PyResult<Self> {
-        Self::checked(FieldFile::of(&scenario.field().obstacles))
     }
 }

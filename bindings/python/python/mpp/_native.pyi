@@ -43,7 +43,15 @@ class Aircraft:
 class Field:
     def __new__(cls, source: _Path | dict[str, Any]) -> Field: ...
     @staticmethod
-    def generate(generator: str = "paper", **keys: Any) -> Field: ...
+    def generate(
+        generator: str = "paper",
+        *,
+        obstacles: int = 20,
+        seed: int = 1,
+        duration: int | None = None,
+        world_scale: float = 1.0,
+        **parameters: Any,
+    ) -> Field: ...
     @staticmethod
     def of_arrays(
         circles: ArrayLike | None = None,
