@@ -13,6 +13,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
 
+/// Greatest number of flights side by side. Each takes some 10 kB, and 16 bytes a tick.
+const MOST_FLIGHTS: usize = 100_000;
+
 /// Flights of one scenario with different seeds. `python/mpp/environments.py` makes environments of them.
 #[pyclass(frozen, module = "mpp._native")]
 pub(crate) struct Batch {
@@ -57,6 +60,11 @@ impl Batch {
     #[new]
     #[pyo3(signature = (keys, count, lidar_hz = 10.0))]
     fn new(keys: &Bound<'_, PyDict>, count: usize, lidar_hz: f64) -> PyResult<Self> {
+        if !(1..=MOST_FLIGHTS).contains(&count) {
+            return Err(input(format!(
+                "count: give 1 to {MOST_FLIGHTS} flights, not {count}"
+            )));
+        }
         let plan = Arc::new(Flights::new(scenario::file(keys)?, lidar_hz)?);
         let runs = (0..count).map(|_| None).collect();
         let guarded = Mutex::new(runs);
@@ -115,6 +123,12 @@ impl Batch {
         if actions.len() != runs.len() {
             let advice = format!("actions: give a row for each of the {} flights", runs.len());
             return Err(input(advice));
+        }
+        // All are checked before one is flown: after an error every flight is where it was.
+        for (index, (run, action)) in runs.iter().zip(&actions).enumerate() {
+            if !matches!(seeds.get(index), Some(Some(_))) {
+                check(run.as_ref(), *action)?;
+            }
         }
         let (runs, plan) = (&mut **runs, &self.plan);
         let stepped = py.detach(|| {
@@ -303,19 +317,24 @@ impl Run {
     }
 }
 
+/// Whether a flight is under way and can take an action.
+fn check(run: Option<&Run>, action: [f64; 2]) -> PyResult<()> {
+    if run.ok_or_else(unset)?.episode.outcome().is_some() {
+        return Err(state("the flight has ended: call reset"));
+    }
+    if action.iter().all(|share| (-1.0..=1.0).contains(share)) {
+        return Ok(());
+    }
+    let [elevator, thrust] = action;
+    let advice = format!("actions: give -1 to 1, not {elevator} and {thrust}");
+    Err(input(advice))
+}
+
 /// Flies one tick. Gives the reward, and whether the flight failed or came to its end. The reward of a flight to the
 /// end is about 1: the share of the way at cruise. A failure costs 1.
 fn fly(run: &mut Option<Run>, plan: &Flights, action: [f64; 2]) -> PyResult<(f64, bool, bool)> {
+    check(run.as_ref(), action)?;
     let run = run.as_mut().ok_or_else(unset)?;
-    if run.episode.outcome().is_some() {
-        return Err(state("the flight has ended: call reset"));
-    }
-    if !action.iter().all(|share| (-1.0..=1.0).contains(share)) {
-        let [elevator, thrust] = action;
-        return Err(input(format!(
-            "actions: give -1 to 1, not {elevator} and {thrust}"
-        )));
-    }
     let between =
         |[least, most]: [f64; 2], share: f64| least + (most - least) * 0.5 * (share + 1.0);
     let command = Control {

@@ -4,7 +4,7 @@ use crate::aside::aside;
 use crate::errors::{self, input};
 use crate::field::Field;
 use crate::scenario;
-use mpp_analysis::campaign::{Cell, Lists, NamedField, Row, Shard};
+use mpp_analysis::campaign::{Cell, Lists, NamedField, Row};
 use mpp_sim::flight::fly;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::witness::Witness;
@@ -16,13 +16,13 @@ use std::collections::BTreeMap;
 #[pyclass(frozen, module = "mpp")]
 pub(crate) struct Campaign {
     campaign: mpp_analysis::campaign::Campaign,
-    jobs: Vec<(Cell, u64)>,
+    cells: Vec<Cell>,
 }
 
 impl Campaign {
     fn of(campaign: mpp_analysis::campaign::Campaign) -> Self {
-        let jobs = campaign.jobs(Shard::WHOLE);
-        Self { campaign, jobs }
+        let cells = campaign.cells();
+        Self { campaign, cells }
     }
 }
 
@@ -86,18 +86,21 @@ impl Campaign {
 
     /// Number of flights.
     fn __len__(&self) -> usize {
-        self.jobs.len()
+        self.cells
+            .len()
+            .saturating_mul(self.campaign.trials as usize)
     }
 
-    /// Flies one flight. Gives its row: the line that `sil-harness campaign --out` writes, without its end.
+    /// Flies one flight: cells one after the other, each seed by seed. Gives its row: the line that
+    /// `sil-harness campaign --out` writes, without its end.
     fn fly(&self, py: Python<'_>, index: usize) -> PyResult<String> {
-        let Some((cell, seed)) = self.jobs.get(index) else {
-            return Err(input(format!(
-                "index: give 0 to {}",
-                self.jobs.len().saturating_sub(1)
-            )));
+        let trials = (self.campaign.trials as usize).max(1);
+        let Some(cell) = self.cells.get(index / trials) else {
+            let last = self.__len__().saturating_sub(1);
+            return Err(input(format!("index: give 0 to {last}")));
         };
-        let scenario = (self.campaign.scenario(cell, *seed)).map_err(errors::scenario)?;
+        let seed = self.campaign.seed.wrapping_add((index % trials) as u64);
+        let scenario = (self.campaign.scenario(cell, seed)).map_err(errors::scenario)?;
         let row = aside(py, |_| {
             let mut witness = Witness::of(&scenario);
             let mut link = PipeLink::of(&scenario);

@@ -83,7 +83,9 @@ impl Core {
         let tick = core.tick;
         let air = pair(("airspeed", airspeed), ("pitch", pitch))?;
         let place = pair(("x", x), ("z", z))?;
-        finite("sigma", sigma)?;
+        if !(0.0..=f64::from(f32::MAX)).contains(&sigma) {
+            return Err(input(format!("sigma: give 0 or more, not {sigma}")));
+        }
         let speeds = velocity.map(|(x, z, sigma)| [x, z, sigma]);
         for speed in speeds.iter().flatten() {
             finite("velocity", *speed)?;
@@ -91,12 +93,12 @@ impl Core {
         let frame = SensorFrame {
             tick,
             air: air.map(|(airspeed, pitch)| AirData {
-                tick: tick.saturating_sub(air_age),
+                tick: tick.wrapping_sub(air_age),
                 airspeed,
                 pitch,
             }),
             position: place.map(|(x, z)| Position {
-                tick: tick.saturating_sub(position_age),
+                tick: tick.wrapping_sub(position_age),
                 x,
                 z,
                 sigma: sigma as f32,

@@ -102,6 +102,8 @@ def test_states_that_are_no_numbers(planner):
         core.step(NAN, 0.1)
     with pytest.raises(mpp.InputError, match="airspeed and pitch together"):
         core.step(12.0)
+    with pytest.raises(mpp.InputError, match="sigma: give 0 or more"):
+        core.step(x=0.0, z=50.0, sigma=-1.0)
     world = mpp.World(seed=1)
     world.measure()
     with pytest.raises(mpp.InputError, match="thrust: give a finite number"):

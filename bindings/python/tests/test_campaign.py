@@ -71,6 +71,8 @@ def test_fields_are_cells_and_campaigns_travel():
     assert pickle.loads(pickle.dumps(flights)).to_json() == flights.to_json()
     with pytest.raises(mpp.InputError, match="index: give 0 to 1"):
         flights.fly(2)
+    # A campaign takes no more room than its description.
+    assert len(mpp.Campaign({}, trials=2**32 - 1)) == 2**32 - 1
 
 
 def test_a_campaign_that_makes_no_sense():

@@ -7,11 +7,11 @@ import warnings
 
 import gymnasium
 import mpp
+import mpp.environments
+import mpp.speed
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
-
-import mpp.environments
 
 NAMES = ["mpp/Control-v0", "mpp/Choice-v0"]
 
@@ -167,6 +167,13 @@ def test_actions_that_make_no_sense():
     many.reset(seed=1)
     with pytest.raises(mpp.InputError, match="a row for each of the 3 flights"):
         many.step(np.zeros((2, 2)))
+    before = many.unwrapped._batch.truth(0)
+    with pytest.raises(mpp.InputError, match="give -1 to 1"):
+        many.step(np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0]]))
+    assert many.unwrapped._batch.truth(0) == before
+    for count in (0, 10**12):
+        with pytest.raises(mpp.InputError, match="count: give 1 to"):
+            gymnasium.make_vec("mpp/Control-v0", num_envs=count)
     with pytest.raises(mpp.InputError, match="lidar_hz"):
         gymnasium.make("mpp/Control-v0", lidar_hz=7.0)
     with pytest.raises(mpp.InputError, match="faults.link"):
@@ -196,3 +203,11 @@ def test_the_second_thread_on_one_environment_gets_an_exception():
     for thread in threads:
         thread.join()
     assert refused and not broken
+
+
+def test_rates_are_printed(capsys, monkeypatch):
+    monkeypatch.setattr(mpp.speed, "DURATION", 0.01)
+    monkeypatch.setattr("sys.argv", ["speed"])
+    mpp.speed.main()
+    rates = [float(line.split()[-1].replace(",", "")) for line in capsys.readouterr().out.splitlines()[1:]]
+    assert len(rates) == 3 and min(rates) > 0.0

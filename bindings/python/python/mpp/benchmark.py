@@ -1,7 +1,7 @@
 """A frozen benchmark: 300 fields of the paper's kind over five densities and three aircraft.
 
-`python -m mpp.benchmark` flies the baselines through them and prints the table of docs/validation/benchmark.md. The list
-`fields-v1.json` never changes: a better one gets another number. Each of its fields has the hash of its obstacles.
+`python -m mpp.benchmark` flies the baselines through them and prints the table of docs/validation/benchmark.md. The
+list `fields-v1.json` never changes; a better one gets another number. Each field has the hash of its obstacles.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from importlib.resources import files
 from typing import Any
 
 import numpy
+from numpy.typing import NDArray
 
 from ._native import Aircraft, Field, fly
 
@@ -93,7 +94,7 @@ def difficulty(field: Field, world_scale: float = 1.0) -> tuple[float, float]:
 
 def build() -> bytes:
     """The bytes of the list, made anew."""
-    entries = []
+    entries: list[Entry] = []
     for aircraft in AIRCRAFT:
         scale = Aircraft(aircraft).world_scale
         for obstacles in OBSTACLES:
@@ -161,10 +162,11 @@ def table(entries: list[Entry], baselines: dict[str, dict[str, Any]], done: Call
 def _correlation(difficulty: list[float], strict: list[bool]) -> str:
     """Spearman's rank correlation; ties have their mean rank."""
 
-    def ranks(values: list[float]) -> numpy.ndarray[Any, Any]:
+    def ranks(values: list[float]) -> NDArray[Any]:
         array = numpy.asarray(values, float)
         below = (array[None, :] < array[:, None]).sum(axis=1)
-        return below + ((array[None, :] == array[:, None]).sum(axis=1) - 1) / 2.0
+        equal = (array[None, :] == array[:, None]).sum(axis=1)
+        return numpy.asarray(below + (equal - 1) / 2.0)
 
     one, other = ranks(difficulty), ranks([float(success) for success in strict])
     if other.std() == 0.0:

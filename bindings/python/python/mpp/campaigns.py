@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Generator, Iterable, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from functools import lru_cache
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
@@ -117,13 +118,19 @@ def _sorted(lines: dict[int, str]) -> Rows:
 
 
 def _on_threads(flights: Campaign, workers: int | None) -> Flown:
-    pool = ThreadPoolExecutor(workers or os.cpu_count())
-    futures: dict[Future[str], int] = {}
+    count = workers or os.cpu_count() or 1
+    waiting = iter(range(len(flights)))
+    running: dict[Future[str], int] = {}
+    pool = ThreadPoolExecutor(count)
     try:
-        for index in range(len(flights)):
-            futures[pool.submit(flights.fly, index)] = index
-        for future in as_completed(futures):
-            yield {futures[future]: future.result()}
+        while True:
+            # A few wait, so that no thread does.
+            for index in islice(waiting, 2 * count - len(running)):
+                running[pool.submit(flights.fly, index)] = index
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                yield {running.pop(future): future.result()}
     finally:
         pool.shutdown(cancel_futures=True)
 

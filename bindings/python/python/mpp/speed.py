@@ -1,19 +1,25 @@
-"""Prints steps a second of the environments on one core, without rendering: `python -m mpp.speed`."""
+"""Prints steps a second of the environments on one core, without rendering: `python -m mpp.speed`. With `--dask` it
+prints flights a second of a campaign on threads, and on one and two workers of a local Dask cluster.
+"""
 
 from __future__ import annotations
 
-import os
+import sys
 from collections.abc import Callable
-from time import process_time
+from time import perf_counter, process_time
+from typing import Any
 
 import gymnasium
 import numpy
 
 from . import environments  # noqa: F401  (registers them)
+from .campaigns import campaign
 
 # Time of each measurement [s of the processor].
 DURATION = 2.0
 FLIGHTS = 64
+# Flights of a campaign that is timed.
+TRIALS = 600
 
 
 def _rate(step: Callable[[], int]) -> float:
@@ -55,9 +61,36 @@ def single(name: str) -> float:
     return _rate(step)
 
 
+def flights(**how: Any) -> float:
+    """Flights a second of wall time past 20 obstacles."""
+    campaign(trials=20, **how)
+    start = perf_counter()
+    campaign(trials=TRIALS, seed=100, **how)
+    return TRIALS / (perf_counter() - start)
+
+
+def cluster() -> None:
+    """Prints the table of campaigns."""
+    from distributed import Client, LocalCluster
+
+    print("campaign                          flights a second")
+    for count in (1, 2):
+        print(f"{count} threads of one process           {flights(workers=count):>12,.0f}")
+    for count in (1, 2):
+        with (
+            LocalCluster(  # type: ignore[no-untyped-call]
+                n_workers=count, threads_per_worker=1, dashboard_address=":0"
+            ) as local,
+            Client(local) as client,  # type: ignore[no-untyped-call]
+        ):
+            print(f"{count} workers of Dask                  {flights(client=client):>12,.0f}")
+
+
 def main() -> None:
-    """Prints the table."""
-    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    """Prints the tables that were asked for."""
+    if "--dask" in sys.argv[1:]:
+        cluster()
+        return
     print("environment                       steps a second and core")
     print(f"mpp/Control-v0, {FLIGHTS} side by side   {control(FLIGHTS):>12,.0f}")
     print(f"mpp/Control-v0, alone             {single('mpp/Control-v0'):>12,.0f}")
