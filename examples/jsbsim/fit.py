@@ -117,18 +117,18 @@ def fit(name: str) -> tuple[str, dict]:
     lines = [
         f"# Written by examples/jsbsim/fit.py: {name} of JSBSim about level flight at 1,000 m.",
         f'name = "{name}"',
-        f'source = "central differences in JSBSim {jsbsim.__version__}; lift by pitch rate '
-        f'{d["pitch_rate"][0]:.2f} and by rate of alpha {d["alpha_rate"][0]:.2f} are left out"',
+        f'source = "central differences in JSBSim {jsbsim.__version__}"',
         'derivatives = "radian"',
         f"mass = {level.mass:.1f}", f"pitch_inertia = {level.inertia:.1f}", f"wing_area = {level.area:.3f}",
         f"chord = {level.chord:.4f}", f"air_density = {level.density:.4f}", f"cruise = {plane.cruise:.1f}",
         f"body_radius = {plane.body_radius:.2f}", "",
-        "[lift]", f"zero = {zero[0]:.4f}", f"alpha = {d['alpha'][0]:.3f}"]
+        "[lift]", f"zero = {zero[0]:.4f}", f"alpha = {d['alpha'][0]:.3f}",
+        f"alpha_rate = {d['alpha_rate'][0]:.2f}", f"pitch_rate = {d['pitch_rate'][0]:.2f}"]
     lines += [f"stall = {stall:.3f}"] if stall else []
     lines += ["", "[drag]", f"zero = {drag_zero:.4f}", f"induced = {drag_induced:.4f}", "",
               "[moment]", f"zero = {zero[2]:.4f}", f"alpha = {d['alpha'][2]:.3f}",
               f"pitch_rate = {d['pitch_rate'][2]:.2f}",
-              # The lift of the pa28 by the rate of alpha turns its sign; a file takes dampings alone.
+              # The fit of the pa28 gives a small moment of the other sign; a file takes dampings alone.
               f"alpha_rate = {min(d['alpha_rate'][2], 0.0):.2f}", "",
               "[elevator]", 'unit = "rad"', f"moment = {d['elevator'][2]:.3f}", f"lift = {d['elevator'][0]:.3f}",
               f"min = {least:.4f}", f"max = {most:.4f}", "",

@@ -10,12 +10,14 @@ import random
 import struct
 import subprocess
 import sys
+import tempfile
 import tomllib
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from plane import ALTITUDE, TICK, Plane
+from plane import AIRCRAFT, ALTITUDE, TICK, Plane
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "link"))
 from client import STRUCTS, Core, read, sweep  # noqa: E402  it stands in another folder
@@ -27,6 +29,7 @@ NAVIGATION = {  # period and delay [ticks], white and wandering error [m], as mp
 WANDER_TIME = 30.0  # s
 AIRSPEED_SIGMA, PITCH_SIGMA = 0.5, math.radians(0.25)  # m/s, rad
 RANGE_SIGMA = 0.01  # share of the range
+ORACLE_REPLAN_HZ = 10  # plans in a second of the reference aircraft, as mpp-sim/src/scenario.rs has it
 PITCH_LIMIT, PATH_LIMIT = math.radians(60), math.radians(45)
 PLAN_REPORT, STEP_REPORT, REJECTION = 8, 7, 9
 OUTCOMES = ("adopted", "least violating", "kept previous", "trim hold")
@@ -43,7 +46,8 @@ def configuration(name: str) -> dict:
     known = {
         "mass": file["mass"], "pitch_inertia": file["pitch_inertia"], "wing_area": file["wing_area"],
         "moment_length": file["chord"], "air_density": file["air_density"], "lift_zero": lift["zero"],
-        "lift_alpha": lift["alpha"], "lift_elevator": elevator["lift"], "drag_zero": drag["zero"],
+        "lift_alpha": lift["alpha"], "lift_alpha_rate": lift["alpha_rate"] * time,
+        "lift_pitch_rate": lift["pitch_rate"] * time, "lift_elevator": elevator["lift"], "drag_zero": drag["zero"],
         "drag_induced": drag["induced"], "moment_zero": moment["zero"], "moment_alpha": moment["alpha"],
         "moment_alpha_rate": moment["alpha_rate"] * time, "moment_pitch_rate": moment["pitch_rate"] * time,
         "moment_elevator": elevator["moment"], "cruise": file["cruise"], "body_radius": file["body_radius"]}
@@ -98,6 +102,29 @@ class Navigation:
         return self.under_way.pop(0) if arrived else None
 
 
+class Wind:
+    """A steady wind, and turbulence by Dryden's spectra at 50 m, as mpp-sim/src/faults/gusts.rs has them."""
+
+    def __init__(self, steady: float, intensity: float, draw: random.Random):
+        factor = 0.177 + 0.000823 * 50 / 0.3048
+        self.steady, self.intensity, self.draw = steady, intensity, draw
+        self.along, self.length = intensity / factor**0.4, 50 / factor**1.2
+        # Motion along, and two lags in a row of the vertical motion, each of unit variance.
+        self.ahead, self.first, self.second = (draw.gauss(0, 1) for _ in range(3))
+        self.second = 0.5 * (self.first + self.second)
+
+    def next(self, airspeed: float) -> tuple[float, float]:
+        """Motion of the air ahead and up in the next tick [m/s]."""
+        kept = math.exp(-TICK * airspeed / self.length)
+        self.ahead = kept * self.ahead + math.sqrt(1 - kept * kept) * self.draw.gauss(0, 1)
+        kept = math.exp(-TICK * airspeed / 50)
+        before = self.first
+        self.first = kept * before + math.sqrt(1 - kept * kept) * self.draw.gauss(0, 1)
+        self.second = kept * self.second + (1 - kept) * 0.5 * (before + self.first)
+        up = (math.sqrt(3) * self.first + (1 - math.sqrt(3)) * self.second) / math.sqrt(2)
+        return self.steady + self.along * self.ahead, self.intensity * up
+
+
 @dataclass
 class Flight:
     """The result of a flight. Lengths in metres; `scale` is the unit of length."""
@@ -150,20 +177,25 @@ def fly(address: str, args: argparse.Namespace, seed: int) -> Flight:
     if args.body is not None:
         known["body_radius"] = args.body
     scale, pace = (plane.cruise / 12) ** 2, plane.cruise / 12
-    period = max(round(pace * 100 / args.replan_hz), 1)
+    period = max(round(pace * 100 / (ORACLE_REPLAN_HZ if args.oracle else args.replan_hz)), 1)
     circles, reach = field(seed, args.obstacles, scale), 45 * scale
-    noise, navigation = random.Random(f"{seed} air"), Navigation(args.navigation, random.Random(f"{seed} positions"))
+    exact = 0.0 if args.oracle else 1.0
+    source = "ideal" if args.oracle else args.navigation
+    noise, navigation = random.Random(f"{seed} air"), Navigation(source, random.Random(f"{seed} positions"))
+    wind = Wind(args.wind, args.gusts, random.Random(f"{seed} gusts"))
     beams, hashed = random.Random(f"{seed} lidar"), hashlib.sha256()
     flight = Flight(args.name, seed, args.obstacles, scale=scale)
     notes = Notes(flight)
+    plane.blow(args.wind, 0.0)
     plane.settle()
     core = Core(address, known | {
         "preset": 2, "paths": 25, "replan_period_ticks": period, "latency_ticks": 1, "slices_per_tick": 1_000_000,
         "seed": seed, "beams": 100, "range_max": reach, "altitude": ALTITUDE}, notes.hear)
     full, ticks = 0, round(2000 * pace)
     for tick in range(ticks):
-        air = {"tick": tick, "airspeed": plane.airspeed + noise.gauss(0, AIRSPEED_SIGMA),
-               "pitch": plane.pitch + noise.gauss(0, PITCH_SIGMA)}
+        plane.blow(*wind.next(plane.airspeed))
+        air = {"tick": tick, "airspeed": plane.airspeed + exact * noise.gauss(0, AIRSPEED_SIGMA),
+               "pitch": plane.pitch + exact * noise.gauss(0, PITCH_SIGMA)}
         scan = None
         if tick % period == 0:
             scan = sweep(tick, plane.x, plane.z, plane.pitch, circles, reach)
@@ -208,9 +240,10 @@ def wilson(successes: int, flights: int) -> tuple[float, float]:
     return (middle - half) / (1 + z * z / flights), (middle + half) / (1 + z * z / flights)
 
 
-def serve(args: argparse.Namespace) -> tuple[subprocess.Popen, str]:
-    """Starts a core on a free port."""
-    process = subprocess.Popen([args.core, "core", "--listen", "127.0.0.1:0"], stdout=subprocess.PIPE,
+def serve(args: argparse.Namespace, known_field: str | None = None) -> tuple[subprocess.Popen, str]:
+    """Starts a core on a free port, or the oracle of a field file."""
+    advice = ["--oracle", known_field] if known_field else []
+    process = subprocess.Popen([args.core, "core", "--listen", "127.0.0.1:0", *advice], stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True)
     return process, process.stdout.readline().split("tcp:")[-1].strip()
 
@@ -218,12 +251,28 @@ def serve(args: argparse.Namespace) -> tuple[subprocess.Popen, str]:
 def share_of(job: tuple) -> list[Flight]:
     """The flights of one process, with a core of their own."""
     args, seeds = job
-    process, address = serve(args)
+    if args.oracle:
+        return [informed(args, seed) for seed in seeds]
+    return served(args, seeds)
+
+
+def served(args: argparse.Namespace, seeds: Sequence[int], known_field: str | None = None) -> list[Flight]:
+    """Flights with one process of the core."""
+    process, address = serve(args, known_field)
     try:
         return [fly(address, args, seed) for seed in seeds]
     finally:
         process.kill()
         process.wait()
+
+
+def informed(args: argparse.Namespace, seed: int) -> Flight:
+    """The flight of a core whose planner knows the field. It gets exact measurements."""
+    circles = field(seed, args.obstacles, (AIRCRAFT[args.name][0] / 12) ** 2)
+    with tempfile.NamedTemporaryFile("w", suffix=".toml") as file:
+        file.writelines(f"[[circle]]\nx = {x!r}\nz = {z!r}\nradius = {radius!r}\n" for x, z, radius in circles)
+        file.flush()
+        return served(args, [seed], file.name)[0]
 
 
 def main():
@@ -234,6 +283,9 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="seed of the first flight")
     parser.add_argument("--replan-hz", type=float, default=4.0, help="plans in a second of the reference aircraft")
     parser.add_argument("--navigation", choices=NAVIGATION, default="rtk")
+    parser.add_argument("--oracle", action="store_true", help="the core knows the field and measures exactly")
+    parser.add_argument("--wind", type=float, default=0.0, help="tailwind [m/s]")
+    parser.add_argument("--gusts", type=float, default=0.0, help="vertical intensity of Dryden's turbulence [m/s]")
     parser.add_argument("--body", type=float, help="body radius [m]; by default that of the aircraft's file")
     parser.add_argument("--core", default="sil-harness", help="the program that serves the core")
     parser.add_argument("--jobs", type=int, default=1, help="flights at a time")

@@ -91,6 +91,10 @@ class Plane:
     def _ground_speed(self) -> float:
         return math.hypot(self.fdm["velocities/v-north-fps"], self.fdm["velocities/v-east-fps"]) * FOOT
 
+    def blow(self, ahead: float, up: float):
+        """Moves the air along the track and upwards [m/s]."""
+        self.fdm["atmosphere/wind-east-fps"], self.fdm["atmosphere/wind-down-fps"] = ahead / FOOT, -up / FOOT
+
     def step(self, throttle: float, elevator: float):
         """Flies one tick. Distance downrange is counted along the track."""
         fdm, (least, most) = self.fdm, self.elevator_range

@@ -14,7 +14,8 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def arguments(name, **changes):
-    values = {"name": name, "obstacles": 20, "replan_hz": 4.0, "navigation": "rtk", "body": None,
+    values = {"name": name, "obstacles": 20, "replan_hz": 4.0, "navigation": "rtk", "body": None, "oracle": False,
+              "wind": 0.0, "gusts": 0.0,
               "core": ROOT / "target/release/sil-harness"}
     return argparse.Namespace(**values | changes)
 
@@ -76,6 +77,30 @@ def test_the_body_counts():
     process.kill()
     process.communicate()
     assert small.end == "survived" and large.end == "collision"
+
+
+def test_an_oracle_knows_what_no_beam_has_seen():
+    """With a scan of nothing only the field file tells where the circle is."""
+    circle = (400.0, ALTITUDE, 10.0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(fly, "field", lambda *_: [circle])
+        patch.setattr(fly, "sweep", lambda tick, *_: {
+            "tick": tick, "angle_min": -0.5, "angle_increment": 0.01, "ranges": [0.0] * 100})
+        (blind,), (knows,) = (fly.share_of((arguments("c172p", oracle=oracle), [3])) for oracle in (False, True))
+    assert blind.end == "collision" and knows.end == "survived"
+
+
+def test_a_wind_moves_the_aircraft_and_gusts_have_their_intensity():
+    plane = Plane("c172p")
+    plane.blow(5.0, 0.0)
+    plane.settle()
+    for _ in range(100):
+        plane.step(plane.throttle, plane.elevator)
+    assert plane.x == pytest.approx(plane.cruise + 5.0, abs=0.3)
+    gusts = fly.Wind(2.0, 1.0, fly.random.Random(1))
+    ahead, up = fly.np.array([gusts.next(50.0) for _ in range(200_000)]).T
+    assert (ahead.mean(), ahead.std()) == pytest.approx((2.0, gusts.along), abs=0.15)
+    assert (up.mean(), up.std()) == pytest.approx((0.0, 1.0), abs=0.08)
 
 
 def test_the_interval_is_wilsons():

@@ -57,7 +57,7 @@ fn every_verdict_and_cause_speaks() {
     sentences(&[*accepted]);
     check(refused);
     let settings: Vec<Setting> = all();
-    assert_eq!(settings.last(), Some(&Setting::MassUnit));
+    assert_eq!(settings.last(), Some(&Setting::LiftPitchRate));
     let named: Vec<_> = settings
         .into_iter()
         .map(ConfigureVerdict::OutOfRange)

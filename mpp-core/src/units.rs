@@ -70,6 +70,8 @@ impl Units {
             wing_area: airframe.wing_area / area,
             moment_length: airframe.moment_length / self.length,
             air_density: airframe.air_density * (area * self.length / self.mass),
+            lift_alpha_rate: airframe.lift_alpha_rate / self.time,
+            lift_pitch_rate: airframe.lift_pitch_rate / self.time,
             moment_alpha_rate: airframe.moment_alpha_rate / self.time,
             moment_pitch_rate: airframe.moment_pitch_rate / self.time,
             ..*airframe

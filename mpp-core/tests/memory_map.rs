@@ -306,3 +306,48 @@ fn beams_of_the_same_scan_do_not_unlearn_a_hit() {
     }
     assert!(!known(&map), "what is gone is unlearned");
 }
+
+/// A fan of 100 beams over 100 deg from `(100, 50)`. A circle of 1 m stands `ahead`, or has moved on; `behind` is
+/// the range of what stands behind it, or 0.
+fn fan(ahead: f64, there: bool, behind: f32) -> LidarScan {
+    let mut scan = LidarScan::new();
+    (scan.angle_min, scan.angle_increment) = (-0.8727, 0.017_63);
+    for number in 0..100 {
+        let (up, along) = libm::sincos(scan.beam_angle(number));
+        let half_chord = libm::sqrt(1.0 - (ahead * up) * (ahead * up));
+        let meets = there && !half_chord.is_nan();
+        let range = if meets {
+            (ahead * along - half_chord) as f32
+        } else {
+            behind
+        };
+        assert!(scan.ranges.push(range).is_ok());
+    }
+    scan
+}
+
+/// Scans until the map has forgotten a circle that stood still for eight scans and has then moved on.
+#[test]
+fn what_has_moved_on_is_forgotten() {
+    // Distance [m], and the most scans before open space and before a wall.
+    for (ahead, open, walled) in [(10.0, 3, 1), (20.0, 8, 3), (30.0, 8, 3), (38.0, 8, 3)] {
+        for (behind, most) in [(0.0, open), (44.0, walled)] {
+            let mut map = started();
+            let at = pose(100.0, 50.0, 0.0);
+            for _ in 0..8 {
+                map.insert(&fan(ahead, true, behind), 45.0, &at);
+            }
+            let near = |(x, z): &(f64, f64)| libm::hypot(x - 100.0 - ahead, z - 50.0) < 3.0;
+            assert!(centres(&map).iter().any(near));
+            let mut scans = 0;
+            while centres(&map).iter().any(near) && scans < 50 {
+                map.insert(&fan(ahead, false, behind), 45.0, &at);
+                scans += 1;
+            }
+            assert!(
+                scans <= most,
+                "{ahead} m ahead, behind it {behind}: {scans} scans"
+            );
+        }
+    }
+}

@@ -21,6 +21,8 @@ fn aircraft(scale: f64) -> Aircraft {
             moment_length: base.moment_length * scale,
             moment_alpha_rate: base.moment_alpha_rate * time,
             moment_pitch_rate: -0.1 * time,
+            lift_alpha_rate: 0.02 * time,
+            lift_pitch_rate: 0.05 * time,
             lift_elevator: 0.02,
             ..base
         },

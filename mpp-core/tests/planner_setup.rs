@@ -20,7 +20,7 @@ fn own(settings: &mut Settings) -> &mut FlightSettings {
 }
 
 /// The numbers of all presets.
-const SHARED: [Row; 45] = {
+const SHARED: [Row; 47] = {
     use Setting::*;
     [
         (LengthUnit, |s, n| s.units.length = n, [0.0, 1e6]),
@@ -98,6 +98,16 @@ const SHARED: [Row; 45] = {
             CruiseAirspeed,
             |s, n| s.cruise = Cruise::Airspeed(n),
             [-12.0, 340.0],
+        ),
+        (
+            LiftAlphaRate,
+            |s, n| s.airframe.lift_alpha_rate = n,
+            [-1.0, 1.0],
+        ),
+        (
+            LiftPitchRate,
+            |s, n| s.airframe.lift_pitch_rate = n,
+            [-1.0, 1.0],
         ),
         (DesignThrust, |s, n| s.design_thrust = Some(n), [-1.0, 1e9]),
         (

@@ -152,7 +152,7 @@ pub(crate) fn out_of_range(setting: Setting) -> ConfigureVerdict {
         ElevatorRate DesignThrust SpeedNoise PitchNoise RateNoise PathNoise AirspeedVariance PitchVariance
         InitialVariance Gate SpeedWeight PitchWeight RateWeight PathWeight ElevatorWeight CrossTrack
         AirspeedHold PlanElevatorWeight PlanThrustWeight PlanTerminalWeight Latency PenaltyQuadratic Rounds
-        Deepened PaddingNear PaddingFar
+        Deepened PaddingNear PaddingFar LiftAlphaRate LiftPitchRate
     }
 }
 

@@ -63,7 +63,7 @@ pub enum Angle {
     Degree,
 }
 
-/// Lift coefficient `C_L = zero + alpha * angle of attack + elevator.lift * deflection`.
+/// Lift coefficient `C_L = zero + alpha * angle of attack + elevator.lift * deflection`, and lift by rates.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Lift {
@@ -71,6 +71,12 @@ pub struct Lift {
     pub zero: f64,
     /// Slope [1 per angle].
     pub alpha: f64,
+    /// Lift by the rate of the angle of attack, `C_L,alpha-dot` [1 per angle], of `alpha' c / 2v`.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub alpha_rate: f64,
+    /// Lift by the pitch rate, `C_Lq` [1 per angle], of `theta' c / 2v`.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pitch_rate: f64,
     /// Angle of attack at which the wing stalls \[rad\]; by default it never does.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stall: Option<f64>,

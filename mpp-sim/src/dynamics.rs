@@ -23,9 +23,9 @@ pub struct Dynamics {
 /// Aerodynamics of the true aircraft that the core's equations leave out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aerodynamics {
-    /// Airspeed at which the dampings are as the airframe says [m/s]. They fall with `1 / v`, because they
-    /// are of `theta' c / 2v`. Without a value they are constant, as in the paper.
-    pub damping_airspeed: Option<f64>,
+    /// Airspeed at which the derivatives by rates are as the airframe says [m/s]. They fall with `1 / v`,
+    /// because they are of `theta' c / 2v`. Without a value they are constant, as in the paper.
+    pub rates_airspeed: Option<f64>,
     /// Angle of attack at which the wing stalls \[rad\]; it never does without a value.
     pub stall: Option<f64>,
 }
@@ -36,26 +36,39 @@ const STALL_SHARPNESS: f64 = 50.0;
 impl Aerodynamics {
     /// The core's equations alone.
     pub const NONE: Self = Self {
-        damping_airspeed: None,
+        rates_airspeed: None,
         stall: None,
     };
 
     /// The aerodynamics of an aircraft file.
     #[must_use]
     pub fn of(file: &AircraftFile) -> Self {
-        let constant = file.moment.pitch_rate == 0.0 && file.moment.alpha_rate == 0.0;
+        let (lift, moment) = (&file.lift, &file.moment);
+        let rates = [
+            lift.pitch_rate,
+            lift.alpha_rate,
+            moment.pitch_rate,
+            moment.alpha_rate,
+        ];
+        let constant = rates.iter().all(|rate| *rate == 0.0);
         Self {
-            damping_airspeed: (!constant).then_some(file.cruise),
+            rates_airspeed: (!constant).then_some(file.cruise),
             stall: file.lift.stall,
         }
     }
 
-    /// The airframe whose linear lift and constant dampings are those of the true aircraft in this motion.
+    /// The airframe whose linear lift and constant derivatives by rates are those of the true aircraft in this motion.
     fn at(&self, airframe: &Airframe, air: &AirState) -> Airframe {
         let mut at = *airframe;
-        if let Some(airspeed) = self.damping_airspeed {
-            at.moment_alpha_rate *= airspeed / air.airspeed;
-            at.moment_pitch_rate *= airspeed / air.airspeed;
+        if let Some(airspeed) = self.rates_airspeed {
+            for rate in [
+                &mut at.lift_alpha_rate,
+                &mut at.lift_pitch_rate,
+                &mut at.moment_alpha_rate,
+                &mut at.moment_pitch_rate,
+            ] {
+                *rate *= airspeed / air.airspeed;
+            }
         }
         if let Some(stall) = self.stall {
             let alpha = air.angle_of_attack();

@@ -7,24 +7,24 @@
 //!   every obstacle of the field where it is at that time, thin ones too, and everything else is
 //!   free, so that nothing is hidden or unknown;
 //! * its sensors are exact, so that the regulator tracks by an estimate without noise;
-//! * it replans at [`crate::scenario::ORACLE_REPLAN_HZ`], its plans are flown a tick later, and
-//!   every candidate gets all rounds of linearisation.
+//! * it replans at [`crate::scenario::ORACLE_REPLAN_HZ`] in the aircraft's unit of time, its plans are
+//!   flown a tick later, and every candidate gets all rounds of linearisation.
 //!
 //! The oracle knows no future gust, no fault of the actuators, and not where an obstacle moves. A flight that the oracle fails is
 //! not proven to be impossible: the planner's horizon, window and margin limit the oracle.
 
-use crate::field::{Field, Obstacle, Point, Shape};
-use crate::scenario::ALTITUDE;
+use crate::field::{Obstacle, Point, Shape};
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
 use mpp_core::tuning::memory::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
-use mpp_node::Order;
+use mpp_node::{FlightNode, Order};
 
 /// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
 const REACH: f64 = 80.0;
 
-/// The knowledge of an oracle.
+/// The knowledge of an oracle. Without the truth of [`Oracle::see`] it knows the field alone, and plans from the
+/// core's estimate.
 pub struct Oracle {
     obstacles: Vec<Obstacle>,
     /// True state and wind; `None` before the first tick.
@@ -32,10 +32,11 @@ pub struct Oracle {
 }
 
 impl Oracle {
-    /// An oracle that knows this field, before its first tick.
-    pub(crate) fn new(field: &dyn Field) -> Self {
+    /// An oracle that knows these obstacles, before its first tick.
+    #[must_use]
+    pub fn new(obstacles: &[Obstacle]) -> Self {
         Self {
-            obstacles: field.obstacles().to_vec(),
+            obstacles: obstacles.to_vec(),
             truth: None,
         }
     }
@@ -45,8 +46,23 @@ impl Oracle {
         self.truth = Some((*truth, wind));
     }
 
+    /// Gives bytes to a core, with the advice of an oracle if there is one. `send` takes each frame of the core.
+    pub fn receive(
+        oracle: Option<&Self>,
+        node: &mut FlightNode,
+        bytes: &[u8],
+        send: impl FnMut(&[u8]),
+    ) {
+        match oracle {
+            None => node.receive(bytes, send),
+            Some(oracle) => node.receive_advised(bytes, send, |order, planner| {
+                oracle.advise(order, planner);
+            }),
+        }
+    }
+
     /// Replaces the core's estimates and its map by the truth.
-    pub(crate) fn advise(&self, order: &mut Order, planner: &mut Planner) {
+    fn advise(&self, order: &mut Order, planner: &mut Planner) {
         match order {
             Order::SetUp { tuning, .. } => {
                 if let Some(own) = tuning.settings.planner.flight_mut() {
@@ -59,6 +75,7 @@ impl Oracle {
                 conditions,
                 scan,
                 time,
+                tuning,
                 ..
             } => {
                 if let Some((truth, wind)) = &self.truth {
@@ -81,7 +98,7 @@ impl Oracle {
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
                 if let Some(planner) = planner.flight_mut() {
                     let map = planner.map_mut();
-                    map.roll(state.x / length, ALTITUDE / length);
+                    map.roll(state.x / length, tuning.settings.planner.altitude / length);
                     map.know(|x, z| {
                         let (at, cell) = ((x * length, z * length), CELL * length);
                         near.iter().any(|one| occupies(one, at, cell, *time))

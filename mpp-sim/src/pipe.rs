@@ -39,7 +39,7 @@ impl PipeLink {
     #[must_use]
     pub fn in_field(scenario: &Scenario, field: &dyn Field) -> Self {
         Self {
-            oracle: scenario.oracle.then(|| Oracle::new(field)),
+            oracle: scenario.oracle.then(|| Oracle::new(field.obstacles())),
             ..Self::new()
         }
     }
@@ -47,12 +47,7 @@ impl PipeLink {
     /// Sends bytes as they are, without a check.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let send = |frame: &[u8]| self.to_harness.extend(frame);
-        match &self.oracle {
-            None => self.node.receive(bytes, send),
-            Some(oracle) => self.node.receive_advised(bytes, send, |order, planner| {
-                oracle.advise(order, planner);
-            }),
-        }
+        Oracle::receive(self.oracle.as_ref(), &mut self.node, bytes, send);
     }
 
     /// The core, for inspection.

@@ -180,7 +180,7 @@ impl Scenario {
     pub fn informed(self) -> Self {
         Self {
             preset: Preset::Flight,
-            replan_ticks: (f64::from(TICKS_PER_SECOND) / ORACLE_REPLAN_HZ) as u32,
+            replan_ticks: self.oracle_ticks(),
             latency_ticks: 1,
             slices_per_tick: u32::MAX,
             air_data: AirDataNoise::NONE,
@@ -188,6 +188,12 @@ impl Scenario {
             oracle: true,
             ..self
         }
+    }
+
+    /// Ticks from one plan of an oracle to the next.
+    fn oracle_ticks(&self) -> u32 {
+        let reference = f64::from(TICKS_PER_SECOND) / ORACLE_REPLAN_HZ;
+        (reference * self.aircraft.units().time).round().max(1.0) as u32
     }
 
     /// The core's level trim.

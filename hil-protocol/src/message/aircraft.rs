@@ -4,8 +4,8 @@ use super::size;
 use core::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 
-/// The aircraft that the core flies. The coefficients are those of the paper's appendix, and two more:
-/// with the dynamic pressure `q`, `L = q S C_L`, `D = q S C_D`, `M = q S l C_M` and
+/// The aircraft that the core flies. The coefficients are those of the paper's appendix, and four more:
+/// with the dynamic pressure `q`, `L = q S (C_L + C_La' alpha' + C_Lq theta')`, `D = q S C_D`, `M = q S l C_M` and
 /// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
 /// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`. The elevator `delta_e` may be in any
 /// unit; commands, limits and coefficients have the same one.
@@ -25,6 +25,10 @@ pub struct Aircraft {
     pub lift_zero: f64,
     /// `C_La` \[1/rad\].
     pub lift_alpha: f64,
+    /// `C_La'` \[s/rad\].
+    pub lift_alpha_rate: f64,
+    /// `C_Lq` \[s/rad\].
+    pub lift_pitch_rate: f64,
     /// `C_Le` \[1 per unit of elevator\].
     pub lift_elevator: f64,
     /// `C_D0` \[-\].
@@ -51,7 +55,7 @@ pub struct Aircraft {
 
 impl Aircraft {
     /// Size of the longest form \[bytes\].
-    pub const MAX_SIZE: usize = 17 * size::F64 + size::BYTE + size::F64;
+    pub const MAX_SIZE: usize = 19 * size::F64 + size::BYTE + size::F64;
 
     /// The aircraft of the authors' code, for which the presets were tuned.
     pub const REFERENCE: Self = Self {
@@ -62,6 +66,8 @@ impl Aircraft {
         air_density: 1.225,
         lift_zero: 0.5,
         lift_alpha: 0.1 * 180.0 / PI,
+        lift_alpha_rate: 0.0,
+        lift_pitch_rate: 0.0,
         lift_elevator: 0.0,
         drag_zero: 0.1,
         drag_induced: 0.05,

@@ -107,6 +107,10 @@ pub enum Setting {
     TimeUnit,
     /// The planner's unit of mass.
     MassUnit,
+    /// The lift of the airframe by the rate of the angle of attack.
+    LiftAlphaRate,
+    /// The lift of the airframe by the pitch rate.
+    LiftPitchRate,
 }
 
 impl fmt::Display for Setting {
@@ -161,6 +165,8 @@ impl fmt::Display for Setting {
             Self::LengthUnit => "the planner's unit of length",
             Self::TimeUnit => "the planner's unit of time",
             Self::MassUnit => "the planner's unit of mass",
+            Self::LiftAlphaRate => "the lift of the airframe by the rate of the angle of attack",
+            Self::LiftPitchRate => "the lift of the airframe by the pitch rate",
             Self::Stall => "the distance of the stall from level flight",
         })
     }

@@ -5,7 +5,7 @@ use proptest::num::f64;
 use proptest::prelude::*;
 
 pub(super) fn aircraft() -> impl Strategy<Value = Aircraft> {
-    let numbers = proptest::array::uniform17(f64::ANY);
+    let numbers = proptest::array::uniform19(f64::ANY);
     (numbers, proptest::option::of(f64::ANY)).prop_map(|(numbers, stall)| {
         let [
             mass,
@@ -15,6 +15,8 @@ pub(super) fn aircraft() -> impl Strategy<Value = Aircraft> {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_alpha_rate,
+            lift_pitch_rate,
             lift_elevator,
             drag_zero,
             drag_induced,
@@ -34,6 +36,8 @@ pub(super) fn aircraft() -> impl Strategy<Value = Aircraft> {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_alpha_rate,
+            lift_pitch_rate,
             lift_elevator,
             drag_zero,
             drag_induced,

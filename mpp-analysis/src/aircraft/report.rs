@@ -67,6 +67,7 @@ impl AircraftReport {
     pub fn new(model: &AircraftModel) -> Self {
         let (known, trim, units) = (&model.known, &model.trim, model.units());
         let a = &known.airframe;
+        let balance = a.balanced();
         let modes = Modes::of(known, trim);
         let settings = Settings::flight_of(known);
         let own = settings.planner.flight();
@@ -97,7 +98,8 @@ impl AircraftReport {
                 / a.pitch_inertia,
             balanced_deg: balanced.map(|side| side.is_finite().then(|| side.to_degrees())),
             turn_radius: a.mass * known.cruise.powi(2)
-                / (pressure_area * a.balanced().lift_alpha * turning),
+                / (pressure_area * balance.lift_alpha * turning)
+                / balance.turn_gain(known.cruise),
             climb_deg: climb,
             length_unit: units.length,
             time_unit: units.time,

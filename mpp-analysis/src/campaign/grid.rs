@@ -31,8 +31,8 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The cell of the oracle's flights through the fields of a cell.
-    fn oracle(fields: &Self) -> Self {
+    /// The cell of the oracle's flights through the fields of a cell, at its rate \[Hz\].
+    fn oracle(fields: &Self, replan_hz: f64) -> Self {
         Self {
             preset: Preset::Flight,
             field: fields.field.clone(),
@@ -40,7 +40,7 @@ impl Cell {
             obstacles: fields.obstacles,
             // This is more than the oracle's candidates.
             paths: 25,
-            replan_hz: ORACLE_REPLAN_HZ,
+            replan_hz,
             oracle: true,
         }
     }
@@ -192,7 +192,8 @@ impl Campaign {
         }
         if self.oracle {
             let mut oracles: Vec<Cell> = Vec::new();
-            for oracle in cells.iter().map(Cell::oracle) {
+            let rate = self.oracle_hz();
+            for oracle in cells.iter().map(|cell| Cell::oracle(cell, rate)) {
                 if !oracles.contains(&oracle) {
                     oracles.push(oracle);
                 }
@@ -222,7 +223,13 @@ impl Campaign {
     /// The oracle's cell with the fields of this cell. Returns `None` if this cell is the oracle's
     /// own, or if the campaign has no oracle.
     pub(super) fn oracle_beside(&self, cell: &Cell) -> Option<Cell> {
-        (self.oracle && !cell.oracle).then(|| Cell::oracle(cell))
+        (self.oracle && !cell.oracle).then(|| Cell::oracle(cell, self.oracle_hz()))
+    }
+
+    /// Replanning rate of an oracle that flies the campaign's aircraft \[Hz\].
+    fn oracle_hz(&self) -> f64 {
+        let scenario = self.scenario.build();
+        scenario.map_or(ORACLE_REPLAN_HZ, |scenario| scenario.informed().replan_hz())
     }
 
     /// The scenario of one flight of a cell.

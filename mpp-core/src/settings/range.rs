@@ -4,6 +4,7 @@
 use super::{PlannerSettings, Settings};
 use crate::config::{MAX_PATHS, STAGE_PERIOD, STAGES};
 use crate::corridor::Padding;
+use crate::units::REFERENCE_CRUISE;
 use core::fmt;
 
 /// Defines the numbers, with their ranges and where they stand. A setting that has no value is in range.
@@ -68,6 +69,14 @@ macro_rules! numbers {
 }
 
 impl Settings {
+    /// The force of lift that a derivative by an angular rate [s/rad] gives at cruise, over the force that turns
+    /// the path at this rate [-].
+    fn share_of_momentum(&self, per_rate: f64) -> f64 {
+        let (a, airspeed) = (&self.airframe, self.cruise.airspeed());
+        let airspeed = airspeed.unwrap_or(REFERENCE_CRUISE);
+        0.5 * a.air_density * airspeed * a.wing_area * per_rate / a.mass
+    }
+
     /// The first number that is outside of its range. A number that is not finite is in no range.
     #[must_use]
     pub fn out_of_range(&self) -> Option<Setting> {
@@ -124,6 +133,11 @@ numbers! {
         ElevatorAbove, "actuators.elevator_above", "1", [1e-3, 1e4], all.actuators.elevator_above;
         ElevatorRate, "actuators.elevator_rate", "1/s", [1e-3, 1e6], all.actuators.elevator_rate;
         CruiseAirspeed, "cruise", "m/s", [1.0, 200.0], all.cruise.airspeed();
+        // Plans divide by the momentum without these shares, also at more than the airspeed of level flight.
+        LiftAlphaRate, "the momentum's share by airframe.lift_alpha_rate", "1", [-0.4, 0.4],
+            Some(all.share_of_momentum(all.airframe.lift_alpha_rate));
+        LiftPitchRate, "the momentum's share by airframe.lift_pitch_rate", "1", [-0.4, 0.4],
+            Some(all.share_of_momentum(all.airframe.lift_pitch_rate));
         DesignThrust, "design_thrust", "N", [0.0, 1e6], all.design_thrust;
         SpeedNoise, "estimator.process_noise[0]", "m^2/s^2", [0.0, 1e4], Some(all.estimator.process_noise[0]);
         PitchNoise, "estimator.process_noise[1]", "rad^2", [0.0, 100.0], Some(all.estimator.process_noise[1]);

@@ -6,10 +6,10 @@ pub const GRAVITY: f64 = 9.81;
 /// Longitudinal airframe parameters (paper, appendix).
 ///
 /// Aerodynamic coefficients refer to the dynamic pressure `q = rho v^2 / 2` and the wing area:
-/// `L = q S C_L`, `D = q S C_D`, `M = q S l C_M` with
+/// `L = q S (C_L + C_La' alpha' + C_Lq theta')`, `D = q S C_D`, `M = q S l C_M` with
 /// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
 /// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`.
-/// The paper has neither `C_Le` nor `C_Mq`.
+/// The paper has none of `C_La'`, `C_Lq`, `C_Le` and `C_Mq`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Airframe {
     /// Mass `m` \[kg\].
@@ -27,6 +27,12 @@ pub struct Airframe {
     pub lift_zero: f64,
     /// Lift slope `C_La` [1/rad].
     pub lift_alpha: f64,
+    /// Lift by the rate of the angle of attack `C_La'` [s/rad]: the usual coefficient per radian of
+    /// `alpha' c / 2v`, times `c / 2v` at cruise.
+    pub lift_alpha_rate: f64,
+    /// Lift by the pitch rate `C_Lq` [s/rad]: the usual coefficient per radian of `theta' c / 2v`, times
+    /// `c / 2v` at cruise.
+    pub lift_pitch_rate: f64,
     /// Lift of the elevator `C_Le` [1 per unit of elevator command].
     pub lift_elevator: f64,
     /// Parasitic drag coefficient `C_D0` [-].
@@ -59,6 +65,8 @@ impl Airframe {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_alpha_rate,
+            lift_pitch_rate,
             lift_elevator,
             drag_zero,
             drag_induced,
@@ -76,6 +84,8 @@ impl Airframe {
             air_density,
             lift_zero,
             lift_alpha,
+            lift_alpha_rate,
+            lift_pitch_rate,
             lift_elevator,
             drag_zero,
             drag_induced,
@@ -98,6 +108,8 @@ impl Airframe {
         air_density: 1.225,
         lift_zero: 0.5,
         lift_alpha: 5.73,
+        lift_alpha_rate: 0.0,
+        lift_pitch_rate: 0.0,
         lift_elevator: 0.0,
         drag_zero: 0.1,
         drag_induced: 0.05,
@@ -126,8 +138,8 @@ impl Airframe {
         self.mass * GRAVITY / (0.5 * self.air_density * (airspeed * airspeed) * self.wing_area)
     }
 
-    /// The airframe whose lift curve is that with the elevator in balance at each angle of attack, and whose
-    /// elevator has no lift of its own.
+    /// The airframe whose lift is that with the elevator in balance at each angle of attack and each rate, and
+    /// whose elevator has no lift of its own.
     #[must_use]
     pub fn balanced(&self) -> Self {
         // An elevator without effect has no balance; the trim says so.
@@ -138,9 +150,19 @@ impl Airframe {
         Self {
             lift_zero: self.lift_zero - per_moment * self.moment_zero,
             lift_alpha: self.lift_alpha - per_moment * self.moment_alpha,
+            lift_alpha_rate: self.lift_alpha_rate - per_moment * self.moment_alpha_rate,
+            lift_pitch_rate: self.lift_pitch_rate - per_moment * self.moment_pitch_rate,
             lift_elevator: 0.0,
             ..*self
         }
+    }
+
+    /// Path rate of a turn at an airspeed [m/s] over the path rate without lift by the pitch rate [-]. The
+    /// airframe is a [balanced](Self::balanced) one.
+    #[must_use]
+    pub fn turn_gain(&self, airspeed: f64) -> f64 {
+        let per_rate = 0.5 * self.air_density * airspeed * self.wing_area / self.mass;
+        1.0 / (1.0 - per_rate * self.lift_pitch_rate)
     }
 
     /// Elevator command [-] that balances the pitching moment at a constant angle of attack \[rad\].

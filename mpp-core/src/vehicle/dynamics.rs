@@ -95,8 +95,10 @@ pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirS
     let lift = pressure_area * lift_coefficient;
     let drag = pressure_area * drag_coefficient;
 
-    let flight_path = (lift - a.mass * GRAVITY * cos_path + control.thrust * sin_alpha)
-        / (a.mass * state.airspeed);
+    // `alpha' = theta' - gamma'` puts the path rate on both sides of the balance of forces.
+    let rate_lift = pressure_area * ((a.lift_alpha_rate + a.lift_pitch_rate) * state.pitch_rate);
+    let flight_path = (lift + rate_lift - a.mass * GRAVITY * cos_path + control.thrust * sin_alpha)
+        / (a.mass * state.airspeed + pressure_area * a.lift_alpha_rate);
     let moment_coefficient = a.moment_zero
         + a.moment_alpha * alpha
         + a.moment_alpha_rate * (state.pitch_rate - flight_path)

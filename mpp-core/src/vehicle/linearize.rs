@@ -39,27 +39,31 @@ pub fn linearize(
     let (sin_path, cos_path) = libm::sincos(state.flight_path);
     let (sin_alpha, cos_alpha) = libm::sincos(alpha);
     let thrust = control.thrust;
-    let momentum = a.mass * v;
     let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
+    // The lift by the rate of the angle of attack adds to the momentum: its share of `m v` grows with `v`.
+    let momentum = a.mass * v + pressure_area * a.lift_alpha_rate;
+    let added = pressure_area * a.lift_alpha_rate / momentum;
 
     let lift_coefficient = a.lift_zero + a.lift_alpha * alpha + a.lift_elevator * control.elevator;
     let drag_coefficient = a.drag_zero + a.drag_induced * (lift_coefficient * lift_coefficient);
-    let lift = pressure_area * lift_coefficient;
-    let lift_v = a.air_density * v * a.wing_area * lift_coefficient;
+    let rate_lift = (a.lift_alpha_rate + a.lift_pitch_rate) * state.pitch_rate;
+    let lift = pressure_area * lift_coefficient + pressure_area * rate_lift;
+    let lift_v = a.air_density * v * a.wing_area * (lift_coefficient + rate_lift);
     let lift_alpha = pressure_area * a.lift_alpha;
     let drag_v = a.air_density * v * a.wing_area * drag_coefficient;
     let drag_alpha = 2.0 * a.drag_induced * pressure_area * lift_coefficient * a.lift_alpha;
 
-    // gamma' = (L - m g cos(gamma) + T sin(alpha)) / (m v)
+    // gamma' = (L + q S (C_La' + C_Lq) theta' - m g cos(gamma) + T sin(alpha)) / (m v + q S C_La')
     let path_rate = (lift - a.mass * GRAVITY * cos_path + thrust * sin_alpha) / momentum;
     let path_v = match form {
-        JacobianForm::Exact => lift_v / momentum - path_rate / v,
+        JacobianForm::Exact => lift_v / momentum - path_rate / v * (1.0 + added),
         #[cfg(feature = "paper")]
         JacobianForm::Authors => lift_v / momentum,
     };
     let path_pitch = (lift_alpha + thrust * cos_alpha) / momentum;
     let path_path = (-lift_alpha - thrust * cos_alpha + a.mass * GRAVITY * sin_path) / momentum;
     let path_thrust = sin_alpha / momentum;
+    let path_turn = pressure_area * (a.lift_alpha_rate + a.lift_pitch_rate) / momentum;
     let path_elevator = pressure_area * a.lift_elevator / momentum;
 
     // theta'' = q S l / I (C_M0 + C_Ma alpha + C_Ma' (theta' - gamma') + C_Mq theta' + C_Me delta_e)
@@ -74,7 +78,7 @@ pub fn linearize(
     let (pitch_v, pitch_rate, pitch_thrust) = match form {
         JacobianForm::Exact => (
             moment_v - moment_scale * a.moment_alpha_rate * path_v,
-            moment_scale * (a.moment_alpha_rate + a.moment_pitch_rate),
+            moment_scale * (a.moment_alpha_rate * (1.0 - path_turn) + a.moment_pitch_rate),
             -moment_scale * a.moment_alpha_rate * path_thrust,
         ),
         #[cfg(feature = "paper")]
@@ -92,7 +96,7 @@ pub fn linearize(
         -drag_v / a.mass, speed_alpha, 0.0,        -speed_alpha - GRAVITY * cos_path,
         0.0,              0.0,         1.0,        0.0,
         pitch_v,          pitch_pitch, pitch_rate, pitch_path,
-        path_v,           path_pitch,  0.0,        path_path,
+        path_v,           path_pitch,  path_turn,  path_path,
     );
     #[rustfmt::skip]
     let control_jacobian = Matrix4x2::new(

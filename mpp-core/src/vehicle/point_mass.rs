@@ -102,8 +102,13 @@ impl PathState {
             z: v * sin_path,
             airspeed: (control.thrust * cos_alpha - pressure_area * drag) / a.mass
                 - GRAVITY * sin_path,
-            flight_path: (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
-                - GRAVITY * cos_path / v,
+            flight_path: turn_rate(
+                a,
+                v,
+                (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
+                    - GRAVITY * cos_path / v,
+                control.angle_of_attack_rate,
+            ),
             angle_of_attack: control.angle_of_attack_rate,
         }
     }
@@ -195,18 +200,29 @@ impl PathState {
         let pressure_area = 0.5 * density_area * (v * v);
         let lift = a.lift_zero + a.lift_alpha * self.angle_of_attack;
         let drag = a.drag_zero + a.drag_induced * (lift * lift);
-        let path_rate = (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
+        let slow_rate = (pressure_area * lift + control.thrust * sin_alpha) / (a.mass * v)
             - GRAVITY * cos_path / v;
+        let alpha_rate = control.angle_of_attack_rate;
+        let path_rate = turn_rate(a, v, slow_rate, alpha_rate);
+        // Lift by rates, as a share of the path rate; it grows with `v`.
+        let per_rate = pressure_area / (a.mass * v);
+        let gain = a.turn_gain(v);
+        let path_input = gain * per_rate * (a.lift_alpha_rate + a.lift_pitch_rate);
+        let path_v = gain
+            * (density_area * lift / a.mass - slow_rate / v
+                + per_rate / v * (a.lift_pitch_rate * path_rate))
+            + path_input / v * alpha_rate;
         let speed_alpha = (-control.thrust * sin_alpha
             - 2.0 * pressure_area * a.drag_induced * lift * a.lift_alpha)
             / a.mass;
-        let path_alpha = (pressure_area * a.lift_alpha + control.thrust * cos_alpha) / (a.mass * v);
+        let path_alpha =
+            gain * (pressure_area * a.lift_alpha + control.thrust * cos_alpha) / (a.mass * v);
         #[rustfmt::skip]
         let state = Matrix5::new(
             0.0, 0.0, cos_path,                                     -v * sin_path,          0.0,
             0.0, 0.0, sin_path,                                     v * cos_path,           0.0,
             0.0, 0.0, -density_area * v * drag / a.mass,            -GRAVITY * cos_path,    speed_alpha,
-            0.0, 0.0, density_area * lift / a.mass - path_rate / v, GRAVITY * sin_path / v, path_alpha,
+            0.0, 0.0, path_v,                                       gain * GRAVITY * sin_path / v, path_alpha,
             0.0, 0.0, 0.0,                                          0.0,                    0.0,
         );
         #[rustfmt::skip]
@@ -214,9 +230,17 @@ impl PathState {
             0.0, 0.0,
             0.0, 0.0,
             0.0, cos_alpha / a.mass,
-            0.0, sin_alpha / (a.mass * v),
+            path_input, gain * sin_alpha / (a.mass * v),
             1.0, 0.0,
         );
         (state, input)
     }
+}
+
+/// Rate of the flight path [rad/s], of its rate without the lift by rates and the rate of the angle of attack
+/// [rad/s]. The pitch rate is the sum of both rates, so the path rate stands on both sides of the balance.
+fn turn_rate(a: &Airframe, airspeed: f64, without: f64, angle_of_attack_rate: f64) -> f64 {
+    let per_rate = 0.5 * a.air_density * airspeed * a.wing_area / a.mass;
+    let pushed = per_rate * ((a.lift_alpha_rate + a.lift_pitch_rate) * angle_of_attack_rate);
+    (without + pushed) * a.turn_gain(airspeed)
 }

@@ -33,6 +33,8 @@ pub(super) fn aircraft(wire: &WireAircraft, limits: &WireLimits) -> Aircraft {
             air_density: wire.air_density,
             lift_zero: wire.lift_zero,
             lift_alpha: wire.lift_alpha,
+            lift_alpha_rate: wire.lift_alpha_rate,
+            lift_pitch_rate: wire.lift_pitch_rate,
             lift_elevator: wire.lift_elevator,
             drag_zero: wire.drag_zero,
             drag_induced: wire.drag_induced,

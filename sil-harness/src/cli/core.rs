@@ -1,8 +1,11 @@
 //! `core`: runs the flight core as a process of its own.
 
-use super::answer::{Failure, LINK, talk};
+use super::answer::{Failure, LINK, USAGE, talk};
+use crate::files::read_field;
 use crate::link::{PATIENCE, serve};
+use mpp_sim::oracle::Oracle;
 use std::net::TcpListener;
+use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -16,9 +19,19 @@ pub(super) struct CoreArgs {
     /// Seconds to wait for a silent harness, but at most 5 for its hello
     #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
     patience: u64,
+    /// Field of obstacles (TOML, as docs/fields.md) that the planner knows whole: the core is an oracle
+    #[arg(long, value_name = "FIELD")]
+    oracle: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
+    let oracle = match &args.oracle {
+        Some(path) => {
+            let field = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+            Some(Oracle::new(&field.obstacles()))
+        }
+        None => None,
+    };
     let listen = |error| Failure::new(LINK, format!("--listen {}: {error}", args.listen));
     let listener = TcpListener::bind(&args.listen).map_err(listen)?;
     let address = listener.local_addr().map_err(listen)?;
@@ -26,7 +39,9 @@ pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
         "core listens on {address}; fly it with: sil-harness fly --link tcp:{address}"
     ));
     let patience = Duration::from_secs(args.patience);
-    serve(&listener, args.once, patience, |line| talk(line))
-        .map_err(|error| Failure::new(LINK, error))?;
+    serve(&listener, args.once, patience, oracle.as_ref(), |line| {
+        talk(line)
+    })
+    .map_err(|error| Failure::new(LINK, error))?;
     Ok(0)
 }

@@ -51,7 +51,7 @@ pub(super) struct FlyArgs {
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
     #[arg(long)]
     replan_hz: Option<f64>,
-    /// Let an oracle fly, which knows the true field and state and replans at 10 Hz
+    /// Let an oracle fly, which knows the true field and state and replans at 10 Hz of the reference aircraft
     #[arg(long, conflicts_with = "link")]
     oracle: bool,
     /// Place where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and

@@ -4,13 +4,14 @@ use super::tcp::{is_silence, read_error};
 use hil_protocol::{Decoder, Message};
 use mpp_node::FlightNode;
 use mpp_sim::link::LinkError;
+use mpp_sim::oracle::Oracle;
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
 use std::time::{Duration, Instant};
 
 /// Serves a core on a listening socket. With `once` it ends after the first session in which a flight was
-/// configured; who only connects is a stranger, and does not keep the harness from its core. `report`
-/// gets lines about each session.
+/// configured; who only connects is a stranger, and does not keep the harness from its core. An oracle advises
+/// the core. `report` gets lines about each session.
 ///
 /// # Errors
 /// [`LinkError`] of the socket, and with `once` that of the session.
@@ -18,6 +19,7 @@ pub fn serve(
     listener: &TcpListener,
     once: bool,
     patience: Duration,
+    oracle: Option<&Oracle>,
     mut report: impl FnMut(&str),
 ) -> Result<(), LinkError> {
     loop {
@@ -26,7 +28,7 @@ pub fn serve(
             .map_err(|error| LinkError::Io("waiting for a harness".to_owned(), error))?;
         report(&format!("harness connected from {peer}"));
         let mut configured = false;
-        let result = serve_session(stream, patience, &mut configured);
+        let result = serve_session(stream, patience, oracle, &mut configured);
         match &result {
             Ok(()) => report("harness closed the link"),
             Err(error) => report(&error.to_string()),
@@ -99,6 +101,7 @@ impl Client {
 fn serve_session(
     mut stream: TcpStream,
     patience: Duration,
+    oracle: Option<&Oracle>,
     configured: &mut bool,
 ) -> Result<(), LinkError> {
     let io = |error| LinkError::Io("preparing the link to the harness".to_owned(), error);
@@ -123,7 +126,7 @@ fn serve_session(
             Err(error) => return Err(read_error(error, "core", client.awaited(), patience)),
         };
         let mut sent = Ok(());
-        node.receive(&bytes[..count], |frame| {
+        Oracle::receive(oracle, &mut node, &bytes[..count], |frame| {
             if sent.is_ok() {
                 sent = stream.write_all(frame);
             }

@@ -93,3 +93,63 @@ fn telemetry_goes_out_over_udp() {
     ];
     assert_eq!(ids.into_iter().collect::<Vec<_>>(), expected);
 }
+
+/// The lidar sees two metres, so only the field file tells of the circle in the way.
+#[test]
+fn a_core_that_was_told_the_field_is_its_oracle() {
+    let folder = std::env::temp_dir().join(format!("sil-oracle-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let field = file(
+        "field.toml",
+        "[[circle]]\nx = 60.0\nz = 50.0\nradius = 2.0\n",
+    );
+    let scenario = file("dark.toml", "[lidar]\nrange_max = 2.0\n");
+    let wrong = file(
+        "wrong.toml",
+        "[[circle]]\nx = 60.0\nz = 50.0\nradius = -2.0\n",
+    );
+    let refused = harness()
+        .args(["core", "--oracle", &wrong])
+        .output()
+        .unwrap();
+    let talk = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert_eq!(refused.status.code(), Some(2), "{talk}");
+    assert!(
+        talk.contains("wrong.toml") && talk.contains("radius"),
+        "{talk}"
+    );
+    let outcome = |oracle: &[&str]| {
+        let mut core = harness()
+            .args([&["core", "--listen", "127.0.0.1:0", "--once"], oracle].concat())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut greeting = String::new();
+        BufReader::new(core.stderr.take().unwrap())
+            .read_line(&mut greeting)
+            .unwrap();
+        let link = greeting.split_whitespace().last().unwrap();
+        let flags = [
+            "--field",
+            &field,
+            "--scenario",
+            &scenario,
+            "--duration",
+            "8",
+            "--json",
+        ];
+        let (output, out) = run("told", &[&flags[..], &["--link", link]].concat());
+        assert!(core.wait().unwrap().success());
+        std::fs::remove_dir_all(out).unwrap();
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        result["outcome"].as_str().unwrap().to_owned()
+    };
+    assert_eq!(outcome(&[]), "collision");
+    assert_eq!(outcome(&["--oracle", &field]), "survived");
+    std::fs::remove_dir_all(folder).unwrap();
+}

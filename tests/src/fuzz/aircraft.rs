@@ -14,6 +14,8 @@ pub(super) fn aircraft(draw: &mut Draw) -> Aircraft {
         &mut aircraft.air_density,
         &mut aircraft.lift_zero,
         &mut aircraft.lift_alpha,
+        &mut aircraft.lift_alpha_rate,
+        &mut aircraft.lift_pitch_rate,
         &mut aircraft.lift_elevator,
         &mut aircraft.drag_zero,
         &mut aircraft.drag_induced,

@@ -130,7 +130,8 @@ fn a_flight_is_reproduced_from_its_log() {
 fn orders_reach_a_core_over_tcp() {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
-    let core = std::thread::spawn(move || serve(&listener, true, Duration::from_secs(20), |_| {}));
+    let core =
+        std::thread::spawn(move || serve(&listener, true, Duration::from_secs(20), None, |_| {}));
     let mut link = TcpLink::connect(&address, PATIENCE).unwrap();
     let over_tcp = fly_with(&scenario(), &mut link, &mut eventful()).unwrap();
     drop(link);

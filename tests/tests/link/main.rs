@@ -67,7 +67,7 @@ fn connect(address: &str) -> Result<TcpLink, LinkError> {
 #[test]
 fn a_core_behind_tcp_flies_the_same_bytes() {
     let (listener, address) = local_listener();
-    let core = thread::spawn(move || serve(&listener, true, Duration::from_secs(20), |_| {}));
+    let core = thread::spawn(move || serve(&listener, true, Duration::from_secs(20), None, |_| {}));
     let over_tcp = fly(&short(5), &mut connect(&address).unwrap(), |_| {}).unwrap();
     core.join().unwrap().unwrap();
     let over_pipe = fly(&short(5), &mut PipeLink::new(), |_| {}).unwrap();
@@ -129,7 +129,7 @@ fn a_silent_harness_is_named_by_the_core() {
     let (reports, told) = std::sync::mpsc::channel();
     // It has configured nothing, so the core that serves once waits for the next harness.
     thread::spawn(move || {
-        serve(&listener, true, PATIENCE, |line| {
+        serve(&listener, true, PATIENCE, None, |line| {
             let _ = reports.send(line.to_owned());
         })
     });
@@ -151,7 +151,7 @@ fn a_stranger_that_drips_is_dropped_and_the_next_harness_is_served() {
     });
     let (reports, told) = std::sync::mpsc::channel();
     thread::spawn(move || {
-        serve(&listener, false, PATIENCE, |line| {
+        serve(&listener, false, PATIENCE, None, |line| {
             // Nobody listens once the test is over.
             let _ = reports.send(line.to_owned());
         })

@@ -2,6 +2,7 @@
 
 use crate::settings::FlightSettings;
 use crate::tuning::{faces, judgement, limits};
+use crate::units::REFERENCE_CRUISE;
 use crate::vehicle::{ActuatorLimits, Airframe};
 
 /// Limits of plans. They follow from the settings, the actuators and the estimated airframe.
@@ -60,7 +61,8 @@ impl Limits {
             thrust_max: own
                 .thrust_max
                 .min(actuators.thrust_max.unwrap_or(f64::INFINITY)),
-            curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * down.min(up) / a.mass,
+            curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * down.min(up) / a.mass
+                * a.turn_gain(REFERENCE_CRUISE),
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.
             room_price: judgement::ROOM_PRICE * (1.0 - agility),
