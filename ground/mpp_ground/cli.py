@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from importlib.metadata import version
 from pathlib import Path
 
 from . import monitor, paramfile, plot, record
@@ -18,6 +19,7 @@ def parser():
                      help="pymavlink address [%(default)s]")
     top.add_argument("--system", type=int, help="system id [the first one that is heard]")
     top.add_argument("--key", metavar="FILE", help="file with the signing passphrase in its first line")
+    top.add_argument("--version", action="version", version=f"%(prog)s {version('mpp-ground')}")
     commands = top.add_subparsers(dest="command", required=True)
 
     sub = commands.add_parser("monitor", help="show a live table")
@@ -41,6 +43,8 @@ def parser():
     one = actions.add_parser("disarm")
     one.add_argument("--force", action="store_true", help="also disarm in flight: the motor stops")
     actions.add_parser("mode").add_argument("mode", choices=sorted(MODES), type=str.upper)
+    one = actions.add_parser("altitude", help="change the height to which the aircraft returns")
+    one.add_argument("metres", type=float)
     actions.add_parser("terminate", help="end the flight")
     one = actions.add_parser("interval", help="set the rate of a message")
     one.add_argument("message")
@@ -110,21 +114,24 @@ def run_params(vehicle, args):
 
 
 def run_command(vehicle, args):
-    if args.action == "arm":
-        vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
-    elif args.action == "disarm":
-        vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE if args.force else 0)
-    elif args.action == "mode":
-        custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
-        vehicle.demand(mavlink.MAV_CMD_DO_SET_MODE, custom, MODES[args.mode])
-    elif args.action == "terminate":
-        vehicle.demand(mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1)
-    elif args.action == "interval":
-        interval = 1e6 / args.hertz if args.hertz > 0 else -1
-        vehicle.demand(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number(args.message), interval)
-    else:
+    if args.action == "request":
         number(args.message)
         print(vehicle.request(args.message.upper()))
+        return
+    if args.action == "arm":
+        demand = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1
+    elif args.action == "disarm":
+        demand = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 0, FORCE if args.force else 0
+    elif args.action == "mode":
+        demand = mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, MODES[args.mode]
+    elif args.action == "altitude":
+        demand = mavlink.MAV_CMD_DO_CHANGE_ALTITUDE, args.metres
+    elif args.action == "terminate":
+        demand = mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1
+    else:
+        interval = 1e6 / args.hertz if args.hertz > 0 else -1
+        demand = mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number(args.message), interval
+    print(f"{vehicle.demand(*demand)}: ACCEPTED")
 
 
 def number(message):

@@ -21,6 +21,12 @@ class GroundError(Exception):
     """The vehicle refused a request or did not answer it."""
 
 
+def command_name(command):
+    """The name of a command, without its prefix."""
+    known = mavlink.enums["MAV_CMD"].get(command)
+    return known.name.removeprefix("MAV_CMD_") if known else f"command {command}"
+
+
 class Vehicle:
     """A vehicle at a pymavlink address, for instance udpin:127.0.0.1:14550."""
 
@@ -88,15 +94,19 @@ class Vehicle:
             lambda: mav.command_long_send(self.system, COMPONENT, command, 0, *values),
             "COMMAND_ACK",
             lambda ack: ack.command == command,
-            f"command {command}",
+            command_name(command),
         )
         return RESULTS.get(ack.result, str(ack.result))
 
     def demand(self, command, *parameters):
-        """Sends a command that must be accepted."""
-        result = self.command(command, *parameters)
+        """Sends a command that must be accepted. Returns its name."""
+        self.master.messages.pop("STATUSTEXT", None)
+        result, name = self.command(command, *parameters), command_name(command)
         if result != "ACCEPTED":
-            raise GroundError(f"command {command}: {result}")
+            # The vehicle says why before it acknowledges.
+            said = self.master.messages.get("STATUSTEXT")
+            raise GroundError(f"{name}: {result}" + (f": {said.text}" if said else ""))
+        return name
 
     def request(self, name):
         """Requests a message and returns it."""

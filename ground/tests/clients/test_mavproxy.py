@@ -27,7 +27,7 @@ class Proxy:
         self.log = directory / "mav.tlog"
         command = [
             sys.executable, "-u", tool("mavproxy.py"), f"--master=udp:127.0.0.1:{port}", f"--logfile={self.log}",
-            f"--state-basedir={directory}", "--default-modules=log,link,arm,mode,param,misc,cmdlong,wp",
+            f"--state-basedir={directory}", "--default-modules=log,link,arm,mode,param,misc,cmdlong,wp,fence,ftp",
         ]
         # MAVProxy keeps its settings there.
         environment = {"HOME": str(directory), "PATH": str(TOOLS) + ":/usr/bin:/bin"}
@@ -110,3 +110,6 @@ def test_mavproxy_reads_tunes_arms_and_records(proxy):
     for command, result in [(400, 0), (511, 0), (31_999, 3), (176, 0)]:
         assert f"command : {command}, result : {result}" in acks, acks
     assert "count : 0" in proxy.logged("MISSION_COUNT")
+    assert "breach" not in proxy.said
+    # It asked for its parameters as a file first, and went on at once.
+    assert "FILE_TRANSFER_PROTOCOL" in proxy.logged("FILE_TRANSFER_PROTOCOL")

@@ -11,8 +11,26 @@ pytest.importorskip("mavsdk", reason="mavsdk is not installed")
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.info import Info
+from mavsdk.plugins.log_files import LogFiles, LogFilesError, LogFilesResult
+from mavsdk.plugins.mission_raw import MissionRaw
 from mavsdk.plugins.param import Param, ParamError
 from mavsdk.plugins.telemetry import Telemetry
+
+
+def test_mavsdk_sees_a_healthy_vehicle_in_the_air(simulate):
+    simulation = simulate("--speed", "1", "--duration", "3600", "--obstacles", "0")
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        sdk.add_any_connection(simulation.address.replace("udpin:", "udpin://"))
+        system = sdk.first_autopilot(LIMIT)
+        telemetry = Telemetry(system)
+        # A program that waits for these goes on.
+        until(telemetry.health_all_ok, "a healthy vehicle")
+        until(telemetry.in_air, "a vehicle in the air")
+        assert telemetry.battery().voltage_v < 1.0
+        assert MissionRaw(system).download_mission() == []
+        with pytest.raises(LogFilesError) as refused:
+            LogFiles(system).get_entries()
+        assert refused.value.result == LogFilesResult.NO_LOGFILES
 
 
 def test_mavsdk_finds_tunes_arms_and_watches(simulate):

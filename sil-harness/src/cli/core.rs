@@ -40,7 +40,7 @@ pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
     ));
     let patience = Duration::from_secs(args.patience);
     serve(&listener, args.once, patience, oracle.as_ref(), |line| {
-        talk(line)
+        talk(line);
     })
     .map_err(|error| Failure::new(LINK, error))?;
     Ok(0)

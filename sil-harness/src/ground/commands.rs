@@ -1,6 +1,7 @@
 //! Commands. The vehicle acknowledges every command, even an unknown one.
 
 use super::demands::{Address, Command, Demand};
+use super::parameters::decimal;
 use super::vehicle::{Severity, Vehicle, Waiting};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
@@ -9,7 +10,9 @@ use mpp_sim::orders::{Mode, Order};
 /// Numbers of MAV_CMD.
 mod number {
     pub(super) const SET_MODE: u16 = 176;
+    pub(super) const CHANGE_SPEED: u16 = 178;
     pub(super) const TERMINATE: u16 = 185;
+    pub(super) const CHANGE_ALTITUDE: u16 = 186;
     pub(super) const ARM: u16 = 400;
     pub(super) const HOME: u16 = 410;
     pub(super) const GET_INTERVAL: u16 = 510;
@@ -21,6 +24,10 @@ mod number {
 
 /// With this second parameter a vehicle disarms in flight.
 const FORCE: f32 = 21196.0;
+/// Parameter of the height to which the aircraft returns \[m\].
+const ALTITUDE: &str = "MPP_ALT_M";
+/// Parameter of the airspeed of level flight [m/s].
+const CRUISE: &str = "MPP_CRUISE_MS";
 /// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED.
 pub(super) const CUSTOM_MODE: u8 = 1;
 
@@ -116,11 +123,17 @@ impl Vehicle {
             number::ARM => self.arm(command),
             number::SET_MODE => self.set_mode(command),
             number::TERMINATE => self.terminate(command),
+            number::CHANGE_ALTITUDE => self.change_altitude(command),
+            number::CHANGE_SPEED => self.change_speed(command),
             number::SET_INTERVAL => accepted_if(
                 whole(command.first).is_some_and(|id| self.streams.set(id, command.second)),
             ),
             number::REQUEST_MESSAGE => match whole(command.first) {
                 Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second),
+                Some(AVAILABLE_MODES_DATA::ID) => {
+                    let number = whole(command.second);
+                    accepted_if(number.is_some_and(|number| self.list_modes(number)))
+                }
                 id => self.request(id),
             },
             // These are older requests for the same messages.
@@ -177,6 +190,26 @@ impl Vehicle {
             return Some(Outcome::Denied);
         }
         self.order(Order::Terminate, waiting(command));
+        None
+    }
+
+    /// Sets the height to which the aircraft returns, by the parameter for it.
+    fn change_altitude(&mut self, command: &Command) -> Option<Outcome> {
+        let name = ALTITUDE.to_owned();
+        let value = decimal(command.first);
+        self.order(Order::Parameter { name, value }, waiting(command));
+        None
+    }
+
+    /// Sets the airspeed of level flight, by the parameter for it. A speed over ground cannot be asked for.
+    fn change_speed(&mut self, command: &Command) -> Option<Outcome> {
+        if command.first != 0.0 {
+            self.say(Severity::Warning, "Only the airspeed can be changed");
+            return Some(Outcome::Denied);
+        }
+        let name = CRUISE.to_owned();
+        let value = decimal(command.second);
+        self.order(Order::Parameter { name, value }, waiting(command));
         None
     }
 

@@ -27,13 +27,18 @@ const AIRSPEED: u32 = 0x10;
 const POSITION: u32 = 0x20;
 const LIDAR: u32 = 0x100;
 const MOTORS: u32 = 0x8000;
-const PITCH: u32 = 0x20_0000;
+/// The attitude reference, and what it is made of: gyroscope, accelerometer, magnetometer.
+const PITCH: u32 = 0x20_0000 | 7;
 const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
-/// MAV_PROTOCOL_CAPABILITY: COMMAND_INT, termination, MAVLink 2, parameters as plain floats.
-const CAPABILITIES: u64 = 8 | 2048 | 8192 | 131_072;
+/// A fence that does not exist is not broken. Some stations look at this bit alone.
+const GEOFENCE: u32 = 0x10_0000;
+/// The vehicle would fly if it were armed.
+const PREARM: u32 = 0x1000_0000;
+/// MAV_PROTOCOL_CAPABILITY: missions in integers, COMMAND_INT, termination, MAVLink 2, parameters as plain floats.
+const CAPABILITIES: u64 = 4 | 8 | 2048 | 8192 | 131_072;
 /// Position of the start on maps \[deg\]. The place is arbitrary. It counts as sea level, so that
 /// every altitude is a height.
-const HOME: (f64, f64) = (47.397_742, 8.545_594);
+pub(super) const HOME: (f64, f64) = (47.397_742, 8.545_594);
 /// Length of a degree of latitude \[m\].
 const DEGREE: f64 = 111_319.49;
 /// Thrust that the throttle display shows as 100 % \[N\]. It only scales a percentage.
@@ -54,6 +59,10 @@ impl Vehicle {
             if self.is_target(request.target_system, request.target_component) {
                 self.read_parameter(&request);
             }
+        } else if let Some(request) = frame.decode::<FILE_TRANSFER_PROTOCOL_DATA>() {
+            self.answer_file_request(&request, from);
+        } else if let Some(request) = frame.decode::<LOG_REQUEST_LIST_DATA>() {
+            self.list_logs(&request);
         } else if let Some(ping) = frame.decode::<PING_DATA>() {
             // A ping with a target is an answer.
             if ping.target_system == 0 && ping.target_component == 0 {
@@ -129,7 +138,7 @@ impl Vehicle {
                 max_version: 200,
                 ..PROTOCOL_VERSION_DATA::DEFAULT
             }),
-            _ => return false,
+            _ => return self.send_status(id) || self.repeat(id),
         }
         true
     }
@@ -151,21 +160,23 @@ impl Vehicle {
             let line = format!("Planner deadline missed, {} slices used", report.slices);
             self.say(Severity::Warning, &line);
         }
+        let message = MPP_PLAN_STATUS_DATA {
+            time_boot_ms: self.milliseconds(),
+            scan_tick: report.scan_tick,
+            used_from_tick: report.used_from_tick,
+            slices: report.slices,
+            cost: report.cost as f32,
+            violation: report.violation as f32,
+            candidates: report.candidates,
+            feasible: report.feasible,
+            tree_runs: report.tree_runs,
+            outcome: report.outcome as u8,
+            complete: u8::from(report.complete),
+        };
         if self.streams.wants(MPP_PLAN_STATUS_DATA::ID) {
-            self.send(&MPP_PLAN_STATUS_DATA {
-                time_boot_ms: self.milliseconds(),
-                scan_tick: report.scan_tick,
-                used_from_tick: report.used_from_tick,
-                slices: report.slices,
-                cost: report.cost as f32,
-                violation: report.violation as f32,
-                candidates: report.candidates,
-                feasible: report.feasible,
-                tree_runs: report.tree_runs,
-                outcome: report.outcome as u8,
-                complete: u8::from(report.complete),
-            });
+            self.send(&message);
         }
+        self.last.plan = Some(message);
     }
 
     pub(super) fn send_heartbeat(&mut self) {
@@ -201,8 +212,8 @@ impl Vehicle {
         let (_, _, rejections) = self.motion();
         let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
         self.send(&SYS_STATUS_DATA {
-            onboard_control_sensors_present: SENSORS,
-            onboard_control_sensors_enabled: SENSORS,
+            onboard_control_sensors_present: SENSORS | PREARM,
+            onboard_control_sensors_enabled: SENSORS | PREARM,
             onboard_control_sensors_health: healthy(&self.sensors),
             // There is no battery.
             voltage_battery: u16::MAX,
@@ -216,13 +227,11 @@ impl Vehicle {
     }
 
     /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
-    /// height; heading is north, roll and yaw are zero. The vehicle does not know the wind, so it
-    /// reports its motion through the air as its motion over ground.
+    /// height; heading is north, roll and yaw are zero.
     fn send_motion(&mut self, id: u32) {
         let (air, thrust, _) = self.motion();
         let air = *air;
-        let (climb, forward) = libm::sincos(air.flight_path);
-        let (climb, forward) = (air.airspeed * climb, air.airspeed * forward);
+        let (forward, climb) = self.over_ground();
         let time_boot_ms = self.milliseconds();
         match id {
             ATTITUDE_DATA::ID => self.send(&ATTITUDE_DATA {
@@ -242,7 +251,7 @@ impl Vehicle {
             }),
             GLOBAL_POSITION_INT_DATA::ID => self.send(&GLOBAL_POSITION_INT_DATA {
                 time_boot_ms,
-                lat: ((HOME.0 + self.state.x / DEGREE) * 1e7).round() as i32,
+                lat: north(self.state.x),
                 lon: (HOME.1 * 1e7).round() as i32,
                 alt: (self.state.z * 1e3).round() as i32,
                 relative_alt: (self.state.z * 1e3).round() as i32,
@@ -298,28 +307,29 @@ impl Vehicle {
         let nearest = returns.reduce(f32::min).map(centimetres);
         // A scan with more beams than the message is thinned out evenly.
         let stride = scan.ranges.len().div_ceil(BEAMS).max(1);
-        if self.streams.wants(MPP_LIDAR_SCAN_DATA::ID) {
-            let mut message = MPP_LIDAR_SCAN_DATA {
-                time_boot_ms: self.milliseconds(),
-                tick: scan.tick,
-                angle_min: scan.angle_min,
-                angle_increment: scan.angle_increment * stride as f32,
-                range_max: reach,
-                ranges: [u16::MAX; BEAMS],
-                ..MPP_LIDAR_SCAN_DATA::DEFAULT
-            };
-            for (place, range) in message
-                .ranges
-                .iter_mut()
-                .zip(scan.ranges.iter().step_by(stride))
-            {
-                message.count += 1;
-                if *range > 0.0 {
-                    *place = centimetres(*range);
-                }
+        let mut message = MPP_LIDAR_SCAN_DATA {
+            time_boot_ms: self.milliseconds(),
+            tick: scan.tick,
+            angle_min: scan.angle_min,
+            angle_increment: scan.angle_increment * stride as f32,
+            range_max: reach,
+            ranges: [u16::MAX; BEAMS],
+            ..MPP_LIDAR_SCAN_DATA::DEFAULT
+        };
+        for (place, range) in message
+            .ranges
+            .iter_mut()
+            .zip(scan.ranges.iter().step_by(stride))
+        {
+            message.count += 1;
+            if *range > 0.0 {
+                *place = centimetres(*range);
             }
+        }
+        if self.streams.wants(MPP_LIDAR_SCAN_DATA::ID) {
             self.send(&message);
         }
+        self.last.scan = Some(message);
         if self.streams.wants(DISTANCE_SENSOR_DATA::ID) {
             let beams = scan.ranges.len().saturating_sub(1) as f32;
             self.send(&DISTANCE_SENSOR_DATA {
@@ -351,11 +361,19 @@ impl Vehicle {
         for (((x, z), gamma), knot) in places.zip(&trajectory.knots) {
             [*x, *z, *gamma] = *knot;
         }
-        self.send(&message);
+        if self.streams.wants(MPP_TRAJECTORY_DATA::ID) {
+            self.send(&message);
+        }
+        self.last.trajectory = Some(message);
     }
 }
 
-/// The bits of the sensors that the core uses.
+/// Latitude of a place downrange \[1e-7 deg\].
+pub(super) fn north(x: f64) -> i32 {
+    ((HOME.0 + x / DEGREE) * 1e7).round() as i32
+}
+
+/// The bits of the sensors that the core uses, and of what depends on them.
 fn healthy(sensors: &SensorStates) -> u32 {
     let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
     let states = sensors.named();
@@ -363,5 +381,7 @@ fn healthy(sensors: &SensorStates) -> u32 {
         .iter()
         .zip(bits)
         .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
-    used.fold(MOTORS, |all, (_, bit)| all | bit)
+    let sound = used.fold(MOTORS, |all, (_, bit)| all | bit);
+    let ready = if sound == SENSORS { PREARM } else { 0 };
+    sound | ready | GEOFENCE
 }

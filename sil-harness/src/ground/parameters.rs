@@ -11,6 +11,10 @@ use mpp_sim::orders::{Order, Refused};
 
 /// MAV_PARAM_TYPE_REAL32.
 const REAL32: u8 = 9;
+/// MAV_PARAM_ERROR_DOES_NOT_EXIST and MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE.
+const UNKNOWN: u8 = 1;
+const OUT_OF_RANGE: u8 = 2;
+
 impl Vehicle {
     /// Answers a request for the whole list.
     pub(super) fn list_parameters(&mut self) {
@@ -23,8 +27,9 @@ impl Vehicle {
             Ok(index) => present.get(index).copied(),
             Err(_) => number(&request.param_id).filter(|number| present.contains(number)),
         };
-        if let Some(number) = number {
-            self.send_parameter(number);
+        match number {
+            Some(number) => self.send_parameter(number),
+            None => self.refuse_parameter(request.param_id, request.param_index, UNKNOWN),
         }
     }
 
@@ -34,6 +39,7 @@ impl Vehicle {
         let current = number.and_then(|number| self.tuning.as_ref()?.value(number));
         let (Some(number), Some(current)) = (number, current) else {
             self.say(Severity::Warning, &format!("{name}: no such parameter"));
+            self.refuse_parameter(write.param_id, -1, UNKNOWN);
             return;
         };
         if (current as f32).to_bits() == write.param_value.to_bits() {
@@ -49,7 +55,17 @@ impl Vehicle {
         self.send_parameter(number);
         if let (Err(refused), Some(parameter)) = (result, PARAMETERS.get(usize::from(number))) {
             self.say(Severity::Warning, &format!("{}: {refused}", parameter.name));
+            self.refuse_parameter(text(parameter.name), -1, OUT_OF_RANGE);
         }
+    }
+
+    fn refuse_parameter(&mut self, param_id: CharArray<16>, param_index: i16, error: u8) {
+        self.send(&PARAM_ERROR_DATA {
+            param_id,
+            param_index,
+            error,
+            ..PARAM_ERROR_DATA::DEFAULT
+        });
     }
 
     pub(super) fn send_parameter(&mut self, number: u8) {
@@ -83,7 +99,7 @@ fn number(name: &CharArray<16>) -> Option<u8> {
 }
 
 /// The shortest decimal number that gives this float: 0.1, not 0.10000000149.
-fn decimal(value: f32) -> f64 {
+pub(super) fn decimal(value: f32) -> f64 {
     value.to_string().parse().unwrap_or(f64::NAN)
 }
 

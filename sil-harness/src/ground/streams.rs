@@ -15,9 +15,13 @@ enum Rate {
 }
 
 /// The messages that are sent without a request for each: id and usual rate.
-const USUAL: [(u32, Rate); 12] = [
+const USUAL: [(u32, Rate); 16] = [
     (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (EXTENDED_SYS_STATE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (BATTERY_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (GPS_RAW_INT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (WIND_COV_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (
         LOCAL_POSITION_NED_DATA::ID,
@@ -100,12 +104,16 @@ impl Streams {
         let ids: &[u32] = match group {
             0 => &[
                 SYS_STATUS_DATA::ID,
+                EXTENDED_SYS_STATE_DATA::ID,
+                BATTERY_STATUS_DATA::ID,
+                GPS_RAW_INT_DATA::ID,
+                WIND_COV_DATA::ID,
                 ATTITUDE_DATA::ID,
                 LOCAL_POSITION_NED_DATA::ID,
                 GLOBAL_POSITION_INT_DATA::ID,
                 VFR_HUD_DATA::ID,
             ],
-            2 => &[SYS_STATUS_DATA::ID],
+            2 => &[SYS_STATUS_DATA::ID, GPS_RAW_INT_DATA::ID],
             6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
             10 => &[ATTITUDE_DATA::ID],
             11 => &[VFR_HUD_DATA::ID],

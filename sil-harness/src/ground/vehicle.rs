@@ -7,16 +7,17 @@ use super::demands::{Address, Demand, Demands};
 use super::heard::Heard;
 use super::parameter_queue::ParameterQueue;
 use super::security::Security;
-use super::stations::{Change, Stations};
+use super::stations::Stations;
+use super::status::Last;
 use super::streams::Streams;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
-use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender, text};
-use mpp_core::vehicle::{AirState, VehicleState};
-use mpp_node::parameters::Tuning;
+use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender};
+use mpp_core::vehicle::{AirState, VehicleState, Wind};
+use mpp_node::parameters::{self, Tuning};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Mode, Order, Refused};
-use mpp_sim::scenario::{Scenario, TICK_MS, TICK_US};
+use mpp_sim::scenario::{TICK_MS, TICK_US};
 use std::collections::VecDeque;
 
 /// MAV_COMP_ID_AUTOPILOT1.
@@ -76,7 +77,7 @@ pub struct Vehicle {
     pub(super) parameters: ParameterQueue,
     pub(super) tuning: Option<Tuning>,
     outbox: Vec<Outgoing>,
-    notes: Vec<String>,
+    pub(super) notes: Vec<String>,
     orders: Vec<Order>,
     waiting: VecDeque<Waiting>,
     /// Ticks since the start.
@@ -87,8 +88,14 @@ pub struct Vehicle {
     pub(super) state: VehicleState,
     estimate: AirState,
     thrust: f64,
+    /// Motion of the air by the core's estimate [m/s].
+    pub(super) wind: Wind,
     rejections: usize,
     pub(super) sensors: SensorStates,
+    /// The last of each event, for a station that asks for it.
+    pub(super) last: Last,
+    /// Whether another vehicle with this number was told of.
+    pub(super) twin: bool,
 }
 
 impl Vehicle {
@@ -117,8 +124,11 @@ impl Vehicle {
             state: VehicleState::default(),
             estimate: AirState::default(),
             thrust: 0.0,
+            wind: Wind::STILL,
             rejections: 0,
             sensors: SensorStates::default(),
+            last: Last::default(),
+            twin: false,
         }
     }
 
@@ -219,6 +229,11 @@ impl Vehicle {
         }
         match self.waiting.pop_front() {
             Some(Waiting::Command(command, from)) => {
+                if let Order::Parameter { name, .. } = order
+                    && let Some(number) = parameters::number(name)
+                {
+                    self.answer_write(number, result);
+                }
                 self.acknowledge(command, from, result.is_ok());
             }
             Some(Waiting::Parameter(number)) => self.answer_write(number, result),
@@ -237,6 +252,7 @@ impl Vehicle {
         self.state = moment.tick.state;
         self.estimate = moment.tick.estimate.air;
         self.thrust = moment.tick.control.thrust;
+        self.wind = moment.tick.conditions.wind;
         for entry in moment.rejections.iter().skip(self.rejections) {
             self.note_fault(&entry.cause);
         }
@@ -246,9 +262,7 @@ impl Vehicle {
         if let Some(report) = moment.report {
             self.report_plan(report);
         }
-        if let Some(trajectory) = moment.trajectory
-            && self.streams.wants(MPP_TRAJECTORY_DATA::ID)
-        {
+        if let Some(trajectory) = moment.trajectory {
             self.send_trajectory(trajectory);
         }
         self.pass();
@@ -292,6 +306,7 @@ impl Vehicle {
             component: frame.component,
         };
         if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
+            self.note_twin(frame);
             // A sender without the key must not count as a station.
             if trusted && heartbeat.mavtype == STATION {
                 let change = self.stations.hear(frame.system, self.now);
@@ -323,42 +338,6 @@ impl Vehicle {
         self.waiting.push_back(waiting);
     }
 
-    fn note_station(&mut self, system: u8, change: Change) {
-        let (severity, what) = match change {
-            Change::Came => (Severity::Info, "connected"),
-            Change::Lost => (Severity::Warning, "lost, flying on"),
-            Change::Returned => (Severity::Notice, "is back"),
-        };
-        let line = format!("Ground station {system} {what}");
-        self.say(severity, &line);
-        let seconds = Scenario::time(self.now);
-        self.notes.push(format!("{seconds:.2} s: {line}"));
-    }
-
-    /// Tells a fault of the core itself. Refused inputs are only counted.
-    fn note_fault(&mut self, cause: &str) {
-        let name = cause.split(' ').next().unwrap_or_default();
-        let what = match name {
-            "Trapped" => "Core trapped and recovered",
-            "PlannerRestarted" => "Planner restarted",
-            "PlannerOff" => "Planner stays off: land",
-            "ValuesRepaired" => "Settings in memory repaired",
-            "CoreRestarted" => "Core restarted in flight",
-            _ => return,
-        };
-        self.say(Severity::Warning, what);
-    }
-
-    pub(super) fn say(&mut self, severity: Severity, line: &str) {
-        if self.streams.wants(STATUSTEXT_DATA::ID) {
-            self.send(&STATUSTEXT_DATA {
-                severity: severity as u8,
-                text: text(line),
-                ..STATUSTEXT_DATA::DEFAULT
-            });
-        }
-    }
-
     pub(super) fn send<M: MessageData>(&mut self, message: &M) {
         let plain = self.sender.clone().frame(message);
         let wire = self.security.frame(&mut self.sender, message);
@@ -374,6 +353,11 @@ impl Vehicle {
     #[must_use]
     pub fn microseconds(&self) -> u64 {
         u64::from(self.now) * u64::from(TICK_US)
+    }
+
+    /// Estimated velocity over ground, downrange and up [m/s].
+    pub(super) fn over_ground(&self) -> (f64, f64) {
+        self.wind.ground_velocity(&self.estimate)
     }
 
     pub(super) fn motion(&self) -> (&AirState, f64, usize) {

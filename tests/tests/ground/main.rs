@@ -9,4 +9,5 @@ mod inquiries;
 mod link;
 mod parameters;
 mod radio;
+mod status;
 mod telemetry;

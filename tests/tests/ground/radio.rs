@@ -67,6 +67,11 @@ impl Radio {
         self
     }
 
+    /// Sends bytes before a tick is flown.
+    pub(crate) fn bytes_at(&mut self, tick: i64, bytes: &[u8]) {
+        self.script.push((tick, bytes.to_vec()));
+    }
+
     /// Sends a message before a tick is flown, signed at a time.
     pub(crate) fn signed_at<M: MessageData>(
         &mut self,

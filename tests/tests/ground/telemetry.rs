@@ -140,8 +140,15 @@ fn motion_is_that_of_the_log() {
             (told.x, told.z),
             (log.ticks.x[row] as f32, -log.ticks.z[row] as f32)
         );
-        let speed = libm::hypot(told.vx.into(), told.vz.into());
-        assert!((speed - log.ticks.est_airspeed[row]).abs() < 1e-4);
+        // The velocity through the air and the estimated wind.
+        let (up, ahead) = libm::sincos(log.ticks.est_flight_path[row]);
+        let airspeed = log.ticks.est_airspeed[row];
+        let over_ground = (
+            airspeed * ahead + log.ticks.est_wind_x[row],
+            airspeed * up + log.ticks.est_wind_z[row],
+        );
+        assert!((f64::from(told.vx) - over_ground.0).abs() < 1e-4);
+        assert!((f64::from(-told.vz) - over_ground.1).abs() < 1e-4);
     }
     let attitudes = radio.all(|message| match message {
         MavMessage::ATTITUDE(attitude) => Some(attitude.pitch),

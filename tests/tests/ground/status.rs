@@ -1,0 +1,287 @@
+//! Tests what a station asks of a healthy vehicle, and what it gets where there is nothing to get.
+
+use crate::radio::{CONFIG, Radio, command, scenario};
+use hil_protocol::mavlink::messages::*;
+use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
+use mpp_sim::scenario::Scenario;
+use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
+
+const GEOFENCE: u32 = 0x10_0000;
+const PREARM: u32 = 0x1000_0000;
+const GYRO_ACCEL_MAG: u32 = 7;
+const ACCEPTED: u8 = 0;
+const DENIED: u8 = 2;
+const FAILED: u8 = 4;
+
+fn short() -> Scenario {
+    Scenario {
+        ticks: 300,
+        ..scenario()
+    }
+}
+
+fn request(message: u32, first: f32) -> COMMAND_LONG_DATA {
+    command(512, message as f32, first)
+}
+
+#[test]
+fn a_flying_vehicle_is_in_the_air_healthy_and_has_a_fix() {
+    let mut radio = Radio::new(&CONFIG);
+    let log = radio.fly(&short());
+    let landed = radio.all(|message| match message {
+        MavMessage::EXTENDED_SYS_STATE(state) => Some(state.landed_state),
+        _ => None,
+    });
+    assert_eq!(landed[1..], [(100, 2), (200, 2)]);
+    let health = radio.all(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health),
+        _ => None,
+    });
+    let bits = GYRO_ACCEL_MAG | PREARM | GEOFENCE;
+    assert!(health.iter().all(|(_, health)| health & bits == bits));
+    let fixes = radio.all(|message| match message {
+        MavMessage::GPS_RAW_INT(fix) => Some((fix.fix_type, fix.vel)),
+        _ => None,
+    });
+    let (tick, (fix, speed)) = fixes[2];
+    let estimate = log.ticks.est_airspeed[tick as usize];
+    assert_eq!(fix, 3);
+    assert!((f64::from(speed) / 100.0 - estimate).abs() < 2.0);
+    let battery = radio.all(|message| match message {
+        MavMessage::BATTERY_STATUS(battery) => {
+            Some((battery.voltages[0], battery.battery_remaining))
+        }
+        _ => None,
+    });
+    assert_eq!(battery[0].1, (u16::MAX, -1));
+}
+
+#[test]
+fn a_waiting_vehicle_is_on_the_ground() {
+    let mut vehicle = Vehicle::new(&VehicleConfig {
+        hold: true,
+        ..CONFIG
+    });
+    vehicle.hold();
+    let mut landed = Vec::new();
+    for frame in vehicle.take_outgoing() {
+        Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
+            let state = frame.decode::<EXTENDED_SYS_STATE_DATA>();
+            landed.extend(state.map(|state| state.landed_state));
+        });
+    }
+    assert_eq!(landed, [1]);
+}
+
+/// The wind on the link is the core's estimate, and the velocity over ground has it.
+#[test]
+fn the_wind_is_told_and_is_in_the_speed_over_ground() {
+    let mut windy = short();
+    windy.faults.gusts.intensity = 2.0;
+    let mut radio = Radio::new(&CONFIG);
+    let log = radio.fly(&windy);
+    let winds = radio.all(|message| match message {
+        MavMessage::WIND_COV(wind) => Some((wind.wind_x, wind.wind_z)),
+        _ => None,
+    });
+    for (tick, (ahead, down)) in &winds[1..] {
+        let tick = *tick as usize;
+        let wind = [log.ticks.est_wind_x[tick], log.ticks.est_wind_z[tick]];
+        assert_eq!([*ahead, -down], wind.map(|wind| wind as f32));
+    }
+    assert!(winds.iter().any(|(_, (ahead, _))| ahead.abs() > 0.2));
+    let speeds = radio.all(|message| match message {
+        MavMessage::LOCAL_POSITION_NED(at) => Some(at.vx),
+        _ => None,
+    });
+    let (tick, forward) = speeds[20];
+    let tick = tick as usize;
+    let forward_in_air = log.ticks.est_airspeed[tick] * libm::cos(log.ticks.est_flight_path[tick]);
+    let expected = forward_in_air + log.ticks.est_wind_x[tick];
+    assert!(
+        (f64::from(forward) - expected).abs() < 1e-3,
+        "{forward} {expected}"
+    );
+}
+
+fn file_request(opcode: u8) -> FILE_TRANSFER_PROTOCOL_DATA {
+    let mut payload = [0; 251];
+    payload[..4].copy_from_slice(&[0xFF, 0xFF, 7, opcode]);
+    FILE_TRANSFER_PROTOCOL_DATA {
+        target_system: 1,
+        target_component: 1,
+        payload,
+        ..FILE_TRANSFER_PROTOCOL_DATA::DEFAULT
+    }
+}
+
+#[test]
+fn requests_for_files_and_logs_are_answered_at_once() {
+    let mut radio = Radio::new(&CONFIG);
+    let (reset, list, open, ack) = (2, 3, 4, 128);
+    for (tick, opcode) in [(10, reset), (20, list), (30, open), (40, ack)] {
+        radio.at(tick, &file_request(opcode));
+    }
+    radio.at(
+        50,
+        &LOG_REQUEST_LIST_DATA {
+            target_system: 1,
+            target_component: 1,
+            start: 0,
+            end: u16::MAX,
+        },
+    );
+    radio.fly(&short());
+    let answers = radio.all(|message| match message {
+        MavMessage::FILE_TRANSFER_PROTOCOL(file) => Some((file.target_system, file.payload)),
+        _ => None,
+    });
+    let told: Vec<_> = answers
+        .iter()
+        .map(|(tick, (to, payload))| {
+            // The number of the answer follows that of the request, also over the end.
+            assert_eq!(payload[..3], [0, 0, 7]);
+            (*tick, *to, payload[3], payload[5], payload[12])
+        })
+        .collect();
+    let (nak, unknown, not_found) = (129, 7, 10);
+    let expected = [
+        (10, 255, ack, reset, 0),
+        (20, 255, nak, list, unknown),
+        (30, 255, nak, open, not_found),
+    ];
+    assert_eq!(told, expected);
+    let logs = radio.all(|message| match message {
+        MavMessage::LOG_ENTRY(entry) => Some(entry.num_logs),
+        _ => None,
+    });
+    assert_eq!(logs, [(50, 0)]);
+}
+
+#[test]
+fn what_a_parameter_lacks_is_told_by_its_name() {
+    let mut radio = Radio::new(&CONFIG);
+    let read = PARAM_REQUEST_READ_DATA {
+        param_index: -1,
+        target_system: 1,
+        target_component: 1,
+        param_id: text("NO_SUCH_THING"),
+    };
+    let write = |name, param_value| PARAM_SET_DATA {
+        param_value,
+        target_system: 1,
+        target_component: 1,
+        param_id: text(name),
+        param_type: 9,
+    };
+    radio
+        .at(10, &read)
+        .at(20, &write("NO_SUCH_THING", 1.0))
+        .at(30, &write("MPP_PATHS", 99.0));
+    radio.fly(&short());
+    let errors = radio.all(|message| match message {
+        MavMessage::PARAM_ERROR(error) => {
+            Some((error.param_id.to_str().unwrap().to_owned(), error.error))
+        }
+        _ => None,
+    });
+    let errors: Vec<_> = errors.into_iter().map(|(_, error)| error).collect();
+    let named = |name: &str, error| (name.to_owned(), error);
+    assert_eq!(
+        errors,
+        [
+            named("NO_SUCH_THING", 1),
+            named("NO_SUCH_THING", 1),
+            named("MPP_PATHS", 2)
+        ]
+    );
+}
+
+#[test]
+fn modes_and_the_last_of_each_event_are_sent_on_request() {
+    let mut radio = Radio::new(&CONFIG);
+    let asked = [
+        (AVAILABLE_MODES_DATA::ID, 0.0, ACCEPTED),
+        (AVAILABLE_MODES_DATA::ID, 2.0, ACCEPTED),
+        (AVAILABLE_MODES_DATA::ID, 3.0, DENIED),
+        (CURRENT_MODE_DATA::ID, 0.0, ACCEPTED),
+        (GPS_GLOBAL_ORIGIN_DATA::ID, 0.0, ACCEPTED),
+        (COMPONENT_METADATA_DATA::ID, 0.0, ACCEPTED),
+        (MPP_LIDAR_SCAN_DATA::ID, 0.0, ACCEPTED),
+        (MPP_PLAN_STATUS_DATA::ID, 0.0, ACCEPTED),
+        (MPP_TRAJECTORY_DATA::ID, 0.0, ACCEPTED),
+        (9999, 0.0, DENIED),
+    ];
+    for (place, (message, first, _)) in (0..).zip(asked) {
+        radio.at(150 + 10 * place, &request(message, first));
+    }
+    radio.fly(&short());
+    let results: Vec<_> = radio.acks().into_iter().map(|(_, result)| result).collect();
+    assert_eq!(results, asked.map(|(_, _, result)| result));
+    let modes = radio.all(|message| match message {
+        MavMessage::AVAILABLE_MODES(mode) => Some((
+            mode.mode_index,
+            mode.custom_mode,
+            mode.mode_name.to_str().unwrap().to_owned(),
+        )),
+        _ => None,
+    });
+    let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
+    let [auto, cruise] = [(1, 10, "AUTO".to_owned()), (2, 7, "CRUISE".to_owned())];
+    assert_eq!(modes, [auto, cruise.clone(), cruise]);
+    let plans = radio.all(|message| match message {
+        MavMessage::MPP_PLAN_STATUS(plan) => Some(plan.scan_tick),
+        _ => None,
+    });
+    let again = plans.iter().position(|(tick, _)| *tick == 220).unwrap();
+    assert_eq!(plans[again].1, plans[again - 1].1);
+}
+
+#[test]
+fn altitude_and_airspeed_are_commanded_within_limits() {
+    let mut radio = Radio::new(&CONFIG);
+    let (altitude, speed) = (186, 178);
+    radio
+        .at(10, &command(altitude, 53.0, 0.0))
+        .at(20, &command(altitude, 5000.0, 0.0))
+        .at(30, &command(speed, 0.0, 14.0))
+        .at(40, &command(speed, 1.0, 14.0));
+    radio.fly(&short());
+    let expected = [
+        (altitude, ACCEPTED),
+        (altitude, FAILED),
+        (speed, FAILED),
+        (speed, DENIED),
+    ];
+    assert_eq!(radio.acks(), expected);
+    let values = radio.all(|message| match message {
+        MavMessage::PARAM_VALUE(value) if value.param_id.to_str() == Ok("MPP_ALT_M") => {
+            Some(value.param_value)
+        }
+        _ => None,
+    });
+    assert_eq!(values[0].1, 53.0);
+    let texts: Vec<_> = radio.texts().into_iter().map(|(_, text)| text).collect();
+    for said in [
+        "MPP_ALT_M: out of range",
+        "MPP_CRUISE_MS: not in flight",
+        "Only the airspeed can be changed",
+    ] {
+        assert!(texts.iter().any(|text| text == said), "{said}: {texts:?}");
+    }
+}
+
+#[test]
+fn another_vehicle_with_the_same_number_is_told_once() {
+    let mut radio = Radio::new(&CONFIG);
+    let beat = Sender::new(1, 1).frame(&HEARTBEAT_DATA::DEFAULT);
+    for tick in [10, 110] {
+        radio.bytes_at(tick, beat.as_bytes());
+    }
+    radio.fly(&short());
+    let told = radio
+        .notes
+        .iter()
+        .filter(|note| note.contains("--instance"));
+    assert_eq!(told.count(), 1);
+}
