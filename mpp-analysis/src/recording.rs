@@ -7,6 +7,7 @@ use mpp_core::settings::Settings;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::{FlyError, fly};
+use mpp_sim::inspector::core_scan;
 use mpp_sim::link::LinkError;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::Scenario;
@@ -45,16 +46,6 @@ pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
         });
     })?;
     Ok(inputs)
-}
-
-/// A scan of the link as the core takes it.
-#[must_use]
-pub fn core_scan(wire: &hil_protocol::LidarScan) -> LidarScan {
-    LidarScan {
-        angle_min: f64::from(wire.angle_min),
-        angle_increment: f64::from(wire.angle_increment),
-        ranges: wire.ranges.clone(),
-    }
 }
 
 /// The settings with which the core flies a scenario.

@@ -4,8 +4,9 @@
 //! with this motion and with the wind. When the wind changes, the aircraft keeps its velocity over
 //! ground. Its velocity through the air then changes by the opposite amount.
 
+use crate::disturbance::Disturbance;
 use crate::dynamics::{Aerodynamics, Dynamics};
-use crate::faults::{Actuators, Gusts, Signal};
+use crate::faults::{Actuators, GustConfig, Gusts, Signal, SignalFault};
 use crate::plant::{Plant, PlantError};
 use crate::random::Stream;
 use crate::scenario::Scenario;
@@ -15,6 +16,7 @@ use mpp_core::vehicle::{Control, TrimError, VehicleState};
 /// Motion, actuators and air of one flight.
 #[derive(Clone, Debug)]
 pub struct Aircraft {
+    seed: u64,
     body: Dynamics,
     actuators: Actuators,
     /// Faults of what the actuators give: the distance of the elevator from trim, and the thrust.
@@ -37,6 +39,7 @@ impl Aircraft {
         let (faults, seed) = (&scenario.faults, scenario.seed);
         let trim = scenario.trim()?.control;
         Ok(Self {
+            seed,
             body: Dynamics {
                 airframe: faults.model_error.airframe(seed, known),
                 more: Aerodynamics::of(&scenario.aircraft.file),
@@ -49,6 +52,17 @@ impl Aircraft {
             flown: 0,
             gusts: Gusts::new(seed, faults.gusts, TICK_PERIOD),
         })
+    }
+
+    /// Air with another intensity of its gusts [m/s]. The velocity over ground stays the same.
+    fn set_gusts(&mut self, intensity: f64) {
+        let before = self.wind();
+        self.gusts = Gusts::new(self.seed, GustConfig { intensity }, TICK_PERIOD);
+        let after = self.wind();
+        meet(
+            &mut self.body.state,
+            (after.0 - before.0, after.1 - before.1),
+        );
     }
 
     /// The control that acts in the next tick.
@@ -87,6 +101,20 @@ impl Plant for Aircraft {
             );
         }
         Ok(given)
+    }
+
+    fn disturb(&mut self, disturbance: &Disturbance) -> bool {
+        if let Some(intensity) = disturbance.gusts {
+            self.set_gusts(intensity);
+        }
+        if let Some(frozen) = disturbance.elevator_stuck {
+            let fault = SignalFault {
+                frozen,
+                ..SignalFault::default()
+            };
+            self.elevator = Signal::new(self.seed, Stream::ElevatorFault, fault);
+        }
+        true
     }
 }
 

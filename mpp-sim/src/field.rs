@@ -17,6 +17,12 @@ pub trait Field {
     /// Moves what moves to a time \[s\] since the start. A field without motion does nothing.
     fn move_to(&mut self, _time: f64) {}
 
+    /// Adds obstacles. Returns `false` if this field takes none.
+    fn add(&mut self, obstacles: Vec<Obstacle>) -> bool {
+        let _ = obstacles;
+        false
+    }
+
     /// Least distance to an obstacle's edge \[m\] during a straight motion that begins at the
     /// field's time and lasts for `lasting` \[s\]. It is negative inside an obstacle and infinite
     /// without obstacles.
@@ -56,6 +62,11 @@ impl ObstacleField {
 impl Field for ObstacleField {
     fn move_to(&mut self, time: f64) {
         self.time = time;
+    }
+
+    fn add(&mut self, obstacles: Vec<Obstacle>) -> bool {
+        self.obstacles.extend(obstacles);
+        true
     }
 
     fn clearance_of_motion(&self, from: Point, to: Point, lasting: f64) -> f64 {

@@ -25,7 +25,7 @@ use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 pub use sensing::Sensing;
-use session::{Answer, Session};
+use session::{Answer, Session, Told};
 use std::collections::BTreeMap;
 use steering::Steering;
 
@@ -75,49 +75,116 @@ pub fn fly_in(
     link: &mut dyn Link,
     ground: &mut dyn Ground,
 ) -> Result<FlightLog, FlyError> {
-    let World {
-        plant,
-        field,
-        lidar,
-    } = world;
-    let mut log = FlightLog::begin(Header::of(scenario, field.as_ref()));
-    let mut session = Session::open(scenario, link)?;
-    let mut sensing = Sensing::new(scenario);
-    let mut exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
-    let mut trust = SensorStates::default();
-    let mut judge = Judge::new(scenario);
-    let mut steering = Steering::new(scenario)?;
-    ground.begin(&steering.tuning, plant.state());
-    steering.wait(&mut session, ground)?;
-    while judge.flown < scenario.ticks && judge.end.is_none() {
-        let flown = judge.flown;
-        session.tick = flown;
-        field.move_to(Scenario::time(flown));
-        steering.obey(&mut session, ground)?;
-        if steering.terminated {
-            judge.end = Some(Outcome::Terminated);
-            break;
+    let mut flight = Flight::begin(world, scenario, link, ground)?;
+    while flight.tick(world, link, ground)? {}
+    Ok(flight.log(world))
+}
+
+/// A flight that the caller flies tick by tick. World, link and ground are the same in each call.
+pub struct Flight {
+    told: Told,
+    sensing: Sensing,
+    exchange: Exchange,
+    /// The core's trust in its sensors.
+    trust: SensorStates,
+    judge: Judge,
+    steering: Steering,
+    log: FlightLog,
+    /// Planned length \[ticks\].
+    ticks: u32,
+    /// Whether the core is shown the truth.
+    oracle: bool,
+}
+
+impl Flight {
+    /// Configures the core, and carries out the ground's orders until the flight may begin.
+    ///
+    /// # Errors
+    /// [`FlyError`] when the flight cannot begin.
+    pub fn begin(
+        world: &mut World,
+        scenario: &Scenario,
+        link: &mut dyn Link,
+        ground: &mut dyn Ground,
+    ) -> Result<Self, FlyError> {
+        let log = FlightLog::begin(Header::of(scenario, world.field.as_ref()));
+        let mut told = Told::nothing(scenario);
+        let mut session = Session {
+            told: &mut told,
+            link,
+        };
+        session.open()?;
+        let sensing = Sensing::new(scenario);
+        let exchange = Exchange::new(scenario).map_err(FlyError::Trim)?;
+        let judge = Judge::new(scenario);
+        let mut steering = Steering::new(scenario)?;
+        ground.begin(&steering.tuning, world.plant.state());
+        steering.wait(&mut session, world, ground)?;
+        Ok(Self {
+            told,
+            sensing,
+            exchange,
+            trust: SensorStates::default(),
+            judge,
+            steering,
+            log,
+            ticks: scenario.ticks,
+            oracle: scenario.oracle,
+        })
+    }
+
+    /// Flies one tick. Returns `false` without a tick when the flight has ended.
+    ///
+    /// # Errors
+    /// [`FlyError`] when the flight has no outcome.
+    pub fn tick(
+        &mut self,
+        world: &mut World,
+        link: &mut dyn Link,
+        ground: &mut dyn Ground,
+    ) -> Result<bool, FlyError> {
+        let flown = self.judge.flown;
+        if self.has_ended() {
+            return Ok(false);
+        }
+        self.told.tick = flown;
+        let mut session = Session {
+            told: &mut self.told,
+            link,
+        };
+        world.field.move_to(Scenario::time(flown));
+        self.steering.obey(&mut session, world, ground)?;
+        if self.steering.terminated {
+            self.judge.end = Some(Outcome::Terminated);
+            return Ok(false);
         }
         if ground.interrupts(flown) {
-            judge.end = Some(Outcome::Interrupted);
-            break;
+            self.judge.end = Some(Outcome::Interrupted);
+            return Ok(false);
         }
+        let World {
+            plant,
+            field,
+            lidar,
+        } = world;
         let before = *plant.state();
         let (x, z) = plant.wind();
         let air = Wind { x, z };
-        if scenario.oracle {
+        if self.oracle {
             session.reveal(&before, air)?;
         }
+        let sensing = &mut self.sensing;
         let (measured, frame) = sensing.measure(flown, &before, air);
-        let shown = steering
+        let shown = self
+            .steering
             .scans(flown)
             .then(|| lidar.scan(&sensing.lidar_state(flown, &before), field.as_ref()))
             .and_then(|ranges| sensing.show(flown, &ranges));
-        let passage = exchange.passage(flown);
+        let passage = self.exchange.passage(flown);
         let seen = shown.clone().filter(|_| passage.to_core);
         let scan = sensing.scan(flown, shown);
-        let mut answer = exchange.tick(&mut session, passage, scan, frame)?;
-        steering.limit(&mut answer.command);
+        let mut answer = self.exchange.tick(&mut session, passage, scan, frame)?;
+        self.steering.limit(&mut answer.command);
         let wind = plant.wind();
         let applied = plant.step(control(&answer)).map_err(FlyError::Plant)?;
         let tick = Tick {
@@ -132,25 +199,63 @@ pub fn fly_in(
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
-            sensors: answer.step.map_or(trust, |step| step.sensors),
+            sensors: answer.step.map_or(self.trust, |step| step.sensors),
             health: answer.health.as_ref(),
-            rejections: &session.rejections,
+            rejections: &self.told.rejections,
         };
         let holds_trim = answer.command.mode == ControlMode::TrimHold;
-        judge.watch(&moment, field.as_ref(), plant.state(), holds_trim);
+        self.judge
+            .watch(&moment, field.as_ref(), plant.state(), holds_trim);
         ground.watch(&moment);
-        log.note_sensors(&trust, &moment.sensors, flown);
-        trust = moment.sensors;
+        self.log.note_sensors(&self.trust, &moment.sensors, flown);
+        self.trust = moment.sensors;
         if let Some(health) = moment.health {
-            log.health = counters(health);
+            self.log.health = counters(health);
         }
-        log.ticks.push(&tick);
-        log.plans.extend(plan);
+        self.log.ticks.push(&tick);
+        self.log.plans.extend(plan);
+        Ok(true)
     }
-    log.rejections = session.rejections;
-    log.orders = std::mem::take(&mut steering.orders);
-    log.summary = judge.conclude(&log.plans, field.as_ref(), plant.state().x);
-    Ok(log)
+
+    /// Ticks flown.
+    #[must_use]
+    pub fn flown(&self) -> u32 {
+        self.judge.flown
+    }
+
+    /// Whether the flight has ended.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.judge.flown >= self.ticks || self.judge.end.is_some()
+    }
+
+    /// The flight's parameters.
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.log.header
+    }
+
+    /// The log so far. Of a flight that goes on it is the log of a flight that is interrupted now.
+    #[must_use]
+    pub fn log(&self, world: &World) -> FlightLog {
+        let open = if self.judge.flown < self.ticks {
+            Outcome::Interrupted
+        } else {
+            Outcome::Survived
+        };
+        let outcome = self.judge.end.unwrap_or(open);
+        let x_end = world.plant.state().x;
+        let plans = &self.log.plans;
+        let summary = self
+            .judge
+            .conclude(outcome, plans, world.field.as_ref(), x_end);
+        FlightLog {
+            rejections: self.told.rejections.clone(),
+            orders: self.steering.orders.clone(),
+            summary,
+            ..self.log.clone()
+        }
+    }
 }
 
 /// The counters that are not zero, by name.

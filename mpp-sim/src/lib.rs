@@ -18,6 +18,7 @@
 //! names, random              named values; the only source of random numbers
 //! field, generator, scene    the obstacles: shapes and files of them, generators, the challenge scenes
 //! file_error, aircraft_file  an aircraft as TOML, and the numbers that core and plant take from it
+//! disturbance                gusts, dropouts and a stuck elevator, switched in flight
 //! lidar, sensors, navigation the sensors, with noise from seeded streams
 //! plant, dynamics            the interface of an aircraft, and this crate's equations of motion
 //! faults                     faults and disturbances
@@ -25,6 +26,7 @@
 //! aircraft, world            plant, field and lidar of one flight, as a scenario describes them
 //! outcome                    the success rule of the paper, and a strict one
 //! entries, moment            the entries of the log, and the data of one tick
+//! inspector                  map, candidates and corridor of each planning cycle, for pictures
 //! inquest, orders            the cause of a failure; the orders from people
 //! log                        one flight as JSON, and its hash
 //! witness                    what a campaign notes beside the log
@@ -33,7 +35,7 @@
 //! ```
 //!
 //! * [`flight::fly`] flies a [`scenario::Scenario`] over a [`link::Link`], for instance a
-//!   [`pipe::PipeLink`], and gives its [`log::FlightLog`].
+//!   [`pipe::PipeLink`], and gives its [`log::FlightLog`]. [`flight::Flight`] flies tick by tick.
 //! * [`flight::fly_in`] does the same in a [`world::World`] that the caller provides. Another
 //!   [`plant::Plant`], [`field::Field`] or [`lidar::Lidar`] is a new type; it needs no change in
 //!   this crate.
@@ -67,6 +69,8 @@ mod file_error;
 
 pub mod aircraft_file;
 
+pub mod disturbance;
+
 pub mod lidar;
 
 pub mod sensors;
@@ -90,6 +94,8 @@ pub mod outcome;
 pub mod entries;
 
 pub mod moment;
+
+pub mod inspector;
 
 pub mod inquest;
 

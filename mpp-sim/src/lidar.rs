@@ -1,6 +1,7 @@
 //! Lidars: the interface of a sensor that scans a field, and a fan of beams in the vertical plane
 //! that is fixed to the body axis.
 
+use crate::disturbance::Disturbance;
 use crate::field::{Field, Point, Shape, evenly_spaced};
 use crate::random::{self, Stream};
 use hil_protocol::LidarScan;
@@ -17,6 +18,12 @@ pub trait Lidar {
     /// One scan from the true state. It holds one range \[m\] for each beam of the scenario's
     /// [`LidarConfig`], from the lowest to the highest; 0 means no return.
     fn scan(&mut self, state: &VehicleState, field: &dyn Field) -> Vec<f32>;
+
+    /// Changes the share of beams that fail. Returns `false` if this lidar cannot be disturbed so.
+    fn disturb(&mut self, disturbance: &Disturbance) -> bool {
+        let _ = disturbance;
+        false
+    }
 }
 
 /// The rule by which a beam returns a range.

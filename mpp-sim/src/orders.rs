@@ -4,6 +4,8 @@
 //! Orders take effect between two ticks. The flight's log holds them, so that a flight with orders
 //! can be flown again.
 
+use crate::disturbance::Disturbance;
+use crate::field::FieldFile;
 use crate::moment::Moment;
 use hil_protocol::ParameterVerdict;
 use mpp_core::vehicle::VehicleState;
@@ -35,6 +37,25 @@ pub enum Order {
     },
     /// Ends the flight at once.
     Terminate,
+    /// Puts obstacles into the field. An oracle does not know them.
+    Obstacles {
+        /// The obstacles, as in a field file.
+        field: FieldFile,
+    },
+    /// Changes the disturbances.
+    Disturb {
+        /// The disturbances from now on.
+        #[serde(flatten)]
+        disturbance: Disturbance,
+    },
+}
+
+impl Order {
+    /// Whether the order changes the world, and not the vehicle.
+    #[must_use]
+    pub fn changes_world(&self) -> bool {
+        matches!(self, Self::Obstacles { .. } | Self::Disturb { .. })
+    }
 }
 
 /// The vehicle's mode.
@@ -65,12 +86,18 @@ pub enum Refused {
     UnknownParameter,
     /// The core does not take the value.
     Parameter(ParameterVerdict),
+    /// The field or the disturbance has a value out of its range.
+    Range,
+    /// The world of this flight cannot be changed so.
+    World,
 }
 
 impl fmt::Display for Refused {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::UnknownParameter => write!(f, "no such parameter"),
+            Self::Range => write!(f, "out of range"),
+            Self::World => write!(f, "this world cannot be changed so"),
             // The texts are short, because they go over the radio in 50 characters.
             Self::Parameter(verdict) => match verdict {
                 ParameterVerdict::Accepted => write!(f, "accepted"),

@@ -1,5 +1,6 @@
 //! The plant: the interface of a flight's true aircraft.
 
+use crate::disturbance::Disturbance;
 use mpp_core::vehicle::{Control, VehicleState};
 
 /// The reason why the plant did not step. Its state is unchanged.
@@ -35,4 +36,10 @@ pub trait Plant {
     /// # Errors
     /// [`PlantError`] when the plant cannot step; the flight then ends.
     fn step(&mut self, command: Control) -> Result<Control, PlantError>;
+
+    /// Changes the air and the elevator. Returns `false` if this plant cannot be disturbed so.
+    fn disturb(&mut self, disturbance: &Disturbance) -> bool {
+        let _ = disturbance;
+        false
+    }
 }

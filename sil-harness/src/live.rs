@@ -9,10 +9,10 @@ mod request;
 
 use crate::pace::{self, Speed};
 use door::Door;
-use mpp_analysis::picture::detail::{Inspector, PlanDetail};
 use mpp_analysis::picture::live_page;
 use mpp_node::parameters::Tuning;
 use mpp_sim::entries::Columns;
+use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{Header, Summary};
 use mpp_sim::moment::Moment;
 use request::head;

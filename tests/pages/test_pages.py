@@ -3,54 +3,17 @@
 import json
 import os
 import re
-import shutil
 import subprocess
 import urllib.request
 from pathlib import Path
 
 import pytest
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-
 ROOT = Path(__file__).resolve().parents[2]
 BINARY = Path(os.environ.get("SIL_HARNESS", ROOT / "target" / "release" / "sil-harness"))
-CHROMIUM = shutil.which("chromium")
-SHOTS = os.environ.get("SCREENSHOTS")
 PHONE = {"width": 390, "height": 844}
 # Nothing takes so long, on however slow a machine [ms].
 LIMIT = 60_000
-
-
-@pytest.fixture(scope="module")
-def browser():
-    if CHROMIUM is None:
-        pytest.skip("chromium is not installed")
-    with playwright.sync_playwright() as p:
-        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser
-        browser.close()
-
-
-@pytest.fixture
-def open_page(browser):
-    """Opens a page; afterwards it must have complained of nothing and asked nobody else."""
-    pages, complaints = [], []
-
-    def open_(url, **options):
-        page = browser.new_page(**options)
-        page.set_default_timeout(LIMIT)
-        own = url.split("#")[0]
-        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
-        page.goto(url)
-        pages.append(page)
-        return page
-
-    yield open_
-    for page in pages:
-        page.close()
-    assert complaints == []
 
 
 def fly(out, *arguments):
@@ -95,12 +58,7 @@ def pixels(page):
     return page.evaluate("document.getElementById('view').toDataURL()")
 
 
-def shot(page, name):
-    if SHOTS:
-        page.screenshot(path=f"{SHOTS}/{name}.png", full_page=True)
-
-
-def test_the_text_is_the_logs_and_the_slider_moves_the_aircraft(flight, open_page):
+def test_the_text_is_the_logs_and_the_slider_moves_the_aircraft(flight, open_page, shot):
     page, log = flight
     page = open_page(page.as_uri())
     title = page.inner_text("#title")
@@ -152,7 +110,7 @@ def test_keys_buttons_layers_and_links(flight, open_page):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_a_phone_shows_it_all_without_scrolling_sideways(flight, open_page, scheme):
+def test_a_phone_shows_it_all_without_scrolling_sideways(flight, open_page, scheme, shot):
     page, _ = flight
     page = open_page(page.as_uri() + "#t=7.3", viewport=PHONE, color_scheme=scheme)
     assert page.evaluate("document.documentElement.scrollWidth") <= PHONE["width"]
@@ -161,7 +119,7 @@ def test_a_phone_shows_it_all_without_scrolling_sideways(flight, open_page, sche
     shot(page, f"phone-{scheme}")
 
 
-def test_a_wide_page_is_dark_where_that_is_wanted(flight, open_page):
+def test_a_wide_page_is_dark_where_that_is_wanted(flight, open_page, shot):
     page, _ = flight
     page = open_page(page.as_uri() + "#t=12.34", color_scheme="dark")
     page.click("#legend summary")
@@ -253,7 +211,7 @@ def stands_still(page):
     pytest.fail("the flight goes on")
 
 
-def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, tmp_path):
+def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, tmp_path, shot):
     process, url, out = live
     page = open_page(url)
     page.wait_for_function("Number(document.getElementById('time').value) > 150")

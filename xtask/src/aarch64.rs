@@ -5,7 +5,7 @@ use crate::flight::Harness;
 use crate::folders::work;
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
@@ -23,26 +23,13 @@ pub(crate) struct Aarch64Args {
 }
 
 pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
-    install(&[
-        ("/usr/bin/qemu-aarch64", "qemu-user"),
-        ("/usr/bin/aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu"),
-        (
-            "/usr/aarch64-linux-gnu/include/stdio.h",
-            "libc6-dev-arm64-cross",
-        ),
-    ])?;
-    let toolchain = Toolchain::find(TARGET)?;
     if !args.no_tests {
         // This is not --release: to link each test with the whole of it optimised takes an hour.
-        succeed(cargo(&toolchain, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
+        succeed(cargo(&toolchain()?, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
     }
-    succeed(cargo(&toolchain, "build")?.args(["--release", "-p", "sil-harness"]))?;
     let folder = work("aarch64")?;
+    let target = harness(&folder)?;
     let host = Harness::build(&folder)?;
-    let program = work("")?.join(TARGET).join("release/sil-harness");
-    let wrapper = folder.join("sil-harness");
-    write_wrapper(&wrapper, &program)?;
-    let target = Harness::with_program(wrapper, &folder.join("emulated"));
     for seed in 1..=args.flights {
         let arguments = ["--seed".to_owned(), seed.to_string()];
         let (host, target) = (host.fly(&arguments)?, target.fly(&arguments)?);
@@ -56,8 +43,30 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     Ok(())
 }
 
+/// Builds a harness that runs in the emulator. Its logs go to a folder.
+pub(crate) fn harness(folder: &Path) -> Result<Harness> {
+    succeed(cargo(&toolchain()?, "build")?.args(["--release", "-p", "sil-harness"]))?;
+    let program = work("")?.join(TARGET).join("release/sil-harness");
+    let wrapper = folder.join("sil-harness");
+    write_wrapper(&wrapper, &program)?;
+    Ok(Harness::with_program(wrapper, &folder.join("emulated")))
+}
+
+/// The compiler and the emulator.
+fn toolchain() -> Result<Toolchain> {
+    install(&[
+        ("/usr/bin/qemu-aarch64", "qemu-user"),
+        ("/usr/bin/aarch64-linux-gnu-gcc", "gcc-aarch64-linux-gnu"),
+        (
+            "/usr/aarch64-linux-gnu/include/stdio.h",
+            "libc6-dev-arm64-cross",
+        ),
+    ])?;
+    Toolchain::find(TARGET)
+}
+
 /// Writes a script that runs a program in the emulator.
-fn write_wrapper(path: &PathBuf, program: &std::path::Path) -> Result<()> {
+fn write_wrapper(path: &Path, program: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
     let text = format!(
         "#!/bin/sh\nexec qemu-aarch64 -L {SYSROOT} '{}' \"$@\"\n",

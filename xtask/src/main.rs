@@ -15,6 +15,7 @@ mod flips;
 mod folders;
 mod fuzz;
 mod golden;
+mod identity;
 mod limits;
 mod pil;
 mod qemu;
@@ -54,6 +55,10 @@ enum Command {
     Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
+    /// Build the page that flies in the browser: one file, which needs nothing else
+    Web,
+    /// Fly the same seeds on this machine, a Cortex-M7, aarch64, WebAssembly and from Python, and compare the hashes
+    Identity(identity::IdentityArgs),
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
@@ -68,7 +73,9 @@ fn main() -> ExitCode {
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
         Command::Flips(args) => flips::run(&args),
-        Command::Wasm => wasm::build(),
+        Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
+        Command::Web => wasm::page(),
+        Command::Identity(args) => identity::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
     };

@@ -69,10 +69,15 @@ impl Toolchain {
                 // A build of the libraries from source is not stable.
                 .env("RUSTC_BOOTSTRAP", "1");
             if !self.target.contains("linux") {
-                // The targets' own linker, rust-lld, is not packaged. This one is the same.
+                // The targets' own linker, rust-lld, is not packaged. These are the same.
                 let variable = self.target.to_uppercase().replace('-', "_");
+                let linker = if self.target.starts_with("wasm32") {
+                    "wasm-ld"
+                } else {
+                    "ld.lld"
+                };
                 command
-                    .env(format!("CARGO_TARGET_{variable}_LINKER"), "ld.lld")
+                    .env(format!("CARGO_TARGET_{variable}_LINKER"), linker)
                     .arg(self.libraries());
             }
         }

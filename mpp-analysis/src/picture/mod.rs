@@ -2,7 +2,6 @@
 //!
 //! Both are the same page. It holds all that it needs and loads nothing else.
 
-pub mod detail;
 mod page;
 pub mod replay;
 

@@ -5,6 +5,7 @@ const PAGE: &str = concat!(
     include_str!("page_head.html"),
     include_str!("page.css"),
     include_str!("page_body.html"),
+    include_str!("draw.js"),
     include_str!("page.js"),
     "</script>\n</html>\n"
 );

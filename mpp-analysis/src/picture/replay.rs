@@ -1,10 +1,10 @@
 //! One flight on one page.
 
-use super::detail::{Inspector, PlanDetail};
 use super::page::page;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
+use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Again, Ground, Order, Refused};

@@ -1,5 +1,6 @@
 //! Lidar faults: beams that return nothing, and beams that return a wrong range.
 
+use crate::disturbance::Disturbance;
 use crate::field::Field;
 use crate::lidar::{FanLidar, Lidar, LidarConfig, RANGE_MIN};
 use crate::random::{self, Stream};
@@ -75,6 +76,12 @@ impl Lidar for FaultyLidar {
         let mut ranges = self.lidar.scan(state, field);
         self.faults.spoil(&mut ranges);
         ranges
+    }
+
+    fn disturb(&mut self, disturbance: &Disturbance) -> bool {
+        let config = &mut self.faults.config;
+        config.dropouts = disturbance.dropouts.unwrap_or(config.dropouts);
+        true
     }
 }
 

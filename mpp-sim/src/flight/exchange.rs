@@ -47,7 +47,7 @@ impl Exchange {
         frame: SensorFrame,
     ) -> Result<Answer, LinkError> {
         let now = frame.tick;
-        let known = session.rejections.len();
+        let known = session.told.rejections.len();
         let mut answer = if passage.to_core {
             session.fly(
                 scan.map(|scan| self.stamped(scan)).as_ref(),
@@ -62,7 +62,7 @@ impl Exchange {
                 self.command = answer.command;
             }
         }
-        for entry in session.rejections.iter_mut().skip(known) {
+        for entry in session.told.rejections.iter_mut().skip(known) {
             self.restore_entry(entry, now);
         }
         let command = self.command;

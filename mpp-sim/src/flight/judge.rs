@@ -53,8 +53,13 @@ impl Judge {
     }
 
     /// The summary of a flight that ended at `x_end` downrange \[m\].
-    pub(super) fn conclude(self, plans: &[PlanEntry], field: &dyn Field, x_end: f64) -> Summary {
-        let outcome = self.end.unwrap_or(Outcome::Survived);
+    pub(super) fn conclude(
+        &self,
+        outcome: Outcome,
+        plans: &[PlanEntry],
+        field: &dyn Field,
+        x_end: f64,
+    ) -> Summary {
         let t_end = Scenario::time(self.flown);
         let summary = Summary::new(plans, outcome, &self.score, self.holds_trim);
         let body = self.score.body_radius;

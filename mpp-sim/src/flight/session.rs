@@ -7,9 +7,9 @@ use crate::entries::RejectionEntry;
 use crate::link::{Link, LinkError};
 use crate::scenario::{Scenario, TICK_US};
 use hil_protocol::{
-    ActuatorCommand, ConfigureReply, ConfigureVerdict, HealthReport, Hello, LidarScan, Message,
-    ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection, RejectionCause, Role,
-    SensorFrame, SetParameter, StepReport,
+    ActuatorCommand, Configure, ConfigureReply, ConfigureVerdict, HealthReport, Hello, LidarScan,
+    Message, ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection,
+    RejectionCause, Role, SensorFrame, SetParameter, StepReport,
 };
 use mpp_core::config::STAGES;
 use mpp_core::vehicle::{VehicleState, Wind};
@@ -46,10 +46,9 @@ enum Part<T> {
     None,
 }
 
-/// A core, and the values that it was told.
-pub(super) struct Session<'a> {
-    scenario: &'a Scenario,
-    link: &'a mut dyn Link,
+/// What a core was told, from tick to tick.
+pub(super) struct Told {
+    configure: Configure,
     /// Whether a core was configured before. A hello before that is no restart.
     open: bool,
     /// Whether the core that is connected now accepted the configuration.
@@ -62,29 +61,40 @@ pub(super) struct Session<'a> {
     pub(super) rejections: Vec<RejectionEntry>,
 }
 
-impl<'a> Session<'a> {
+impl Told {
+    /// Nothing yet. A core will get the configuration of this scenario.
+    pub(super) fn nothing(scenario: &Scenario) -> Self {
+        Self {
+            configure: scenario.configure(),
+            open: false,
+            configured: false,
+            values: Vec::new(),
+            tick: 0,
+            rejections: Vec::new(),
+        }
+    }
+}
+
+/// A core at its link, and what it was told.
+pub(super) struct Session<'a> {
+    pub(super) told: &'a mut Told,
+    pub(super) link: &'a mut dyn Link,
+}
+
+impl Session<'_> {
     /// Shows the truth to a core that is an oracle.
     pub(super) fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
         self.link.reveal(truth, wind)
     }
 
     /// Exchanges hellos with the core and configures it.
-    pub(super) fn open(scenario: &'a Scenario, link: &'a mut dyn Link) -> Result<Self, LinkError> {
-        let mut session = Self {
-            scenario,
-            link,
-            open: false,
-            configured: false,
-            values: Vec::new(),
-            tick: 0,
-            rejections: Vec::new(),
-        };
+    pub(super) fn open(&mut self) -> Result<(), LinkError> {
         let hello = [Message::Hello(own_hello())];
         let nothing_else = |(): &mut (), _: &Message| Part::<()>::None;
-        session.once("hello", &hello, &nothing_else)?;
-        session.ready()?;
-        session.open = true;
-        Ok(session)
+        self.once("hello", &hello, &nothing_else)?;
+        self.ready()?;
+        self.told.open = true;
+        Ok(())
     }
 
     /// Asks the core to take another value for a parameter.
@@ -92,7 +102,7 @@ impl<'a> Session<'a> {
         let question = [Message::SetParameter(set)];
         let verdict = self.ask("the reply to a parameter", &question, verdict_on(set))?;
         if verdict == ParameterVerdict::Accepted {
-            self.values.push(set);
+            self.told.values.push(set);
         }
         Ok(verdict)
     }
@@ -175,7 +185,7 @@ impl<'a> Session<'a> {
                     return Ok(None);
                 }
                 Message::Rejection(rejection) => {
-                    self.rejections.push(entry(&rejection));
+                    self.told.rejections.push(entry(&rejection));
                     // A refused tick gets no other answer.
                     if let Part::Last(answer) = take(&mut draft, &Message::Rejection(rejection)) {
                         return Ok(Some(answer));
@@ -185,7 +195,7 @@ impl<'a> Session<'a> {
                 // got the configuration that was sent after its hello.
                 Message::ConfigureReply(ConfigureReply {
                     verdict: ConfigureVerdict::AlreadyConfigured,
-                }) if self.configured => {}
+                }) if self.told.configured => {}
                 message => match take(&mut draft, &message) {
                     Part::More => {}
                     Part::Last(answer) => return Ok(Some(answer)),
@@ -202,20 +212,20 @@ impl<'a> Session<'a> {
 
     /// Handles the hello of a core that knows nothing yet.
     fn greeted(&mut self, peer: &Hello) -> Result<(), LinkError> {
-        self.configured = false;
-        if self.open {
-            self.rejections.push(RejectionEntry {
-                tick: u64::from(self.tick),
+        self.told.configured = false;
+        if self.told.open {
+            self.told.rejections.push(RejectionEntry {
+                tick: u64::from(self.told.tick),
                 cause: "CoreRestarted".to_owned(),
             });
         }
-        check(peer, self.scenario.lidar.beams)
+        check(peer, self.told.configure.beams)
     }
 
     /// Ensures that the core is configured and has every value.
     fn ready(&mut self) -> Result<(), LinkError> {
         for _ in 0..=RESTARTS {
-            if self.configured || self.configure()? {
+            if self.told.configured || self.configure()? {
                 return Ok(());
             }
         }
@@ -224,7 +234,7 @@ impl<'a> Session<'a> {
 
     /// Configures the core. Returns `false` if another core says hello meanwhile.
     fn configure(&mut self) -> Result<bool, LinkError> {
-        let question = [Message::Configure(self.scenario.configure())];
+        let question = [Message::Configure(self.told.configure)];
         let awaited = "the reply to the configuration";
         let verdict = self.once(awaited, &question, &|(): &mut (), message| match message {
             Message::ConfigureReply(reply) => Part::Last(reply.verdict),
@@ -236,11 +246,11 @@ impl<'a> Session<'a> {
             _ => Part::None,
         })?;
         match verdict {
-            Some(ConfigureVerdict::Accepted) => self.configured = true,
+            Some(ConfigureVerdict::Accepted) => self.told.configured = true,
             Some(refused) => return Err(LinkError::Refused(refused)),
             None => return Ok(false),
         }
-        for set in self.values.clone() {
+        for set in self.told.values.clone() {
             let question = [Message::SetParameter(set)];
             match self.once("the reply to a parameter", &question, &verdict_on(set))? {
                 Some(ParameterVerdict::Accepted) => {}
@@ -252,7 +262,7 @@ impl<'a> Session<'a> {
     }
 
     fn restless(&self) -> LinkError {
-        LinkError::Restless(self.tick)
+        LinkError::Restless(self.told.tick)
     }
 }
 
@@ -302,15 +312,15 @@ fn own_hello() -> Hello {
 }
 
 /// Checks that the core that said hello suits a flight with this number of beams.
-fn check(peer: &Hello, beams: usize) -> Result<(), LinkError> {
+fn check(peer: &Hello, beams: u16) -> Result<(), LinkError> {
     if peer.role != Role::Core {
         return Err(LinkError::NoCore);
     }
-    if peer.tick_period_us != TICK_US || usize::from(peer.beams_max) < beams {
+    if peer.tick_period_us != TICK_US || peer.beams_max < beams {
         return Err(LinkError::Unfit {
             tick_us: peer.tick_period_us,
             beams_max: peer.beams_max,
-            beams,
+            beams: usize::from(beams),
         });
     }
     Ok(())

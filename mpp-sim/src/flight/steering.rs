@@ -2,9 +2,12 @@
 
 use super::error::FlyError;
 use super::session::Session;
+use crate::disturbance::Disturbance;
+use crate::field::FieldFile;
 use crate::link::LinkError;
 use crate::orders::{Ground, Mode, Order, OrderEntry, Refused};
 use crate::scenario::Scenario;
+use crate::world::World;
 use hil_protocol::{ActuatorCommand, ParameterVerdict, SetParameter};
 use mpp_node::parameters::{self, Tuning};
 
@@ -38,11 +41,12 @@ impl Steering {
     pub(super) fn wait(
         &mut self,
         session: &mut Session<'_>,
+        world: &mut World,
         ground: &mut dyn Ground,
     ) -> Result<(), LinkError> {
         loop {
-            self.obey(session, ground)?;
-            if ground.ready() || ground.interrupts(session.tick) {
+            self.obey(session, world, ground)?;
+            if ground.ready() || ground.interrupts(session.told.tick) {
                 return Ok(());
             }
         }
@@ -52,15 +56,17 @@ impl Steering {
     pub(super) fn obey(
         &mut self,
         session: &mut Session<'_>,
+        world: &mut World,
         ground: &mut dyn Ground,
     ) -> Result<(), LinkError> {
-        for order in ground.orders(session.tick) {
+        for order in ground.orders(session.told.tick) {
             let before = (self.tuning, self.mode, self.motor, self.terminated);
-            let result = self.carry_out(session, &order)?;
+            let result = self.carry_out(session, world, &order)?;
             ground.settled(&order, result, &self.tuning);
             // An order that comes twice changes nothing the second time.
-            if before != (self.tuning, self.mode, self.motor, self.terminated) {
-                let tick = u64::from(session.tick);
+            let changed = before != (self.tuning, self.mode, self.motor, self.terminated);
+            if changed || (result.is_ok() && order.changes_world()) {
+                let tick = u64::from(session.told.tick);
                 self.orders.push(OrderEntry { tick, order });
             }
         }
@@ -86,6 +92,7 @@ impl Steering {
     fn carry_out(
         &mut self,
         session: &mut Session<'_>,
+        world: &mut World,
         order: &Order,
     ) -> Result<Result<(), Refused>, LinkError> {
         match order {
@@ -93,6 +100,8 @@ impl Steering {
             Order::Mode { mode } => self.mode = *mode,
             Order::Motor { on } => self.motor = *on,
             Order::Terminate => self.terminated = true,
+            Order::Obstacles { field } => return Ok(place(world, field)),
+            Order::Disturb { disturbance } => return Ok(disturb(world, disturbance)),
         }
         Ok(Ok(()))
     }
@@ -107,7 +116,7 @@ impl Steering {
         let Some(parameter) = parameters::number(name) else {
             return Ok(Err(Refused::UnknownParameter));
         };
-        let tuning = match self.tuning.with(parameter, value, session.tick > 0) {
+        let tuning = match self.tuning.with(parameter, value, session.told.tick > 0) {
             Ok(tuning) => tuning,
             Err(verdict) => return Ok(Err(Refused::Parameter(verdict))),
         };
@@ -118,4 +127,20 @@ impl Steering {
         self.tuning = tuning;
         Ok(Ok(()))
     }
+}
+
+/// Puts obstacles into the field, all or none.
+fn place(world: &mut World, field: &FieldFile) -> Result<(), Refused> {
+    field.check().map_err(|_| Refused::Range)?;
+    let taken = world.field.add(field.obstacles());
+    taken.then_some(()).ok_or(Refused::World)
+}
+
+/// Changes the disturbances.
+fn disturb(world: &mut World, disturbance: &Disturbance) -> Result<(), Refused> {
+    if !disturbance.is_sound() {
+        return Err(Refused::Range);
+    }
+    let taken = world.plant.disturb(disturbance) && world.lidar.disturb(disturbance);
+    taken.then_some(()).ok_or(Refused::World)
 }

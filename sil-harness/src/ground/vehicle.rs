@@ -224,7 +224,10 @@ impl Vehicle {
             match order {
                 Order::Mode { mode } => self.mode = *mode,
                 Order::Motor { on } => self.armed = *on,
-                Order::Parameter { .. } | Order::Terminate => {}
+                Order::Parameter { .. }
+                | Order::Terminate
+                | Order::Obstacles { .. }
+                | Order::Disturb { .. } => {}
             }
         }
         match self.waiting.pop_front() {

@@ -69,6 +69,11 @@ const RULES: [Rule; 9] = [
         not: &["clarabel", "plotters"],
     },
     Rule {
+        name: "mpp-web",
+        ours: &["mpp-core", "mpp-node", "mpp-sim"],
+        not: &["clap", "rayon", "indicatif", "clarabel", "plotters"],
+    },
+    Rule {
         name: "mpp-tests",
         ours: &[
             "mpp-core",

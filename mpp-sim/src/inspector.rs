@@ -3,7 +3,7 @@
 //! The core reports only its choice. The same planner gets the same scans and states here, so it
 //! goes through the same candidates, one slice at a time.
 
-use crate::recording::core_scan;
+use crate::moment::Moment;
 use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::map::GridPoint;
@@ -12,7 +12,6 @@ use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
-use mpp_sim::moment::Moment;
 use serde::{Deserialize, Serialize};
 
 /// A place `(x, z)` in the world \[m\], to the centimetre.
@@ -135,6 +134,16 @@ impl Inspector {
         }
         let _ = planner.finish();
         Some(detail)
+    }
+}
+
+/// A scan of the link as the core takes it.
+#[must_use]
+pub fn core_scan(wire: &hil_protocol::LidarScan) -> LidarScan {
+    LidarScan {
+        angle_min: f64::from(wire.angle_min),
+        angle_increment: f64::from(wire.angle_increment),
+        ranges: wire.ranges.clone(),
     }
 }
 

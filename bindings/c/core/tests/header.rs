@@ -1,0 +1,30 @@
+//! The checked-in header is the one that cbindgen makes from this crate. `MPP_HEADER=save` writes it.
+
+use std::path::Path;
+
+#[test]
+fn the_header_is_made_from_the_code() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let config = cbindgen::Config::from_file(folder.join("../cbindgen.toml")).expect("it is read");
+    let mut made = Vec::new();
+    ["status", "types", "flying", "lib"]
+        .iter()
+        .fold(
+            cbindgen::Builder::new().with_config(config),
+            |builder, file| builder.with_src(folder.join("src").join(file).with_extension("rs")),
+        )
+        .generate()
+        .expect("a header is made")
+        .write(&mut made);
+    let path = folder.join("../include/mpp.h");
+    if std::env::var_os("MPP_HEADER").is_some_and(|wish| wish == "save") {
+        std::fs::write(&path, &made).expect("it is written");
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    let made = String::from_utf8(made).expect("it is text");
+    assert!(
+        kept == made,
+        "{} is not what the code says: run `MPP_HEADER=save cargo test -p mpp-c --test header`",
+        path.display()
+    );
+}

@@ -1,0 +1,336 @@
+// The page that flies: the module asks nobody, and this page shows what it answers.
+const columns = ["t", "x", "z", "airspeed", "pitch", "flight_path", "ref_x", "ref_z", "ref_airspeed", "ref_pitch",
+  "ref_flight_path", "thrust", "elevator", "wind_x", "wind_z"];
+const FIELDS = ["endless", "paper", "sealed", "forest", "canyon", "slalom", "walls", "wires"];
+// The settings of a flight, and what a link without them means. `sight` is in per cent of the usual range.
+const USUAL = { seed: 1, obstacles: 40, sight: 100, hz: 4, aircraft: "reference", field: "endless", duration: 600 };
+// Longest time of a frame that is spent on flying in a hurry [ms], and least time between two looks at numbers.
+const HURRY = 12, LOOK = 100;
+// Ticks that the charts show.
+const WINDOW = 2000;
+const WIND = 1.5, DROPOUTS = 0.3;
+
+let module = null, settings = { ...USUAL }, flight = null, now = 0;
+let playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null;
+let pending = [], planning = [], placeOf = null, drag = null;
+const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])),
+  note: text => { $("occupancy").textContent = text; } };
+
+// Asks the module and returns the bytes of its answer.
+function askBytes(question) {
+  const bytes = new TextEncoder().encode(JSON.stringify(question));
+  const at = module.question(bytes.length);
+  new Uint8Array(module.memory.buffer, at, bytes.length).set(bytes);
+  const length = module.ask();
+  return new Uint8Array(module.memory.buffer, module.answer(), length).slice();
+}
+
+function ask(question) {
+  const answer = JSON.parse(new TextDecoder().decode(askBytes(question)));
+  if (answer.error) throw new Error(answer.error);
+  return answer;
+}
+
+// The settings as a scenario file has them. What is usual is left out.
+function scenario() {
+  const { seed, obstacles, hz, aircraft, field, duration } = settings;
+  const asked = { seed, obstacles, replan_hz: hz, duration };
+  if (field !== "paper") asked.generator = { name: field };
+  if (aircraft !== "reference") asked.aircraft = aircraft;
+  if (settings.sight !== 100) {
+    const usual = ask({ ask: "begin", scenario: asked }).header.lidar.range_max;
+    asked.lidar = { range_max: usual * settings.sight / 100 };
+  }
+  return asked;
+}
+
+// Begins a flight with these orders, up to a tick if one is given.
+function begin(orders = [], until = null) {
+  let begun;
+  try {
+    begun = ask({ ask: "begin", scenario: scenario(), orders, details: true });
+  } catch (error) {
+    return fail(error);
+  }
+  flight = { header: begun.header, ticks: Object.fromEntries(columns.map(name => [name, []])), plans: [], orders: [],
+    details: new Map() };
+  [now, ended, due, last, planning, pending, drag, target] = [0, false, 0, null, [], [], null, until];
+  for (const id of ["wind", "dropouts", "elevator"]) $(id).checked = false;
+  const h = flight.header, count = Object.values(h.field).reduce((sum, kind) => sum + kind.length, 0);
+  $("title").textContent = document.title = `Model Predictive Planning: seed ${h.seed}, ${count} obstacles, ` +
+    `aircraft ${settings.aircraft}`;
+  showSettings(begun.aircraft);
+  showOrders();
+  fly(1);
+  setPlaying(until === null);
+}
+
+function fail(error) {
+  setPlaying(false);
+  $("state").textContent = error.message || String(error);
+  $("state").className = "over";
+}
+
+// Flies so many ticks, with the orders that wait.
+function fly(ticks) {
+  if (ended || ticks < 1) return;
+  const answer = ask({ ask: "fly", ticks, orders: pending.map(({ tick, ...order }) => order) });
+  const first = flight.ticks.t.length;
+  for (const name of columns) flight.ticks[name].push(...answer.ticks[name]);
+  now = Math.max(flight.ticks.t.length - 1, 0);
+  flight.plans.push(...answer.plans);
+  for (const detail of answer.details) flight.details.set(detail.tick, detail);
+  // Only the newest cycles are drawn.
+  for (const tick of flight.details.keys()) if (tick < first - WINDOW) flight.details.delete(tick);
+  planning.push(...answer.planning);
+  if (pending.length || answer.orders.length) {
+    flight.orders = flight.orders.filter(order => !pending.includes(order)).concat(answer.orders);
+    pending = [];
+    for (const order of answer.orders) showSwitches(order);
+    showOrders();
+  }
+  if (answer.refused.length) $("state").textContent = "refused: " + answer.refused.join(", ");
+  ended = answer.ended;
+  if (ended) setPlaying(false);
+}
+
+// Gives an order for the next tick.
+function order(given) {
+  if (ended) return;
+  const entry = { tick: flight.ticks.t.length, ...given };
+  pending.push(entry);
+  flight.orders.push(entry);
+  showOrders();
+  show();
+}
+
+function frame(time) {
+  requestAnimationFrame(frame);
+  if (!flight || !playing && target === null) return;
+  const before = flight.ticks.t.length, since = last === null ? 0 : Math.min(time - last, 250);
+  last = time;
+  const speed = $("speed").value;
+  try {
+    if (target !== null || speed === "max") hurry();
+    else {
+      due += since / 10 * Number(speed);
+      fly(Math.floor(due));
+      due -= Math.floor(due);
+    }
+  } catch (error) {
+    return fail(error);
+  }
+  if (since > 0) {
+    const measured = (flight.ticks.t.length - before) * 10 / since;
+    pace = pace === null ? measured : pace + 0.05 * (measured - pace);
+  }
+  if (target === null || time - looked > LOOK) show(time);
+}
+
+// Flies for the time of a frame, or up to the target.
+function hurry() {
+  const begun = performance.now();
+  while (!ended && performance.now() - begun < HURRY) {
+    const left = target === null ? Infinity : target - flight.ticks.t.length;
+    if (left <= 0) break;
+    fly(Math.min(25, left));
+  }
+  if (target !== null && (ended || flight.ticks.t.length >= target)) {
+    target = null;
+    setPlaying(false);
+  }
+}
+
+function show(time = null) {
+  if (!flight || !flight.ticks.t.length) return;
+  look.follow = $("follow").checked;
+  placeOf = drawView(flight, now, look);
+  if (drag) drawDrag();
+  if (time !== null && time - looked < LOOK) return;
+  looked = time ?? looked;
+  const T = flight.ticks, cost = planning.slice(-50).sort((a, b) => a - b);
+  const number = value => value.toFixed(1) + " ms";
+  showValues(flight, now, [
+    ["wind", `${T.wind_x[now].toFixed(1)}, ${T.wind_z[now].toFixed(1)} m/s`],
+    ["cycle time", cost.length ? number(planning[planning.length - 1]) : "-"],
+    ["cycle median", cost.length ? number(cost[cost.length >> 1]) : "-"],
+    ["pace", pace === null ? "-" : pace.toFixed(1) + " x"]]);
+  drawCharts(flight, now, Math.max(0, now - WINDOW));
+  if (!ended) say(`${T.t[now].toFixed(2)} s, ${playing ? "flying" : target === null ? "paused" : "going to the moment"}`);
+}
+
+function say(text, over = false) {
+  $("state").textContent = text;
+  $("state").className = over ? "over" : "";
+}
+
+// Hash and outcome of the flight so far. They cost time, so they are shown while the flight stands.
+function showLog() {
+  const { hash, summary } = ask({ ask: "log" });
+  $("hash").textContent = hash;
+  if (ended) say(`${summary.outcome.replace(/-/g, " ")} after ${summary.t_end.toFixed(2)} s and ` +
+    `${summary.x_end.toFixed(0)} m`, summary.outcome !== "survived");
+  history.replaceState(null, "", fragment());
+  $("link").href = fragment();
+}
+
+function fragment() {
+  const link = new URLSearchParams();
+  for (const [name, value] of Object.entries(settings)) if (value !== USUAL[name]) link.set(name, value);
+  link.set("t", flight.ticks.t.length);
+  const given = flight.orders.filter(order => !pending.includes(order));
+  if (given.length) link.set("orders", JSON.stringify(given));
+  return "#" + link;
+}
+
+// Takes settings, orders and moment from the link, and begins.
+function fromLink() {
+  const link = new URLSearchParams(location.hash.slice(1));
+  settings = { ...USUAL };
+  for (const [name, usual] of Object.entries(USUAL)) {
+    const text = link.get(name);
+    if (text === null) continue;
+    settings[name] = typeof usual === "number" ? Number(text) : text;
+  }
+  let orders = [];
+  try {
+    orders = JSON.parse(link.get("orders") || "[]");
+  } catch {
+    return fail(new Error("the link's orders are damaged: open the page without them"));
+  }
+  const until = Number(link.get("t"));
+  begin(orders, link.has("t") && until > 0 ? until : null);
+}
+
+function setPlaying(value) {
+  playing = value;
+  last = pace = null;
+  $("play").textContent = playing ? "Pause" : "Play";
+  $("play").disabled = $("step").disabled = $("next").disabled = ended;
+  if (!flight) return;
+  if (playing) $("hash").textContent = "shown while the flight stands";
+  else if (target === null) showLog();
+  show();
+}
+
+function toNextPlan() {
+  if (playing) setPlaying(false);
+  const plans = flight.plans.length;
+  for (let tick = 0; tick < 1000 && !ended && flight.plans.length === plans; tick++) fly(1);
+  if (!ended) setPlaying(false);
+}
+
+function showSettings(names) {
+  const options = (id, all) => $(id).replaceChildren(...all.map(name => new Option(name)));
+  if (!$("aircraft").length) { options("aircraft", names); options("field", FIELDS); }
+  for (const id of ["obstacles", "sight", "hz", "aircraft", "field", "seed"]) $(id).value = settings[id];
+  showRanges();
+}
+
+function showRanges() {
+  document.querySelector("output[for=obstacles]").value = $("obstacles").value;
+  document.querySelector("output[for=sight]").value = $("sight").value + " %";
+}
+
+function showSwitches(given) {
+  if (given.gusts !== undefined) $("wind").checked = given.gusts > 0;
+  if (given.dropouts !== undefined) $("dropouts").checked = given.dropouts > 0;
+  if (given.elevator_stuck !== undefined) $("elevator").checked = given.elevator_stuck;
+}
+
+function showOrders() {
+  $("orders").replaceChildren(...flight.orders.slice(-6).map(given => {
+    const item = document.createElement("li");
+    item.textContent = orderText(given);
+    return item;
+  }));
+}
+
+// A place under the pointer, to the centimetre.
+function pointed(event) {
+  const box = $("view").getBoundingClientRect();
+  const [x, z] = placeOf(event.clientX - box.left, event.clientY - box.top);
+  return [Math.round(x * 100) / 100, Math.round(z * 100) / 100];
+}
+
+function drawDrag() {
+  const pen = $("view").getContext("2d");
+  pen.beginPath();
+  pen.moveTo(...drag.from); pen.lineTo(...drag.to);
+  pen.strokeStyle = colour.obstacle; pen.lineWidth = 10; pen.lineCap = "round"; pen.globalAlpha = 0.6;
+  pen.stroke();
+  pen.globalAlpha = 1; pen.lineCap = "butt";
+}
+
+function pixel(event) {
+  const box = $("view").getBoundingClientRect();
+  return [event.clientX - box.left, event.clientY - box.top];
+}
+
+$("view").addEventListener("pointerdown", event => {
+  if (!placeOf || ended || event.button) return;
+  $("view").setPointerCapture(event.pointerId);
+  drag = { from: pixel(event), to: pixel(event), place: pointed(event) };
+});
+$("view").addEventListener("pointermove", event => {
+  if (!drag) return;
+  drag.to = pixel(event);
+  if (!playing) show();
+});
+$("view").addEventListener("pointercancel", () => { drag = null; });
+$("view").addEventListener("pointerup", event => {
+  if (!drag) return;
+  const { from: [u, v], place } = drag, [right, down] = pixel(event), radius = flight.header.world_scale;
+  const far = Math.hypot(right - u, down - v) > 12, end = pointed(event);
+  drag = null;
+  order({ order: "obstacles", field: far ? { capsule: [{ from: place, to: end, radius: radius / 2 }] }
+    : { circle: [{ x: place[0], z: place[1], radius }] } });
+});
+
+$("wind").onchange = event => order({ order: "disturb", gusts: event.target.checked ? WIND : 0 });
+$("dropouts").onchange = event => order({ order: "disturb", dropouts: event.target.checked ? DROPOUTS : 0 });
+$("elevator").onchange = event => order({ order: "disturb", elevator_stuck: event.target.checked });
+for (const id of ["obstacles", "sight", "hz", "seed"])
+  $(id).onchange = event => { settings[id] = Number(event.target.value); begin(); };
+for (const id of ["aircraft", "field"]) $(id).onchange = event => { settings[id] = event.target.value; begin(); };
+for (const id of ["obstacles", "sight"]) $(id).oninput = showRanges;
+$("play").onclick = () => setPlaying(!playing);
+$("step").onclick = () => { playing = false; fly(1); setPlaying(false); };
+$("next").onclick = toNextPlan;
+$("again").onclick = () => begin();
+$("other").onclick = () => { settings.seed++; begin(); };
+$("follow").onchange = () => show();
+$("speed").onchange = () => { due = 0; pace = null; };
+$("save").onclick = event => {
+  event.target.download = `flight-seed${settings.seed}-web.json`;
+  event.target.href = URL.createObjectURL(new Blob([askBytes({ ask: "bytes" })], { type: "application/json" }));
+};
+addEventListener("resize", () => show());
+addEventListener("hashchange", fromLink);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); show(); });
+addEventListener("keydown", event => {
+  if (event.ctrlKey || event.metaKey || event.altKey || ["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
+  const buttons = { " ": "play", ".": "step", "]": "next", r: "again", n: "other", w: "wind", d: "dropouts",
+    e: "elevator", f: "follow" };
+  const layer = LAYERS[Number(event.key) - 1], id = buttons[event.key] || layer && "layer-" + layer[0];
+  if (!id) return;
+  $(id).click();
+  event.preventDefault();
+});
+
+// Unpacks the module and begins.
+async function start(packed) {
+  readColours();
+  addLayers(look.on, () => show());
+  try {
+    const bytes = Uint8Array.from(atob(packed), letter => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const source = await new Response(stream).arrayBuffer();
+    const { instance } = await WebAssembly.instantiate(source, { env: { clock: () => performance.now() } });
+    module = instance.exports;
+  } catch (error) {
+    return fail(new Error("this browser cannot run the flight: " + error.message));
+  }
+  fromLink();
+  requestAnimationFrame(frame);
+}

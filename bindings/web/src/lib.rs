@@ -1,0 +1,18 @@
+//! Flights in the browser.
+//!
+//! The module has one door: a question as JSON goes in, an answer as JSON comes out. Both are bytes in
+//! the module's memory.
+//!
+//! ```text
+//! at = question(length)     room for a question of so many bytes; write them to `at`
+//! length = ask()            answers it
+//! at = answer()             where the answer stands until the next question
+//! ```
+//!
+//! [`desk::Question`] lists the questions. The module needs one function, `env.clock`: any clock in
+//! milliseconds. It measures the planner's cycles; nothing that is flown depends on it.
+
+pub mod desk;
+
+#[cfg(target_arch = "wasm32")]
+mod door;

@@ -1,0 +1,54 @@
+"""Pages in headless Chromium: what a test opens must complain of nothing and ask nobody else."""
+
+import os
+import shutil
+
+import pytest
+
+playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
+
+CHROMIUM = shutil.which("chromium")
+SHOTS = os.environ.get("SCREENSHOTS")
+# Nothing takes so long, on however slow a machine [ms].
+LIMIT = 60_000
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if CHROMIUM is None:
+        pytest.skip("chromium is not installed")
+    with playwright.sync_playwright() as p:
+        browser = p.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@pytest.fixture
+def open_page(browser):
+    """Opens a page; afterwards it must have complained of nothing and asked nobody else."""
+    pages, complaints = [], []
+
+    def open_(url, **options):
+        page = browser.new_page(**options)
+        page.set_default_timeout(LIMIT)
+        own = url.split("#")[0]
+        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
+        page.goto(url)
+        pages.append(page)
+        return page
+
+    yield open_
+    for page in pages:
+        page.close()
+    assert complaints == []
+
+
+@pytest.fixture
+def shot():
+    """Saves a picture of the page, if the environment says where."""
+    def shot_(page, name):
+        if SHOTS:
+            page.screenshot(path=f"{SHOTS}/{name}.png", full_page=True)
+    return shot_

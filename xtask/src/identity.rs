@@ -1,0 +1,251 @@
+//! `identity`: flies the same seeds on every machine that the core runs on, and compares the logs' hashes.
+
+use crate::firmware::{self, Image};
+use crate::flight::Harness;
+use crate::folders::work;
+use crate::qemu::{Emulator, Run};
+use crate::{aarch64, wasm};
+use anyhow::{Context, Result, bail, ensure};
+use serde_json::json;
+use std::process::Command;
+use std::time::Instant;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(crate) struct IdentityArgs {
+    /// Number of seeds to fly
+    #[arg(long, default_value_t = 20)]
+    flights: u64,
+    /// First seed
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Length of each flight, in seconds
+    #[arg(long, default_value_t = 20)]
+    duration: u32,
+    /// Number of obstacles in the field
+    #[arg(long, default_value_t = 20)]
+    obstacles: u16,
+    /// Python that has the module `mpp`
+    #[arg(long, default_value = "python3")]
+    python: String,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// A machine, or a language, that flies.
+struct Target {
+    name: String,
+    /// The core's processor, and who runs it.
+    how: &'static str,
+    /// The hash of each flight, or why there is none.
+    hashes: Result<Vec<String>, String>,
+    /// Time of the flights \[s\].
+    seconds: f64,
+}
+
+impl Target {
+    /// Flies and notes the time.
+    fn fly(
+        name: &str,
+        how: &'static str,
+        fly: impl FnOnce() -> Result<Vec<String>>,
+    ) -> Result<Self> {
+        let begin = Instant::now();
+        let hashes = fly().with_context(|| name.to_owned())?;
+        Ok(Self {
+            name: name.to_owned(),
+            how,
+            hashes: Ok(hashes),
+            seconds: begin.elapsed().as_secs_f64(),
+        })
+    }
+}
+
+/// The scenario of a seed.
+struct Flights<'a>(&'a IdentityArgs);
+
+impl Flights<'_> {
+    fn seeds(&self) -> std::ops::Range<u64> {
+        self.0.seed..self.0.seed.saturating_add(self.0.flights)
+    }
+
+    /// Its flags for the harness.
+    fn flags(&self, seed: u64) -> Vec<String> {
+        let IdentityArgs {
+            duration,
+            obstacles,
+            ..
+        } = self.0;
+        let flags = format!("--seed {seed} --obstacles {obstacles} --duration {duration}");
+        flags.split(' ').map(str::to_owned).collect()
+    }
+
+    /// Its keys of a scenario file.
+    fn scenario(&self, seed: u64) -> String {
+        let IdentityArgs {
+            duration,
+            obstacles,
+            ..
+        } = self.0;
+        json!({ "seed": seed, "obstacles": obstacles, "duration": duration }).to_string()
+    }
+
+    fn with(&self, fly: impl Fn(&[String]) -> Result<String>) -> Result<Vec<String>> {
+        self.seeds().map(|seed| fly(&self.flags(seed))).collect()
+    }
+}
+
+pub(crate) fn run(args: &IdentityArgs) -> Result<()> {
+    ensure!(args.flights > 0, "give at least one flight");
+    let flights = Flights(args);
+    let folder = work("identity")?;
+    let host = Harness::build(&folder)?;
+    firmware::build(&[Image::Fifo])?;
+    let emulated = aarch64::harness(&work("aarch64")?)?;
+    let module = wasm::build()?;
+    let targets = [
+        Target::fly(
+            std::env::consts::ARCH,
+            "harness, core in its process",
+            || flights.with(|flags| Ok(host.fly(flags)?.hash().to_owned())),
+        )?,
+        Target::fly("cortex-m7", "harness, core in QEMU's mps2-an500", || {
+            flights.with(|flags| cortex_m7(&host, flags))
+        })?,
+        Target::fly("aarch64", "harness and core in QEMU's user mode", || {
+            flights.with(|flags| Ok(emulated.fly(flags)?.hash().to_owned()))
+        })?,
+        Target::fly("wasm32", "simulation and core in Node", || {
+            let scenarios: Vec<String> =
+                flights.seeds().map(|seed| flights.scenario(seed)).collect();
+            wasm::fly(&module, &scenarios)
+        })?,
+        python(&flights)?,
+    ];
+    report(args, &targets)
+}
+
+fn cortex_m7(host: &Harness, flags: &[String]) -> Result<String> {
+    let folder = work("identity")?;
+    let path = Image::Fifo.path()?;
+    let mut emulator = Emulator::fifo(
+        &Run {
+            image: &path,
+            folder: &folder,
+            shift: 0,
+            counter: None,
+        },
+        false,
+    )?;
+    let flown = host.fly_emulated(flags, &mut emulator)?;
+    emulator.end()?;
+    Ok(flown.hash().to_owned())
+}
+
+/// The flights of the Python module, if it is installed.
+fn python(flights: &Flights<'_>) -> Result<Target> {
+    const HOW: &str = "Python module `mpp`";
+    let interpreter = &flights.0.python;
+    let is_there = Command::new(interpreter)
+        .args(["-c", "import mpp; mpp.fly"])
+        .output();
+    if !is_there.is_ok_and(|output| output.status.success()) {
+        return Ok(Target {
+            name: "python".to_owned(),
+            how: HOW,
+            hashes: Err(format!("skipped: {interpreter} cannot import mpp")),
+            seconds: 0.0,
+        });
+    }
+    Target::fly("python", HOW, || {
+        let IdentityArgs {
+            duration,
+            obstacles,
+            ..
+        } = flights.0;
+        let (seeds, from) = (flights.seeds(), flights.0.seed);
+        let program = format!(
+            "import mpp\nfor seed in range({from}, {}): print(mpp.fly(seed=seed, obstacles={obstacles}, duration={duration}).log_hash)",
+            seeds.end
+        );
+        let text = crate::toolchain::output(Command::new(interpreter).args(["-c", &program]))?;
+        Ok(text.lines().map(str::to_owned).collect())
+    })
+}
+
+fn report(args: &IdentityArgs, targets: &[Target]) -> Result<()> {
+    let own = targets
+        .first()
+        .and_then(|target| target.hashes.as_ref().ok())
+        .context("the host did not fly")?;
+    let mut all_equal = true;
+    let mut rows = Vec::new();
+    for target in targets {
+        let Ok(hashes) = &target.hashes else {
+            let why = target.hashes.as_ref().err();
+            rows.push(
+                json!({ "name": target.name, "how": target.how, "flights": 0, "skipped": why }),
+            );
+            continue;
+        };
+        let equal = own.iter().zip(hashes).filter(|(a, b)| a == b).count();
+        all_equal &= equal == own.len() && hashes.len() == own.len();
+        let different: Vec<u64> = (args.seed..)
+            .zip(own.iter().zip(hashes))
+            .filter(|(_, (a, b))| a != b)
+            .map(|(seed, _)| seed)
+            .collect();
+        rows.push(json!({
+            "name": target.name,
+            "how": target.how,
+            "flights": hashes.len(),
+            "equal": equal,
+            "different": different,
+            "first_hash": hashes.first(),
+            "seconds": (target.seconds * 10.0).round() / 10.0,
+        }));
+    }
+    if args.json {
+        let object = json!({ "flights": args.flights, "targets": rows, "equal": all_equal });
+        println!("{object}");
+    } else {
+        table(args, &rows);
+    }
+    if !all_equal {
+        bail!("flights differ: the table says which");
+    }
+    Ok(())
+}
+
+fn table(args: &IdentityArgs, rows: &[serde_json::Value]) {
+    let IdentityArgs {
+        flights,
+        seed,
+        duration,
+        obstacles,
+        ..
+    } = args;
+    println!("{flights} flights of {duration} s past {obstacles} obstacles, from seed {seed}");
+    println!(
+        "{:<10} {:<37} {:>7} {:>7} {:<17} {:>8}",
+        "target", "how", "flights", "equal", "first hash", "seconds"
+    );
+    for row in rows {
+        let text = |key: &str| row[key].as_str().unwrap_or_default();
+        let (name, how) = (text("name"), text("how"));
+        if row["skipped"].is_string() {
+            println!("{name:<10} {how:<37} {}", text("skipped"));
+            continue;
+        }
+        println!(
+            "{name:<10} {how:<37} {:>7} {:>7} {:<17} {:>8}",
+            row["flights"],
+            row["equal"],
+            text("first_hash"),
+            row["seconds"]
+        );
+        if row["flights"] != row["equal"] {
+            println!("{:<10} differs at seeds {}", "", row["different"]);
+        }
+    }
+}
