@@ -31,7 +31,7 @@ const HOST: &[&str] = &[
 
 /// One entry for each crate of the workspace, the lowest first. An entry may exist before its
 /// crate.
-const RULES: [Rule; 9] = [
+const RULES: [Rule; 10] = [
     Rule {
         name: "mpp-core",
         ours: &[],
