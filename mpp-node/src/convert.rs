@@ -169,7 +169,8 @@ fn trim_verdict(error: TrimError) -> ConfigureVerdict {
 
 /// The measurements with their ages. A measurement from the future gets an age beyond all that the
 /// estimators use.
-pub(crate) fn sensor_frame(frame: &WireFrame) -> SensorFrame {
+#[must_use]
+pub fn sensor_frame(frame: &WireFrame) -> SensorFrame {
     let age = |tick: u32| frame.tick.wrapping_sub(tick);
     SensorFrame {
         air: frame.air.map(|air| AirData {

@@ -39,6 +39,7 @@ pub mod parameters;
 mod plan_task;
 mod step_task;
 
+pub use convert::sensor_frame;
 pub use mail::{Answer, Order, Plan};
 pub use node::FlightNode;
 pub use plan_task::{PlanTask, Progress};

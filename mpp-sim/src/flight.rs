@@ -24,7 +24,7 @@ use judge::Judge;
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
-use sensing::Sensing;
+pub use sensing::Sensing;
 use session::{Answer, Session, Told};
 use std::collections::BTreeMap;
 use steering::Steering;

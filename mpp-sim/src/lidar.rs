@@ -114,7 +114,8 @@ impl LidarConfig {
     }
 
     /// A scan of this lidar as it goes over the link.
-    pub(crate) fn wire_scan(&self, tick: u32, ranges: &[f32]) -> LidarScan {
+    #[must_use]
+    pub fn wire_scan(&self, tick: u32, ranges: &[f32]) -> LidarScan {
         let gaps = self.beams.saturating_sub(1).max(1);
         LidarScan {
             tick,

@@ -61,6 +61,9 @@ pub struct MemoryMap {
 }
 
 impl MemoryMap {
+    /// Number of rows and of columns of the window.
+    pub const SHAPE: [usize; 2] = [ROWS, COLS];
+
     /// A map that knows nothing.
     #[must_use]
     pub const fn new() -> Self {

@@ -9,8 +9,9 @@ use crate::sensors::{AirDataSensors, Measurement};
 use hil_protocol::{AirData, LidarScan, Position, SensorFrame};
 use mpp_core::vehicle::{VehicleState, Wind};
 
-/// The sensors of one flight.
-pub(super) struct Sensing {
+/// The sensors of one flight, and what is wrong with them and on the way from them.
+#[derive(Clone, Debug)]
+pub struct Sensing {
     sensors: AirDataSensors,
     airspeed: Signal,
     pitch: Signal,
@@ -26,7 +27,8 @@ pub(super) struct Sensing {
 
 impl Sensing {
     /// The sensors of a scenario.
-    pub(super) fn new(scenario: &Scenario) -> Self {
+    #[must_use]
+    pub fn new(scenario: &Scenario) -> Self {
         let (seed, faults) = (scenario.seed, &scenario.faults);
         let pitch = faults.pitch.in_units_of(1_f64.to_radians());
         Self {
@@ -45,7 +47,7 @@ impl Sensing {
     }
 
     /// Measures a tick. Returns what the air data sensors say, and the measurements that arrive at this tick.
-    pub(super) fn measure(
+    pub fn measure(
         &mut self,
         tick: u32,
         state: &VehicleState,
@@ -79,7 +81,8 @@ impl Sensing {
     }
 
     /// The state of the lidar at a tick, which may be turned.
-    pub(super) fn lidar_state(&self, tick: u32, state: &VehicleState) -> VehicleState {
+    #[must_use]
+    pub fn lidar_state(&self, tick: u32, state: &VehicleState) -> VehicleState {
         let mut turned = *state;
         let rotation = self.scan_fault.rotation(tick);
         if rotation != 0.0 {
@@ -89,12 +92,12 @@ impl Sensing {
     }
 
     /// What the lidar shows at a tick, made from its ranges \[m\]; `None` if it shows nothing.
-    pub(super) fn show(&mut self, tick: u32, ranges: &[f32]) -> Option<LidarScan> {
+    pub fn show(&mut self, tick: u32, ranges: &[f32]) -> Option<LidarScan> {
         self.scans.show(self.lidar.wire_scan(tick, ranges))
     }
 
     /// Takes the scan of a tick, if there is one, and gives the one that arrives at this tick.
-    pub(super) fn scan(&mut self, tick: u32, shown: Option<LidarScan>) -> Option<LidarScan> {
+    pub fn scan(&mut self, tick: u32, shown: Option<LidarScan>) -> Option<LidarScan> {
         self.scans.pass(tick, shown)
     }
 }

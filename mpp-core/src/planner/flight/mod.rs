@@ -21,8 +21,10 @@
 //! | `refine` | Faces, Linearise, Improve |
 //! | `candidate` | roll-out, linearisation and comparison of candidates |
 //! | `judge` | the price of a roll-out |
+//! | `inspect` | what others may see of a cycle, and choose |
 
 mod candidate;
+mod inspect;
 mod judge;
 mod limits;
 mod perceive;
@@ -32,12 +34,11 @@ mod setup;
 
 use super::shared::{NO_TRIM, STILL};
 use super::summary::{PlanSummary, Verdict};
-use crate::config::{KNOTS, STAGES};
 use crate::corridor::Corridor;
 use crate::estimate::Conditions;
 use crate::map::{ClearanceField, MemoryMap, OccupancyGrid, Pose};
 use crate::paths::{CLIMB, Lattice, MAX_LATTICE_PATHS, Search};
-use crate::qp::{Condensed, Dynamics, Problem, Solution, Solver, Weights};
+use crate::qp::{Condensed, Solution, Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
@@ -345,34 +346,6 @@ impl FlightPlanner {
     #[must_use]
     pub fn trim(&self) -> &Trim {
         &self.trim
-    }
-
-    /// Distances to the obstacles in the map.
-    #[must_use]
-    pub fn clearance(&self) -> &ClearanceField {
-        &self.field
-    }
-
-    /// The map with memory, for a caller who knows the obstacles better than the lidar.
-    pub fn map_mut(&mut self) -> &mut MemoryMap {
-        &mut self.map
-    }
-
-    /// The path of the present candidate and its program; see [`super::Planner::candidate`].
-    #[must_use]
-    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
-        if self.phase != Phase::Improve {
-            return None;
-        }
-        let candidate = self.candidates.get(self.at_hand)?;
-        let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
-        Some((path, &self.solver.problem))
-    }
-
-    /// The dynamics of every stage in the program of [`Self::candidate`].
-    #[must_use]
-    pub fn stages(&self) -> &[Dynamics; STAGES] {
-        self.shared.stages()
     }
 
     fn frame(&self) -> Frame {

@@ -1,0 +1,158 @@
+"""Campaigns: many flights over a grid, on threads of this process or on the workers of a Dask cluster."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Generator, Iterable, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, overload
+
+from ._native import Campaign, Field
+from .errors import Interrupted
+
+if TYPE_CHECKING:
+    import pandas
+    from distributed import Client
+
+# Flights in one task of a worker: a flight takes about 20 ms, the scheduler about 1 ms for a task.
+CHUNK = 10
+
+
+# Lines by the numbers of their flights, as they come.
+Flown = Generator[dict[int, str], None, None]
+
+
+class Rows(Sequence[dict[str, Any]]):
+    """The rows of a campaign in the order of its cells and seeds, each a dict."""
+
+    def __init__(self, lines: Iterable[str]) -> None:
+        self.lines = list(lines)
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    @overload
+    def __getitem__(self, index: int) -> dict[str, Any]: ...
+    @overload
+    def __getitem__(self, index: slice) -> Rows: ...
+    def __getitem__(self, index: int | slice) -> dict[str, Any] | Rows:
+        if isinstance(index, slice):
+            return Rows(self.lines[index])
+        row: dict[str, Any] = json.loads(self.lines[index])
+        return row
+
+    def __eq__(self, other: object) -> bool:
+        return self.lines == other.lines if isinstance(other, Rows) else NotImplemented
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The rows as a `pandas.DataFrame`."""
+        import pandas
+
+        return pandas.DataFrame(list(self))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the rows, one line of JSON each: those of `sil-harness campaign --out` without its header."""
+        Path(path).write_text("".join(f"{line}\n" for line in self.lines))
+
+
+def campaign(
+    *,
+    trials: int,
+    seed: int | None = None,
+    preset: str | Sequence[str] = (),
+    generator: str | Sequence[str] | dict[str, Any] = (),
+    obstacles: int | Sequence[int] = (),
+    paths: int | Sequence[int] = (),
+    replan_hz: float | Sequence[float] = (),
+    fields: dict[str, Field] | None = None,
+    workers: int | None = None,
+    progress: Callable[[int, int], object] | None = None,
+    client: Client | None = None,
+    **scenario: Any,
+) -> Rows:
+    """Flies `trials` seeds from `seed` on in each cell of a grid. The lists vary the presets, generators, numbers of
+    obstacles and paths, replanning rates and fields; `scenario` holds the other keys of a scenario, for all.
+
+    The flights go to `workers` threads, by default one for each core, or to the workers of a Dask `client`. The rows
+    are the same for any of them. `progress` is called with the number of rows so far and of all. Ctrl-C raises
+    `Interrupted`, which holds the rows so far.
+    """
+    if isinstance(generator, dict):
+        # A generator with parameters is that of every cell.
+        scenario["generator"], generator = generator, ()
+    flights = Campaign(
+        scenario,
+        trials=trials,
+        seed=seed,
+        preset=_listed(preset),
+        generator=_listed(generator),
+        obstacles=_listed(obstacles),
+        paths=_listed(paths),
+        replan_hz=_listed(replan_hz),
+        fields=fields,
+    )
+    flown = _on_cluster(flights, client) if client else _on_threads(flights, workers)
+    lines: dict[int, str] = {}
+    try:
+        for done in flown:
+            lines.update(done)
+            if progress:
+                progress(len(lines), len(flights))
+    except KeyboardInterrupt as signal:
+        raise Interrupted(_sorted(lines)) from signal
+    finally:
+        flown.close()
+    return _sorted(lines)
+
+
+def _listed(value: Any) -> list[Any]:
+    return [value] if isinstance(value, (str, int, float)) else list(value)
+
+
+def _sorted(lines: dict[int, str]) -> Rows:
+    return Rows(lines[index] for index in sorted(lines))
+
+
+def _on_threads(flights: Campaign, workers: int | None) -> Flown:
+    count = workers or os.cpu_count() or 1
+    waiting = iter(range(len(flights)))
+    running: dict[Future[str], int] = {}
+    pool = ThreadPoolExecutor(count)
+    try:
+        while True:
+            # A few wait, so that no thread does.
+            for index in islice(waiting, 2 * count - len(running)):
+                running[pool.submit(flights.fly, index)] = index
+            if not running:
+                return
+            for future in wait(running, return_when=FIRST_COMPLETED).done:
+                yield {running.pop(future): future.result()}
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _on_cluster(flights: Campaign, client: Client) -> Flown:
+    from distributed import as_completed as as_dask_completes
+
+    chunks = [range(first, min(first + CHUNK, len(flights))) for first in range(0, len(flights), CHUNK)]
+    futures = client.map(_fly, chunks, text=flights.to_json(), pure=False)
+    try:
+        # A task whose worker was lost goes to another one.
+        for future in as_dask_completes(futures):  # type: ignore[no-untyped-call]
+            yield future.result()
+    finally:
+        client.cancel(futures)  # type: ignore[no-untyped-call]
+
+
+def _fly(indices: range, text: str) -> dict[int, str]:
+    flights = _known(text)
+    return {index: flights.fly(index) for index in indices}
+
+
+@lru_cache(maxsize=1)
+def _known(text: str) -> Campaign:
+    return Campaign.from_json(text)

@@ -1,0 +1,227 @@
+"""Gymnasium environments. Importing this module registers them:
+
+- `mpp/Control-v0`: the agent moves elevator and thrust, 100 times a second.
+- `mpp/Choice-v0`: the agent chooses among the planner's candidates, once a cycle.
+
+Further arguments of `gymnasium.make` are keys of a scenario, for example `obstacles=40`. A flight has the seed that
+`reset` gets; without one it is drawn from the environment's generator. Its obstacles, noise and gusts are those of
+`mpp.fly` with this seed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
+
+import gymnasium
+import numpy
+from gymnasium import spaces
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from ._native import Batch, Choice, Fork, Moment
+from .errors import StateError
+
+# Arrays by name.
+Observation = dict[str, Any]
+Step = tuple[Observation, float, bool, bool, dict[str, Any]]
+Saved = TypeVar("Saved")
+
+
+@dataclass(frozen=True)
+class State(Generic[Saved]):
+    """All that an environment goes on from: the flight, and the generator that draws the next seeds. It pickles."""
+
+    flight: Saved
+    random: dict[str, Any]
+
+
+def _box(shape: tuple[int, ...], low: float = -numpy.inf, high: float = numpy.inf) -> spaces.Box:
+    return spaces.Box(low, high, shape, numpy.float32)
+
+
+def _drawn(random: numpy.random.Generator) -> int:
+    return int(random.integers(2**32))
+
+
+def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
+    beams, range_max = batch.lidar
+    observation: spaces.Dict[Any] = spaces.Dict(
+        {
+            "lidar": _box((beams,), 0.0, range_max),
+            "air": _box((2,)),
+            "position": _box((2,)),
+            "age": _box((2,), 0.0),
+        }
+    )
+    return observation, spaces.Box(-1.0, 1.0, (2,), numpy.float64)
+
+
+class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
+    """Elevator and thrust, one step a tick of 10 ms.
+
+    Observation: `lidar`, ranges of the last scan [m], 0 where nothing came back; `air`, measured airspeed [m/s] and
+    pitch [rad]; `position`, measured, downrange and up [m]; `age` of position and scan [s].
+    Action: elevator and thrust from -1 to 1; `controls` holds what they mean. The middle of the elevator is about
+    level trim, the least thrust is 0.
+    Reward: the share of the way at cruise, about 1 for a whole flight, and -1 for a failure. A flight fails by the
+    strict rule: collision, extreme attitude, or out of the band.
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, lidar_hz: float = 10.0, **scenario: Any) -> None:
+        self._batch: Batch | None = Batch(scenario, 1, lidar_hz)
+        self.controls = self._batch.controls
+        self.observation_space, self.action_space = _control_spaces(self._batch)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        super().reset(seed=seed)
+        batch = self._open()
+        batch.reset([_drawn(self.np_random) if seed is None else seed])
+        return self._observe(), batch.truth(0)
+
+    def step(self, action: NDArray[Any]) -> Step:
+        batch = self._open()
+        rewards, failed, ended = batch.step(numpy.reshape(action, (1, -1)))
+        return self._observe(), float(rewards[0]), bool(failed[0]), bool(ended[0]), batch.truth(0)
+
+    def save(self) -> State[Moment]:
+        """The state of the environment, to go on from it any number of times."""
+        return State(self._open().save(0), self.np_random.bit_generator.state)  # type: ignore[arg-type]
+
+    def restore(self, state: State[Moment]) -> Observation:
+        """Goes on from a saved state, bit for bit."""
+        self._open().restore(0, state.flight)
+        self.np_random.bit_generator.state = state.random
+        return self._observe()
+
+    def close(self) -> None:
+        self._batch = None
+
+    def _open(self) -> Batch:
+        return _of(self._batch)
+
+    def _observe(self) -> Observation:
+        return {name: rows[0] for name, rows in self._open().observe().items()}
+
+
+class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
+    """Many flights of `ControlEnv` side by side, all in one call of native code."""
+
+    metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
+
+    def __init__(self, num_envs: int = 1, lidar_hz: float = 10.0, **scenario: Any) -> None:
+        self.num_envs = num_envs
+        self._batch: Batch | None = Batch(scenario, num_envs, lidar_hz)
+        self.single_observation_space, self.single_action_space = _control_spaces(self._batch)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._done = numpy.zeros(num_envs, bool)
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        super().reset(seed=seed if isinstance(seed, int) else None)
+        if isinstance(seed, int):
+            seeds: list[int | None] = [seed + index for index in range(self.num_envs)]
+        else:
+            seeds = seed or [None] * self.num_envs
+        batch = _of(self._batch)
+        batch.reset([_drawn(self.np_random) if one is None else one for one in seeds])
+        self._done[:] = False
+        return dict(batch.observe()), {}
+
+    def step(
+        self, actions: NDArray[Any]
+    ) -> tuple[Observation, NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
+        batch, fresh = _of(self._batch), None
+        if self._done.any():
+            fresh = [_drawn(self.np_random) if done else None for done in self._done]
+        rewards, failed, ended = batch.step(actions, fresh)
+        self._done = failed | ended
+        return dict(batch.observe()), rewards, failed, ended, {}
+
+    def close_extras(self, **_: Any) -> None:
+        self._batch = None
+
+
+class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
+    """A choice among the candidates of the planner, one step a planning cycle.
+
+    Observation: `lidar`, the scan [m]; `state`, estimated airspeed [m/s], pitch and flight path angle [rad] and
+    height above the altitude [m]; `candidates` by price, as places from the aircraft [m]; `price` of each; `mask`,
+    which of them there are.
+    Action: 0 is the planner's own best plan, which `mpp.fly` flies; k is the candidate with the k-th lowest price. A
+    number beyond the candidates keeps the last plan.
+    Reward: as that of `ControlEnv`.
+    """
+
+    metadata = {"render_modes": []}
+
+    def __init__(self, **scenario: Any) -> None:
+        self._choice: Choice | None = Choice(scenario)
+        beams, range_max = self._choice.lidar
+        most, knots = Choice.SHAPE
+        observation: spaces.Dict[Any] = spaces.Dict(
+            {
+                "lidar": _box((beams,), 0.0, range_max),
+                "state": _box((4,)),
+                "candidates": _box((most, knots, 2)),
+                "price": _box((most,), 0.0),
+                "mask": spaces.MultiBinary(most),
+            }
+        )
+        self.observation_space = observation
+        self.action_space = spaces.Discrete(1 + most)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        super().reset(seed=seed)
+        choice = _of(self._choice)
+        choice.reset(_drawn(self.np_random) if seed is None else seed)
+        return choice.observe(), choice.truth()
+
+    def step(self, action: numpy.int64) -> Step:
+        choice = _of(self._choice)
+        reward, failed, ended = choice.step(int(action))
+        return choice.observe(), reward, failed, ended, choice.truth()
+
+    def save(self) -> State[Fork]:
+        """The state of the environment, to go on from it any number of times."""
+        return State(_of(self._choice).save(), self.np_random.bit_generator.state)  # type: ignore[arg-type]
+
+    def restore(self, state: State[Fork]) -> Observation:
+        """Goes on from a saved state, bit for bit."""
+        _of(self._choice).restore(state.flight)
+        self.np_random.bit_generator.state = state.random
+        return _of(self._choice).observe()
+
+    def close(self) -> None:
+        self._choice = None
+
+
+Native = TypeVar("Native", Batch, Choice)
+
+
+def _of(native: Native | None) -> Native:
+    if native is None:
+        raise StateError("the environment is closed: make another one")
+    return native
+
+
+def register() -> None:
+    """Registers the environments with Gymnasium."""
+    gymnasium.register(
+        "mpp/Control-v0",
+        entry_point="mpp.environments:ControlEnv",
+        vector_entry_point="mpp.environments:ControlVectorEnv",
+    )
+    gymnasium.register("mpp/Choice-v0", entry_point="mpp.environments:ChoiceEnv")
+
+
+register()

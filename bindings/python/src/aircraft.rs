@@ -1,0 +1,96 @@
+//! Aircraft.
+
+use crate::errors::scenario;
+use crate::input::{table, text};
+use crate::output::plain;
+use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+use mpp_sim::scenario::ScenarioError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// An aircraft: one that comes with the project, by its name; a file as docs/aircraft.md describes; or a dict with
+/// the keys of such a file.
+#[pyclass(frozen, module = "mpp")]
+pub(crate) struct Aircraft {
+    pub(crate) model: AircraftModel,
+}
+
+#[pymethods]
+impl Aircraft {
+    #[new]
+    #[pyo3(signature = (source = None))]
+    fn new(py: Python<'_>, source: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let Some(source) = source else {
+            let model = AircraftModel::reference();
+            return Ok(Self { model });
+        };
+        let (name, file) = if let Ok(keys) = source.cast::<PyDict>() {
+            (None, table("aircraft", keys)?)
+        } else {
+            let name = source.str()?.to_string();
+            match AircraftFile::known(&name) {
+                Some(known) => (None, known),
+                None => {
+                    let file = AircraftFile::parse(&name, &text(source)?).map_err(scenario)?;
+                    (Some(name), file)
+                }
+            }
+        };
+        // The design of the regulator takes a while.
+        let model = py.detach(|| AircraftModel::new(file));
+        let in_file = |error| match name {
+            Some(name) => scenario(ScenarioError::File(name, Box::new(error))),
+            None => scenario(error),
+        };
+        Ok(Self {
+            model: model.map_err(in_file)?,
+        })
+    }
+
+    /// The names of the aircraft that come with the project.
+    #[staticmethod]
+    fn known() -> Vec<&'static str> {
+        AircraftFile::KNOWN.map(|(name, _)| name).to_vec()
+    }
+
+    /// Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.model.file.name
+    }
+
+    /// Its numbers: a dict with the keys of an aircraft file.
+    #[getter]
+    fn numbers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.model.file)
+    }
+
+    /// Level flight: airspeed [m/s], pitch [rad], thrust [N], elevator [-].
+    #[getter]
+    fn trim<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let trim = &self.model.trim;
+        let dict = PyDict::new(py);
+        dict.set_item("airspeed", trim.state.airspeed)?;
+        dict.set_item("pitch", trim.state.pitch)?;
+        dict.set_item("thrust", trim.control.thrust)?;
+        dict.set_item("elevator", trim.control.elevator)?;
+        Ok(dict)
+    }
+
+    /// The factor on the lengths of fields, lidar and band that makes them as hard as those of the paper's aircraft.
+    #[getter]
+    fn world_scale(&self) -> f64 {
+        self.model.units().length
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Aircraft({:?})", self.model.file.name)
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyAny>,))> {
+        let numbers = slf.get().numbers(slf.py())?;
+        Ok((slf.get_type().into_any(), (numbers,)))
+    }
+}

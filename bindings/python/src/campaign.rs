@@ -1,0 +1,128 @@
+//! Campaigns: a grid of flights, and a row for each.
+
+use crate::aside::aside;
+use crate::errors::{self, input};
+use crate::field::Field;
+use crate::scenario;
+use mpp_analysis::campaign::{Cell, Lists, NamedField, Row};
+use mpp_sim::flight::fly;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::witness::Witness;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::BTreeMap;
+
+/// The flights of a campaign, in their order. `python/mpp/campaigns.py` flies them.
+#[pyclass(frozen, module = "mpp")]
+pub(crate) struct Campaign {
+    campaign: mpp_analysis::campaign::Campaign,
+    cells: Vec<Cell>,
+}
+
+impl Campaign {
+    fn of(campaign: mpp_analysis::campaign::Campaign) -> Self {
+        let cells = campaign.cells();
+        Self { campaign, cells }
+    }
+}
+
+#[pymethods]
+impl Campaign {
+    /// A campaign over lists of values, with `trials` flights in each cell from `seed` on. `keys` are those of a
+    /// scenario, `fields` are fields by name.
+    #[new]
+    #[pyo3(signature = (
+        keys, *, trials, seed = None, preset = vec![], generator = vec![], obstacles = vec![], paths = vec![],
+        replan_hz = vec![], fields = None
+    ))]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::needless_pass_by_value,
+        reason = "they are the lists of the command line, and Python hands them over"
+    )]
+    fn new(
+        py: Python<'_>,
+        keys: &Bound<'_, PyDict>,
+        trials: u32,
+        seed: Option<u64>,
+        preset: Vec<String>,
+        generator: Vec<String>,
+        obstacles: Vec<usize>,
+        paths: Vec<u16>,
+        replan_hz: Vec<f64>,
+        fields: Option<BTreeMap<String, Py<Field>>>,
+    ) -> PyResult<Self> {
+        let scenario = scenario::file(keys)?;
+        let field = fields
+            .unwrap_or_default()
+            .into_iter()
+            .map(|(name, field)| NamedField {
+                name,
+                content: field.get().file.clone(),
+            });
+        let lists = Lists {
+            preset: parsed(&preset)?,
+            field: field.collect(),
+            generator: parsed(&generator)?,
+            obstacles,
+            paths,
+            replan_hz,
+        };
+        let campaign =
+            py.detach(|| mpp_analysis::campaign::Campaign::new(scenario, lists, trials, seed));
+        campaign.map(Self::of).map_err(errors::scenario)
+    }
+
+    /// The campaign of a text that `to_json` gave.
+    #[staticmethod]
+    fn from_json(text: &str) -> PyResult<Self> {
+        serde_json::from_str(text).map(Self::of).map_err(input)
+    }
+
+    /// The campaign as it stands in the header of a row file.
+    fn to_json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.campaign).map_err(input)
+    }
+
+    /// Number of flights.
+    fn __len__(&self) -> usize {
+        self.cells
+            .len()
+            .saturating_mul(self.campaign.trials as usize)
+    }
+
+    /// Flies one flight: cells one after the other, each seed by seed. Gives its row: the line that
+    /// `sil-harness campaign --out` writes, without its end.
+    fn fly(&self, py: Python<'_>, index: usize) -> PyResult<String> {
+        let trials = (self.campaign.trials as usize).max(1);
+        let Some(cell) = self.cells.get(index / trials) else {
+            let last = self.__len__().saturating_sub(1);
+            return Err(input(format!("index: give 0 to {last}")));
+        };
+        let seed = self.campaign.seed.wrapping_add((index % trials) as u64);
+        let scenario = (self.campaign.scenario(cell, seed)).map_err(errors::scenario)?;
+        let row = aside(py, |_| {
+            let mut witness = Witness::of(&scenario);
+            let mut link = PipeLink::of(&scenario);
+            let log = fly(&scenario, &mut link, |moment| witness.watch(moment));
+            log.map(|log| {
+                log.hash()
+                    .map(|hash| Row::new(cell.clone(), &log, &witness, hash, None))
+            })
+        })?;
+        let row = row.map_err(errors::flight)?.map_err(input)?;
+        serde_json::to_string(&row).map_err(input)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
+        let make = slf.get_type().getattr("from_json")?;
+        Ok((make, (slf.get().to_json()?,)))
+    }
+}
+
+fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(names: &[String]) -> PyResult<Vec<T>> {
+    names
+        .iter()
+        .map(|name| name.parse().map_err(input))
+        .collect()
+}

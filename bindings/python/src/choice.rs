@@ -1,0 +1,304 @@
+//! A flight for learning in which the agent chooses among the planner's candidates, once each cycle.
+
+use crate::aside::aside;
+use crate::episode::Episode;
+use crate::errors::{self, FlightError, alone, input, state};
+use crate::output::flat;
+use crate::scenario;
+use mpp_analysis::recording;
+use mpp_core::config::KNOTS;
+use mpp_core::flight::FlightLoop;
+use mpp_core::planner::flight::MAX_CANDIDATES;
+use mpp_core::planner::{Planner, Verdict};
+use mpp_core::settings::Settings;
+use mpp_core::trajectory::Trajectory;
+use mpp_sim::inspector::core_scan;
+use mpp_sim::scenario::{ALTITUDE, Scenario, ScenarioFile};
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyTuple};
+use std::sync::{Arc, Mutex};
+
+/// A flight of preset `flight`. `python/mpp/environments.py` makes an environment of it.
+#[pyclass(frozen, module = "mpp._native")]
+pub(crate) struct Choice {
+    plan: Arc<Plan>,
+    guarded: Mutex<Option<Run>>,
+}
+
+/// What every flight of an environment has in common.
+struct Plan {
+    file: ScenarioFile,
+    base: Scenario,
+}
+
+/// A flight between a scan and the choice of its plan.
+#[derive(Clone)]
+struct Run {
+    episode: Episode,
+    flight: FlightLoop,
+    planner: Box<Planner>,
+    /// The planner's verdict on its own best plan.
+    verdict: Verdict,
+    /// Indices of the candidates by price.
+    order: Vec<(usize, f64)>,
+    scan: Vec<f32>,
+    /// The choice that waits until its plan is due.
+    chosen: Option<(Verdict, Trajectory)>,
+    seed: u64,
+    actions: Vec<usize>,
+}
+
+/// A copy of the flight. It goes on as the original would, bit for bit, also after pickling.
+#[pyclass(frozen, module = "mpp._native")]
+pub(crate) struct Fork {
+    plan: Arc<Plan>,
+    run: Run,
+}
+
+#[pymethods]
+impl Choice {
+    #[new]
+    fn new(keys: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let plan = Arc::new(Plan::new(scenario::file(keys)?)?);
+        let guarded = Mutex::new(None);
+        Ok(Self { plan, guarded })
+    }
+
+    /// Greatest number of candidates, and knots of each.
+    #[classattr]
+    const SHAPE: (usize, usize) = (MAX_CANDIDATES, KNOTS);
+
+    /// Number of beams and their greatest range [m].
+    #[getter]
+    fn lidar(&self) -> (usize, f64) {
+        let lidar = &self.plan.base.lidar;
+        (lidar.beams, lidar.range_max)
+    }
+
+    /// Starts a flight, and plans its first cycle.
+    fn reset(&self, py: Python<'_>, seed: u64) -> PyResult<()> {
+        let mut run = alone(&self.guarded, "environment")?;
+        let plan = &self.plan;
+        *run = Some(aside(py, |_| Run::new(plan, seed))??);
+        Ok(())
+    }
+
+    /// Flies a candidate until the next cycle is planned: 0 is the planner's own best plan, 1 the candidate with the
+    /// lowest price, and so on; a number beyond the candidates keeps the last plan. Gives the reward, whether the
+    /// flight failed, and whether it came to its end.
+    fn step(&self, py: Python<'_>, action: usize) -> PyResult<(f64, bool, bool)> {
+        let mut run = alone(&self.guarded, "environment")?;
+        let run = run.as_mut().ok_or_else(unset)?;
+        py.detach(|| run.fly(&self.plan, action))
+    }
+
+    /// What the agent knows: the scan [m]; airspeed [m/s], pitch and flight path angle \[rad\] and height above the
+    /// altitude [m] as estimated; the candidates by price, as places from the aircraft [m]; their prices; and which
+    /// of them there are.
+    fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let run = alone(&self.guarded, "environment")?;
+        let run = run.as_ref().ok_or_else(unset)?;
+        let at = run.flight.state();
+        let mut knots = vec![0.0_f32; MAX_CANDIDATES * KNOTS * 2];
+        let (mut prices, mut mask) = ([MOST; MAX_CANDIDATES], [0_i8; MAX_CANDIDATES]);
+        let mut offered = Trajectory::new();
+        let planner = run.planner.flight();
+        for (place, (index, price)) in run.order.iter().enumerate() {
+            prices[place] = (*price as f32).min(MOST);
+            mask[place] = 1;
+            planner.and_then(|own| own.offer(*index, &mut offered));
+            let places = knots[place * KNOTS * 2..].chunks_exact_mut(2);
+            for (cell, knot) in places.zip(&offered.knots) {
+                cell[0] = (knot.state.x - at.x) as f32;
+                cell[1] = (knot.state.z - at.z) as f32;
+            }
+        }
+        let dict = PyDict::new(py);
+        dict.set_item("lidar", PyArray1::from_slice(py, &run.scan))?;
+        let air = [
+            at.air.airspeed,
+            at.air.pitch,
+            at.air.flight_path,
+            at.z - ALTITUDE,
+        ];
+        let air = air.map(|value| value as f32);
+        dict.set_item("state", PyArray1::from_slice(py, &air))?;
+        let knots = flat(py, knots.into_iter(), [MAX_CANDIDATES * KNOTS, 2])?;
+        dict.set_item("candidates", knots.reshape([MAX_CANDIDATES, KNOTS, 2])?)?;
+        dict.set_item("price", PyArray1::from_slice(py, &prices))?;
+        dict.set_item("mask", PyArray1::from_slice(py, &mask))?;
+        Ok(dict)
+    }
+
+    /// The flight's true place, its time and its end, for the field `info` of an environment.
+    fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let run = alone(&self.guarded, "environment")?;
+        let run = run.as_ref().ok_or_else(unset)?;
+        let dict = run.episode.truth(py)?;
+        dict.set_item("seed", run.seed)?;
+        Ok(dict)
+    }
+
+    /// A copy of the flight as it is now.
+    fn save(&self) -> PyResult<Fork> {
+        let run = alone(&self.guarded, "environment")?;
+        let run = run.as_ref().ok_or_else(unset)?.clone();
+        let plan = Arc::clone(&self.plan);
+        Ok(Fork { plan, run })
+    }
+
+    /// Goes on from a copy.
+    fn restore(&self, fork: &Fork) -> PyResult<()> {
+        if fork.plan.file != self.plan.file {
+            return Err(input("fork: it is of an environment with other keys"));
+        }
+        *alone(&self.guarded, "environment")? = Some(fork.run.clone());
+        Ok(())
+    }
+}
+
+#[pymethods]
+impl Fork {
+    /// The flight to which these actions lead.
+    #[staticmethod]
+    fn replayed(py: Python<'_>, file: &str, seed: u64, actions: Vec<usize>) -> PyResult<Self> {
+        let file = serde_json::from_str(file).map_err(input)?;
+        let plan = Arc::new(Plan::new(file)?);
+        let run = aside(py, |_| {
+            let mut run = Run::new(&plan, seed)?;
+            for action in actions {
+                run.fly(&plan, action)?;
+            }
+            PyResult::Ok(run)
+        })??;
+        Ok(Self { plan, run })
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
+        let make = slf.get_type().getattr("replayed")?;
+        let Self { plan, run } = slf.get();
+        let file = serde_json::to_string(&plan.file).map_err(input)?;
+        (make, (file, run.seed, run.actions.clone())).into_pyobject(slf.py())
+    }
+}
+
+/// Price in observations of what has none [-].
+const MOST: f32 = 1e6;
+
+fn unset() -> PyErr {
+    state("the environment was not reset: call reset first")
+}
+
+impl Plan {
+    fn new(file: ScenarioFile) -> PyResult<Self> {
+        let base = file.build().map_err(errors::scenario)?;
+        if base.preset != mpp_sim::scenario::Preset::Flight || base.oracle {
+            return Err(input(
+                "preset: only flight has candidates, and no oracle has",
+            ));
+        }
+        Ok(Self { file, base })
+    }
+}
+
+impl Run {
+    fn new(plan: &Plan, seed: u64) -> PyResult<Self> {
+        let scenario = Scenario {
+            seed,
+            ..plan.base.clone()
+        };
+        let settings: Settings = recording::settings(&scenario).map_err(errors::flight)?;
+        let mut run = Self {
+            scan: vec![0.0; scenario.lidar.beams],
+            flight: FlightLoop::new(&settings).map_err(errors::set_up)?,
+            planner: recording::planner(&settings).map_err(errors::flight)?,
+            episode: Episode::new(scenario, plan.base.replan_ticks)?,
+            verdict: Verdict::Nothing,
+            order: Vec::new(),
+            chosen: None,
+            seed,
+            actions: Vec::new(),
+        };
+        run.tick(plan)?;
+        Ok(run)
+    }
+
+    /// Adopts a plan that is due, steps, and plans if there is a scan. Then flies one tick.
+    fn tick(&mut self, plan: &Plan) -> PyResult<()> {
+        let readings = self.episode.measure();
+        let now = self.episode.tick;
+        let time = Scenario::time(now);
+        let since = now % plan.base.replan_ticks;
+        if since == plan.base.latency_ticks % plan.base.replan_ticks
+            && let Some((verdict, chosen)) = self.chosen.take()
+        {
+            self.flight.adopt(time, verdict, &chosen);
+        }
+        let restarts = self.flight.health().positions_restarted;
+        let output = self
+            .flight
+            .step(time, &mpp_node::sensor_frame(&readings.frame));
+        if restarts != self.flight.health().positions_restarted {
+            self.planner.forget();
+        }
+        if let Some(scan) = readings.scan {
+            self.scan.copy_from_slice(&scan.ranges);
+            self.plan(time, &scan)?;
+        }
+        self.episode.step(output.control)
+    }
+
+    fn plan(&mut self, time: f64, scan: &hil_protocol::LidarScan) -> PyResult<()> {
+        let pose = self
+            .flight
+            .pose_at(self.episode.tick.saturating_sub(scan.tick));
+        let pose = pose.ok_or_else(|| FlightError::new_err("the scan is too old for the core"))?;
+        let (state, conditions) = (self.flight.state(), self.flight.conditions());
+        let planner = &mut self.planner;
+        planner.begin_from(time, &pose, &state, &conditions, &core_scan(scan));
+        while planner.advance() {}
+        self.verdict = planner.finish();
+        let mut offered = Trajectory::new();
+        self.order.clear();
+        if let Some(own) = planner.flight() {
+            let prices = (0..own.offers())
+                .filter_map(|it| own.offer(it, &mut offered).map(|price| (it, price)));
+            self.order.extend(prices);
+        }
+        self.order.sort_by(|one, other| one.1.total_cmp(&other.1));
+        Ok(())
+    }
+
+    /// Flies a choice until the next cycle is planned.
+    fn fly(&mut self, plan: &Plan, action: usize) -> PyResult<(f64, bool, bool)> {
+        if self.episode.outcome().is_some() {
+            return Err(state("the flight has ended: call reset"));
+        }
+        self.actions.push(action);
+        let candidate = action.checked_sub(1).map(|place| self.order.get(place));
+        let taken = match candidate {
+            None => self.verdict,
+            Some(None) => Verdict::Nothing,
+            Some(Some((index, _))) => {
+                let own = self.planner.flight_mut();
+                own.and_then(|own| own.choose(*index));
+                Verdict::Feasible
+            }
+        };
+        self.chosen = Some((taken, self.planner.best().clone()));
+        let before = self.episode.state().x;
+        while self.episode.outcome().is_none() {
+            let next = self.episode.tick.is_multiple_of(plan.base.replan_ticks);
+            self.tick(plan)?;
+            if next {
+                break;
+            }
+        }
+        let way = plan.base.aircraft.trim.state.airspeed * plan.base.duration();
+        let advance = (self.episode.state().x - before) / way;
+        let failed = self.episode.failed();
+        let reward = if failed { advance - 1.0 } else { advance };
+        Ok((reward, failed, !failed && self.episode.is_through()))
+    }
+}

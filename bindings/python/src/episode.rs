@@ -1,0 +1,127 @@
+//! A flight without a core: plant, field and sensors of a scenario, one tick at a time. It is the world of
+//! `mpp_sim::flight::fly`, and the loop is the caller's.
+
+use crate::errors::{FlightError, input};
+use mpp_core::vehicle::{Control, VehicleState, Wind};
+use mpp_sim::aircraft::Aircraft;
+use mpp_sim::faults::FaultyLidar;
+use mpp_sim::field::{Field as _, ObstacleField};
+use mpp_sim::flight::Sensing;
+use mpp_sim::lidar::Lidar as _;
+use mpp_sim::outcome::{Outcome, Score};
+use mpp_sim::plant::Plant as _;
+use mpp_sim::scenario::{ALTITUDE, Scenario};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// A flight under way. A copy goes on as the original would, bit for bit.
+#[derive(Clone, Debug)]
+pub(crate) struct Episode {
+    pub(crate) scenario: Arc<Scenario>,
+    plant: Aircraft,
+    field: ObstacleField,
+    lidar: FaultyLidar,
+    sensing: Sensing,
+    score: Score,
+    /// Ticks between two scans.
+    scan_ticks: u32,
+    pub(crate) tick: u32,
+    pub(crate) end: Option<Outcome>,
+}
+
+/// What arrives from the sensors in a tick.
+pub(crate) struct Readings {
+    pub(crate) frame: hil_protocol::SensorFrame,
+    pub(crate) scan: Option<hil_protocol::LidarScan>,
+}
+
+impl Episode {
+    /// The start of a flight. A scan comes every `scan_ticks` ticks.
+    pub(crate) fn new(scenario: Scenario, scan_ticks: u32) -> PyResult<Self> {
+        let faults = &scenario.faults;
+        let none = mpp_sim::faults::Faults::default();
+        if faults.link != none.link || faults.clock != none.clock {
+            let advice = "faults.link, faults.clock: leave them out, there is no link here";
+            return Err(input(advice));
+        }
+        Ok(Self {
+            plant: Aircraft::new(&scenario).map_err(crate::errors::set_up)?,
+            field: scenario.field(),
+            lidar: FaultyLidar::new(scenario.seed, scenario.lidar, faults.lidar),
+            sensing: Sensing::new(&scenario),
+            score: Score::new(ALTITUDE, scenario.band(), scenario.body_radius),
+            scan_ticks,
+            tick: 0,
+            end: None,
+            scenario: Arc::new(scenario),
+        })
+    }
+
+    /// The true state.
+    pub(crate) fn state(&self) -> &VehicleState {
+        self.plant.state()
+    }
+
+    /// Motion of the air.
+    pub(crate) fn wind(&self) -> Wind {
+        let (x, z) = self.plant.wind();
+        Wind { x, z }
+    }
+
+    /// Whether the flight failed. By the strict rule, one that leaves its band fails too.
+    pub(crate) fn failed(&self) -> bool {
+        self.end.is_some() || !self.score.in_band()
+    }
+
+    /// How the flight ended; `None` while it goes on.
+    pub(crate) fn outcome(&self) -> Option<String> {
+        match self.end {
+            Some(end) => Some(end.to_string()),
+            None if self.failed() => Some("left band".to_owned()),
+            None if self.is_through() => Some("survived".to_owned()),
+            None => None,
+        }
+    }
+
+    /// Time \[s\], true place \[m\], and the outcome.
+    pub(crate) fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (dict, at) = (PyDict::new(py), self.state());
+        dict.set_item("t", Scenario::time(self.tick))?;
+        dict.set_item("x", at.x)?;
+        dict.set_item("z", at.z)?;
+        dict.set_item("outcome", self.outcome())?;
+        Ok(dict)
+    }
+
+    /// Whether the flight has reached its planned end.
+    pub(crate) fn is_through(&self) -> bool {
+        self.tick >= self.scenario.ticks
+    }
+
+    /// Measures the present tick. The order of the draws is that of `fly`; call it once before each step.
+    pub(crate) fn measure(&mut self) -> Readings {
+        let tick = self.tick;
+        self.field.move_to(Scenario::time(tick));
+        let state = *self.plant.state();
+        let wind = self.wind();
+        let (_, frame) = self.sensing.measure(tick, &state, wind);
+        let shown = tick.is_multiple_of(self.scan_ticks).then(|| {
+            let turned = self.sensing.lidar_state(tick, &state);
+            self.lidar.scan(&turned, &self.field)
+        });
+        let shown = shown.and_then(|ranges| self.sensing.show(tick, &ranges));
+        let scan = self.sensing.scan(tick, shown);
+        Readings { frame, scan }
+    }
+
+    /// Flies one tick under a command.
+    pub(crate) fn step(&mut self, command: Control) -> PyResult<()> {
+        let before = *self.plant.state();
+        let flown = self.plant.step(command);
+        flown.map_err(|error| FlightError::new_err(error.to_string()))?;
+        self.end = (self.score).update(&self.field, &before, self.plant.state());
+        self.tick += 1;
+        Ok(())
+    }
+}

@@ -1,0 +1,163 @@
+//! Whole flights.
+
+use crate::aside::aside;
+use crate::errors::{self, input};
+use crate::field::Field;
+use crate::output::{columns, plain};
+use crate::scenario;
+use mpp_sim::entries::Columns;
+use mpp_sim::flight::fly_with;
+use mpp_sim::log::FlightLog;
+use mpp_sim::orders::Ground;
+use mpp_sim::pipe::PipeLink;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// A ground that ends the flight when Python has a signal.
+struct Signalled<'a>(&'a AtomicBool);
+
+impl Ground for Signalled<'_> {
+    fn interrupts(&mut self, _: u32) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// Flies a scenario with the core in this process. The arguments are the keys of a scenario file, as
+/// docs/scenarios/example.toml; `scenario` names such a file.
+#[pyfunction]
+#[pyo3(signature = (**keys))]
+pub(crate) fn fly(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Flight> {
+    let none = PyDict::new(py);
+    let scenario = scenario::build(keys.unwrap_or(&none))?;
+    let flown = aside(py, |stop| {
+        fly_with(
+            &scenario,
+            &mut PipeLink::of(&scenario),
+            &mut Signalled(stop),
+        )
+    })?;
+    Flight::new(flown.map_err(errors::flight)?)
+}
+
+/// A flight from its parameters to its outcome.
+#[pyclass(frozen, module = "mpp")]
+pub(crate) struct Flight {
+    log: FlightLog,
+    bytes: Vec<u8>,
+    hash: String,
+}
+
+impl Flight {
+    fn new(log: FlightLog) -> PyResult<Self> {
+        let bytes = log.to_json().map_err(input)?;
+        let hash = log.hash().map_err(input)?;
+        Ok(Self { log, bytes, hash })
+    }
+}
+
+#[pymethods]
+impl Flight {
+    /// The flight of a log's bytes, as `to_json` gives them and `sil-harness fly` writes them.
+    #[staticmethod]
+    fn from_json(log: &[u8]) -> PyResult<Self> {
+        Self::new(FlightLog::from_json(log).map_err(input)?)
+    }
+
+    /// The log as JSON, byte for byte what `sil-harness fly` writes.
+    fn to_json<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
+        PyBytes::new(py, &self.bytes)
+    }
+
+    /// First 16 hexadecimal digits of the SHA-256 of the log: the same for a seed on every machine.
+    #[getter]
+    fn log_hash(&self) -> &str {
+        &self.hash
+    }
+
+    /// The ticks of the flight, one column a quantity; SI units. References are NaN without a plan.
+    #[getter]
+    fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        columns(py, ticks(&self.log.ticks))
+    }
+
+    /// The columns as a `pandas.DataFrame`.
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let pandas = py.import("pandas")?;
+        pandas.call_method1("DataFrame", (self.columns(py)?,))
+    }
+
+    /// The end of the flight and its totals.
+    #[getter]
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.log.summary)
+    }
+
+    /// The parameters of the flight.
+    #[getter]
+    fn header<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.log.header)
+    }
+
+    /// Every plan that the core delivered.
+    #[getter]
+    fn plans<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.log.plans)
+    }
+
+    /// Every input that the core refused.
+    #[getter]
+    fn rejections<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.log.rejections)
+    }
+
+    /// The obstacles.
+    #[getter]
+    fn field(&self) -> PyResult<Field> {
+        Field::checked(self.log.header.field.clone())
+    }
+
+    fn __len__(&self) -> usize {
+        self.log.ticks.t.len()
+    }
+
+    fn __repr__(&self) -> String {
+        let summary = &self.log.summary;
+        format!(
+            "Flight(seed={}, {}, {:.2} s, log {})",
+            self.log.header.seed, summary.outcome, summary.t_end, self.hash
+        )
+    }
+
+    fn __reduce__<'py>(
+        slf: &Bound<'py, Self>,
+    ) -> PyResult<(Bound<'py, PyAny>, (Bound<'py, PyBytes>,))> {
+        let make = slf.get_type().getattr("from_json")?;
+        Ok((make, (slf.get().to_json(slf.py()),)))
+    }
+}
+
+/// The columns of a log by name.
+fn ticks(log: &Columns) -> Vec<(&'static str, Vec<f64>)> {
+    macro_rules! named {
+        ($($column:ident),* ; $($reference:ident),*) => {
+            vec![
+                $((stringify!($column), log.$column.clone()),)*
+                $((stringify!($reference), with_nan(&log.$reference)),)*
+            ]
+        };
+    }
+    named!(
+        t, x, z, airspeed, pitch, pitch_rate, flight_path, measured_airspeed, measured_pitch,
+        est_airspeed, est_pitch, est_pitch_rate, est_flight_path, est_x, est_z, est_wind_x,
+        est_wind_z, est_lift, thrust, elevator, applied_thrust, applied_elevator, wind_x, wind_z;
+        ref_x, ref_z, ref_airspeed, ref_pitch, ref_pitch_rate, ref_flight_path
+    )
+}
+
+fn with_nan(column: &[Option<f64>]) -> Vec<f64> {
+    column
+        .iter()
+        .map(|value| value.unwrap_or(f64::NAN))
+        .collect()
+}

@@ -1,0 +1,71 @@
+//! The scenario of a flight from keyword arguments: the keys of a scenario file.
+
+use crate::aircraft::Aircraft;
+use crate::errors::{input, scenario};
+use crate::field::Field;
+use crate::input::{plain, text};
+use crate::lidar::Lidar;
+use crate::output;
+use mpp_sim::aircraft_file::AircraftFile;
+use mpp_sim::scenario::{Scenario, ScenarioFile};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+use pythonize::depythonize;
+
+/// The scenario that the keys describe.
+pub(crate) fn build(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
+    // Drawing a field and checking an aircraft take a while.
+    let file = file(keys)?;
+    keys.py().detach(|| file.build()).map_err(scenario)
+}
+
+/// The scenario file that the keys describe. `scenario` names a file; the other keys take precedence over it.
+pub(crate) fn file(keys: &Bound<'_, PyDict>) -> PyResult<ScenarioFile> {
+    let py = keys.py();
+    let all = match keys.get_item("scenario")? {
+        Some(path) if !path.is_none() => {
+            let name = path.str()?.to_string();
+            let below = ScenarioFile::parse(&name, &text(&path)?).map_err(scenario)?;
+            output::plain(py, &below)?.cast_into::<PyDict>()?
+        }
+        _ => PyDict::new(py),
+    };
+    for (key, value) in keys {
+        let name = key.str()?.to_string();
+        if name != "scenario" && !value.is_none() {
+            all.set_item(key, table_of(&name, &value)?)?;
+        }
+    }
+    depythonize(&all).map_err(|error| input(format!("scenario: {error}")))
+}
+
+/// The value of a key as it stands in a scenario file.
+fn table_of<'py>(key: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    let py = value.py();
+    if let Ok(aircraft) = value.cast::<Aircraft>() {
+        return output::plain(py, &aircraft.get().model.file);
+    }
+    if let Ok(field) = value.cast::<Field>() {
+        return output::plain(py, &field.get().file);
+    }
+    if let Ok(lidar) = value.cast::<Lidar>() {
+        return output::plain(py, &lidar.get().table);
+    }
+    let named = |name: &str| {
+        let table = PyDict::new(py);
+        table.set_item(name, value)?;
+        PyResult::Ok(table.into_any())
+    };
+    let is_text = value.is_instance_of::<PyString>() || value.hasattr("__fspath__")?;
+    match key {
+        "generator" if is_text => named("name"),
+        "navigation" if is_text => named("source"),
+        "aircraft" if is_text && AircraftFile::known(&value.str()?.to_cow()?).is_none() => {
+            let aircraft = py.get_type::<Aircraft>().call1((value,))?;
+            table_of(key, &aircraft)
+        }
+        "field" if is_text => table_of(key, &py.get_type::<Field>().call1((value,))?),
+        "lidar" if is_text => table_of(key, &py.get_type::<Lidar>().call1((value,))?),
+        _ => plain(value),
+    }
+}

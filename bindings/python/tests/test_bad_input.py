@@ -1,0 +1,181 @@
+"""Bad input gives an exception with a message that says what to do, and never ends the process."""
+
+import threading
+import time
+
+import mpp
+import numpy as np
+import pytest
+
+NAN = float("nan")
+
+
+@pytest.fixture(scope="module")
+def planner():
+    return mpp.Planner()
+
+
+@pytest.mark.parametrize(
+    ("keys", "message"),
+    [
+        ({"sed": 1}, "unknown field `sed`"),
+        ({"seed": -1}, "negative"),
+        ({"obstacles": 10**9}, "at most 1000"),
+        ({"duration": 0}, "give 1 to 3600 s"),
+        ({"replan_hz": NAN}, "replan_hz"),
+        ({"preset": "best"}, "unknown variant `best`"),
+        ({"generator": "maze"}, "unknown variant `maze`"),
+        ({"generator": {"name": "paper", "gap": 3.0}}, "generator.gap: leave it out"),
+        ({"lidar": 3}, "scenario"),
+        ({"lidar": {"beams": 1000}}, "lidar.beams"),
+        ({"body_radius": NAN}, "body_radius"),
+        ({"field": {"circle": [{"x": NAN, "z": 50.0, "radius": 1.0}]}}, "circle 1"),
+        ({"field": {"circle": [{"x": 0.0, "z": 50.0, "radius": 1.0}]}}, "circle 1"),
+        ({"oracle": True, "preset": "paper"}, "only preset flight has an oracle"),
+    ],
+)
+def test_a_scenario_that_makes_no_sense(keys, message):
+    for use in (mpp.fly, mpp.Core, mpp.World, mpp.Planner):
+        with pytest.raises(mpp.InputError, match=message):
+            use(**keys)
+
+
+def test_files_that_are_not_there_or_say_nothing(tmp_path):
+    with pytest.raises(FileNotFoundError, match="nowhere"):
+        mpp.Aircraft(tmp_path / "nowhere.toml")
+    bad = tmp_path / "bad.toml"
+    bad.write_text("mass = 'heavy'\n")
+    for use in (mpp.Aircraft, mpp.Field, mpp.Lidar, lambda path: mpp.fly(scenario=path)):
+        with pytest.raises(mpp.InputError, match="bad.toml"):
+            use(bad)
+    bad.write_bytes(b"\xff\xfe")
+    with pytest.raises(UnicodeDecodeError):
+        mpp.Field(bad)
+
+
+def test_an_aircraft_that_cannot_fly():
+    numbers = mpp.Aircraft("example").numbers
+    with pytest.raises(mpp.InputError, match="aircraft.mass"):
+        mpp.Aircraft({**numbers, "mass": -1.0})
+    with pytest.raises(mpp.InputError, match="missing field"):
+        mpp.Aircraft({"mass": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("ranges", "message"),
+    [
+        (np.zeros(99), "100 beams, not 99"),
+        (np.zeros((100, 1)), r"shape \(100, 1\)"),
+        (np.full(100, NAN), "beam 0 is not a finite number"),
+        (np.full(100, -1.0), "beam 0"),
+        (np.full(100, 1e9), "beam 0"),
+        (np.zeros(100, dtype=complex), "dtype complex128"),
+        (np.array(["a"] * 100), "dtype <U1"),
+        (np.array([None] * 100), "dtype object"),
+    ],
+)
+def test_scans_that_make_no_sense(planner, ranges, message):
+    for use in (planner.plan, lambda ranges: mpp.Core().step(scan=ranges)):
+        with pytest.raises(mpp.InputError, match=message):
+            use(ranges)
+
+
+def test_arrays_that_make_no_sense():
+    with pytest.raises(mpp.InputError, match="3 columns"):
+        mpp.Field.of_arrays(circles=np.zeros((4, 2)))
+    with pytest.raises(mpp.InputError, match="circle 1"):
+        mpp.Field.of_arrays(circles=[[50.0, NAN, 1.0]])
+    with pytest.raises(mpp.InputError, match="polygon 1"):
+        mpp.Field.of_arrays(polygons=[[[0.0, 0.0], [1.0, 1.0]]])
+    field = mpp.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
+    with pytest.raises(mpp.InputError, match="2 columns"):
+        field.clearance(np.zeros((4, 3)))
+    with pytest.raises(mpp.InputError, match="axes"):
+        field.ranges(0.0, 50.0, 0.0)
+
+
+def test_states_that_are_no_numbers(planner):
+    with pytest.raises(mpp.InputError, match="x: give a finite number"):
+        planner.plan(np.zeros(100), x=NAN)
+    core = mpp.Core()
+    with pytest.raises(mpp.InputError, match="airspeed: give a finite number"):
+        core.step(NAN, 0.1)
+    with pytest.raises(mpp.InputError, match="airspeed and pitch together"):
+        core.step(12.0)
+    with pytest.raises(mpp.InputError, match="sigma: give 0 or more"):
+        core.step(x=0.0, z=50.0, sigma=-1.0)
+    world = mpp.World(seed=1)
+    world.measure()
+    with pytest.raises(mpp.InputError, match="thrust: give a finite number"):
+        world.step(NAN, 3.7)
+
+
+def test_too_early_and_too_late():
+    core = mpp.Core()
+    for look in ("mode", "estimate", "reference", "sensors"):
+        with pytest.raises(mpp.StateError, match="call step first"):
+            getattr(core, look)
+    for planner in (core, mpp.Planner()):
+        with pytest.raises(mpp.StateError, match="there is no plan"):
+            getattr(planner, "plan" if planner is core else "best")
+    with pytest.raises(mpp.StateError, match="preset flight"):
+        mpp.Planner(preset="paper").map
+    world = mpp.World(seed=1, duration=1)
+    with pytest.raises(mpp.StateError, match="call measure first"):
+        world.step(4.4, 3.7)
+    world.measure()
+    with pytest.raises(mpp.StateError, match="call step"):
+        world.measure()
+    while world.step(4.4, 3.7):
+        world.measure()
+    assert world.outcome == "survived"
+    with pytest.raises(mpp.StateError, match="ended"):
+        world.measure()
+    with pytest.raises(mpp.StateError, match="ended"):
+        world.step(4.4, 3.7)
+
+
+def test_the_second_thread_on_one_planner_gets_an_exception():
+    """Two threads plan on one planner until they have met."""
+    planner, field = mpp.Planner(), mpp.Field.generate(obstacles=100, seed=1)
+    scan = mpp.Lidar().scan(field, 20.0, 50.0)
+    refused, broken = [], []
+
+    def plan():
+        while not refused and not broken and time.monotonic() < end:
+            try:
+                planner.plan(scan)
+            except mpp.BusyError as error:
+                refused.append(str(error))
+            except BaseException as error:
+                broken.append(error)
+
+    end = time.monotonic() + 60.0
+    threads = [threading.Thread(target=plan) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert broken == [] and "give each thread one of its own" in refused[0]
+    # The planner works on.
+    assert planner.plan(scan)["verdict"] != ""
+
+
+def test_errors_are_one_family():
+    for error in (mpp.InputError, mpp.SetUpError, mpp.FlightError, mpp.StateError, mpp.BusyError):
+        assert issubclass(error, mpp.MppError)
+    assert issubclass(mpp.InputError, ValueError) and issubclass(mpp.BusyError, mpp.StateError)
+    assert issubclass(mpp.Interrupted, KeyboardInterrupt)
+
+
+def test_a_small_stack_is_enough():
+    """Threads of other programs may have little stack; the core is built on one of its own."""
+    size = threading.stack_size(256 * 1024)
+    hashes = []
+    try:
+        thread = threading.Thread(target=lambda: hashes.append(mpp.fly(seed=1, duration=2).log_hash))
+        thread.start()
+        thread.join()
+    finally:
+        threading.stack_size(size)
+    assert hashes == [mpp.fly(seed=1, duration=2).log_hash]

@@ -1,0 +1,84 @@
+"""Campaigns: rows of the command line's format, the same for any number of threads."""
+
+import json
+import os
+import pickle
+import subprocess
+
+import mpp
+import pytest
+
+GRID = {"obstacles": [10, 30], "paths": [5, 25], "trials": 3, "seed": 70, "duration": 6}
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return mpp.campaign(**GRID)
+
+
+def test_rows_do_not_depend_on_threads(rows):
+    assert len(rows) == 12
+    assert mpp.campaign(**GRID, workers=1) == rows
+    assert [row["seed"] for row in rows[:3]] == [70, 71, 72]
+    assert rows.to_pandas()["obstacles"].tolist() == [10] * 3 + [30] * 3 + [10] * 3 + [30] * 3
+
+
+def test_a_row_is_flown_again_by_fly(rows):
+    row = rows[4]
+    keys = {key: row[key] for key in ("obstacles", "paths", "seed", "preset", "replan_hz")}
+    assert mpp.fly(**keys, duration=6).log_hash == row["log_hash"]
+
+
+def test_rows_are_those_of_the_command_line(rows, tmp_path):
+    """CI says where the program is (`.ci/python`)."""
+    if "SIL_HARNESS" not in os.environ:
+        pytest.skip("SIL_HARNESS does not name the program sil-harness")
+    file, (scenario, own) = tmp_path / "rows.jsonl", (tmp_path / "short.toml", tmp_path / "own.jsonl")
+    scenario.write_text("duration = 6\n")
+    grid = ["--obstacles", "10,30", "--paths", "5,25", "--trials", "3", "--seed", "70"]
+    command = [os.environ["SIL_HARNESS"], "campaign", "--scenario", scenario, *grid, "--out", file]
+    subprocess.run(command, check=True, capture_output=True)
+    header, *lines = file.read_bytes().splitlines(keepends=True)
+    assert json.loads(header)["campaign"] == json.loads(mpp.Campaign({"duration": 6}, **{
+        key: GRID[key] for key in ("obstacles", "paths", "trials", "seed")
+    }).to_json())
+    rows.save(own)
+    assert sorted(own.read_bytes().splitlines(keepends=True)) == sorted(lines)
+
+
+def test_progress_is_told(rows):
+    told = []
+    mpp.campaign(**GRID, progress=lambda done, total: told.append((done, total)))
+    assert told == [(done, 12) for done in range(1, 13)]
+
+
+def test_ctrl_c_keeps_what_was_flown(rows):
+    def press(done, total):
+        if done == 5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(mpp.Interrupted) as caught:
+        mpp.campaign(**GRID, workers=1, progress=press)
+    kept = caught.value.rows
+    assert 5 <= len(kept) < 12 and set(kept.lines) <= set(rows.lines)
+
+
+def test_fields_are_cells_and_campaigns_travel():
+    fields = {"gate": mpp.Field.of_arrays(circles=[[60.0, 45.0, 3.0], [60.0, 56.0, 3.0]])}
+    rows = mpp.campaign(fields=fields, trials=2, duration=8)
+    assert [row["field"] for row in rows] == ["gate", "gate"]
+    flights = mpp.Campaign({}, trials=2, fields=fields)
+    assert pickle.loads(pickle.dumps(flights)).to_json() == flights.to_json()
+    with pytest.raises(mpp.InputError, match="index: give 0 to 1"):
+        flights.fly(2)
+    # A campaign takes no more room than its description.
+    assert len(mpp.Campaign({}, trials=2**32 - 1)) == 2**32 - 1
+
+
+def test_a_campaign_that_makes_no_sense():
+    with pytest.raises(mpp.InputError, match="replan_hz"):
+        mpp.campaign(trials=1, replan_hz=3.0)
+    with pytest.raises(mpp.InputError, match="preset"):
+        mpp.campaign(trials=1, preset="best")
+    with pytest.raises(mpp.InputError, match="no_key"):
+        mpp.campaign(trials=1, no_key=1)

@@ -1,0 +1,213 @@
+"""The Gymnasium environments."""
+
+import pickle
+import threading
+import time
+import warnings
+
+import gymnasium
+import mpp
+import mpp.environments
+import mpp.speed
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+NAMES = ["mpp/Control-v0", "mpp/Choice-v0"]
+
+
+def equal(one, other):
+    return one.keys() == other.keys() and all(np.array_equal(one[key], other[key]) for key in one)
+
+
+def flown(env, actions):
+    """Observations, rewards and ends of some steps."""
+    steps = []
+    for action in actions:
+        step = env.step(action)
+        steps.append(step)
+        if step[2] or step[3]:
+            break
+    return steps
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_gymnasiums_own_checks_pass(name):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        # Places and prices have no bound that means anything.
+        for known in ("A Box observation space", "the casting"):
+            warnings.filterwarnings("ignore", message=f".*{known}.*")
+        check_env(gymnasium.make(name).unwrapped)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_seed_gives_the_same_flight(name):
+    one, other = gymnasium.make(name), gymnasium.make(name)
+    one.action_space.seed(3)
+    for seed in (5, None, None):
+        (first, told), (second, _) = one.reset(seed=seed), other.reset(seed=seed)
+        assert equal(first, second) and told["seed"] == (seed or told["seed"])
+        actions = [one.action_space.sample() * 0 if name == NAMES[1] else one.action_space.sample() for _ in range(30)]
+        for a, b in zip(flown(one, actions), flown(other, actions), strict=True):
+            assert equal(a[0], b[0]) and a[1:] == b[1:]
+    another, _ = other.reset(seed=6)
+    assert not equal(one.reset(seed=5)[0], another)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_state_is_restored_bit_for_bit_also_in_another_process(name):
+    env = gymnasium.make(name, obstacles=30, faults={"gusts": {"intensity": 1.0}}).unwrapped
+    env.reset(seed=8)
+    rng = np.random.default_rng(1)
+    actions = [0, 1, 2, 0, 3, 0] if name == NAMES[1] else list(rng.uniform(-0.1, 0.1, (120, 2)))
+    half = len(actions) // 2
+    flown(env, actions[:half])
+    state = env.save()
+    first = flown(env, actions[half:])
+    following = env.reset()[1]["seed"]
+    for copy in (state, pickle.loads(pickle.dumps(state))):
+        env.restore(copy)
+        again = flown(env, actions[half:])
+        assert len(first) == len(again) > 1
+        for a, b in zip(first, again, strict=True):
+            assert equal(a[0], b[0]) and a[1:] == b[1:]
+        assert env.reset()[1]["seed"] == following
+    other = gymnasium.make(name, obstacles=31).unwrapped
+    other.reset(seed=8)
+    with pytest.raises(mpp.InputError, match="other keys"):
+        other.restore(state)
+
+
+def test_the_commands_of_a_flight_fly_the_flight():
+    """The agent repeats the commands of the core and comes to the same places."""
+    columns = mpp.fly(seed=1, duration=4).columns
+    env = gymnasium.make("mpp/Control-v0", duration=4).unwrapped
+    env.reset(seed=1)
+    low, high = np.array(env.controls).T
+    commands = np.column_stack([columns["elevator"], columns["thrust"]])
+    # Level with the core to within the rounding of the scale from -1 to 1.
+    actions = 2.0 * (commands - low) / (high - low) - 1.0
+    assert np.abs(actions).max() <= 1.0
+    steps = flown(env, actions)
+    assert np.allclose([step[4]["x"] for step in steps[:-1]], columns["x"][1:], atol=1e-6)
+    assert steps[-1][3] and steps[-1][4]["outcome"] == "survived"
+    assert sum(step[1] for step in steps) == pytest.approx(columns["x"][-1] / 48.0, abs=0.01)
+
+
+@pytest.mark.parametrize("keys", [{}, {"latency_ms": 200, "replan_hz": 2.0}, {"latency_ms": 1000}])
+def test_the_planners_own_choice_flies_what_fly_flies(keys):
+    keys = {"obstacles": 30, "duration": 10, **keys}
+    columns = mpp.fly(seed=4, **keys).columns
+    env = gymnasium.make("mpp/Choice-v0", **keys)
+    _, told = env.reset(seed=4)
+    while told["outcome"] is None:
+        tick = round(100.0 * told["t"])
+        assert (told["x"], told["z"]) == (columns["x"][tick], columns["z"][tick])
+        _, reward, failed, ended, told = env.step(0)
+    assert ended and told["t"] == 10.0 and told["outcome"] == "survived"
+
+
+def test_another_choice_is_another_flight_and_no_candidate_keeps_the_plan():
+    env = gymnasium.make("mpp/Choice-v0")
+    ends = []
+    for action in (0, 2, env.action_space.n - 1):
+        observation, _ = env.reset(seed=1)
+        assert observation["mask"].sum() > 2 and (np.diff(observation["price"]) >= 0.0).all()
+        ends.append(env.step(action)[4]["z"])
+    assert len(set(ends)) == 3
+
+
+def test_flights_side_by_side_are_those_of_single_ones():
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=4, obstacles=60)
+    singles = [gymnasium.make("mpp/Control-v0", obstacles=60).unwrapped for _ in range(4)]
+    observations, _ = many.reset(seed=20)
+    starts = [env.reset(seed=20 + index)[0] for index, env in enumerate(singles)]
+    rng, alive = np.random.default_rng(2), [True] * 4
+    for _ in range(300):
+        for index, start in enumerate(starts):
+            if alive[index]:
+                assert equal({key: rows[index] for key, rows in observations.items()}, start)
+        actions = rng.uniform(-1.0, 1.0, (4, 2))
+        observations, rewards, failed, ended, _ = many.step(actions)
+        for index, env in enumerate(singles):
+            if alive[index]:
+                starts[index], reward, *ends, _ = env.step(actions[index])
+                assert (reward, *ends) == (rewards[index], failed[index], ended[index])
+                alive[index] = not any(ends)
+    # Random actions end flights soon; the flights beside them go on, and ended ones start anew.
+    assert not all(alive) and many.observation_space.contains(observations)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_too_early_and_too_late(name):
+    env = gymnasium.make(name, duration=1).unwrapped
+    action = env.action_space.sample() * 0
+    for too_early in (lambda: env.step(action), env.save):
+        with pytest.raises(mpp.StateError, match="call reset first"):
+            too_early()
+    env.reset(seed=1)
+    while not any(env.step(action)[2:4]):
+        pass
+    with pytest.raises(mpp.StateError, match="call reset"):
+        env.step(action)
+    env.close()
+    for too_late in (env.reset, lambda: env.step(action), env.save):
+        with pytest.raises(mpp.StateError, match="closed"):
+            too_late()
+
+
+def test_actions_that_make_no_sense():
+    env = gymnasium.make("mpp/Control-v0").unwrapped
+    env.reset(seed=1)
+    for action in ([np.nan, 0.0], [0.0, 1.5], [0.0], [0.0, 0.0, 0.0], [True, False], ["a", "b"]):
+        with pytest.raises(mpp.InputError, match="actions"):
+            env.step(np.array(action))
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=3)
+    many.reset(seed=1)
+    with pytest.raises(mpp.InputError, match="a row for each of the 3 flights"):
+        many.step(np.zeros((2, 2)))
+    before = many.unwrapped._batch.truth(0)
+    with pytest.raises(mpp.InputError, match="give -1 to 1"):
+        many.step(np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0]]))
+    assert many.unwrapped._batch.truth(0) == before
+    for count in (0, 10**12):
+        with pytest.raises(mpp.InputError, match="count: give 1 to"):
+            gymnasium.make_vec("mpp/Control-v0", num_envs=count)
+    with pytest.raises(mpp.InputError, match="lidar_hz"):
+        gymnasium.make("mpp/Control-v0", lidar_hz=7.0)
+    with pytest.raises(mpp.InputError, match="faults.link"):
+        gymnasium.make("mpp/Control-v0", faults={"link": {"loss": 0.1}}).reset(seed=1)
+    with pytest.raises(mpp.InputError, match="only flight has candidates"):
+        gymnasium.make("mpp/Choice-v0", preset="paper")
+
+
+def test_the_second_thread_on_one_environment_gets_an_exception():
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=200)
+    many.reset(seed=1)
+    refused, broken, actions = [], [], np.zeros((200, 2))
+
+    def step():
+        while not refused and not broken and time.monotonic() < end:
+            try:
+                many.step(actions)
+            except mpp.BusyError as error:
+                refused.append(error)
+            except BaseException as error:
+                broken.append(error)
+
+    end = time.monotonic() + 60.0
+    threads = [threading.Thread(target=step) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert refused and not broken
+
+
+def test_rates_are_printed(capsys, monkeypatch):
+    monkeypatch.setattr(mpp.speed, "DURATION", 0.01)
+    monkeypatch.setattr("sys.argv", ["speed"])
+    mpp.speed.main()
+    rates = [float(line.split()[-1].replace(",", "")) for line in capsys.readouterr().out.splitlines()[1:]]
+    assert len(rates) == 3 and min(rates) > 0.0

@@ -1,0 +1,101 @@
+"""Whole flights: the same bytes as the command line's."""
+
+import hashlib
+import pickle
+import re
+import threading
+import time
+import tomllib
+
+import mpp
+import numpy as np
+import pytest
+
+
+def test_the_hash_is_the_readmes(root):
+    [shown] = re.findall(r"result: seed 1, .* log ([0-9a-f]{16})", (root / "README.md").read_text())
+    assert mpp.fly(seed=1).log_hash == shown
+
+
+def test_the_log_is_what_is_hashed_and_reads_back():
+    flight = mpp.fly(seed=2, duration=3)
+    log = flight.to_json()
+    assert hashlib.sha256(log).hexdigest()[:16] == flight.log_hash
+    for copy in (mpp.Flight.from_json(log), pickle.loads(pickle.dumps(flight))):
+        assert copy.log_hash == flight.log_hash
+        assert copy.summary == flight.summary
+
+
+def test_columns_are_arrays_of_the_ticks():
+    flight = mpp.fly(seed=1, duration=5)
+    columns = flight.columns
+    assert len(flight) == 500
+    assert {column.shape for column in columns.values()} == {(500,)}
+    assert {column.dtype for column in columns.values()} == {np.dtype("float64")}
+    assert np.allclose(np.diff(columns["t"]), 0.01)
+    # Before the first plan there is no reference.
+    assert np.isnan(columns["ref_x"][0]) and np.isfinite(columns["ref_x"][-1])
+    frame = flight.to_pandas()
+    assert list(frame.columns) == list(columns) and frame["z"].equals(frame["z"])
+    assert (frame["x"].to_numpy() == columns["x"]).all()
+
+
+def test_the_keys_are_those_of_a_scenario(root):
+    file = root / "docs/scenarios/gusts.toml"
+    calm, windy = mpp.fly(seed=4, duration=4), mpp.fly(scenario=file, seed=4, duration=4)
+    assert not calm.columns["wind_x"].any() and windy.columns["wind_x"].any()
+    by_hand = mpp.fly(**{**tomllib.loads(file.read_text()), "seed": 4, "duration": 4})
+    assert by_hand.log_hash == windy.log_hash
+    assert mpp.fly(seed=np.int64(4), duration=4).log_hash == calm.log_hash
+
+
+def test_a_field_aircraft_and_lidar_of_ones_own_are_flown():
+    field = mpp.Field.of_arrays(circles=np.array([[60.0, 50.0, 3.0], [120.0, 52.0, 4.0]]))
+    flight = mpp.fly(field=field, aircraft=mpp.Aircraft("zagi"), lidar=mpp.Lidar(beams=64), seed=3)
+    header = flight.header
+    assert header["aircraft"]["name"] == "zagi" and header["lidar"]["beams"] == 64
+    assert (flight.field.circles == field.circles).all()
+    assert flight.summary["outcome"] == "survived"
+
+
+def test_python_runs_while_a_flight_is_under_way():
+    counted = 0
+
+    def count():
+        nonlocal counted
+        while flying.is_set():
+            counted += 1
+            time.sleep(0)
+
+    flying = threading.Event()
+    flying.set()
+    counter = threading.Thread(target=count)
+    counter.start()
+    before = counted
+    mpp.fly(seed=1, duration=60)
+    after = counted
+    flying.clear()
+    counter.join()
+    assert after - before > 10
+
+
+def test_loop_of_world_and_core_flies_the_same_flight():
+    keys = {"seed": 5, "obstacles": 30, "duration": 8, "latency_ms": 100}
+    columns = mpp.fly(**keys).columns
+    world, core = mpp.World(**keys), mpp.Core(**keys)
+    going, tick = True, 0
+    while going:
+        assert world.state["x"] == columns["x"][tick] and world.state["z"] == columns["z"][tick]
+        thrust, elevator = core.step(**world.measure())
+        assert (thrust, elevator) == (columns["thrust"][tick], columns["elevator"][tick])
+        assert core.estimate["z"] == columns["est_z"][tick]
+        going = world.step(thrust, elevator)
+        tick += 1
+    assert tick == 800 and world.outcome == "survived"
+    assert core.mode == "tracking" and core.refused == []
+    assert core.sensors["lidar"] == "healthy"
+
+
+@pytest.mark.parametrize("preset", ["reference", "paper", "flight"])
+def test_presets_fly(preset):
+    assert mpp.fly(preset=preset, seed=1, obstacles=5, duration=3).summary["replans"] == 3

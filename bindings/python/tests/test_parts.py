@@ -1,0 +1,109 @@
+"""Aircraft, fields, lidars, planner and core by themselves."""
+
+import pickle
+
+import mpp
+import numpy as np
+import pytest
+
+
+def test_an_aircraft_comes_by_name_by_file_and_by_numbers(root):
+    known = mpp.Aircraft("zagi")
+    from_file = mpp.Aircraft(root / "aircraft/zagi.toml")
+    from_numbers = mpp.Aircraft(known.numbers)
+    assert known.numbers == from_file.numbers == from_numbers.numbers
+    assert pickle.loads(pickle.dumps(known)).trim == known.trim
+    assert known.trim["airspeed"] == known.numbers["cruise"] == 15.0
+    assert mpp.Aircraft().name == "reference" and "zagi" in mpp.Aircraft.known()
+    assert mpp.Aircraft().world_scale == 1.0 < known.world_scale
+
+
+def test_a_generated_field_is_that_of_the_flight_with_its_seed():
+    field = mpp.Field.generate("forest", obstacles=40, seed=9, radius=1.5)
+    flight = mpp.fly(generator={"name": "forest", "radius": 1.5}, obstacles=40, seed=9, duration=1)
+    assert len(field) == 40 and (field.circles == flight.field.circles).all()
+    assert pickle.loads(pickle.dumps(field)).table == field.table
+
+
+def test_a_field_comes_from_a_file_and_goes_to_one(root, tmp_path):
+    field = mpp.Field(root / "docs/fields/example.toml")
+    assert set(field.table) > {"circle", "ground"}
+    copy = tmp_path / "field.toml"
+    copy.write_text(field.to_toml())
+    assert mpp.Field(copy).table == field.table
+
+
+def test_distances_and_ranges_are_those_of_circles():
+    circles = np.array([[10.0, 50.0, 2.0], [30.0, 45.0, 1.0]])
+    field = mpp.Field.of_arrays(circles=circles)
+    points = np.random.default_rng(1).uniform([0.0, 30.0], [40.0, 60.0], (200, 2))
+    apart = np.linalg.norm(points[:, None] - circles[None, :, :2], axis=2) - circles[:, 2]
+    assert np.allclose(field.clearance(points), apart.min(axis=1))
+    assert np.allclose(field.ranges(0.0, 50.0, [0.0, np.pi]), [8.0, np.inf])
+
+
+def test_polygons_ground_and_ceiling_bound_a_tunnel():
+    tunnel = mpp.Field.of_arrays(
+        polygons=[[[20.0, 48.0], [22.0, 48.0], [22.0, 52.0], [20.0, 52.0]]],
+        ground=[[0.0, 40.0]],
+        ceiling=[[0.0, 60.0], [50.0, 58.0]],
+    )
+    assert np.allclose(tunnel.ranges(0.0, 50.0, [0.0, -np.pi / 2, np.pi / 2]), [20.0, 10.0, 10.0])
+
+
+def test_a_lidar_scans_a_field():
+    field = mpp.Field.of_arrays(circles=[[20.0, 50.0, 1.0]])
+    lidar = mpp.Lidar(beams=51, field_of_view_deg=90.0, range_max=40.0)
+    exact = lidar.scan(field, 0.0, 50.0)
+    angles = lidar.angles
+    assert exact.dtype == np.float32 and exact.shape == angles.shape == (51,)
+    assert exact[25] == pytest.approx(19.0) and exact[0] == 0.0
+    noisy = lidar.scan(field, 0.0, 50.0, seed=1)
+    assert (noisy == lidar.scan(field, 0.0, 50.0, seed=1)).all() and (noisy != exact).any()
+    # A pitch turns the fan.
+    pitched = lidar.scan(field, 0.0, 50.0, pitch=float(angles[26]))
+    assert pitched[24] == pytest.approx(19.0, abs=1e-5)
+
+
+def test_a_planner_plans_around_what_a_scan_shows():
+    field = mpp.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
+    planner, lidar = mpp.Planner(), mpp.Lidar()
+    pitch = mpp.Aircraft().trim["pitch"]
+    cycle = planner.plan(lidar.scan(field, 0.0, 50.0, pitch))
+    assert cycle["verdict"] == "feasible" and cycle["feasible"] > 0
+    best = planner.best
+    assert best["t"].shape == (19,) and np.allclose(np.diff(best["t"]), 0.25)
+    points = np.column_stack([best["x"], best["z"]])
+    assert field.clearance(points).min() > 0.5
+    candidates = planner.candidates
+    count = len(candidates["price"])
+    assert count > 1 and candidates["z"].shape == (count, 19)
+    # Candidates pass on both sides.
+    beside = candidates["z"][np.arange(count), np.abs(candidates["x"] - 25.0).argmin(axis=1)]
+    assert (beside > 50.0).any() and (beside < 50.0).any()
+
+
+def test_the_map_holds_what_the_beams_met():
+    field = mpp.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
+    planner, lidar = mpp.Planner(), mpp.Lidar(range_error=0.0)
+    planner.plan(lidar.scan(field, 0.0, 50.0, mpp.Aircraft().trim["pitch"]))
+    seen = planner.map
+    assert seen["occupied"].shape == seen["distance"].shape == (64, 128)
+    rows, columns = np.nonzero(seen["seen"])
+    points = np.column_stack([seen["x"][columns], seen["z"][rows]])
+    assert len(points) > 0 and np.abs(field.clearance(points)).max() < 1.0
+    assert (seen["distance"][seen["occupied"]] <= 0.5).all()
+    assert seen["unknown"].any() and not (seen["unknown"] & seen["seen"]).any()
+    planner.forget()
+    planner.plan(np.zeros(100))
+    assert not planner.map["seen"].any()
+
+
+def test_a_core_shows_plan_and_map():
+    core, world = mpp.Core(seed=1), mpp.World(seed=1)
+    for _ in range(150):
+        world.step(*core.step(**world.measure()))
+    assert core.ticks == 150
+    assert core.plan["t"][0] == pytest.approx(1.01) and core.map["seen"].any()
+    assert len(core.candidates["price"]) > 1
+    assert abs(core.reference["z"] - core.estimate["z"]) < 1.0

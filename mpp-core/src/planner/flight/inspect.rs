@@ -1,0 +1,79 @@
+//! What others may see of a cycle: map, candidates, programs. And another candidate than the best, for whoever
+//! chooses himself.
+
+use super::{FlightPlanner, Phase};
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::{ClearanceField, MemoryMap};
+use crate::qp::{Dynamics, Problem};
+use crate::trajectory::Trajectory;
+
+impl FlightPlanner {
+    /// Distances to the obstacles in the map.
+    #[must_use]
+    pub fn clearance(&self) -> &ClearanceField {
+        &self.field
+    }
+
+    /// The map with memory, for a caller who knows the obstacles better than the lidar.
+    pub fn map_mut(&mut self) -> &mut MemoryMap {
+        &mut self.map
+    }
+
+    /// The path of the present candidate and its program; see [`super::Planner::candidate`].
+    #[must_use]
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+        if self.phase != Phase::Improve {
+            return None;
+        }
+        let candidate = self.candidates.get(self.at_hand)?;
+        let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
+        Some((path, &self.solver.problem))
+    }
+
+    /// The dynamics of every stage in the program of [`Self::candidate`].
+    #[must_use]
+    pub fn stages(&self) -> &[Dynamics; STAGES] {
+        self.shared.stages()
+    }
+
+    /// Number of candidates of the last cycle.
+    #[must_use]
+    pub fn offers(&self) -> usize {
+        self.candidates.len()
+    }
+
+    /// Writes a candidate of the last cycle, as its last round left it, into a trajectory in SI units, and gives
+    /// its price. The price is infinite if no program of the candidate had a solution; the trajectory is then the
+    /// path that the candidate began with. `None` if there is no such candidate.
+    pub fn offer(&self, index: usize, trajectory: &mut Trajectory) -> Option<f64> {
+        let candidate = self.candidates.get(index)?;
+        let units = &self.units;
+        trajectory.fly_out(
+            &candidate
+                .knots
+                .each_ref()
+                .map(|knot| units.si_path_state(knot)),
+            &(candidate.controls.each_ref()).map(|control| units.si_path_control(control)),
+            &self.conditions.airframe(&self.si_airframe),
+            &self.conditions.wind,
+            self.time,
+            STAGE_PERIOD * units.time,
+        );
+        Some(candidate.price)
+    }
+
+    /// Takes a candidate of the last cycle for the best one: the next cycle then counts on it being flown. Gives
+    /// its price as [`Self::offer`] does.
+    pub fn choose(&mut self, index: usize) -> Option<f64> {
+        let mut chosen = Trajectory::new();
+        let price = self.offer(index, &mut chosen)?;
+        self.best = chosen;
+        Some(price)
+    }
+
+    /// The map with memory, in own units.
+    #[must_use]
+    pub fn map(&self) -> &MemoryMap {
+        &self.map
+    }
+}
