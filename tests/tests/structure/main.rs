@@ -159,6 +159,7 @@ fn no_crate_needs_what_it_must_not() {
 }
 
 /// Names and versions of the packages in a lock file.
+#[expect(clippy::expect_used, reason = "the helpers of tests fail as tests do")]
 fn locked(path: &str) -> BTreeSet<(String, String)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     let text = std::fs::read_to_string(path).expect("there is a lock file");
