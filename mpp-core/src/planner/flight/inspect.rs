@@ -19,7 +19,7 @@ impl FlightPlanner {
         &mut self.map
     }
 
-    /// The path of the present candidate and its program; see [`super::Planner::candidate`].
+    /// The path of the present candidate and its program; see [`crate::planner::Planner::candidate`].
     #[must_use]
     pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
         if self.phase != Phase::Improve {
