@@ -23,7 +23,7 @@ use mpp_node::{FlightNode, Order};
 /// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
 const REACH: f64 = 80.0;
 
-/// The knowledge of an oracle. Without the truth of [`Oracle::see`] it knows the field alone, and plans from the
+/// The knowledge of an oracle. Without the true state it knows the field alone, and plans from the
 /// core's estimate.
 pub struct Oracle {
     obstacles: Vec<Obstacle>,
