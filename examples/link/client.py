@@ -15,8 +15,8 @@ STRUCTS = {name: [field.split(":") for field in fields.split()] for name, fields
     "Hello": "role:B major:B minor:B patch:B tick_period_us:v beams_max:v stages:v",
     "Configure": """preset:B mass:d pitch_inertia:d wing_area:d moment_length:d air_density:d lift_zero:d lift_alpha:d
         lift_alpha_rate:d lift_pitch_rate:d lift_elevator:d drag_zero:d drag_induced:d moment_zero:d moment_alpha:d
-        moment_alpha_rate:d moment_pitch_rate:d moment_elevator:d cruise:d body_radius:d stall:?d paths:v replan_period_ticks:v
-        latency_ticks:v slices_per_tick:v seed:v beams:v range_max:f altitude:d thrust_max:?d thrust_lag:?d
+        moment_alpha_rate:d moment_pitch_rate:d moment_elevator:d cruise:d body_radius:d stall:?d
+        paths:v replan_period_ticks:v latency_ticks:v slices_per_tick:v seed:v beams:v range_max:f altitude:d thrust_max:?d thrust_lag:?d
         elevator_below:?d elevator_above:?d elevator_rate:?d""",
     "ConfigureReply": "verdict:B", "SensorFrame": "tick:v air:?AirData position:?Position",
     "Position": "tick:v x:d z:d sigma:f velocity:?GroundVelocity", "GroundVelocity": "x:f z:f sigma:f",
@@ -106,9 +106,8 @@ class Core:
 OWN = dict(mass=3.2, pitch_inertia=0.17, wing_area=0.25, moment_length=1.0, air_density=1.225, lift_zero=0.5,
            lift_alpha=5.73, lift_alpha_rate=0.0, lift_pitch_rate=0.0, lift_elevator=0.0, drag_zero=0.1,
            drag_induced=0.05, moment_zero=0.5, moment_alpha=-8.0, moment_alpha_rate=-0.46, moment_pitch_rate=0.0,
-           moment_elevator=0.2, cruise=12.0, body_radius=0.1,
-           preset=2, paths=25, replan_period_ticks=100, latency_ticks=1, slices_per_tick=1000, beams=100,
-           range_max=45.0, altitude=50.0)
+           moment_elevator=0.2, cruise=12.0, body_radius=0.1, preset=2, paths=25, replan_period_ticks=100,
+           latency_ticks=1, slices_per_tick=1000, beams=100, range_max=45.0, altitude=50.0)
 
 
 def rates(s: list, thrust: float, elevator: float) -> list:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import BINARY, LASTING, LIMIT, parameters
+from simulation import BINARY, LASTING, LIMIT, parameters
 
 from mpp_ground import paramfile, plot
 from mpp_ground.cli import main

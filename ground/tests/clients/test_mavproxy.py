@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import LASTING, LIMIT, parameters, until
+from simulation import LASTING, LIMIT, parameters, until
 
 TOOLS = Path(sys.executable).parent
 

@@ -4,7 +4,7 @@ import statistics
 
 import pytest
 
-from conftest import LASTING, LIMIT, parameters, until
+from simulation import LASTING, LIMIT, parameters, until
 
 pytest.importorskip("mavsdk", reason="mavsdk is not installed")
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from conftest import LASTING, LIMIT, ROOT, parameters, until
+from simulation import LASTING, LIMIT, ROOT, parameters, until
 from mpp_ground.dialect import load
 
 mavlink = load()
