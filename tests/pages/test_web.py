@@ -22,13 +22,20 @@ def stands(page):
     page.wait_for_function("/^[0-9a-f]{16}$/.test(document.getElementById('hash').textContent)")
 
 
+def begun(page):
+    """Waits until the module is unpacked and flies."""
+    page.wait_for_function("flight && flight.ticks.t.length > 0")
+
+
 def pause(page):
+    begun(page)
     page.click("#play")
     stands(page)
 
 
 def to_tick(page, tick):
     """Flies on to a tick and stands there."""
+    begun(page)
     page.evaluate(f"target = {tick}")
     page.wait_for_function(f"target === null && flight.ticks.t.length === {tick}")
     stands(page)
@@ -113,7 +120,7 @@ def test_clicks_and_switches_are_in_the_link_and_in_the_log(open_page, tmp_path)
     assert "capsule" in orders[1]["field"]
     # The same moment in another page, from the link alone.
     other = open_page(PAGE.as_uri() + link)
-    other.wait_for_function("target === null && flight.ticks.t.length === 500")
+    other.wait_for_function("flight && target === null && flight.ticks.t.length === 500")
     stands(other)
     assert other.inner_text("#hash") == hash_
     assert other.is_checked("#wind") and other.is_checked("#dropouts") and not other.is_checked("#elevator")
@@ -133,7 +140,7 @@ def test_clicks_and_switches_are_in_the_link_and_in_the_log(open_page, tmp_path)
 
 def test_it_can_hurry_to_thirty_times_real_time(open_page):
     page = open_page(PAGE.as_uri())
-    page.wait_for_function("flight.ticks.t.length > 100")
+    page.wait_for_function("flight && flight.ticks.t.length > 100")
     flown = page.evaluate("""() => {
       const begun = performance.now(), before = flight.ticks.t.length;
       while (performance.now() - begun < 500) fly(25);
@@ -146,6 +153,7 @@ def test_it_can_hurry_to_thirty_times_real_time(open_page):
 
 def test_keys_settings_and_bad_links(open_page):
     page = open_page(PAGE.as_uri() + "#seed=2")
+    begun(page)
     page.keyboard.press(" ")
     stands(page)
     still = page.evaluate("flight.ticks.t.length")
@@ -172,7 +180,7 @@ def test_keys_settings_and_bad_links(open_page):
 def test_how_it_looks(open_page, shot, scheme, size):
     options = {"viewport": PHONE, "has_touch": True} if size == "phone" else {}
     page = open_page(PAGE.as_uri() + "#t=700", color_scheme=scheme, **options)
-    page.wait_for_function("target === null && flight.ticks.t.length === 700")
+    page.wait_for_function("flight && target === null && flight.ticks.t.length === 700")
     stands(page)
     width = page.evaluate("window.innerWidth")
     assert page.evaluate("document.documentElement.scrollWidth") <= width

@@ -309,7 +309,7 @@ addEventListener("resize", () => show());
 addEventListener("hashchange", fromLink);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); show(); });
 addEventListener("keydown", event => {
-  if (event.ctrlKey || event.metaKey || event.altKey || ["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
+  if (!flight || event.ctrlKey || event.metaKey || event.altKey || ["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
   const buttons = { " ": "play", ".": "step", "]": "next", r: "again", n: "other", w: "wind", d: "dropouts",
     e: "elevator", f: "follow" };
   const layer = LAYERS[Number(event.key) - 1], id = buttons[event.key] || layer && "layer-" + layer[0];
@@ -322,6 +322,8 @@ addEventListener("keydown", event => {
 async function start(packed) {
   readColours();
   addLayers(look.on, () => show());
+  // Nothing can be steered before it flies.
+  document.body.inert = true;
   try {
     const bytes = Uint8Array.from(atob(packed), letter => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -332,5 +334,6 @@ async function start(packed) {
     return fail(new Error("this browser cannot run the flight: " + error.message));
   }
   fromLink();
+  document.body.inert = false;
   requestAnimationFrame(frame);
 }
