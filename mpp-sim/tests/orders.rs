@@ -216,13 +216,40 @@ fn what_makes_no_sense_or_cannot_be_done_is_refused_and_not_logged() {
     assert_eq!(refused, [Refused::Range; 4]);
     assert!(log.orders.is_empty());
     assert_eq!(log.hash().unwrap(), flown(&[]).0.hash().unwrap());
-    let mut world = World {
-        plant: Box::new(Glider(scenario().start().unwrap())),
-        ..World::of(&scenario()).unwrap()
+}
+
+/// The glider knows no gusts. The lidar could lose beams, but the order is carried out whole or not at all.
+#[test]
+fn what_the_plant_refuses_does_not_change_the_lidar() {
+    let scenario = Scenario {
+        obstacles: 20,
+        ..scenario()
     };
-    let mut ground = giver(&[(10, disturb(Disturbance::default()))]);
-    fly_in(&mut world, &scenario(), &mut PipeLink::new(), &mut ground).unwrap();
-    assert_eq!(ground.refused, [Refused::World]);
+    let glide = |orders: &[(u64, Order)]| {
+        let mut world = World {
+            plant: Box::new(Glider(scenario.start().unwrap())),
+            ..World::of(&scenario).unwrap()
+        };
+        let mut ground = giver(orders);
+        let log = fly_in(&mut world, &scenario, &mut PipeLink::new(), &mut ground).unwrap();
+        (log, ground.refused)
+    };
+    let dropouts = Disturbance {
+        dropouts: Some(1.0),
+        ..Disturbance::default()
+    };
+    let both = Disturbance {
+        gusts: Some(1.0),
+        ..dropouts
+    };
+    let (untouched, _) = glide(&[]);
+    let (log, refused) = glide(&[(10, disturb(both))]);
+    assert_eq!(refused, [Refused::World]);
+    assert_eq!(log.hash().unwrap(), untouched.hash().unwrap());
+    // What the lidar alone can do is done.
+    let (log, refused) = glide(&[(10, disturb(dropouts))]);
+    assert!(refused.is_empty() && log.orders.len() == 1);
+    assert!(log.plans != untouched.plans);
 }
 
 #[test]

@@ -136,11 +136,24 @@ fn place(world: &mut World, field: &FieldFile) -> Result<(), Refused> {
     taken.then_some(()).ok_or(Refused::World)
 }
 
-/// Changes the disturbances.
+/// Changes the disturbances, all or none.
 fn disturb(world: &mut World, disturbance: &Disturbance) -> Result<(), Refused> {
     if !disturbance.is_sound() {
         return Err(Refused::Range);
     }
-    let taken = world.plant.disturb(disturbance) && world.lidar.disturb(disturbance);
-    taken.then_some(()).ok_or(Refused::World)
+    let of_plant = disturbance.gusts.is_some() || disturbance.elevator_stuck.is_some();
+    let of_lidar = disturbance.dropouts.is_some();
+    // Both are asked with nothing to change first: what one refuses must not change the other.
+    let nothing = Disturbance::default();
+    let (plant, lidar) = (&mut world.plant, &mut world.lidar);
+    if (of_plant && !plant.disturb(&nothing)) || (of_lidar && !lidar.disturb(&nothing)) {
+        return Err(Refused::World);
+    }
+    if of_plant {
+        plant.disturb(disturbance);
+    }
+    if of_lidar {
+        lidar.disturb(disturbance);
+    }
+    Ok(())
 }
