@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpStream, UdpSocket};
 use std::path::PathBuf;
-use std::process::{Output, Stdio};
+use std::process::{Child, Output, Stdio};
 use std::time::Duration;
 
 #[test]
@@ -25,10 +25,11 @@ fn a_core_that_is_not_there_is_a_link_error() {
     );
 }
 
-#[test]
-fn a_core_in_another_process_flies_the_same_log() {
+/// A core in another process that serves once, and its address for `--link`.
+#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+fn serving(flags: &[&str]) -> (Child, String) {
     let mut core = harness()
-        .args(["core", "--listen", "127.0.0.1:0", "--once"])
+        .args([&["core", "--listen", "127.0.0.1:0", "--once"], flags].concat())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
@@ -36,8 +37,15 @@ fn a_core_in_another_process_flies_the_same_log() {
     BufReader::new(core.stderr.take().unwrap())
         .read_line(&mut greeting)
         .unwrap();
-    let link = greeting.split_whitespace().last().unwrap();
+    let link = greeting.split_whitespace().last().unwrap().to_owned();
     assert!(link.starts_with("tcp:127.0.0.1:"), "{greeting}");
+    (core, link)
+}
+
+#[test]
+fn a_core_in_another_process_flies_the_same_log() {
+    let (mut core, link) = serving(&[]);
+    let link = link.as_str();
     // A stranger who configures nothing does not end the core that serves once.
     let mut stranger = TcpStream::connect(link.trim_start_matches("tcp:")).unwrap();
     stranger.write_all(b"GET / HTTP/1.1\r\n\r\n").unwrap();
@@ -128,16 +136,7 @@ fn a_core_that_was_told_the_field_is_its_oracle() {
         "{talk}"
     );
     let outcome = |oracle: &[&str]| {
-        let mut core = harness()
-            .args([&["core", "--listen", "127.0.0.1:0", "--once"], oracle].concat())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
-        let mut greeting = String::new();
-        BufReader::new(core.stderr.take().unwrap())
-            .read_line(&mut greeting)
-            .unwrap();
-        let link = greeting.split_whitespace().last().unwrap();
+        let (mut core, link) = serving(oracle);
         let flags = [
             "--field",
             &field,
@@ -147,7 +146,7 @@ fn a_core_that_was_told_the_field_is_its_oracle() {
             "8",
             "--json",
         ];
-        let (output, out) = run("told", &[&flags[..], &["--link", link]].concat());
+        let (output, out) = run("told", &[&flags[..], &["--link", &link]].concat());
         assert!(core.wait().unwrap().success());
         std::fs::remove_dir_all(out).unwrap();
         let result: Value = serde_json::from_slice(&output.stdout).unwrap();
