@@ -37,6 +37,8 @@ pub mod campaign;
 
 pub mod aircraft;
 
+pub mod ceiling;
+
 pub mod figure;
 
 pub mod picture;

@@ -2,7 +2,7 @@
 
 use super::faults::{FaultCampaign, FaultJob};
 use super::grid::Cell;
-use super::report::median;
+use super::report::quantile;
 use super::stats::paired;
 use serde::Serialize;
 use std::fmt;
@@ -116,7 +116,7 @@ impl FaultRow {
             asked: None,
             known_collisions: faulty.iter().filter(|flown| flown.known_collision).count() as u32,
             flagged: flags().count() as u32,
-            flagged_s: median(flags()),
+            flagged_s: quantile(flags(), 0.5),
         }
     }
 }

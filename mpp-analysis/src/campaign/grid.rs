@@ -45,6 +45,13 @@ impl Cell {
         }
     }
 
+    /// Whether another cell flies through the same fields.
+    #[must_use]
+    pub fn has_fields_of(&self, other: &Self) -> bool {
+        (&self.field, self.generator, self.obstacles)
+            == (&other.field, other.generator, other.obstacles)
+    }
+
     /// The kind of its fields, for a table: file, generator, or both.
     #[must_use]
     pub fn kind(&self) -> String {
@@ -260,10 +267,16 @@ impl Campaign {
             .map_err(|error| error.of_field(cell.field.as_deref()))
     }
 
+    /// The seeds of each cell.
+    pub fn seeds(&self) -> impl Iterator<Item = u64> + Clone {
+        let first = self.seed;
+        (0..u64::from(self.trials)).map(move |trial| first.wrapping_add(trial))
+    }
+
     /// Every flight of a shard.
     #[must_use]
     pub fn jobs(&self, shard: Shard) -> Vec<(Cell, u64)> {
-        let seeds = (0..u64::from(self.trials)).map(|trial| self.seed.wrapping_add(trial));
+        let seeds = self.seeds();
         let cells = self.cells();
         let all = cells
             .iter()

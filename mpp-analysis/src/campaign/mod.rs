@@ -21,7 +21,7 @@ pub use fault_report::{FaultReport, FaultRow, Flown};
 pub use faults::{FaultCampaign, FaultJob, NamedFault};
 pub use grid::{Campaign, Cell, Lists, NamedField, NoShard, Shard};
 pub use merge::{Disagreement, merge};
-pub use pairs::AgainstOracle;
+pub use pairs::{AgainstCeiling, AgainstOracle};
 pub use report::{CellReport, Outcomes, Report};
 pub use row::Row;
 pub use stats::{paired, wilson};

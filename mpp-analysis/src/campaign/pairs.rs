@@ -2,6 +2,7 @@
 
 use super::row::Row;
 use super::stats::wilson;
+use crate::ceiling::Verdict;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -44,6 +45,54 @@ impl AgainstOracle {
         let flown = pairs.both + pairs.only_oracle;
         pairs.share = (flown > 0).then(|| f64::from(pairs.both) / f64::from(flown));
         (pairs.wilson_low, pairs.wilson_high) = wilson(pairs.both, flown);
+        pairs
+    }
+}
+
+/// Strict successes beside the verdicts about the fields.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct AgainstCeiling {
+    /// Number of fields that are proven to be blocked.
+    pub blocked: u32,
+    /// Number of fields that a witness passes.
+    pub passable: u32,
+    /// Number of the other fields.
+    pub undecided: u32,
+    /// Number of passable fields on which the flight succeeds.
+    pub flown: u32,
+    /// Our share of the passable fields [-]; null if there is no such field.
+    pub share: Option<f64>,
+    /// Lower end of the share's 95 % interval (Wilson).
+    pub wilson_low: f64,
+    /// Upper end of this interval.
+    pub wilson_high: f64,
+}
+
+impl AgainstCeiling {
+    /// Pairs rows with the verdicts about their seeds' fields. A seed without a row is left out.
+    #[must_use]
+    pub fn new(rows: &[&Row], verdicts: &[(u64, Verdict)]) -> Self {
+        let strict: BTreeMap<u64, bool> = rows
+            .iter()
+            .map(|row| (row.seed, row.summary.strict))
+            .collect();
+        let mut pairs = Self::default();
+        for (seed, verdict) in verdicts {
+            let Some(strict) = strict.get(seed) else {
+                continue;
+            };
+            match verdict {
+                Verdict::Blocked(_) => pairs.blocked += 1,
+                Verdict::Undecided => pairs.undecided += 1,
+                Verdict::Passable => {
+                    pairs.passable += 1;
+                    pairs.flown += u32::from(*strict);
+                }
+            }
+        }
+        pairs.share =
+            (pairs.passable > 0).then(|| f64::from(pairs.flown) / f64::from(pairs.passable));
+        (pairs.wilson_low, pairs.wilson_high) = wilson(pairs.flown, pairs.passable);
         pairs
     }
 }

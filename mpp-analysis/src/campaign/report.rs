@@ -2,9 +2,10 @@
 
 use super::causes::{CauseReport, causes};
 use super::grid::{Campaign, Cell};
-use super::pairs::AgainstOracle;
+use super::pairs::{AgainstCeiling, AgainstOracle};
 use super::row::Row;
 use super::stats::wilson;
+use crate::ceiling::Verdict;
 use mpp_sim::outcome::Class;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -55,8 +56,13 @@ pub struct CellReport {
     /// Comparison with the oracle on the same fields; only in campaigns with an oracle.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub against_oracle: Option<AgainstOracle>,
+    /// Comparison with what can be passed at all; only in campaigns that ask for it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub against_ceiling: Option<AgainstCeiling>,
     /// Median over flights of the least distance to an obstacle's edge \[m\]; null without obstacles.
-    pub min_clearance_median: Option<f64>,
+    pub clearance_median: Option<f64>,
+    /// The 5th percentile of the same \[m\].
+    pub clearance_p5: Option<f64>,
     /// Plans over all flights.
     pub replans: u64,
     /// Candidates over all flights.
@@ -110,6 +116,18 @@ impl Report {
     }
 }
 
+impl Report {
+    /// Sets the flights of every cell with these fields beside the verdicts about the fields.
+    pub fn set_beside(&mut self, fields: &Cell, rows: &[Row], verdicts: &[(u64, Verdict)]) {
+        for report in &mut self.cells {
+            if report.cell.has_fields_of(fields) {
+                let own: Vec<&Row> = rows.iter().filter(|row| row.cell == report.cell).collect();
+                report.against_ceiling = Some(AgainstCeiling::new(&own, verdicts));
+            }
+        }
+    }
+}
+
 impl CellReport {
     fn new(campaign: &Campaign, cell: &Cell, all: &[Row]) -> Self {
         let of =
@@ -127,6 +145,7 @@ impl CellReport {
         for row in &rows {
             outcomes.0[row.summary.class as usize] += 1;
         }
+        let clearances = || rows.iter().filter_map(|row| row.summary.min_clearance);
         let replans = rows.iter().map(|row| u64::from(row.summary.replans)).sum();
         let times: Option<f64> = rows.iter().map(|row| row.core_ms).sum();
         Self {
@@ -146,7 +165,9 @@ impl CellReport {
             against_oracle: oracle
                 .as_deref()
                 .map(|oracle| AgainstOracle::new(&rows, oracle)),
-            min_clearance_median: median(rows.iter().filter_map(|row| row.summary.min_clearance)),
+            against_ceiling: None,
+            clearance_median: quantile(clearances(), 0.5),
+            clearance_p5: quantile(clearances(), 0.05),
             replans,
             candidates: rows
                 .iter()
@@ -161,12 +182,14 @@ impl CellReport {
     }
 }
 
-pub(super) fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
+/// The value below which a share of the values lies, between two of them by their places; `None` without values.
+pub(super) fn quantile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
+    let place = share * values.len().saturating_sub(1) as f64;
     let (low, high) = (
-        values.get(values.len().saturating_sub(1) / 2)?,
-        values.get(values.len() / 2)?,
+        values.get(place as usize)?,
+        values.get(place.ceil() as usize)?,
     );
-    Some(0.5 * (low + high))
+    Some(low + place.fract() * (high - low))
 }

@@ -1,7 +1,7 @@
 //! The report as a table for people.
 
 use super::grid::Cell;
-use super::pairs::AgainstOracle;
+use super::pairs::{AgainstCeiling, AgainstOracle};
 use super::report::{CellReport, Report};
 use mpp_sim::outcome::Class;
 use std::fmt;
@@ -12,7 +12,7 @@ impl fmt::Display for Report {
         let wide = kinds.iter().map(String::len).max().unwrap_or(0).max(5);
         writeln!(
             f,
-            "{:<9} {:<wide$} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+            "{:<9} {:<wide$} {:>4} {:>5} {:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>16}",
             "preset",
             "field",
             "Hz",
@@ -26,7 +26,7 @@ impl fmt::Display for Report {
             "pitch",
             "flight-path",
             "no-plan",
-            "clearance",
+            "clearance (5 %)",
         )?;
         for (cell, kind) in self.cells.iter().zip(&kinds) {
             let &Cell {
@@ -40,7 +40,7 @@ impl fmt::Display for Report {
             let outcomes = |class| cell.outcomes.of(class);
             writeln!(
                 f,
-                "{:<9} {kind:<wide$} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>9}",
+                "{:<9} {kind:<wide$} {replan_hz:>4} {paths:>5} {obstacles:>9} {:>7}  {:<22} {:<22} {:>9} {:>9} {:>5} {:>11} {:>7}  {:>16}",
                 if oracle { "oracle" } else { preset.name() },
                 cell.trials,
                 percent(cell.success_rate, cell.wilson_low, cell.wilson_high),
@@ -54,13 +54,19 @@ impl fmt::Display for Report {
                 outcomes(Class::Pitch),
                 outcomes(Class::FlightPath),
                 outcomes(Class::NoPlan),
-                cell.min_clearance_median
-                    .map_or("-".to_owned(), |median| format!("{median:.2} m")),
+                cell.clearance_median
+                    .zip(cell.clearance_p5)
+                    .map_or("-".to_owned(), |(median, p5)| format!(
+                        "{median:.2} ({p5:.2}) m"
+                    )),
             )?;
         }
         for cell in &self.cells {
             if let Some(pairs) = &cell.against_oracle {
                 write_pairs(f, cell, pairs)?;
+            }
+            if let Some(pairs) = &cell.against_ceiling {
+                write_ceiling(f, cell, pairs)?;
             }
         }
         if self.flown < self.flights {
@@ -84,6 +90,23 @@ fn write_pairs(
         percent(pairs.share, pairs.wilson_low, pairs.wilson_high),
         pairs.only_ours,
         pairs.neither
+    )
+}
+
+fn write_ceiling(
+    f: &mut fmt::Formatter<'_>,
+    cell: &CellReport,
+    pairs: &AgainstCeiling,
+) -> fmt::Result {
+    writeln!(
+        f,
+        "{}: {} of the {} passable fields, {}; blocked {}, undecided {}",
+        cell.cell,
+        pairs.flown,
+        pairs.passable,
+        percent(pairs.share, pairs.wilson_low, pairs.wilson_high),
+        pairs.blocked,
+        pairs.undecided
     )
 }
 

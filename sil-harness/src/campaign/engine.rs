@@ -3,6 +3,7 @@
 use super::error::CampaignError;
 use hil_protocol::Message;
 use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row};
+use mpp_analysis::ceiling::{Verdict, decide};
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::link::{Link, LinkError};
@@ -83,6 +84,29 @@ pub fn run_faults(
         Ok((job, flown))
     };
     pool(threads)?.install(|| campaign.jobs().into_par_iter().map(fly_one).collect())
+}
+
+/// Decides about the fields of a cell. `done` is called after each. The result is in the order of the seeds.
+///
+/// # Errors
+/// [`CampaignError`] of the first field that cannot be judged, or the error of `done`.
+pub fn decide_all(
+    campaign: &Campaign,
+    cell: &Cell,
+    margin: f64,
+    threads: usize,
+    done: impl Fn() -> Result<(), CampaignError> + Sync,
+) -> Result<Vec<(u64, Verdict)>, CampaignError> {
+    let decide_one = |seed: u64| {
+        let scenario = campaign
+            .scenario(cell, seed)
+            .map_err(CampaignError::Scenario)?;
+        let verdict = decide(&scenario, margin).map_err(CampaignError::Ceiling)?;
+        done()?;
+        Ok((seed, verdict))
+    };
+    let seeds: Vec<u64> = campaign.seeds().collect();
+    pool(threads)?.install(|| seeds.into_par_iter().map(decide_one).collect())
 }
 
 /// Threads for flights; 0 means as many as there are cores.

@@ -1,6 +1,7 @@
 //! The errors that stop a campaign.
 
 use mpp_analysis::campaign::{Cell, Disagreement};
+use mpp_analysis::ceiling::CeilingError;
 use mpp_sim::flight::FlyError;
 use mpp_sim::log::LogError;
 use mpp_sim::scenario::ScenarioError;
@@ -11,11 +12,13 @@ use std::fmt;
 pub enum CampaignError {
     /// The scenario is invalid.
     Scenario(ScenarioError),
+    /// A field cannot be judged.
+    Ceiling(CeilingError),
     /// A flight has no outcome. Holds its cell, its seed and the reason.
     Flight(Box<Cell>, u64, FlyError),
     /// A flight of a campaign of faults has no outcome. Holds its fault, its cell, its seed and the reason.
     Faulty(&'static str, Box<Cell>, u64, FlyError),
-    /// Whoever started a campaign of faults ended it.
+    /// Whoever started a command that keeps nothing ended it.
     Stopped,
     /// A flight's log cannot be written. Holds its cell, its seed and the reason.
     Log(Box<Cell>, u64, LogError),
@@ -47,6 +50,7 @@ impl fmt::Display for CampaignError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Scenario(error) => write!(f, "{error}"),
+            Self::Ceiling(error) => write!(f, "{error}"),
             Self::Flight(cell, seed, why) => {
                 write!(f, "{why}; fly it again with: fly --seed {seed} {cell}")
             }
@@ -56,7 +60,7 @@ impl fmt::Display for CampaignError {
                     "{why}; this flight failed: {fault}, --seed {seed} {cell}"
                 )
             }
-            Self::Stopped => f.write_str("interrupted: a campaign of faults keeps nothing"),
+            Self::Stopped => f.write_str("interrupted: this command keeps nothing of a part"),
             Self::Log(cell, seed, why) => {
                 write!(f, "{why}; fly it again with: fly --seed {seed} {cell}")
             }
@@ -101,6 +105,7 @@ impl std::error::Error for CampaignError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
             Self::Scenario(error) => Some(error),
+            Self::Ceiling(error) => Some(error),
             Self::Flight(_, _, error) | Self::Faulty(_, _, _, error) => Some(error),
             Self::Log(_, _, error) => Some(error),
             Self::File(_, error) | Self::Full(_, _, error) => Some(error),

@@ -7,7 +7,7 @@ mod engine;
 mod error;
 mod store;
 
-pub use engine::{fingerprint, run, run_faults};
+pub use engine::{decide_all, fingerprint, run, run_faults};
 pub use error::CampaignError;
 pub use store::{Header, RowFile, Sheet, read};
 

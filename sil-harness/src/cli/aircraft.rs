@@ -163,7 +163,7 @@ fn fly_variant(args: &AircraftArgs, variant: &Variant) -> Result<Vec<Success>, F
 fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
     let signals = Signals::heed()?;
     let jobs = campaign.jobs(Shard::WHOLE);
-    let progress = progress_bar(jobs.len());
+    let progress = progress_bar(jobs.len(), "flights");
     let rows = Mutex::new(Vec::new());
     let flown = fly_all(campaign, &jobs, threads, false, |row| {
         progress.inc(1);

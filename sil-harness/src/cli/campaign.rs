@@ -4,11 +4,11 @@ use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
 use super::values::{generator, preset};
-use crate::campaign::{CampaignError, Header, RowFile, read, run as fly_all};
+use crate::campaign::{CampaignError, Header, RowFile, decide_all, read, run as fly_all};
 use crate::files::read_field;
 use indicatif::{ProgressBar, ProgressStyle};
 use mpp_analysis::campaign::{
-    Campaign, Cell, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
+    Campaign, Cell, CellReport, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
 };
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::Preset;
@@ -43,6 +43,10 @@ pub(super) struct CampaignArgs {
     /// flies
     #[arg(long)]
     oracle: bool,
+    /// Also tell which of the fields can be passed at all, as `ceiling` does without a margin, and give success as a
+    /// share of these
+    #[arg(long)]
+    ceiling: bool,
     /// Fly pairs of flights without and with faults instead: the named faults, a list, or all. The cells are
     /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless --obstacles or --replan-hz is given. Such a
     /// campaign keeps no row file
@@ -50,7 +54,7 @@ pub(super) struct CampaignArgs {
         long,
         value_name = "NAME",
         value_delimiter = ',',
-        conflicts_with_all = ["out", "report", "shard", "oracle", "timing", "taxonomy"]
+        conflicts_with_all = ["out", "report", "shard", "oracle", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
     /// Number of flights in each cell
@@ -84,11 +88,15 @@ pub(super) struct CampaignArgs {
 }
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
-    let report = if args.report.is_empty() {
+    let (campaign, rows) = if args.report.is_empty() {
         flown(args)
     } else {
-        report_of(&args.report).map_err(|error| failure(&error))
+        rows_of(&args.report).map_err(|error| failure(&error))
     }?;
+    let mut report = Report::new(&campaign, &rows);
+    if args.ceiling {
+        set_beside_ceiling(args, &campaign, &rows, &mut report)?;
+    }
     if args.json {
         data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
     } else {
@@ -110,6 +118,7 @@ pub(super) fn failure(error: &CampaignError) -> Failure {
         | CampaignError::Interrupted(_)
         | CampaignError::Disagree(_) => FAILURE,
         CampaignError::Scenario(_)
+        | CampaignError::Ceiling(_)
         | CampaignError::File(..)
         | CampaignError::NoFile(_)
         | CampaignError::NoRowFile(_)
@@ -122,8 +131,37 @@ pub(super) fn failure(error: &CampaignError) -> Failure {
     Failure::new(code, error)
 }
 
+/// Decides about the fields of every kind once, and sets the flights beside the verdicts.
+fn set_beside_ceiling(
+    args: &CampaignArgs,
+    campaign: &Campaign,
+    rows: &[Row],
+    report: &mut Report,
+) -> Result<(), Failure> {
+    let signals = Signals::heed()?;
+    for cell in campaign.cells() {
+        let is_set = |one: &CellReport| one.cell == cell && one.against_ceiling.is_some();
+        if !report.cells.iter().any(is_set) {
+            let done = || match signals.raised() {
+                Some(_) => Err(CampaignError::Stopped),
+                None => Ok(()),
+            };
+            let verdicts = decide_all(campaign, &cell, 0.0, args.threads, done);
+            let verdicts = verdicts.map_err(|error| failure(&error))?;
+            report.set_beside(&cell, rows, &verdicts);
+        }
+    }
+    Ok(())
+}
+
 /// The report of row files.
 pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
+    let (campaign, rows) = rows_of(paths)?;
+    Ok(Report::new(&campaign, &rows))
+}
+
+/// The campaign of row files, and its rows.
+fn rows_of(paths: &[PathBuf]) -> Result<(Campaign, Vec<Row>), CampaignError> {
     let mut first: Option<Header> = None;
     let mut rows = Vec::new();
     for path in paths {
@@ -137,24 +175,25 @@ pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
     }
     let campaign = first.ok_or(CampaignError::NoRows)?.campaign;
     let rows = merge(&campaign, rows).map_err(CampaignError::Disagree)?;
-    Ok(Report::new(&campaign, &rows))
+    Ok((campaign, rows))
 }
 
-/// The lists of the command line.
-pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
+/// The fields of these files.
+pub(super) fn named_fields(paths: &[PathBuf]) -> Result<Vec<NamedField>, Failure> {
     let named = |path: &PathBuf| {
         Ok(NamedField {
             name: path.display().to_string(),
             content: read_field(path).map_err(|error| Failure::new(USAGE, error))?,
         })
     };
+    paths.iter().map(named).collect()
+}
+
+/// The lists of the command line.
+pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
     Ok(Lists {
         preset: args.preset.clone(),
-        field: args
-            .field
-            .iter()
-            .map(named)
-            .collect::<Result<_, Failure>>()?,
+        field: named_fields(&args.field)?,
         generator: args.generator.clone(),
         obstacles: args.obstacles.clone(),
         paths: args.paths.clone(),
@@ -162,7 +201,7 @@ pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
     })
 }
 
-fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
+fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>), Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
     let campaign = Campaign::new(scenario, lists(args)?, args.trials, args.seed);
@@ -173,7 +212,7 @@ fn flown(args: &CampaignArgs) -> Result<Report, Failure> {
         _ => failure(&error),
     })?;
     let rows = merge(&campaign, rows).map_err(|error| Failure::new(FAILURE, error))?;
-    Ok(Report::new(&campaign, &rows))
+    Ok((campaign, rows))
 }
 
 /// Flies the missing flights and returns every row of this shard.
@@ -201,7 +240,7 @@ fn fly_rows(
             all.len()
         ));
     }
-    let progress = progress_bar(jobs.len());
+    let progress = progress_bar(jobs.len(), "flights");
     let sink = Mutex::new((file, known));
     let flown = fly_all(campaign, &jobs, args.threads, args.timing, |row| {
         progress.inc(1);
@@ -223,10 +262,11 @@ fn fly_rows(
 }
 
 /// Makes a progress bar. It is drawn on a terminal only.
-pub(super) fn progress_bar(flights: usize) -> ProgressBar {
-    let bar = ProgressBar::new(flights as u64);
-    let style =
-        ProgressStyle::with_template("{wide_bar} {pos}/{len} flights, {per_sec}, {eta} left");
+pub(super) fn progress_bar(count: usize, what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(count as u64);
+    let style = ProgressStyle::with_template(&format!(
+        "{{wide_bar}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left"
+    ));
     if let Ok(style) = style {
         bar.set_style(style);
     }

@@ -18,7 +18,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     let campaign = FaultCampaign::new(&scenario, &lists(args)?, args.trials, args.seed, &faults)
         .map_err(|error| usage(&error))?;
     let signals = Signals::heed()?;
-    let progress = progress_bar(campaign.jobs().len());
+    let progress = progress_bar(campaign.jobs().len(), "flights");
     let flown = run_faults(&campaign, args.threads, || {
         progress.inc(1);
         signals

@@ -7,6 +7,7 @@ mod aircraft;
 mod answer;
 mod bench;
 mod campaign;
+mod ceiling;
 mod check;
 mod core;
 mod fault_campaign;
@@ -41,6 +42,8 @@ enum Command {
     Fly(fly::FlyArgs),
     /// Fly many times over a grid, in parallel, and give success rates with their intervals
     Campaign(campaign::CampaignArgs),
+    /// Tell which fields can be passed at all: blocked by proof, or passable with a flight as witness
+    Ceiling(ceiling::CeilingArgs),
     /// Tell what follows from an aircraft file: trim, modes, what the planner makes of it; with --flights, how
     /// well it flies
     Aircraft(aircraft::AircraftArgs),
@@ -67,6 +70,7 @@ pub fn run() -> ExitCode {
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Campaign(args)) if args.faults.is_empty() => campaign::run(&args),
         Some(Command::Campaign(args)) => fault_campaign::run(&args),
+        Some(Command::Ceiling(args)) => ceiling::run(&args),
         Some(Command::Aircraft(args)) => aircraft::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),

@@ -1,0 +1,85 @@
+//! `ceiling`: which fields can be passed at all, proven either way.
+
+use super::answer::{FAILURE, Failure, USAGE, data};
+use super::campaign::{failure, named_fields, progress_bar};
+use super::scenario::ScenarioArgs;
+use super::signals::Signals;
+use super::values::generator;
+use crate::campaign::{CampaignError, decide_all};
+use mpp_analysis::campaign::{Campaign, Lists};
+use mpp_analysis::ceiling::{CeilingCell, CeilingReport};
+use mpp_sim::generator::GeneratorName;
+use std::path::PathBuf;
+
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct CeilingArgs {
+    #[command(flatten)]
+    scenario: ScenarioArgs,
+    /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
+    /// --obstacles is given
+    #[arg(long, value_name = "FILE")]
+    field: Vec<PathBuf>,
+    /// Generators of random obstacles, a list [default: the scenario's, else paper]
+    #[arg(long, value_delimiter = ',', value_parser = generator())]
+    generator: Vec<GeneratorName>,
+    /// Numbers of random obstacles, a list such as 160,320 [default: the scenario's]
+    #[arg(long, value_delimiter = ',')]
+    obstacles: Vec<usize>,
+    /// Margins that a flight keeps beside the body's radius [m], a list
+    #[arg(long, value_delimiter = ',', default_values_t = [0.0])]
+    margin: Vec<f64>,
+    /// Number of fields in each cell
+    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    fields: u32,
+    /// Seed of the first field; the next fields take the next seeds [default: the scenario's]
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Number of threads; 0 takes every core
+    #[arg(long, default_value_t = 0)]
+    threads: usize,
+    /// Print the report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
+    let lists = Lists {
+        field: named_fields(&args.field)?,
+        generator: args.generator.clone(),
+        obstacles: args.obstacles.clone(),
+        ..Lists::default()
+    };
+    let campaign = Campaign::new(args.scenario.file()?, lists, args.fields, args.seed);
+    let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
+    let signals = Signals::heed()?;
+    let cells = campaign.cells();
+    let progress = progress_bar(
+        cells.len() * args.margin.len() * args.fields as usize,
+        "fields",
+    );
+    let done = || {
+        progress.inc(1);
+        signals
+            .raised()
+            .map_or(Ok(()), |_| Err(CampaignError::Stopped))
+    };
+    let mut report = CeilingReport::default();
+    for cell in &cells {
+        for &margin in &args.margin {
+            let verdicts = decide_all(&campaign, cell, margin, args.threads, done);
+            let verdicts = verdicts.map_err(|error| match signals.raised() {
+                Some(code) => Failure::new(code, error),
+                None => failure(&error),
+            })?;
+            let of_cell: Vec<_> = verdicts.into_iter().map(|(_, verdict)| verdict).collect();
+            report.cells.push(CeilingCell::new(cell, margin, &of_cell));
+        }
+    }
+    progress.finish_and_clear();
+    if args.json {
+        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
+    } else {
+        data(report.to_string().trim_end())?;
+    }
+    Ok(0)
+}
