@@ -3,7 +3,7 @@
 use super::error::FigureError;
 use super::page::{COLUMN, Sample, document, legend, legend_height};
 use super::panel::{Axis, Panel};
-use crate::campaign::{Cell, CellReport, Report};
+use crate::campaign::{AgainstCeiling, Cell, CellReport, Report};
 use mpp_sim::scenario::Preset;
 use plotters::prelude::*;
 
@@ -17,6 +17,8 @@ const SHADES: [RGBColor; 4] = [
 ];
 /// The oracle's curve.
 const ORACLE: RGBColor = RGBColor(0, 150, 150);
+/// The curve of the fields that can be passed at all.
+const CEILING: RGBColor = RGBColor(200, 90, 0);
 /// The paper's results.
 const PUBLISHED: RGBColor = RGBColor(30, 30, 30);
 /// Height of a panel \[px\].
@@ -40,7 +42,8 @@ pub enum Rule {
 }
 
 /// Draws a panel for each preset and replanning rate of a campaign, with a curve for each number of
-/// paths. Dots in the curves' colours are the paper's results. The oracle's curve is in each panel.
+/// paths. Dots in the curves' colours are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
+/// ceiling's band reaches from the fields that are proven to be passable to those that are not proven to be blocked.
 ///
 /// # Errors
 /// [`FigureError`].
@@ -54,6 +57,9 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
         .collect();
     if report.campaign.oracle {
         entries.push((Sample::Line(ORACLE, 16), "oracle"));
+    }
+    if report.cells.iter().any(|cell| cell.against_ceiling.is_some()) {
+        entries.push((Sample::Line(CEILING, 16), "passable"));
     }
     let compared = rule == Rule::Paper && report.campaign.preset.contains(&Preset::Reference);
     if compared {
@@ -120,6 +126,7 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
             }
             let oracle = cells(report, |cell| cell.oracle);
             curve(&mut panel, &oracle, rule, ORACLE);
+            ceiling(&mut panel, &cells(report, |_| true));
             let words = format!("{}, {replan_hz} Hz", preset.name());
             panel.labels.push(((0.02 * most, 8.0), words, BLACK));
             panels.push(panel);
@@ -159,6 +166,32 @@ fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, colour: RGBColor)
         .iter()
         .map(|cell| at(cell, value(cell).1.unwrap_or(0.0)));
     panel.line(colour, 16, &middle.collect::<Vec<_>>());
+}
+
+/// Adds the curve of the passable fields upon its band.
+fn ceiling(panel: &mut Panel, cells: &[&CellReport]) {
+    let mut beside: Vec<(f64, AgainstCeiling)> = cells
+        .iter()
+        .filter_map(|cell| Some((cell.cell.obstacles as f64, cell.against_ceiling?)))
+        .collect();
+    beside.dedup_by(|a, b| a.0.total_cmp(&b.0).is_eq());
+    if beside.is_empty() {
+        return;
+    }
+    let share = |part: u32, of: &AgainstCeiling| {
+        100.0 * f64::from(part) / f64::from((of.passable + of.blocked + of.undecided).max(1))
+    };
+    let low: Vec<(f64, f64)> = beside
+        .iter()
+        .map(|(x, of)| (*x, share(of.passable, of)))
+        .collect();
+    let high = beside
+        .iter()
+        .rev()
+        .map(|(x, of)| (*x, share(of.passable + of.undecided, of)));
+    let band = low.iter().copied().chain(high).collect();
+    panel.areas.push((band, CEILING.mix(0.25)));
+    panel.line(CEILING, 16, &low);
 }
 
 fn published(paths: u16) -> Vec<(f64, f64)> {

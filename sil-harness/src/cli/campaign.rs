@@ -95,7 +95,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     }?;
     let mut report = Report::new(&campaign, &rows);
     if args.ceiling {
-        set_beside_ceiling(args, &campaign, &rows, &mut report)?;
+        set_beside_ceiling(&campaign, &rows, &mut report, args.threads)?;
     }
     if args.json {
         data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
@@ -132,11 +132,11 @@ pub(super) fn failure(error: &CampaignError) -> Failure {
 }
 
 /// Decides about the fields of every kind once, and sets the flights beside the verdicts.
-fn set_beside_ceiling(
-    args: &CampaignArgs,
+pub(super) fn set_beside_ceiling(
     campaign: &Campaign,
     rows: &[Row],
     report: &mut Report,
+    threads: usize,
 ) -> Result<(), Failure> {
     let signals = Signals::heed()?;
     for cell in campaign.cells() {
@@ -146,7 +146,7 @@ fn set_beside_ceiling(
                 Some(_) => Err(CampaignError::Stopped),
                 None => Ok(()),
             };
-            let verdicts = decide_all(campaign, &cell, 0.0, args.threads, done);
+            let verdicts = decide_all(campaign, &cell, 0.0, threads, done);
             let verdicts = verdicts.map_err(|error| failure(&error))?;
             report.set_beside(&cell, rows, &verdicts);
         }
@@ -154,14 +154,8 @@ fn set_beside_ceiling(
     Ok(())
 }
 
-/// The report of row files.
-pub(super) fn report_of(paths: &[PathBuf]) -> Result<Report, CampaignError> {
-    let (campaign, rows) = rows_of(paths)?;
-    Ok(Report::new(&campaign, &rows))
-}
-
 /// The campaign of row files, and its rows.
-fn rows_of(paths: &[PathBuf]) -> Result<(Campaign, Vec<Row>), CampaignError> {
+pub(super) fn rows_of(paths: &[PathBuf]) -> Result<(Campaign, Vec<Row>), CampaignError> {
     let mut first: Option<Header> = None;
     let mut rows = Vec::new();
     for path in paths {

@@ -1,8 +1,9 @@
 //! `figures`: draws counterparts of the paper's figures.
 
 use super::answer::{FAILURE, Failure, USAGE, talk};
-use super::campaign::report_of;
+use super::campaign::{rows_of, set_beside_ceiling};
 use crate::files::write_whole;
+use mpp_analysis::campaign::Report;
 use mpp_analysis::figure::{
     FigureError, OneReplan, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
     success_svg,
@@ -25,6 +26,9 @@ pub(super) struct FiguresArgs {
     /// Row files of one campaign; its success rates are then drawn too
     #[arg(long, value_name = "FILE", num_args = 1..)]
     rows: Vec<PathBuf>,
+    /// Also draw which of the rows' fields can be passed at all, as `ceiling` tells
+    #[arg(long, requires = "rows")]
+    ceiling: bool,
 }
 
 /// Number of obstacles in the flight whose planning is drawn.
@@ -44,7 +48,11 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     pictures.push(("rays", rays_svg(&cycle).map_err(drawing)?));
     pictures.push(("candidates", candidates_svg(&cycle).map_err(drawing)?));
     if !args.rows.is_empty() {
-        let report = report_of(&args.rows).map_err(|error| Failure::new(USAGE, error))?;
+        let (campaign, rows) = rows_of(&args.rows).map_err(|error| Failure::new(USAGE, error))?;
+        let mut report = Report::new(&campaign, &rows);
+        if args.ceiling {
+            set_beside_ceiling(&campaign, &rows, &mut report, 0)?;
+        }
         pictures.push((
             "success",
             success_svg(&report, Rule::Paper).map_err(drawing)?,
