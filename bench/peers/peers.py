@@ -24,7 +24,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from programs import Program, read_programs
-from solvers import PEERS, Answer, Peer
+from solvers import DAQP_NATIVE, PEERS, Answer, Peer
 
 ROOT = Path(__file__).resolve().parents[2]
 CARGO = ["cargo", "run", "--release", "-q", "-p", "sil-harness", "--"]
@@ -169,6 +169,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--instances", type=Path, required=True, help="file that `bench qp --export` wrote")
     parser.add_argument("--limit", type=int, help="use this number of programs from the file's start")
     parser.add_argument("--harness", type=Path, help="program of the harness (default: cargo run)")
+    parser.add_argument("--daqp", type=Path, help="unpacked source of DAQP, for daqp-native")
     parser.add_argument("--markdown", type=Path, help="also write the report to this file")
     parser.add_argument("--only", metavar="NAME,...", help=f"solvers to run: {names}")
     return parser.parse_args()
@@ -177,6 +178,7 @@ def arguments() -> argparse.Namespace:
 def main() -> None:
     """Runs all solvers and prints the table."""
     args = arguments()
+    DAQP_NATIVE.source = args.daqp
     only = set(args.only.split(",")) if args.only else {"mpp", *(peer.name for peer in PEERS)}
     tallies = [Tally(peer) for peer in PEERS if peer.name in only]
     unknown = only - {"mpp", *(tally.peer.name for tally in tallies)}

@@ -18,6 +18,8 @@ STAGES, STATES, CONTROLS = 18, 6, 2
 KNOTS = STAGES + 1
 X, Z, PITCH, FLIGHT_PATH = 0, 1, 3, 5
 THRUST = 1
+UNBOUNDED = 1e30
+"""A bound that DAQP takes for none."""
 TIE = 1e-7
 """A margin nearer to zero than this is a tie: neither verdict is wrong."""
 
@@ -53,6 +55,17 @@ class Condensed:
     def inverse_factor(self) -> Array:
         """The inverse of the upper triangular R with H = R'R."""
         return np.linalg.inv(np.linalg.cholesky(self.H)).T
+
+
+@dataclass(frozen=True)
+class TwoSided:
+    """Condensed form whose opposite rows are one: min u'Hu/2 + f'u, lower <= G u <= upper."""
+
+    H: Array
+    f: Array
+    G: Array
+    lower: Array
+    upper: Array
 
 
 class Program:
@@ -110,6 +123,24 @@ class Program:
             self.state_rows @ forced + self.control_rows,
             self.bounds - self.state_rows @ free,
         )
+
+    @cached_property
+    def two_sided(self) -> TwoSided:
+        """The condensed form whose opposite rows are one."""
+        form = self.condensed
+        # The recorded directions are opposite to within rounding, which is far below the tolerance of answers. Adding 0
+        # makes every zero positive, so that equal rows have equal bytes.
+        factors = np.round(np.hstack([self.state_rows, self.control_rows]), 13) + 0.0
+        kept: dict[bytes, int] = {}
+        lower = np.full(len(form.h), -UNBOUNDED)
+        for index, row in enumerate(factors):
+            other = kept.get((0.0 - row).tobytes())
+            if other is None:
+                kept[row.tobytes()] = index
+            else:
+                lower[other] = -form.h[index]
+        rows = list(kept.values())
+        return TwoSided(form.H, form.f, np.ascontiguousarray(form.G[rows]), lower[rows], form.h[rows])
 
     @cached_property
     def _response(self) -> tuple[Array, Array]:

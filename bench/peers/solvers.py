@@ -3,16 +3,20 @@
 Packages are imported where they are used, so that a missing package only costs its own line.
 """
 
+import ctypes
+import subprocess
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
+from pathlib import Path
 from time import perf_counter_ns
 from typing import Any
 
 import numpy as np
 from scipy import sparse
 
-from programs import Array, Condensed, Full, Program
+from programs import Array, Full, Program, TwoSided
 
 
 @dataclass(frozen=True)
@@ -90,8 +94,8 @@ def daqp(program: Program) -> Answer:
     """DAQP from scratch."""
     import daqp as package
 
-    form = program.condensed
-    u, _, flag, info = package.solve(form.H, form.f, form.G, form.h)
+    form = program.two_sided
+    u, _, flag, info = package.solve(form.H, form.f, form.G, form.upper, form.lower)
     return answer(info["setup_time"] + info["solve_time"], flag == 1, flag == -1, u)
 
 
@@ -101,26 +105,93 @@ class DaqpModel:
     def __init__(self, with_update: bool) -> None:
         """`with_update`: the time includes the update, which DAQP itself does not time."""
         self.with_update = with_update
-        self.form: Condensed | None = None
+        self.form: TwoSided | None = None
 
     def __call__(self, program: Program) -> Answer:
         """Solves a program, starting without active rows."""
         import daqp as package
 
-        form, old = program.condensed, self.form
-        fits = old is not None and np.array_equal(old.H, form.H) and np.array_equal(old.G, form.G)
-        if not fits:
+        form = program.two_sided
+        count = len(form.upper)
+        if not fits(self.form, form):
             self.form, self.model = form, package.Model()
             # These bounds surely hold: DAQP refuses to set up with a row of zeros that does not hold.
-            self.model.setup(form.H, form.f, form.G, np.ones(len(form.h)))
-        inactive = np.zeros(len(form.h), dtype=np.int32)
+            self.model.setup(form.H, form.f, form.G, np.ones(count), -np.ones(count))
+        inactive = np.zeros(count, dtype=np.int32)
         begin = perf_counter_ns()
-        self.model.update(f=form.f, bupper=form.h, sense=inactive)
+        refused = self.model.update(f=form.f, bupper=form.upper, blower=form.lower, sense=inactive)
+        if refused < 0:
+            # Bounds that cross are found by the update.
+            return answer((perf_counter_ns() - begin) * 1e-9, False, refused == -1, form.f)
         u, _, flag, info = self.model.solve()
         seconds = (perf_counter_ns() - begin) * 1e-9
         return answer(
             seconds if self.with_update else info["solve_time"], flag == 1, flag == -1, u
         )
+
+
+def fits(old: TwoSided | None, form: TwoSided) -> bool:
+    """Whether a workspace for an older form also serves this one."""
+    return old is not None and np.array_equal(old.H, form.H) and np.array_equal(old.G, form.G)
+
+
+class DaqpNative:
+    """DAQP as C programs use it, compiled for this machine. As `DaqpModel`, without Python in its time."""
+
+    def __init__(self) -> None:
+        """`source` is the unpacked source of DAQP."""
+        self.source: Path | None = None
+        self.form: TwoSided | None = None
+        self.held = None
+
+    @cached_property
+    def library(self) -> ctypes.CDLL:
+        """The compiled library."""
+        if self.source is None:
+            raise ValueError("give DAQP's unpacked source: --daqp FOLDER (README.md)")
+        built = Path(tempfile.mkdtemp()) / "daqp.so"
+        own = Path(__file__).with_name("daqp_native.c")
+        source = self.source / "csrc"
+        # The flags of DAQP's own wheel, and the machine's instructions.
+        flags = ["-O3", "-march=native", "-fassociative-math", "-fno-signed-zeros", "-fno-trapping-math"]
+        files = [own, *sorted(source.glob("src/*.c"))]
+        shared = ["-shared", "-fPIC", "-I", source / "include", "-o", built]
+        subprocess.run(["cc", *flags, *shared, *files, "-lm"], check=True)
+        library = ctypes.CDLL(str(built))
+        library.held_new.restype = ctypes.c_void_p
+        library.held_free.argtypes = [ctypes.c_void_p]
+        library.held_solve.restype = ctypes.c_double
+        return library
+
+    def __call__(self, program: Program) -> Answer:
+        """Solves a program, starting without active rows."""
+        form = program.two_sided
+        rows, variables = form.G.shape
+        sense, flag = np.zeros(rows, dtype=np.int32), ctypes.c_int()
+        if not fits(self.form, form):
+            if self.held:
+                self.library.held_free(self.held)
+            # The workspace keeps pointers to these. The bounds surely hold, as in `DaqpModel`.
+            self.form, self.kept = form, [form.H, form.f, form.G, np.ones(rows), -np.ones(rows), sense]
+            self.held = self.library.held_new(variables, rows, *map(_pointer, self.kept))
+            if not self.held:
+                raise ValueError("DAQP cannot set this program up")
+        x, multipliers = np.zeros(variables), np.zeros(rows)
+        vectors = [form.f, form.upper, form.lower, sense, x, multipliers]
+        seconds = self.library.held_solve(
+            ctypes.c_void_p(self.held), *map(_pointer, vectors), ctypes.byref(flag)
+        )
+        return answer(seconds, flag.value == 1, flag.value == -1, x)
+
+
+def _pointer(array: Any) -> ctypes.c_void_p:
+    """The place of an array's numbers, row by row."""
+    if not array.flags.c_contiguous:
+        raise ValueError("the array is not row by row")
+    return ctypes.c_void_p(array.ctypes.data)
+
+
+DAQP_NATIVE = DaqpNative()
 
 
 def osqp(condensed: bool, program: Program) -> Answer:
@@ -215,12 +286,13 @@ PEERS = [
         "cvxopt-tight", "cvxopt", "full sparse", "python", "set-up, solve", 3,
         partial(cvxopt, TIGHT),
     ),
-    Peer("daqp", "daqp", "condensed dense", "native", "set-up, solve", 50, daqp),
-    Peer("daqp-model", "daqp", "condensed dense", "native", "solve", 50, DaqpModel(False)),
+    Peer("daqp", "daqp", "two-sided dense", "native", "set-up, solve", 50, daqp),
+    Peer("daqp-model", "daqp", "two-sided dense", "native", "solve", 50, DaqpModel(False)),
     Peer(
-        "daqp-model-update", "daqp", "condensed dense", "python", "update, solve", 50,
+        "daqp-model-update", "daqp", "two-sided dense", "python", "update, solve", 50,
         DaqpModel(True),
     ),
+    Peer("daqp-native", "daqp", "two-sided dense", "native", "update, solve", 50, DAQP_NATIVE),
     Peer("osqp", "osqp", "full sparse", "native", "solve", 3, partial(osqp, False)),
     Peer("osqp-condensed", "osqp", "condensed dense", "native", "solve", 3, partial(osqp, True)),
     Peer("piqp", "piqp", "full sparse", "native", "solve", 10, partial(piqp, "sparse_ldlt")),

@@ -19,7 +19,7 @@
 //! * [`instance`]: a candidate's program, as other solvers read it.
 //! * [`check_reference`]: checks core and plant against data recorded from the authors' code.
 //! * [`mod@bench`]: times our parts beside others.
-//! * [`campaign`]: reports about many flights over a grid, with intervals.
+//! * [`campaign`]: reports about many flights over a grid, with intervals; [`rows`]: the first line of a file of them.
 //! * [`aircraft`]: what follows from an aircraft file before any flight.
 //! * [`figure`]: counterparts of the paper's figures; [`picture`]: pages for a browser.
 //!
@@ -34,6 +34,8 @@ pub mod check_reference;
 pub mod bench;
 
 pub mod campaign;
+
+pub mod rows;
 
 pub mod aircraft;
 

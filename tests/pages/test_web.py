@@ -138,6 +138,34 @@ def test_clicks_and_switches_are_in_the_link_and_in_the_log(open_page, tmp_path)
     assert "2.60 s: obstacles 1 capsule" in replayed.inner_text("#orders")
 
 
+def test_an_endless_field_goes_on_with_the_next_seed(open_page, tmp_path):
+    page = open_page(PAGE.as_uri() + "#obstacles=10&duration=4")
+    begun(page)
+    page.check("#dropouts")
+    page.select_option("#speed", "max")
+    page.wait_for_function("flight.header.seed >= 4")
+    page.select_option("#speed", "0.25")
+    pause(page)
+    # It holds one flight, and the switches stay as they are.
+    assert page.evaluate("flight.ticks.t.length") < 400
+    assert page.is_checked("#dropouts") and not page.is_checked("#wind")
+    assert page.evaluate("flight.orders") == [{"tick": 0, "order": "disturb", "dropouts": 0.3}]
+    seed, hash_ = page.evaluate("flight.header.seed"), page.inner_text("#hash")
+    assert page.input_value("#seed") == str(seed)
+    # The link names this field.
+    other = open_page(PAGE.as_uri() + page.get_attribute("#link", "href"))
+    stands(other)
+    assert other.evaluate("flight.header.seed") == seed and other.inner_text("#hash") == hash_
+    # A flight that fails does not go on.
+    page = open_page(PAGE.as_uri() + "#obstacles=10&duration=4&t=10")
+    stands(page)
+    x, z = page.evaluate("[flight.ticks.x[now], flight.ticks.z[now]]")
+    page.evaluate(f"order({{ order: 'obstacles', field: {{ circle: [{{ x: {x} + 4, z: {z}, radius: 3 }}] }} }})")
+    page.click("#play")
+    page.wait_for_function("ended")
+    assert "collision" in page.inner_text("#state") and page.input_value("#seed") == "1"
+
+
 def test_it_can_hurry_to_thirty_times_real_time(open_page):
     page = open_page(PAGE.as_uri())
     page.wait_for_function("flight && flight.ticks.t.length > 100")

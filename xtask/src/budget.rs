@@ -200,7 +200,7 @@ fn fly(image: Image, scenario: &str) -> Result<Flown> {
     )?;
     let arguments: Vec<String> = scenario.split(' ').map(str::to_owned).collect();
     harness.fly_emulated(&arguments, &mut emulator)?;
-    let report = emulator.report()?;
+    let report = Report::of(&emulator.report()?)?;
     let counts = Counts::read(&folder)?;
     counts.check()?;
     Ok(Flown { counts, report })

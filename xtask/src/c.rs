@@ -1,43 +1,71 @@
-//! `c`: the core's C interface. Flies the example under sanitizers, and links the library for a Cortex-M7.
+//! `c`: the core's C interface. Flies the example under sanitizers, and on an emulated Cortex-M7.
 
-use crate::flight::Harness;
+use crate::flight::{Harness, PATIENCE, await_end};
 use crate::folders::{root, work};
+use crate::qemu::{Emulator, Run};
 use crate::toolchain::{Toolchain, install, output, succeed};
-use anyhow::{Context, Result, ensure};
-use std::process::Command;
+use anyhow::{Context, Result, bail, ensure};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
 const THUMB: &str = "thumbv7em-none-eabihf";
-/// Everything that the library exports. The link begins here.
-const EXPORTS: [&str; 10] = [
-    "mpp_text",
-    "mpp_storage_size",
-    "mpp_init",
-    "mpp_usual",
-    "mpp_set_up",
-    "mpp_step",
-    "mpp_begin",
-    "mpp_advance",
-    "mpp_finish",
-    "mpp_counters",
-];
+const WARNINGS: [&str; 4] = ["-std=c11", "-Wall", "-Wextra", "-Werror"];
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct CArgs {
-    /// Number of seeds that the example flies
+    /// Number of seeds that the example flies under sanitizers
     #[arg(long, default_value_t = 3)]
     flights: u64,
+    /// Number of seeds that it flies on the Cortex-M7
+    #[arg(long, default_value_t = 1)]
+    emulated: u64,
 }
 
 pub(crate) fn run(args: &CArgs) -> Result<()> {
-    example(args.flights)?;
-    library()
-}
-
-/// Flies the example under the sanitizers of addresses and undefined behaviour, and compares its hashes with the
-/// harness's.
-fn example(flights: u64) -> Result<()> {
     let folder = work("c")?;
     let host = Harness::build(&folder)?;
+    let example = Example {
+        program: example(&host, &folder)?,
+        host,
+    };
+    for seed in 1..=args.flights {
+        let mut fly = example.command(seed);
+        println!("this machine: {}", example.check(seed, &output(&mut fly)?)?);
+    }
+    let image = flight_computer(&folder)?;
+    for seed in 1..=args.emulated {
+        emulated(&example, seed, &image, &folder)?;
+    }
+    Ok(())
+}
+
+/// The host's example, and the harness that knows the right hashes.
+struct Example {
+    program: PathBuf,
+    host: Harness,
+}
+
+impl Example {
+    fn command(&self, seed: u64) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args([&seed.to_string(), "20"]);
+        command
+    }
+
+    /// Compares what the example said with the harness's flight, and gives it back.
+    fn check<'a>(&self, seed: u64, said: &'a str) -> Result<&'a str> {
+        let own = self.host.fly(&["--seed".to_owned(), seed.to_string()])?;
+        ensure!(
+            said.contains(own.hash()),
+            "{said}the harness has {}: the flights differ",
+            own.hash()
+        );
+        Ok(said.trim_end())
+    }
+}
+
+/// Builds the example under the sanitizers of addresses and undefined behaviour.
+fn example(host: &Harness, folder: &Path) -> Result<PathBuf> {
     let mut cargo = Command::new("cargo");
     cargo.current_dir(root());
     succeed(cargo.args(["build", "--quiet", "--locked", "-p", "mpp-c-plant"]))?;
@@ -51,28 +79,19 @@ fn example(flights: u64) -> Result<()> {
     let program = folder.join("fly");
     let mut cc = Command::new("cc");
     cc.current_dir(root().join("bindings/c"))
-        .args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-O1", "-g"])
+        .args(WARNINGS)
+        .args(["-O1", "-g"])
         .args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"])
-        .args(["-I", "include", "example/fly.c"])
+        .args(["-I", "include", "example/fly.c", "example/autopilot.c"])
         .arg(built.join("debug/libmpp_c_plant.a"))
         .args(["-lm", "-lpthread", "-ldl", "-o"])
         .arg(&program);
     succeed(&mut cc)?;
-    for seed in 1..=flights {
-        let said = output(Command::new(&program).arg(seed.to_string()))?;
-        let own = host.fly(&["--seed".to_owned(), seed.to_string()])?;
-        print!("{said}");
-        ensure!(
-            said.contains(own.hash()),
-            "the harness has {}: the flights differ",
-            own.hash()
-        );
-    }
-    Ok(())
+    Ok(program)
 }
 
-/// Links all exports of the library for a Cortex-M7. This fails if one of them can panic.
-fn library() -> Result<()> {
+/// Builds the example for a Cortex-M7. It uses every call of the library, and does not link if one of them can panic.
+fn flight_computer(folder: &Path) -> Result<PathBuf> {
     let embed = "bindings/c/embed";
     // The workspace's versions are used. This is not --locked: cargo drops the packages that are not used here.
     std::fs::copy(
@@ -87,13 +106,58 @@ fn library() -> Result<()> {
     );
     succeed(cargo.arg("--release"))?;
     let library = work("")?.join(THUMB).join("release/libmpp_c_embed.a");
-    install(&[("/usr/bin/ld.lld", "lld")])?;
-    let linked = work("c")?.join("gate.elf");
-    let mut link = Command::new("ld.lld");
-    link.args(["-m", "armelf", "--gc-sections", "--entry=mpp_init", "-o"])
-        .arg(&linked);
-    link.args(EXPORTS.map(|name| format!("--undefined={name}")));
-    succeed(link.arg(&library)).context("the library can panic, or lacks an export")?;
-    println!("{} links without a panic", library.display());
+    install(&[("/usr/bin/arm-none-eabi-gcc", "gcc-arm-none-eabi")])?;
+    let image = folder.join("flight-computer.elf");
+    let mut gcc = Command::new("arm-none-eabi-gcc");
+    gcc.current_dir(root().join("bindings/c"))
+        .args(WARNINGS)
+        .args([
+            "-O2",
+            "-ffreestanding",
+            "-nostdlib",
+            "-Wl,--gc-sections,-z,noexecstack",
+        ])
+        .args(["-mcpu=cortex-m7", "-mfpu=fpv5-d16", "-mfloat-abi=hard"])
+        .args(["-T", "example/flight_computer.ld", "-I", "include"])
+        .args(["example/flight_computer.c", "example/autopilot.c"])
+        .arg(&library)
+        .args(["-lgcc", "-o"])
+        .arg(&image);
+    succeed(&mut gcc).context("the library can panic, or lacks an export")?;
+    Ok(image)
+}
+
+/// Flies the example's core on the emulated flight computer.
+fn emulated(example: &Example, seed: u64, image: &Path, folder: &Path) -> Result<()> {
+    let run = Run {
+        image,
+        folder,
+        shift: 0,
+        counter: None,
+    };
+    let mut emulator = Emulator::fifo(&run, false)?;
+    let mut fly = example.command(seed);
+    fly.arg(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
+    let flown = await_end(fly.spawn()?, &mut emulator, PATIENCE)?;
+    let said = String::from_utf8_lossy(&flown.stdout);
+    ensure!(
+        flown.status.success(),
+        "the flight failed:\n{said}{}",
+        String::from_utf8_lossy(&flown.stderr)
+    );
+    let words = emulator.report()?;
+    let [storage, init, wrong, set_up, flight] = words[..] else {
+        bail!("the report has {} words", words.len());
+    };
+    println!(
+        "Cortex-M7: {}, storage {storage} bytes, stack of mpp_init {init}, of mpp_set_up {set_up}, in flight {flight} bytes",
+        example.check(seed, &said)?
+    );
+    ensure!(
+        wrong == 0,
+        "{wrong} calls that make no sense were not refused as the header says"
+    );
     Ok(())
 }

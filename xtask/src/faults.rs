@@ -73,7 +73,7 @@ impl Bench {
     fn fly_by_timer(&self, image: &Path, arguments: &[String]) -> Result<(Outcome, Report)> {
         let mut emulator = Emulator::fifo(&self.run(image), true)?;
         let outcome = self.harness.fly_emulated(arguments, &mut emulator)?;
-        Ok((outcome, emulator.report()?))
+        Ok((outcome, Report::of(&emulator.report()?)?))
     }
 
     /// The step comes every 10 ms, whatever the planner does, and the flight is that of the host.

@@ -6,7 +6,7 @@ use crate::toolchain::succeed;
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 /// The time that emulator and harness wait for each other. It is far more than they need.
@@ -129,12 +129,12 @@ impl Harness {
 
     /// Flies with the harness's own core.
     pub(crate) fn fly(&self, arguments: &[String]) -> Result<Outcome> {
-        finish(self.command(arguments, &self.out.join("host")).spawn()?)
+        outcome(&self.command(arguments, &self.out.join("host")).output()?)
     }
 
     /// Flies with a core at a link.
     pub(crate) fn fly_linked(&self, arguments: &[String], link: &str) -> Result<Outcome> {
-        finish(self.linked(arguments, link).spawn()?)
+        outcome(&self.linked(arguments, link).output()?)
     }
 
     fn linked(&self, arguments: &[String], link: &str) -> Command {
@@ -151,27 +151,35 @@ impl Harness {
         arguments: &[String],
         emulator: &mut Emulator,
     ) -> Result<Outcome> {
-        let mut harness = self.linked(arguments, emulator.link()).spawn()?;
-        let mut died = None;
-        // The harness notices a core that died, unless it died before the link was up.
-        while harness.try_wait()?.is_none() {
-            if died.is_none() && emulator.has_ended()? {
-                died = Some(Instant::now());
-            }
-            if died.is_some_and(|when| when.elapsed() > self.patience) {
-                harness.kill()?;
-                harness.wait()?;
-                bail!("the emulator ended before the flight did");
-            }
-            std::thread::sleep(Duration::from_millis(20));
-        }
-        finish(harness)
+        let harness = self.linked(arguments, emulator.link()).spawn()?;
+        outcome(&await_end(harness, emulator, self.patience)?)
     }
 }
 
-fn finish(harness: Child) -> Result<Outcome> {
-    let output = harness.wait_with_output()?;
-    let text = String::from_utf8(output.stdout)?;
+/// Waits until a program that flies with an emulated core has ended.
+pub(crate) fn await_end(
+    mut program: Child,
+    emulator: &mut Emulator,
+    patience: Duration,
+) -> Result<Output> {
+    let mut died = None;
+    // The program notices a core that died, unless it died before the link was up.
+    while program.try_wait()?.is_none() {
+        if died.is_none() && emulator.has_ended()? {
+            died = Some(Instant::now());
+        }
+        if died.is_some_and(|when| when.elapsed() > patience) {
+            program.kill()?;
+            program.wait()?;
+            bail!("the emulator ended before the flight did");
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    Ok(program.wait_with_output()?)
+}
+
+fn outcome(output: &Output) -> Result<Outcome> {
+    let text = str::from_utf8(&output.stdout)?;
     // Codes 3 and 4 (collision, extreme state) are results of flights too.
     if !matches!(output.status.code(), Some(0 | 3 | 4)) {
         bail!(

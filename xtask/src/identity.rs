@@ -5,7 +5,7 @@ use crate::flight::Harness;
 use crate::folders::work;
 use crate::qemu::{Emulator, Run};
 use crate::{aarch64, wasm};
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use serde_json::json;
 use std::process::Command;
 use std::time::Instant;
@@ -103,18 +103,30 @@ pub(crate) fn run(args: &IdentityArgs) -> Result<()> {
     firmware::build(&[Image::Fifo])?;
     let emulated = aarch64::harness(&work("aarch64")?)?;
     let module = wasm::build()?;
+    let on_m7 = || {
+        Target::fly("cortex-m7", "harness, core in QEMU's mps2-an500", || {
+            flights.with(|flags| cortex_m7(&host, flags))
+        })
+    };
+    let on_aarch64 = || {
+        Target::fly("aarch64", "harness and core in QEMU's user mode", || {
+            flights.with(|flags| Ok(emulated.fly(flags)?.hash().to_owned()))
+        })
+    };
+    // The two that take long fly at the same time.
+    let (m7, aarch64) = std::thread::scope(|scope| {
+        let m7 = scope.spawn(on_m7);
+        let aarch64 = on_aarch64();
+        (m7.join(), aarch64)
+    });
     let targets = [
         Target::fly(
             std::env::consts::ARCH,
             "harness, core in its process",
             || flights.with(|flags| Ok(host.fly(flags)?.hash().to_owned())),
         )?,
-        Target::fly("cortex-m7", "harness, core in QEMU's mps2-an500", || {
-            flights.with(|flags| cortex_m7(&host, flags))
-        })?,
-        Target::fly("aarch64", "harness and core in QEMU's user mode", || {
-            flights.with(|flags| Ok(emulated.fly(flags)?.hash().to_owned()))
-        })?,
+        m7.map_err(|_| anyhow!("the flights on cortex-m7 broke"))??,
+        aarch64?,
         Target::fly("wasm32", "simulation and core in Node", || {
             let scenarios: Vec<String> =
                 flights.seeds().map(|seed| flights.scenario(seed)).collect();

@@ -58,7 +58,7 @@ enum Command {
     Wasm,
     /// Build the page that flies in the browser: one file, which needs nothing else
     Web,
-    /// Fly the example of the C interface under sanitizers, and link its library, which only links if it cannot panic
+    /// Fly the example of the C interface under sanitizers, and on an emulated Cortex-M7
     C(c::CArgs),
     /// Fly the same seeds on this machine, a Cortex-M7, aarch64, WebAssembly and from Python, and compare the hashes
     Identity(identity::IdentityArgs),

@@ -114,16 +114,22 @@ impl Emulator {
         Ok(())
     }
 
-    /// Waits for the image `fifo` to end, and reads its report.
-    pub(crate) fn report(mut self) -> Result<Report> {
+    /// Waits for an image over FIFOs to end, and reads the words of its report.
+    pub(crate) fn report(mut self) -> Result<Vec<u32>> {
         self.wait()?;
         let bytes = std::fs::read(self.folder.join("report")).context("the image's report")?;
         let (words, _) = bytes.as_chunks::<4>();
-        let words: Vec<u32> = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+        Ok(words.iter().map(|word| u32::from_le_bytes(*word)).collect())
+    }
+}
+
+impl Report {
+    /// The report of the image `fifo`, from its words.
+    pub(crate) fn of(words: &[u32]) -> Result<Self> {
         let [stack, ticks, missed, longest, shortest, restarts] = words[..] else {
             bail!("the image's report has {} words", words.len());
         };
-        Ok(Report {
+        Ok(Self {
             stack,
             ticks,
             missed,

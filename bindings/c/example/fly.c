@@ -1,117 +1,87 @@
-/* Flies the core from C against the simulated aircraft: fly [SEED [SECONDS]]. The hash is that of
- * `sil-harness fly --seed SEED --duration SECONDS`. */
+/* Flies the core from C against the simulated aircraft: fly [SEED [SECONDS [FOLDER]]]. The hash is that of
+ * `sil-harness fly --seed SEED --duration SECONDS`. The core runs in this process, or with FOLDER on the flight
+ * computer whose FIFOs are there (flight_computer.c). */
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "mpp_plant.h"
+#include "autopilot.h"
+#include "wire.h"
 
-#define TICK 0.01       /* s */
-#define STORAGE 524288  /* bytes; mpp_storage_size() says how many are needed */
-
-static _Alignas(MPP_ALIGNMENT) unsigned char storage[STORAGE];
-
+/* A flight computer behind two FIFOs. */
 typedef struct {
-  mpp_core *core;
-  bool planning;
-  uint32_t scan_tick;
-  uint32_t latency; /* ticks */
-} autopilot;
+  FILE *to_core, *to_harness;
+} remote;
 
-static mpp_status fly(void *context, uint32_t tick, const mpp_sensors *sensors, const mpp_scan *scan,
-                      mpp_answer *answer) {
-  autopilot *own = context;
-  double time = tick * TICK;
-  mpp_status status;
-  /* The deadline of a cycle: the best plan so far is flown from this step on. */
-  if (own->planning && tick - own->scan_tick >= own->latency) {
-    if ((status = mpp_finish(own->core, time, &answer->plan)) != MPP_STATUS_OK) return status;
-    answer->has_plan = true;
-    answer->plan_tick = own->scan_tick;
-    own->planning = false;
+static mpp_status fly_remotely(void *context, uint32_t tick, const mpp_sensors *sensors, const mpp_scan *scan,
+                               mpp_answer *answer) {
+  remote *own = context;
+  wire_tick sent = {.tick = tick, .sensors = *sensors};
+  static wire_answer received;
+  if (scan != NULL) {
+    sent.has_scan = true;
+    sent.age = scan->age;
+    sent.count = (uint32_t)scan->count;
+    sent.angle_min = scan->angle_min;
+    sent.angle_increment = scan->angle_increment;
+    for (size_t beam = 0; beam < scan->count && beam < MPP_BEAMS; beam++) sent.ranges[beam] = scan->ranges[beam];
   }
-  if ((status = mpp_step(own->core, time, sensors, &answer->output)) != MPP_STATUS_OK) return status;
-  if (scan != NULL && !own->planning) {
-    if ((status = mpp_begin(own->core, scan)) != MPP_STATUS_OK) return status;
-    own->planning = true;
-    own->scan_tick = tick - scan->age;
+  if (fwrite(&sent, sizeof sent, 1, own->to_core) != 1 || fflush(own->to_core) != 0 ||
+      fread(&received, sizeof received, 1, own->to_harness) != 1) {
+    fprintf(stderr, "the flight computer has ended at tick %u\n", (unsigned)tick);
+    exit(1);
   }
-  /* A flight computer does a few slices between two steps, or as many as it has time for. */
-  for (bool more = own->planning; more;)
-    if ((status = mpp_advance(own->core, &more)) != MPP_STATUS_OK) return status;
-  return mpp_counters(own->core, &answer->counters);
+  *answer = received.answer;
+  return (mpp_status)received.status;
 }
 
-/* What must be refused, and how. Returns the number of wrong answers. */
-static int misuse(mpp_core *core, mpp_config config) {
-  mpp_core *none = NULL;
-  mpp_sensors sensors = {0};
-  mpp_output output;
-  mpp_plan plan;
-  bool more;
-  float ranges[MPP_BEAMS] = {0};
-  mpp_scan scan = {.count = 3, .ranges = ranges};
-  mpp_config bad = config;
-  int wrong = 0;
-#define EXPECT(call, expected) wrong += (call) != (expected)
-  EXPECT(mpp_init(NULL, STORAGE, &none), MPP_STATUS_NULL);
-  EXPECT(mpp_init(storage, 16, &none), MPP_STATUS_STORAGE);
-  EXPECT(mpp_init(storage + 1, STORAGE - 1, &none), MPP_STATUS_ALIGNMENT);
-  EXPECT(mpp_step(NULL, 0, &sensors, &output), MPP_STATUS_NULL);
-  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_NOT_SET_UP);
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_NOT_SET_UP);
-  EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_NOT_SET_UP);
-  bad.aircraft.mass = 0.0 / 0.0;
-  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_OUT_OF_RANGE);
-  bad = config, bad.beams = 0;
-  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_BEAMS);
-  bad = config, bad.latency_ticks = 0;
-  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_PERIOD);
-  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_NOT_SET_UP);
-  EXPECT(mpp_set_up(core, &config), MPP_STATUS_OK);
-  EXPECT(mpp_advance(core, &more), MPP_STATUS_IDLE);
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_TIME);
-  EXPECT(mpp_step(core, 0.0 / 0.0, &sensors, &output), MPP_STATUS_TIME);
-  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_OK);
-  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_TIME);
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
-  scan.count = 1u << 30;
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
-  scan.count = config.beams, ranges[5] = -1;
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_RANGE);
-  ranges[5] = 0, scan.age = 1000000;
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_AGE);
-  scan.age = 0;
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_OK);
-  EXPECT(mpp_begin(core, &scan), MPP_STATUS_BUSY);
-  if (mpp_text(-7) == NULL || mpp_text(MPP_STATUS_TRIM) == mpp_text(MPP_STATUS_OK)) wrong++;
-  return wrong;
+static FILE *open_fifo(const char *folder, const char *name, const char *mode) {
+  char path[4096];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *file = fopen(path, mode);
+  if (file == NULL) {
+    perror(path);
+    exit(1);
+  }
+  return file;
+}
+
+static mpp_status fly_on(const char *folder, uint64_t seed, uint32_t seconds, char (*hash)[17], bool *survived) {
+  /* In the flight computer's order, because each end waits for the other one. */
+  remote own;
+  own.to_core = open_fifo(folder, "to-core", "wb");
+  own.to_harness = open_fifo(folder, "to-harness", "rb");
+  fwrite(&seed, sizeof seed, 1, own.to_core);
+  mpp_status status = mpp_plant_fly(seed, seconds, fly_remotely, &own, hash, survived);
+  fclose(own.to_core);
+  fclose(own.to_harness);
+  return status;
+}
+
+static mpp_status fly_here(uint64_t seed, uint32_t seconds, char (*hash)[17], bool *survived) {
+  autopilot own;
+  mpp_status status = autopilot_init(&own);
+  if (status != MPP_STATUS_OK) return status;
+  int wrong = autopilot_misuse(&own);
+  if (wrong > 0) {
+    fprintf(stderr, "%d calls that make no sense were not refused as the header says\n", wrong);
+    exit(1);
+  }
+  status = autopilot_set_up(&own, seed);
+  if (status != MPP_STATUS_OK) return status;
+  return mpp_plant_fly(seed, seconds, autopilot_fly, &own, hash, survived);
 }
 
 int main(int count, char **arguments) {
   uint64_t seed = count > 1 ? strtoull(arguments[1], NULL, 10) : 1;
   uint32_t seconds = count > 2 ? (uint32_t)strtoul(arguments[2], NULL, 10) : 20;
-  autopilot own = {0};
-  mpp_config config;
-  mpp_status status = mpp_init(storage, sizeof storage, &own.core);
-  if (status == MPP_STATUS_OK) status = mpp_usual(&config);
-  if (status == MPP_STATUS_OK) {
-    int wrong = misuse(own.core, config);
-    if (wrong > 0) {
-      fprintf(stderr, "%d calls that make no sense were not refused as the header says\n", wrong);
-      return 1;
-    }
-    config.seed = seed;
-    own.latency = config.latency_ticks;
-    status = mpp_set_up(own.core, &config);
-  }
   char hash[17] = "";
   bool survived = false;
-  if (status == MPP_STATUS_OK) status = mpp_plant_fly(seed, seconds, fly, &own, &hash, &survived);
+  mpp_status status = count > 3 ? fly_on(arguments[3], seed, seconds, &hash, &survived)
+                                : fly_here(seed, seconds, &hash, &survived);
   if (status != MPP_STATUS_OK) {
     fprintf(stderr, "the flight failed: %s\n", mpp_text(status));
     return 1;
   }
-  printf("seed %llu, %s, log %s, storage %zu bytes\n", (unsigned long long)seed,
-         survived ? "survived" : "lost", hash, mpp_storage_size());
+  printf("seed %llu, %s, log %s\n", (unsigned long long)seed, survived ? "survived" : "lost", hash);
   return 0;
 }

@@ -3,12 +3,9 @@
 
 /* Made from bindings/c/core by its test; do not change it by hand. */
 
-#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdlib.h>
-
 
 // Greatest number of beams of a scan.
 #define MPP_BEAMS 128

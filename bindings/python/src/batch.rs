@@ -2,13 +2,14 @@
 
 use crate::episode::Episode;
 use crate::errors::{self, alone, input, state};
-use crate::input::rows;
+use crate::input::{rows, vector};
 use crate::output::flat;
 use crate::scenario;
 use mpp_analysis::recording;
 use mpp_core::vehicle::Control;
 use mpp_sim::scenario::{Scenario, ScenarioFile, TICKS_PER_SECOND};
-use numpy::{PyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
@@ -148,13 +149,30 @@ impl Batch {
         (rewards, failed, ended).into_pyobject(py)
     }
 
+    /// Flies one tick of a single flight by its action, elevator and thrust. Gives what a step of an environment gives:
+    /// what the agent knows, the reward, whether the flight failed, whether it came to its end, and the truth.
+    fn step_one<'py>(&self, action: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyTuple>> {
+        let (py, action) = (action.py(), pair(action)?);
+        let mut runs = alone(&self.guarded, "environment")?;
+        let place = runs.first_mut().ok_or_else(unset)?;
+        let (reward, failed, ended) = fly(place, &self.plan, action)?;
+        let run = place.as_ref().ok_or_else(unset)?;
+        (run.known(py)?, reward, failed, ended, run.truth(py)?).into_pyobject(py)
+    }
+
+    /// What the agent of a single flight knows: a row of `observe`.
+    fn observe_one<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let runs = alone(&self.guarded, "environment")?;
+        let run = runs.first().and_then(Option::as_ref).ok_or_else(unset)?;
+        run.known(py)
+    }
+
     /// What the agents know, a row a flight: ranges of the last scan [m]; airspeed [m/s] and pitch \[rad\]; place
     /// [m]; ages of place and scan [s].
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let runs = alone(&self.guarded, "environment")?;
         let runs = runs.iter().map(|run| run.as_ref().ok_or_else(unset));
         let runs = runs.collect::<PyResult<Vec<&Run>>>()?;
-        let single = |values: [f64; 2]| values.map(|value| value as f32);
         let (rows, dict) = (runs.len(), PyDict::new(py));
         let scans = runs.iter().flat_map(|run| run.scan.iter().copied());
         dict.set_item(
@@ -174,9 +192,7 @@ impl Batch {
     fn truth<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
         let runs = alone(&self.guarded, "environment")?;
         let run = runs.get(index).and_then(Option::as_ref).ok_or_else(unset)?;
-        let dict = run.episode.truth(py)?;
-        dict.set_item("seed", run.seed)?;
-        Ok(dict)
+        run.truth(py)
     }
 
     /// A copy of a flight as it is now.
@@ -225,6 +241,19 @@ impl Moment {
         let file = serde_json::to_string(&plan.file).map_err(input)?;
         let arguments = (file, plan.scan_ticks, run.seed, run.actions.clone());
         (make, arguments).into_pyobject(slf.py())
+    }
+}
+
+fn single(values: [f64; 2]) -> [f32; 2] {
+    values.map(|value| value as f32)
+}
+
+/// Elevator and thrust of one action.
+fn pair(action: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+    let wrong = |_| input("actions: give elevator and thrust");
+    match action.extract::<PyReadonlyArray1<'_, f64>>() {
+        Ok(array) => <[f64; 2]>::try_from(array.as_array().to_vec()).map_err(wrong),
+        Err(_) => <[f64; 2]>::try_from(vector("actions", action)?).map_err(wrong),
     }
 }
 
@@ -308,6 +337,24 @@ impl Run {
             self.scan.copy_from_slice(&scan.ranges);
             self.ticks[1] = scan.tick;
         }
+    }
+
+    /// What the agent knows; see [`Batch::observe`].
+    fn known<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        let pair = |values| PyArray1::from_slice(py, &single(values));
+        dict.set_item(intern!(py, "lidar"), PyArray1::from_slice(py, &self.scan))?;
+        dict.set_item(intern!(py, "air"), pair(self.air))?;
+        dict.set_item(intern!(py, "position"), pair(self.place))?;
+        dict.set_item(intern!(py, "age"), pair(self.ages()))?;
+        Ok(dict)
+    }
+
+    /// The flight's true place, its time, its end and its seed.
+    fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = self.episode.truth(py)?;
+        dict.set_item(intern!(py, "seed"), self.seed)?;
+        Ok(dict)
     }
 
     /// Ages of position and scan [s].

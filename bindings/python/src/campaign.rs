@@ -4,7 +4,8 @@ use crate::aside::aside;
 use crate::errors::{self, input};
 use crate::field::Field;
 use crate::scenario;
-use mpp_analysis::campaign::{Cell, Lists, NamedField, Row};
+use mpp_analysis::campaign::{Campaign as Grid, Cell, Lists, NamedField, Row, Shard};
+use mpp_analysis::rows::Header;
 use mpp_sim::flight::fly;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::witness::Witness;
@@ -15,12 +16,12 @@ use std::collections::BTreeMap;
 /// The flights of a campaign, in their order. `python/mpp/campaigns.py` flies them.
 #[pyclass(frozen, module = "mpp")]
 pub(crate) struct Campaign {
-    campaign: mpp_analysis::campaign::Campaign,
+    campaign: Grid,
     cells: Vec<Cell>,
 }
 
 impl Campaign {
-    fn of(campaign: mpp_analysis::campaign::Campaign) -> Self {
+    fn of(campaign: Grid) -> Self {
         let cells = campaign.cells();
         Self { campaign, cells }
     }
@@ -68,8 +69,7 @@ impl Campaign {
             paths,
             replan_hz,
         };
-        let campaign =
-            py.detach(|| mpp_analysis::campaign::Campaign::new(scenario, lists, trials, seed));
+        let campaign = py.detach(|| Grid::new(scenario, lists, trials, seed));
         campaign.map(Self::of).map_err(errors::scenario)
     }
 
@@ -100,24 +100,32 @@ impl Campaign {
             return Err(input(format!("index: give 0 to {last}")));
         };
         let seed = self.campaign.seed.wrapping_add((index % trials) as u64);
-        let scenario = (self.campaign.scenario(cell, seed)).map_err(errors::scenario)?;
-        let row = aside(py, |_| {
-            let mut witness = Witness::of(&scenario);
-            let mut link = PipeLink::of(&scenario);
-            let log = fly(&scenario, &mut link, |moment| witness.watch(moment));
-            log.map(|log| {
-                log.hash()
-                    .map(|hash| Row::new(cell.clone(), &log, &witness, hash, None))
-            })
-        })?;
-        let row = row.map_err(errors::flight)?.map_err(input)?;
+        let row = aside(py, |_| flown(&self.campaign, cell, seed))??;
         serde_json::to_string(&row).map_err(input)
+    }
+
+    /// The first line of the row file that `sil-harness campaign --out` writes, without its end.
+    fn header(&self, py: Python<'_>) -> PyResult<String> {
+        let hash = |start: &_, cell: &_, seed| Ok::<_, PyErr>(flown(start, cell, seed)?.log_hash);
+        let campaign = self.campaign.clone();
+        let header = aside(py, |_| Header::new(campaign, Shard::WHOLE, hash))??;
+        serde_json::to_string(&header).map_err(input)
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, (String,))> {
         let make = slf.get_type().getattr("from_json")?;
         Ok((make, (slf.get().to_json()?,)))
     }
+}
+
+/// Flies a flight, for its row.
+fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
+    let scenario = campaign.scenario(cell, seed).map_err(errors::scenario)?;
+    let mut witness = Witness::of(&scenario);
+    let mut link = PipeLink::of(&scenario);
+    let log = fly(&scenario, &mut link, |moment| witness.watch(moment)).map_err(errors::flight)?;
+    let hash = log.hash().map_err(input)?;
+    Ok(Row::new(cell.clone(), &log, &witness, hash, None))
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(names: &[String]) -> PyResult<Vec<T>> {

@@ -11,6 +11,7 @@ use mpp_sim::lidar::Lidar as _;
 use mpp_sim::outcome::{Outcome, Score};
 use mpp_sim::plant::Plant as _;
 use mpp_sim::scenario::{ALTITUDE, Scenario};
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -87,10 +88,10 @@ impl Episode {
     /// Time \[s\], true place \[m\], and the outcome.
     pub(crate) fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (dict, at) = (PyDict::new(py), self.state());
-        dict.set_item("t", Scenario::time(self.tick))?;
-        dict.set_item("x", at.x)?;
-        dict.set_item("z", at.z)?;
-        dict.set_item("outcome", self.outcome())?;
+        dict.set_item(intern!(py, "t"), Scenario::time(self.tick))?;
+        dict.set_item(intern!(py, "x"), at.x)?;
+        dict.set_item(intern!(py, "z"), at.z)?;
+        dict.set_item(intern!(py, "outcome"), self.outcome())?;
         Ok(dict)
     }
 

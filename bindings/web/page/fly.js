@@ -91,7 +91,22 @@ function fly(ticks) {
   }
   if (answer.refused.length) $("state").textContent = "refused: " + answer.refused.join(", ");
   ended = answer.ended;
-  if (ended) setPlaying(false);
+  if (ended && !goesOn()) setPlaying(false);
+}
+
+// Whether the flight came to the end of an endless field while somebody watched it.
+function goesOn() {
+  return playing && target === null && settings.field === "endless" && now + 1 >= settings.duration * 100;
+}
+
+// Goes on past the end of an endless field: in the field of the next seed, with the switches as they are. The page
+// holds one flight at a time, so it can go on for ever.
+function goOn() {
+  const given = { gusts: $("wind").checked ? WIND : 0, dropouts: $("dropouts").checked ? DROPOUTS : 0,
+    elevator_stuck: $("elevator").checked };
+  const on = Object.entries(given).filter(([, value]) => value);
+  settings.seed++;
+  begin(on.map(([name, value]) => ({ tick: 0, order: "disturb", [name]: value })));
 }
 
 // Gives an order for the next tick.
@@ -117,6 +132,7 @@ function frame(time) {
       fly(Math.floor(due));
       due -= Math.floor(due);
     }
+    if (ended && playing) goOn();
   } catch (error) {
     return fail(error);
   }

@@ -2,8 +2,9 @@
 
 use super::error::CampaignError;
 use hil_protocol::Message;
-use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row};
+use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row, Shard};
 use mpp_analysis::ceiling::{Verdict, decide};
+use mpp_analysis::rows::Header;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::link::{Link, LinkError};
@@ -17,23 +18,13 @@ use std::time::{Duration, Instant};
 /// Stack of a thread [bytes]. The core is built on the stack before it moves to its box.
 const STACK: usize = 8 << 20;
 
-/// Log hashes of a campaign's first seconds, one for each planner. They show which program flew the
-/// rows, because rows of different programs must not be mixed.
+/// The first line of a row file of this program.
 ///
 /// # Errors
 /// [`CampaignError`] of the first flight that fails.
-pub fn fingerprint(campaign: &Campaign) -> Result<String, CampaignError> {
-    const SECONDS: u32 = 2;
-    let mut start = campaign.clone();
-    start.scenario.duration = Some(SECONDS);
-    let mut cells = campaign.cells();
-    cells.dedup_by_key(|cell| (cell.preset, cell.oracle));
-    let hashes = cells
-        .iter()
-        .map(|cell| Ok(flown(&start, cell, campaign.seed, false)?.log_hash));
-    Ok(hashes
-        .collect::<Result<Vec<String>, CampaignError>>()?
-        .join("-"))
+pub fn header(campaign: Campaign, shard: Shard) -> Result<Header, CampaignError> {
+    let hash = |start: &Campaign, cell: &Cell, seed| Ok(flown(start, cell, seed, false)?.log_hash);
+    Header::new(campaign, shard, hash)
 }
 
 /// Flies these flights on this number of threads; 0 means as many as there are cores. Each thread

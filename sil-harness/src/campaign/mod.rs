@@ -7,9 +7,9 @@ mod engine;
 mod error;
 mod store;
 
-pub use engine::{decide_all, fingerprint, run, run_faults};
+pub use engine::{decide_all, header, run, run_faults};
 pub use error::CampaignError;
-pub use store::{Header, RowFile, Sheet, read};
+pub use store::{RowFile, Sheet, read};
 
 #[cfg(test)]
 mod tests;

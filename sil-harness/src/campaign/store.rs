@@ -5,72 +5,14 @@
 //! next run drops this line and flies its flight again. Nothing else is lost or repeated. A full disk
 //! leaves only whole rows. A file that is no row file of the campaign is not changed.
 
-use super::engine::fingerprint;
 use super::error::CampaignError;
 use crate::files::{MOST_RECORDED, read_text};
-use mpp_analysis::campaign::{Campaign, Row, Shard};
-use serde::{Deserialize, Serialize};
+use mpp_analysis::campaign::Row;
+use mpp_analysis::rows::Header;
+use serde::Serialize;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, ErrorKind, Read, Write};
 use std::path::Path;
-
-/// Version of the rows' layout.
-const ROWS: u32 = 3;
-
-/// A row file's first line.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Header {
-    /// Version of the rows' layout.
-    rows: u32,
-    /// Version of `sil-harness`.
-    package_version: String,
-    /// [`fingerprint`] of the program that flew the rows.
-    pub fingerprint: String,
-    /// The campaign.
-    pub campaign: Campaign,
-    /// The part of the campaign that this file holds.
-    pub shard: Shard,
-}
-
-impl Header {
-    /// The header of a file that this program writes.
-    ///
-    /// # Errors
-    /// [`CampaignError::Flight`] when the campaign's first flight fails.
-    pub fn new(campaign: Campaign, shard: Shard) -> Result<Self, CampaignError> {
-        Ok(Self {
-            rows: ROWS,
-            package_version: env!("CARGO_PKG_VERSION").to_owned(),
-            fingerprint: fingerprint(&campaign)?,
-            campaign,
-            shard,
-        })
-    }
-
-    /// The first key in which another header differs, with both values.
-    #[must_use]
-    pub fn difference(&self, other: &Self) -> Option<String> {
-        let flat = |header: &Self| {
-            let mut keys = serde_json::to_value(header).unwrap_or_default();
-            let campaign = keys["campaign"].take();
-            (keys, campaign)
-        };
-        let ((outer, inner), (other_outer, other_inner)) = (flat(self), flat(other));
-        [(inner, other_inner), (outer, other_outer)]
-            .iter()
-            .find_map(|(own, others)| {
-                let keys = own.as_object()?;
-                let (key, value) = keys
-                    .iter()
-                    .find(|(key, value)| others[key.as_str()] != **value)?;
-                Some(format!(
-                    "its {key} is {}, not {value}",
-                    others[key.as_str()]
-                ))
-            })
-    }
-}
 
 /// What rows are appended to; tests give one that fails.
 pub trait Sheet: Write {

@@ -86,7 +86,7 @@ fn a_shard_is_a_part_of_a_whole() {
 #[test]
 fn a_cut_file_is_gone_on_with_and_nothing_is_lost_or_repeated() {
     let campaign = short();
-    let header = Header::new(campaign.clone(), Shard::WHOLE).unwrap();
+    let header = header(campaign.clone(), Shard::WHOLE).unwrap();
     let rows = fly_jobs(&campaign, Shard::WHOLE, 1);
     let path = scratch("cut");
     let _ = std::fs::remove_file(&path);
@@ -117,7 +117,7 @@ fn a_cut_file_is_gone_on_with_and_nothing_is_lost_or_repeated() {
 #[test]
 fn another_campaigns_file_is_refused_by_what_differs() {
     let campaign = short();
-    let header = Header::new(campaign.clone(), Shard::WHOLE).unwrap();
+    let header = header(campaign.clone(), Shard::WHOLE).unwrap();
     let path = scratch("other");
     let _ = std::fs::remove_file(&path);
     let (file, _) = RowFile::open(&path, &header).unwrap();
@@ -153,7 +153,7 @@ fn another_campaigns_file_is_refused_by_what_differs() {
         ),
     ];
     for (campaign, shard, what) in others {
-        let error = RowFile::open(&path, &Header::new(campaign, shard).unwrap()).unwrap_err();
+        let error = RowFile::open(&path, &super::header(campaign, shard).unwrap()).unwrap_err();
         assert!(error.to_string().contains(what), "{error}");
         assert_eq!(std::fs::read(&path).unwrap(), before);
     }
@@ -166,7 +166,7 @@ fn another_campaigns_file_is_refused_by_what_differs() {
 #[test]
 fn a_row_of_another_campaign_and_a_spoilt_line_are_named() {
     let campaign = short();
-    let header = Header::new(campaign.clone(), Shard::WHOLE).unwrap();
+    let header = header(campaign.clone(), Shard::WHOLE).unwrap();
     let path = scratch("lines");
     let _ = std::fs::remove_file(&path);
     let (mut file, _) = RowFile::open(&path, &header).unwrap();

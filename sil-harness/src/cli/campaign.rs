@@ -4,12 +4,13 @@ use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
 use super::values::{generator, preset};
-use crate::campaign::{CampaignError, Header, RowFile, decide_all, read, run as fly_all};
+use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
 use crate::files::read_field;
 use indicatif::{ProgressBar, ProgressStyle};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
 };
+use mpp_analysis::rows::Header;
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::Preset;
 use std::collections::HashSet;
@@ -217,7 +218,7 @@ fn fly_rows(
 ) -> Result<Vec<Row>, CampaignError> {
     let (file, known) = match &args.out {
         Some(path) => {
-            let header = Header::new(campaign.clone(), args.shard)?;
+            let header = header(campaign.clone(), args.shard)?;
             RowFile::open(path, &header).map(|(file, rows)| (Some(file), rows))?
         }
         None => (None, Vec::new()),

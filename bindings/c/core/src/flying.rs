@@ -2,6 +2,7 @@
 
 use crate::status::MppStatus;
 use crate::types::{MPP_COUNTERS, MPP_KNOTS, MppConfig, MppOutput, MppPlan, MppSensors, MppState};
+use core::mem::MaybeUninit;
 use mpp_core::config::MAX_BEAMS;
 use mpp_core::estimate::{PositionVerdict, Trust};
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
@@ -27,12 +28,22 @@ struct Flight {
     restarts: u32,
 }
 
+// SAFETY: the compiler checks every constant, and refuses one whose bytes are no value of its type. So a planner
+// of zeros is valid; `set_up` gives it its state.
+const _: Planner = unsafe { MaybeUninit::zeroed().assume_init() };
+
 impl MppCore {
-    pub(crate) const fn new() -> Self {
-        Self {
-            planner: Planner::new(),
-            scan: LidarScan::new(),
-            flight: None,
+    /// Writes a core without a configuration. It is made in its place: it is larger than the stack of a flight
+    /// computer.
+    ///
+    /// # Safety
+    /// `place` is valid to write a core to.
+    pub(crate) unsafe fn write_to(place: *mut Self) {
+        // SAFETY: the caller's promise. Nothing uses the planner before its `set_up`.
+        unsafe {
+            (&raw mut (*place).planner).write_bytes(0, 1);
+            (&raw mut (*place).scan).write(LidarScan::new());
+            (&raw mut (*place).flight).write(None);
         }
     }
 

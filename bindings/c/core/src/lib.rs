@@ -61,7 +61,7 @@ pub unsafe extern "C" fn mpp_init(
     // SAFETY: the storage is large enough, aligned, and by the caller's promise nobody else's; `made` points to
     // a pointer.
     unsafe {
-        place.write(MppCore::new());
+        MppCore::write_to(place);
         made.write(place);
     }
     MppStatus::Ok

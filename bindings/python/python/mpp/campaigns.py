@@ -29,8 +29,9 @@ Flown = Generator[dict[int, str], None, None]
 class Rows(Sequence[dict[str, Any]]):
     """The rows of a campaign in the order of its cells and seeds, each a dict."""
 
-    def __init__(self, lines: Iterable[str]) -> None:
+    def __init__(self, lines: Iterable[str], flights: Campaign) -> None:
         self.lines = list(lines)
+        self._flights = flights
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -41,7 +42,7 @@ class Rows(Sequence[dict[str, Any]]):
     def __getitem__(self, index: slice) -> Rows: ...
     def __getitem__(self, index: int | slice) -> dict[str, Any] | Rows:
         if isinstance(index, slice):
-            return Rows(self.lines[index])
+            return Rows(self.lines[index], self._flights)
         row: dict[str, Any] = json.loads(self.lines[index])
         return row
 
@@ -55,8 +56,11 @@ class Rows(Sequence[dict[str, Any]]):
         return pandas.DataFrame(list(self))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the rows, one line of JSON each: those of `sil-harness campaign --out` without its header."""
-        Path(path).write_text("".join(f"{line}\n" for line in self.lines))
+        """Writes the row file that `sil-harness campaign --out` writes, which its `--report` reads and which it can
+        go on with: a header, then one line of JSON for each row.
+        """
+        lines = [self._flights.header(), *self.lines]
+        Path(path).write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
 
 
 def campaign(
@@ -103,18 +107,18 @@ def campaign(
             if progress:
                 progress(len(lines), len(flights))
     except KeyboardInterrupt as signal:
-        raise Interrupted(_sorted(lines)) from signal
+        raise Interrupted(_sorted(lines, flights)) from signal
     finally:
         flown.close()
-    return _sorted(lines)
+    return _sorted(lines, flights)
 
 
 def _listed(value: Any) -> list[Any]:
     return [value] if isinstance(value, (str, int, float)) else list(value)
 
 
-def _sorted(lines: dict[int, str]) -> Rows:
-    return Rows(lines[index] for index in sorted(lines))
+def _sorted(lines: dict[int, str], flights: Campaign) -> Rows:
+    return Rows((lines[index] for index in sorted(lines)), flights)
 
 
 def _on_threads(flights: Campaign, workers: int | None) -> Flown:

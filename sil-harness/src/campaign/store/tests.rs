@@ -1,8 +1,8 @@
 //! Row files on disks that are full, and files that are none.
 
 use super::*;
-use crate::campaign::run;
-use mpp_analysis::campaign::Lists;
+use crate::campaign::{header, run};
+use mpp_analysis::campaign::{Campaign, Lists, Shard};
 use mpp_sim::scenario::ScenarioFile;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -80,7 +80,7 @@ fn a_full_disk_keeps_whole_rows_whichever_thread_comes_next() {
 
 #[test]
 fn a_file_that_is_none_of_ours_is_refused_and_left_as_it_was() {
-    let header = Header::new(short(), Shard::WHOLE).unwrap();
+    let header = header(short(), Shard::WHOLE).unwrap();
     let path = scratch("foreign");
     let own = serde_json::to_vec(&header).unwrap();
     for foreign in [&b"{\"schema\":2"[..], b"a poem", b"\xff\xfe", b"\xff\n\xfe"] {

@@ -1,0 +1,92 @@
+#include "autopilot.h"
+
+#define TICK 0.01      /* s */
+#define STORAGE 262144 /* bytes; mpp_storage_size() says how many are needed */
+
+static _Alignas(MPP_ALIGNMENT) unsigned char storage[STORAGE];
+
+mpp_status autopilot_init(autopilot *own) {
+  *own = (autopilot){0};
+  return mpp_init(storage, sizeof storage, &own->core);
+}
+
+mpp_status autopilot_set_up(autopilot *own, uint64_t seed) {
+  mpp_config config;
+  mpp_status status = mpp_usual(&config);
+  if (status != MPP_STATUS_OK) return status;
+  config.seed = seed;
+  own->planning = false;
+  own->latency = config.latency_ticks;
+  return mpp_set_up(own->core, &config);
+}
+
+mpp_status autopilot_fly(void *context, uint32_t tick, const mpp_sensors *sensors, const mpp_scan *scan,
+                         mpp_answer *answer) {
+  autopilot *own = context;
+  double time = tick * TICK;
+  mpp_status status;
+  /* The deadline of a cycle: the best plan so far is flown from this step on. */
+  if (own->planning && tick - own->scan_tick >= own->latency) {
+    if ((status = mpp_finish(own->core, time, &answer->plan)) != MPP_STATUS_OK) return status;
+    answer->has_plan = true;
+    answer->plan_tick = own->scan_tick;
+    own->planning = false;
+  }
+  if ((status = mpp_step(own->core, time, sensors, &answer->output)) != MPP_STATUS_OK) return status;
+  if (scan != NULL && !own->planning) {
+    if ((status = mpp_begin(own->core, scan)) != MPP_STATUS_OK) return status;
+    own->planning = true;
+    own->scan_tick = tick - scan->age;
+  }
+  /* A flight computer does a few slices between two steps, or as many as it has time for. */
+  for (bool more = own->planning; more;)
+    if ((status = mpp_advance(own->core, &more)) != MPP_STATUS_OK) return status;
+  return mpp_counters(own->core, &answer->counters);
+}
+
+int autopilot_misuse(autopilot *own) {
+  mpp_core *core = own->core, *none = NULL;
+  mpp_config config, bad;
+  mpp_sensors sensors = {0};
+  mpp_output output;
+  mpp_plan plan;
+  bool more;
+  float ranges[MPP_BEAMS] = {0};
+  mpp_scan scan = {.count = 3, .ranges = ranges};
+  int wrong = 0;
+#define EXPECT(call, expected) wrong += (call) != (expected)
+  EXPECT(mpp_usual(NULL), MPP_STATUS_NULL);
+  EXPECT(mpp_usual(&config), MPP_STATUS_OK);
+  EXPECT(mpp_init(NULL, STORAGE, &none), MPP_STATUS_NULL);
+  EXPECT(mpp_init(storage, 16, &none), MPP_STATUS_STORAGE);
+  EXPECT(mpp_init(storage + 1, STORAGE - 1, &none), MPP_STATUS_ALIGNMENT);
+  EXPECT(mpp_step(NULL, 0, &sensors, &output), MPP_STATUS_NULL);
+  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_NOT_SET_UP);
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_NOT_SET_UP);
+  EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_NOT_SET_UP);
+  bad = config, bad.aircraft.mass = 0.0 / 0.0;
+  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_OUT_OF_RANGE);
+  bad = config, bad.beams = 0;
+  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_BEAMS);
+  bad = config, bad.latency_ticks = 0;
+  EXPECT(mpp_set_up(core, &bad), MPP_STATUS_PERIOD);
+  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_NOT_SET_UP);
+  EXPECT(mpp_set_up(core, &config), MPP_STATUS_OK);
+  EXPECT(mpp_advance(core, &more), MPP_STATUS_IDLE);
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_TIME);
+  EXPECT(mpp_step(core, 0.0 / 0.0, &sensors, &output), MPP_STATUS_TIME);
+  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_OK);
+  EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_TIME);
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
+  scan.count = 1u << 30;
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
+  scan.count = config.beams, ranges[5] = -1;
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_RANGE);
+  ranges[5] = 0, scan.age = 1000000;
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_AGE);
+  scan.age = 0;
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_OK);
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_BUSY);
+  if (mpp_text(-7) == NULL || mpp_text(MPP_STATUS_TRIM) == mpp_text(MPP_STATUS_OK)) wrong++;
+  return wrong;
+}
