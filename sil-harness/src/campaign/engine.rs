@@ -22,7 +22,7 @@ const STACK: usize = 8 << 20;
 /// # Errors
 /// [`CampaignError`] of the first flight that fails.
 pub fn fingerprint(campaign: &Campaign) -> Result<String, CampaignError> {
-    const SECONDS: u32 = 2;
+    const SECONDS: f64 = 2.0;
     let mut start = campaign.clone();
     start.scenario.duration = Some(SECONDS);
     let mut cells = campaign.cells();

@@ -2,6 +2,7 @@
 
 use super::answer::{FAILURE, Failure, USAGE, talk};
 use super::campaign::report_of;
+use super::values::seed;
 use crate::files::write_whole;
 use mpp_analysis::figure::{
     FigureError, OneReplan, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
@@ -15,12 +16,13 @@ use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::FIGURES)]
 pub(super) struct FiguresArgs {
     /// Directory for the pictures (SVG)
     #[arg(long, default_value = "out/figures")]
     out: PathBuf,
     /// Seed of all flights in the pictures
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Row files of one campaign; its success rates are then drawn too
     #[arg(long, value_name = "FILE", num_args = 1..)]

@@ -2,6 +2,7 @@
 
 mod aircraft;
 mod peers;
+mod speech;
 
 use serde_json::Value;
 use std::path::PathBuf;
