@@ -120,7 +120,10 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
             }
             let oracle = cells(report, |cell| cell.oracle);
             curve(&mut panel, &oracle, rule, ORACLE);
-            let words = format!("{}, {replan_hz} Hz", preset.name());
+            let of_panel = cells(report, |cell| {
+                cell.preset == preset && cell.replan_hz.to_bits() == replan_hz.to_bits()
+            });
+            let words = format!("{}, {replan_hz} Hz{}", preset.name(), flights(&of_panel));
             panel.labels.push(((0.02 * most, 8.0), words, BLACK));
             panels.push(panel);
         }
@@ -134,6 +137,16 @@ fn cells(report: &Report, of: impl Fn(&Cell) -> bool) -> Vec<&CellReport> {
     cells.retain(|cell| of(&cell.cell) && cell.trials > 0);
     cells.sort_by_key(|cell| cell.cell.obstacles);
     cells
+}
+
+/// How many flights stand behind each point of a panel, such as `, n = 300`.
+fn flights(cells: &[&CellReport]) -> String {
+    let trials = || cells.iter().map(|cell| cell.trials);
+    match (trials().min(), trials().max()) {
+        (Some(least), Some(most)) if least == most => format!(", n = {most}"),
+        (Some(least), Some(most)) => format!(", n = {least} to {most}"),
+        _ => String::new(),
+    }
 }
 
 /// Adds a curve upon its band.

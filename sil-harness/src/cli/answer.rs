@@ -42,13 +42,23 @@ pub(super) fn complain(line: impl std::fmt::Display) {
 /// full disk, is a failure.
 pub(super) fn data(line: impl std::fmt::Display) -> Result<(), Failure> {
     let mut stdout = std::io::stdout();
-    match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
+    printed(writeln!(stdout, "{line}").and_then(|()| stdout.flush()))
+}
+
+fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
+    match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             let what = format!("cannot write the result to the standard output: {error}");
             Err(Failure::new(FAILURE, what))
         }
         _ => Ok(()),
     }
+}
+
+/// Prints bytes of data as they are, with the same exception.
+pub(super) fn data_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    printed(stdout.write_all(bytes).and_then(|()| stdout.flush()))
 }
 
 /// The reason why a command failed.

@@ -73,6 +73,14 @@ Examples:
   sil-harness bench qp --generate 1000
   sil-harness bench cycle --json";
 
+pub(super) const EXPORT: &str = "\
+Examples:
+  sil-harness export out/flight-seed1.json > ticks.csv
+  sil-harness export out/flight-seed1.json --format mcap --out flight.mcap     # for Foxglove
+  sil-harness export rows.jsonl --format parquet --out rows.parquet
+
+docs/logs.md has every table and column with unit and frame.";
+
 pub(super) const COMPLETIONS: &str = "\
 Examples:
   sil-harness completions bash > ~/.local/share/bash-completion/completions/sil-harness

@@ -10,6 +10,7 @@ mod campaign;
 mod check;
 mod core;
 mod detail;
+mod export;
 mod fault_campaign;
 mod figures;
 mod file_name;
@@ -60,6 +61,8 @@ enum Command {
     Params(params::ParamsArgs),
     /// Check core and plant against data recorded from the authors' code
     CheckReference(check::CheckArgs),
+    /// Make CSV, MCAP or Parquet of a flight's log or a campaign's rows
+    Export(export::ExportArgs),
     /// Print the completions of a shell
     Completions(manual::CompletionsArgs),
     /// Print the manual page, or write those of all commands
@@ -82,6 +85,7 @@ pub fn run() -> ExitCode {
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Params(args)) => params::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
         Some(Command::Man(args)) => manual::man(&args, Cli::command()),
     };
