@@ -4,6 +4,10 @@ use super::{harness, run};
 use std::path::Path;
 use std::process::Output;
 
+#[expect(
+    clippy::unwrap_used,
+    reason = "a binary that does not start fails the test"
+)]
 fn export(arguments: &[&str], file: &Path) -> Output {
     harness()
         .arg("export")
