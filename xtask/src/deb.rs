@@ -119,7 +119,7 @@ fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Size of a folder [kibibytes].
+/// Size of a folder \[kibibytes\].
 fn size(tree: &Path) -> Result<u64> {
     let printed = output(Command::new("du").args(["-sk"]).arg(tree))?;
     let number = printed
