@@ -33,7 +33,7 @@ impl Header {
         shard: Shard,
         hash: impl Fn(&Campaign, &Cell, u64) -> Result<String, E>,
     ) -> Result<Self, E> {
-        const SECONDS: u32 = 2;
+        const SECONDS: f64 = 2.0;
         let mut start = campaign.clone();
         start.scenario.duration = Some(SECONDS);
         let mut cells = campaign.cells();

@@ -12,6 +12,26 @@
 /// flights succeed under all conditions together (757 against 768 of 800). Source: D13.
 pub const ROOM: f64 = 2.0;
 
+/// Room in open country.
+pub mod open {
+    /// Clearance that every aircraft should have in open country \[m\]. It is the greatest distance that the map
+    /// tells. Source: D21.
+    pub const ROOM: f64 = 3.0;
+    /// Price of the squared lack of it where all is open [1/m^2]. Half of it gave 0.1 m less of clearance past 20
+    /// obstacles. Source: D21.
+    pub const PRICE: f64 = 4.0;
+    /// Power of the share of open cells with which price and margins fall [-]. With 4, past 120 obstacles 773 of 800
+    /// flights succeeded against 783 without room; with 6 as many as without. Source: D21.
+    pub const POWER: f64 = 6.0;
+    /// Margins that programs keep beyond the first one where all is open and the candidate has the room [-]. With 3
+    /// instead of 6, and the power of 4, the clearance past 20 obstacles was 1.8 m instead of 2.3 m. Source: D21.
+    pub const MARGINS: f64 = 10.0;
+    /// Greatest distance that programs keep there, in margins [-]: 3.2 m, somewhat more than [`ROOM`].
+    pub const MOST_MARGINS: f64 = 4.0;
+    /// Distance ahead within which cells are counted \[cells\]: 26 m, as in [`super::UNKNOWN_AHEAD`].
+    pub const AHEAD: u32 = 52;
+}
+
 /// Price of a point of which the map knows nothing, at the aircraft [-]. It falls linearly to zero at
 /// [`UNKNOWN_AHEAD`]. With a higher price plans stay in the cells that the lidar has seen, and so turn
 /// away from ways that would have been open. Source: D8, D10 (other prices gave no gain).

@@ -30,6 +30,7 @@ const TASK: LatticeTask = LatticeTask {
     altitude: 50.0,
     band: 10.3,
     curvature: 1.0 / 18.0,
+    room: 2.0,
     room_price: 0.0,
 };
 
@@ -99,7 +100,7 @@ impl Costs<'_> {
             let outside = (off.abs() - self.task.band + 0.5).max(0.0);
             let distance = self.field.distance(x, z);
             let lack = (1.2 - distance).max(0.0) + outside;
-            let crowded = (2.0 - distance).max(0.0);
+            let crowded = (self.task.room - distance).max(0.0);
             let mut price = 10.0 * lack * lack + self.task.room_price * crowded * crowded;
             if ahead < UNKNOWN_AHEAD && self.field.is_unknown(x, z) {
                 price += 5.0 * (1.0 - ahead / UNKNOWN_AHEAD);
@@ -152,6 +153,7 @@ fn tasks(draw: &mut Draw) -> LatticeTask {
         z: 50.0 + draw.between(-9.0, 9.0),
         slope: draw.between(-0.9, 0.9),
         curvature: draw.between(0.005, 0.1),
+        room: draw.between(1.0, 3.0),
         room_price: draw.between(-1.0, 2.0).max(0.0),
         ..TASK
     }

@@ -165,12 +165,12 @@ pub struct Thrust {
 impl AircraftFile {
     /// The aircraft that come with the project, by name.
     pub const KNOWN: [(&'static str, &'static str); 6] = [
-        ("reference", include_str!("../../aircraft/reference.toml")),
-        ("paper", include_str!("../../aircraft/paper.toml")),
-        ("example", include_str!("../../aircraft/example.toml")),
-        ("aerosonde", include_str!("../../aircraft/aerosonde.toml")),
-        ("zagi", include_str!("../../aircraft/zagi.toml")),
-        ("cessna182", include_str!("../../aircraft/cessna182.toml")),
+        ("reference", include_str!("../aircraft/reference.toml")),
+        ("paper", include_str!("../aircraft/paper.toml")),
+        ("example", include_str!("../aircraft/example.toml")),
+        ("aerosonde", include_str!("../aircraft/aerosonde.toml")),
+        ("zagi", include_str!("../aircraft/zagi.toml")),
+        ("cessna182", include_str!("../aircraft/cessna182.toml")),
     ];
 
     /// Reads an aircraft file from text. An error shows `name` as the name of the text.

@@ -30,6 +30,10 @@ use std::fmt;
 /// Version of the log's layout.
 pub const SCHEMA: u32 = 4;
 
+/// Version of the rules of flight: the release that first flew by them. A release whose flights have the same bytes
+/// keeps it, so that a log's hash does not depend on the release.
+pub const RULES: &str = "0.1.0";
+
 /// One flight from its parameters to its outcome.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FlightLog {
@@ -59,7 +63,7 @@ pub struct FlightLog {
 /// The flight's parameters.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Header {
-    /// Version of `mpp-sim`.
+    /// [`RULES`]. The name of the field is older than its meaning.
     pub package_version: String,
     /// Seed of the field and of all noise.
     pub seed: u64,
@@ -127,7 +131,7 @@ impl Header {
     #[must_use]
     pub fn of(scenario: &Scenario, field: &dyn Field) -> Self {
         Self {
-            package_version: env!("CARGO_PKG_VERSION").to_owned(),
+            package_version: RULES.to_owned(),
             seed: scenario.seed,
             obstacles: scenario.obstacles,
             generator: scenario.generator,

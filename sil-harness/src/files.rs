@@ -185,6 +185,21 @@ pub fn read_log(path: &Path) -> Result<FlightLog, FileError> {
     FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
 }
 
+/// Whether a file is one of a campaign's rows, by how it begins; else it may be a flight's log.
+///
+/// # Errors
+/// [`FileError::Read`].
+pub fn is_row_file(path: &Path) -> Result<bool, FileError> {
+    const START: &[u8] = b"{\"rows\":";
+    let failed = |error| FileError::Read(path.to_owned(), error);
+    let mut start = Vec::new();
+    let file = std::fs::File::open(path).map_err(failed)?;
+    file.take(START.len() as u64)
+        .read_to_end(&mut start)
+        .map_err(failed)?;
+    Ok(start == START)
+}
+
 /// Writes a flight's log: exactly the bytes that are hashed.
 ///
 /// # Errors

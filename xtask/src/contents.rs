@@ -40,7 +40,7 @@ pub(crate) fn sealed(mut bytes: Vec<u8>) -> Result<Vec<u8>> {
 }
 
 /// What an image puts into the flash, from the beginning of the flash to the end of the first contents of RAM.
-fn flash(bytes: &[u8]) -> Result<Vec<u8>> {
+pub(crate) fn flash(bytes: &[u8]) -> Result<Vec<u8>> {
     let file = ElfFile32::<Endianness>::parse(bytes)?;
     let address = |name: &str| -> Result<u64> {
         let symbol = file.symbol_by_name(name);

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use std::path::PathBuf;
 use std::process::Command;
 
-const THUMB: &str = "thumbv7em-none-eabihf";
+pub(crate) const THUMB: &str = "thumbv7em-none-eabihf";
 
 /// The images of the firmware.
 #[derive(Clone, Copy, Debug)]

@@ -9,6 +9,7 @@ mod budget;
 mod c;
 mod contents;
 mod counts;
+mod deb;
 mod faults;
 mod firmware;
 mod flight;
@@ -21,6 +22,7 @@ mod limits;
 mod pil;
 mod qemu;
 mod readme;
+mod reproduce;
 mod stack;
 mod talk;
 mod toolchain;
@@ -62,6 +64,10 @@ enum Command {
     C(c::CArgs),
     /// Fly the same seeds on this machine, a Cortex-M7, aarch64, WebAssembly and from Python, and compare the hashes
     Identity(identity::IdentityArgs),
+    /// Build the firmware in two folders and compare the images, byte for byte
+    Reproduce,
+    /// Make the Debian package of the harness, in target/deb
+    Deb,
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
@@ -80,6 +86,8 @@ fn main() -> ExitCode {
         Command::Web => wasm::page(),
         Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),
+        Command::Reproduce => reproduce::run(),
+        Command::Deb => deb::run(),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
     };

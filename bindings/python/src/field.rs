@@ -60,7 +60,7 @@ impl Field {
             generator: table("generator", &keys)?,
             obstacles: Some(obstacles),
             seed: Some(seed),
-            duration,
+            duration: duration.map(f64::from),
             world_scale: Some(world_scale),
             ..ScenarioFile::default()
         };

@@ -22,7 +22,7 @@ macro_rules! named {
     ($($name:literal: $asked:expr,)*) => {
         &[$(NamedFault {
             name: $name,
-            text: include_str!(concat!("../../../docs/scenarios/faults/", $name, ".toml")),
+            text: include_str!(concat!("../../faults/", $name, ".toml")),
             asked: $asked,
         }),*]
     };

@@ -58,7 +58,11 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
     if report.campaign.oracle {
         entries.push((Sample::Line(ORACLE, 16), "oracle"));
     }
-    if report.cells.iter().any(|cell| cell.against_ceiling.is_some()) {
+    if report
+        .cells
+        .iter()
+        .any(|cell| cell.against_ceiling.is_some())
+    {
         entries.push((Sample::Line(CEILING, 16), "passable"));
     }
     let compared = rule == Rule::Paper && report.campaign.preset.contains(&Preset::Reference);
@@ -127,7 +131,10 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
             let oracle = cells(report, |cell| cell.oracle);
             curve(&mut panel, &oracle, rule, ORACLE);
             ceiling(&mut panel, &cells(report, |_| true));
-            let words = format!("{}, {replan_hz} Hz", preset.name());
+            let of_panel = cells(report, |cell| {
+                cell.preset == preset && cell.replan_hz.to_bits() == replan_hz.to_bits()
+            });
+            let words = format!("{}, {replan_hz} Hz{}", preset.name(), flights(&of_panel));
             panel.labels.push(((0.02 * most, 8.0), words, BLACK));
             panels.push(panel);
         }
@@ -141,6 +148,16 @@ fn cells(report: &Report, of: impl Fn(&Cell) -> bool) -> Vec<&CellReport> {
     cells.retain(|cell| of(&cell.cell) && cell.trials > 0);
     cells.sort_by_key(|cell| cell.cell.obstacles);
     cells
+}
+
+/// How many flights stand behind each point of a panel, such as `, n = 300`.
+fn flights(cells: &[&CellReport]) -> String {
+    let trials = || cells.iter().map(|cell| cell.trials);
+    match (trials().min(), trials().max()) {
+        (Some(least), Some(most)) if least == most => format!(", n = {most}"),
+        (Some(least), Some(most)) => format!(", n = {least} to {most}"),
+        _ => String::new(),
+    }
 }
 
 /// Adds a curve upon its band.

@@ -245,7 +245,7 @@ fn success_curves_show_every_cell_and_the_papers_results() {
     // results, and the legend has one dot.
     assert_eq!(svg.matches("<polygon").count(), 4);
     assert_eq!(svg.matches("<circle").count(), 2 * 2 * 5 + 1);
-    assert!(svg.contains("reference, 1 Hz") && svg.contains("flight, 1 Hz"));
+    assert!(svg.contains("reference, 1 Hz, n = 4") && svg.contains("flight, 1 Hz, n = 4"));
     let strict = success_svg(&report, Rule::Strict).unwrap();
     assert!(strict.contains("Strict success (%)") && !strict.contains("published"));
     // The oracle's curve is in both panels, and in the legend.

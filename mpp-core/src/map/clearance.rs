@@ -2,7 +2,9 @@
 
 use super::cell::bit;
 use super::memory::{COLS, MemoryMap, ROWS};
-use crate::tuning::memory::CELL;
+use crate::tuning::memory::{BEHIND, CELL};
+use crate::tuning::open;
+use core::ops::Range;
 
 /// Greatest distance that the field knows \[cells\]. Larger distances read as this one.
 const REACH: usize = 6;
@@ -11,12 +13,18 @@ pub const FAR: f64 = CELL * REACH as f64;
 /// The field stores distances in units of `1 / PARTS` m.
 const PARTS: f64 = 64.0;
 
+/// Rows within 11 m of the middle of the window, and columns ahead, in which cells are open or not.
+const OPEN_ROWS: Range<usize> = 10..54;
+const OPEN_COLS: u128 = ((1 << open::AHEAD) - 1) << BEHIND;
+
 /// Distance field of the map of one cycle.
 #[derive(Clone, Debug)]
 pub struct ClearanceField {
     distance: [[u8; COLS]; ROWS],
     occupied: [u128; ROWS],
     unknown: [u128; ROWS],
+    /// Number of open cells.
+    open: u32,
     first_x: f64,
     floor: f64,
     /// Radius of the aircraft \[m\].
@@ -31,6 +39,7 @@ impl ClearanceField {
             distance: [[u8::MAX; COLS]; ROWS],
             occupied: [0; ROWS],
             unknown: [0; ROWS],
+            open: 0,
             first_x: 0.0,
             floor: 0.0,
             body_radius: 0.0,
@@ -46,11 +55,12 @@ impl ClearanceField {
             (self.occupied[row], self.unknown[row]) = map.row(row);
         }
         self.complete();
+        self.open = 0;
         for row in 0..ROWS {
             let near = self.near(row);
             let distances = &mut self.distance[row];
             distances.fill(PART_OF_SQUARE[REACH * REACH]);
-            let mut known = 0;
+            let mut known: u128 = 0;
             for (cells, distance) in near.iter().zip(PART_OF_SQUARE) {
                 let new = cells & !known;
                 known |= new;
@@ -63,7 +73,16 @@ impl ClearanceField {
                     }
                 }
             }
+            if OPEN_ROWS.contains(&row) {
+                self.open += (OPEN_COLS & !known & !self.unknown[row]).count_ones();
+            }
         }
+    }
+
+    /// Share of the cells ahead that are open [-]: a beam has passed them, and no occupied cell is within [`FAR`].
+    #[must_use]
+    pub fn openness(&self) -> f64 {
+        f64::from(self.open) / f64::from(OPEN_ROWS.len() as u32 * open::AHEAD)
     }
 
     /// Marks unknown cells within about a metre of an occupied cell as occupied. If one obstacle hides a

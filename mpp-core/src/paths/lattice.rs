@@ -14,7 +14,7 @@ use crate::tuning::lattice::{
     ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE, SPACING,
     STRETCH,
 };
-use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_PRICE};
+use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
 use edges::{
     COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, PER_BYTE, POINTS, Place, Prices,
@@ -57,7 +57,9 @@ pub struct LatticeTask {
     pub band: f64,
     /// Greatest curvature of a path [1/m].
     pub curvature: f64,
-    /// Price of the squared lack of [`ROOM`] [1/m^2].
+    /// Clearance that a path should have where there is room \[m\].
+    pub room: f64,
+    /// Price of the squared lack of it [1/m^2].
     pub room_price: f64,
 }
 
@@ -90,6 +92,7 @@ impl Lattice {
                 altitude: 0.0,
                 band: 0.0,
                 curvature: 0.0,
+                room: 0.0,
                 room_price: 0.0,
             },
             spacing: SPACING,
@@ -244,7 +247,7 @@ impl Lattice {
                 let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
                 let distance = column.distance(z);
                 let lack = (MARGIN - distance).max(0.0) + outside;
-                let crowded = (ROOM - distance).max(0.0);
+                let crowded = (task.room - distance).max(0.0);
                 let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
                 if column.is_unknown(z) {
                     cost += unknown;

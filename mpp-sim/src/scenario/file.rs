@@ -69,9 +69,9 @@ pub struct ScenarioFile {
     /// Planner slices that run between two ticks; by default all that the cycle needs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slices_per_tick: Option<u32>,
-    /// Length of the flight \[s\]; by default 20.
+    /// Length of the flight \[s\], a multiple of 0.01; by default 20.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub duration: Option<u32>,
+    pub duration: Option<f64>,
     /// Whether an oracle flies, as [`crate::oracle`] describes; by default `false`. An oracle needs
     /// preset `flight`. It flies with 10 Hz and exact sensors, whatever the other keys say.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -135,12 +135,6 @@ impl ScenarioFile {
             (None, Preset::Reference | Preset::Paper) => 1.0,
         };
         let usual = f64::from(base.ticks / TICKS_PER_SECOND) * world_scale.sqrt();
-        let duration = self.duration.unwrap_or(usual.ceil() as u32);
-        ensure(
-            (1..=MAX_DURATION).contains(&duration),
-            "duration",
-            format!("give 1 to {MAX_DURATION} s"),
-        )?;
         let scenario = Scenario {
             obstacles: self
                 .obstacles
@@ -158,7 +152,7 @@ impl ScenarioFile {
                 None => base.latency_ticks,
             },
             slices_per_tick: self.slices_per_tick.unwrap_or(base.slices_per_tick),
-            ticks: duration * TICKS_PER_SECOND,
+            ticks: flight_ticks(self.duration.unwrap_or(usual.ceil()))?,
             lidar: self.lidar.over(LidarConfig {
                 range_max: base.lidar.range_max * world_scale,
                 ..base.lidar
@@ -191,6 +185,15 @@ fn replan_ticks(rate: f64) -> Result<u32, ScenarioError> {
     );
     ensure(whole, "replan_hz", advice)?;
     Ok(period.round() as u32)
+}
+
+fn flight_ticks(duration: f64) -> Result<u32, ScenarioError> {
+    let ticks = duration * f64::from(TICKS_PER_SECOND);
+    let sound = (1.0 - 1e-6..=f64::from(MAX_DURATION * TICKS_PER_SECOND)).contains(&ticks)
+        && (ticks - ticks.round()).abs() < 1e-6;
+    let advice = format!("give 0.01 to {MAX_DURATION} s, a multiple of 0.01 s");
+    ensure(sound, "duration", advice)?;
+    Ok(ticks.round() as u32)
 }
 
 fn latency_ticks(latency_ms: u32, replan_ticks: u32) -> Result<u32, ScenarioError> {

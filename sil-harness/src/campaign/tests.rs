@@ -12,7 +12,7 @@ use std::sync::Mutex;
 /// Eight short flights in four cells.
 fn short() -> Campaign {
     let scenario = ScenarioFile {
-        duration: Some(1),
+        duration: Some(1.0),
         ..ScenarioFile::default()
     };
     let lists = Lists {
@@ -358,7 +358,7 @@ fn failures_are_sorted_by_cause() {
 #[test]
 fn a_report_of_faults_does_not_depend_on_threads() {
     let scenario = ScenarioFile {
-        duration: Some(7),
+        duration: Some(7.0),
         ..ScenarioFile::default()
     };
     let names = ["link-silent-1s", "elevator-rate-120"].map(str::to_owned);

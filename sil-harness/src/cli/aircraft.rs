@@ -1,9 +1,10 @@
 //! `aircraft`: what follows from an aircraft file, and how well it flies.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
-use super::campaign::{failure, progress_bar};
+use super::campaign::failure;
+use super::loudness::progress_bar;
 use super::signals::Signals;
-use super::values::navigation;
+use super::values::{navigation, seed};
 use crate::campaign::{CampaignError, run as fly_all};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
@@ -14,6 +15,7 @@ use serde::Serialize;
 use std::sync::{Mutex, PoisonError};
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::AIRCRAFT)]
 pub(super) struct AircraftArgs {
     /// Name of an aircraft that comes with the project, or a file (TOML, as docs/aircraft.md describes)
     #[arg(value_name = "NAME|FILE")]
@@ -37,7 +39,7 @@ pub(super) struct AircraftArgs {
     #[arg(long, value_parser = navigation())]
     navigation: Option<NavigationSource>,
     /// Seed of the first flight
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Number of threads; 0 takes every core
     #[arg(long, default_value_t = 0)]
@@ -163,7 +165,7 @@ fn fly_variant(args: &AircraftArgs, variant: &Variant) -> Result<Vec<Success>, F
 fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
     let signals = Signals::heed()?;
     let jobs = campaign.jobs(Shard::WHOLE);
-    let progress = progress_bar(jobs.len(), "flights");
+    let progress = progress_bar(jobs.len() as u64, "flights");
     let rows = Mutex::new(Vec::new());
     let flown = fly_all(campaign, &jobs, threads, false, |row| {
         progress.inc(1);

@@ -1,17 +1,40 @@
 //! The answers of the command line: data on stdout, messages on stderr, an exit code.
 
 use std::io::{ErrorKind, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Exit code: the harness cannot do something, or it found an error.
 pub(super) const FAILURE: u8 = 1;
 /// Exit code: the command line is invalid.
 pub(super) const USAGE: u8 = 2;
+/// Exit code of a flight that has to be strict: it left the altitude band.
+pub(super) const LEFT_BAND: u8 = 5;
 /// Exit code: the link to the core failed.
 pub(super) const LINK: u8 = 6;
 
-/// Prints a line for people. A flight does not depend on its readers, so a closed pipe is not an
-/// error (`eprintln!` would panic).
+/// Whether people asked for results and errors only.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// From now on [`talk`] is silent.
+pub(super) fn be_quiet() {
+    QUIET.store(true, Ordering::Relaxed);
+}
+
+/// Whether [`talk`] is silent.
+pub(super) fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Prints a line for people, unless they want results and errors only.
 pub(super) fn talk(line: impl std::fmt::Display) {
+    if !is_quiet() {
+        complain(line);
+    }
+}
+
+/// Prints an error. A flight does not depend on its readers, so a closed pipe is not an error
+/// (`eprintln!` would panic).
+pub(super) fn complain(line: impl std::fmt::Display) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
@@ -19,13 +42,23 @@ pub(super) fn talk(line: impl std::fmt::Display) {
 /// full disk, is a failure.
 pub(super) fn data(line: impl std::fmt::Display) -> Result<(), Failure> {
     let mut stdout = std::io::stdout();
-    match writeln!(stdout, "{line}").and_then(|()| stdout.flush()) {
+    printed(writeln!(stdout, "{line}").and_then(|()| stdout.flush()))
+}
+
+fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
+    match result {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             let what = format!("cannot write the result to the standard output: {error}");
             Err(Failure::new(FAILURE, what))
         }
         _ => Ok(()),
     }
+}
+
+/// Prints bytes of data as they are, with the same exception.
+pub(super) fn data_bytes(bytes: &[u8]) -> Result<(), Failure> {
+    let mut stdout = std::io::stdout();
+    printed(stdout.write_all(bytes).and_then(|()| stdout.flush()))
 }
 
 /// The reason why a command failed.

@@ -2,7 +2,7 @@
 
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
-use super::values::preset;
+use super::values::{preset, seed};
 use crate::files::{read_instances, write_instances};
 use indicatif::ProgressBar;
 use mpp_analysis::bench::{CycleBench, generate, run_cycle, run_qp};
@@ -13,6 +13,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::BENCH)]
 pub(super) struct BenchArgs {
     #[command(subcommand)]
     what: What,
@@ -44,7 +45,7 @@ struct CycleArgs {
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     flights: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: 1]
-    #[arg(long)]
+    #[arg(long, value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Number of times that each cycle is planned; the fastest counts
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
@@ -64,7 +65,7 @@ struct QpArgs {
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     generate: Option<u32>,
     /// Seed of the first flight from which programs are generated
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Preset of those flights; `flight` has soft rows
     #[arg(long, value_parser = preset(), default_value_t = Preset::Reference)]

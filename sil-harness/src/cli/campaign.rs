@@ -1,12 +1,13 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
+use super::help::{OUTPUT, PLANNER, RUN, WORLD};
+use super::loudness::{Loudness, progress_bar};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{generator, preset};
+use super::values::{generator, preset, seed};
 use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
 use crate::files::read_field;
-use indicatif::{ProgressBar, ProgressStyle};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
 };
@@ -18,77 +19,82 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::CAMPAIGN)]
 pub(super) struct CampaignArgs {
     #[command(flatten)]
     pub(super) scenario: ScenarioArgs,
     /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
     /// --obstacles is given
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     field: Vec<PathBuf>,
     /// Generators of random obstacles, a list [default: the scenario's, else paper]
-    #[arg(long, value_delimiter = ',', value_parser = generator())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
     obstacles: Vec<usize>,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
     pub(super) paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
-    #[arg(long, value_delimiter = ',', value_parser = preset())]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = preset())]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     oracle: bool,
     /// Also tell which of the fields can be passed at all, as `ceiling` does without a margin, and give success as a
     /// share of these
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     ceiling: bool,
     /// Fly pairs of flights without and with faults instead: the named faults, a list, or all. The cells are
     /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless --obstacles or --replan-hz is given. Such a
     /// campaign keeps no row file
     #[arg(
         long,
+        help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
         conflicts_with_all = ["out", "report", "shard", "oracle", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
     /// Number of flights in each cell
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) trials: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
-    #[arg(long)]
+    #[arg(long, help_heading = RUN, value_parser = seed, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
     /// Number of threads; 0 takes every core
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, help_heading = RUN, default_value_t = 0)]
     pub(super) threads: usize,
     /// Fly only the i-th of n parts, such as 2/8
-    #[arg(long, default_value = "1/1")]
+    #[arg(long, help_heading = RUN, default_value = "1/1")]
     shard: Shard,
     /// Row file (JSON lines) to write or to continue
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = OUTPUT, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Also measure the core's wall time; it depends on the machine
-    #[arg(long)]
+    #[arg(long, help_heading = RUN)]
     timing: bool,
     /// Fly nothing; report the rows of these files, which are shards of one campaign
-    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
+    #[arg(long, help_heading = OUTPUT, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
     report: Vec<PathBuf>,
     /// Also print the causes of failures for each cell, the most frequent cause first; the JSON
     /// report always holds them
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     taxonomy: bool,
+    #[command(flatten)]
+    pub(super) loudness: Loudness,
     /// Print the report as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     pub(super) json: bool,
 }
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
+    args.loudness.set();
     let (campaign, rows) = if args.report.is_empty() {
         flown(args)
     } else {
@@ -235,7 +241,15 @@ fn fly_rows(
             all.len()
         ));
     }
-    let progress = progress_bar(jobs.len(), "flights");
+    args.loudness.tell(|| {
+        let cells = campaign.cells().len();
+        format!(
+            "{cells} cells, {} flights to fly, {} threads (0: all cores)",
+            jobs.len(),
+            args.threads
+        )
+    });
+    let progress = progress_bar(jobs.len() as u64, "flights");
     let sink = Mutex::new((file, known));
     let flown = fly_all(campaign, &jobs, args.threads, args.timing, |row| {
         progress.inc(1);
@@ -254,16 +268,4 @@ fn fly_rows(
     progress.finish_and_clear();
     flown?;
     Ok(sink.into_inner().unwrap_or_else(PoisonError::into_inner).1)
-}
-
-/// Makes a progress bar. It is drawn on a terminal only.
-pub(super) fn progress_bar(count: usize, what: &str) -> ProgressBar {
-    let bar = ProgressBar::new(count as u64);
-    let style = ProgressStyle::with_template(&format!(
-        "{{wide_bar}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left"
-    ));
-    if let Ok(style) = style {
-        bar.set_style(style);
-    }
-    bar
 }

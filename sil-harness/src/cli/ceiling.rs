@@ -1,10 +1,12 @@
 //! `ceiling`: which fields can be passed at all, proven either way.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
-use super::campaign::{failure, named_fields, progress_bar};
+use super::campaign::{failure, named_fields};
+use super::help::{OUTPUT, RUN, WORLD};
+use super::loudness::progress_bar;
 use super::scenario::ScenarioArgs;
 use super::signals::Signals;
-use super::values::generator;
+use super::values::{generator, seed};
 use crate::campaign::{CampaignError, decide_all};
 use mpp_analysis::campaign::{Campaign, Lists};
 use mpp_analysis::ceiling::{CeilingCell, CeilingReport};
@@ -12,33 +14,34 @@ use mpp_sim::generator::GeneratorName;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::CEILING)]
 pub(super) struct CeilingArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
     /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
     /// --obstacles is given
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     field: Vec<PathBuf>,
     /// Generators of random obstacles, a list [default: the scenario's, else paper]
-    #[arg(long, value_delimiter = ',', value_parser = generator())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 160,320 [default: the scenario's]
-    #[arg(long, value_delimiter = ',')]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
     obstacles: Vec<usize>,
     /// Margins that a flight keeps beside the body's radius [m], a list
-    #[arg(long, value_delimiter = ',', default_values_t = [0.0])]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', default_values_t = [0.0])]
     margin: Vec<f64>,
     /// Number of fields in each cell
-    #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     fields: u32,
     /// Seed of the first field; the next fields take the next seeds [default: the scenario's]
-    #[arg(long)]
+    #[arg(long, help_heading = RUN, value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Number of threads; 0 takes every core
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, help_heading = RUN, default_value_t = 0)]
     threads: usize,
     /// Print the report as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     json: bool,
 }
 
@@ -53,10 +56,8 @@ pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;
     let cells = campaign.cells();
-    let progress = progress_bar(
-        cells.len() * args.margin.len() * args.fields as usize,
-        "fields",
-    );
+    let all = cells.len() * args.margin.len();
+    let progress = progress_bar(all as u64 * u64::from(args.fields), "fields");
     let done = || {
         progress.inc(1);
         signals

@@ -1,6 +1,7 @@
 //! `core`: runs the flight core as a process of its own.
 
 use super::answer::{Failure, LINK, USAGE, talk};
+use super::values::seconds;
 use crate::files::read_field;
 use crate::link::{PATIENCE, serve};
 use mpp_sim::oracle::Oracle;
@@ -9,6 +10,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::CORE_EXAMPLES)]
 pub(super) struct CoreArgs {
     /// Address to listen on, HOST:PORT; port 0 takes a free one
     #[arg(long, default_value = "127.0.0.1:5790")]
@@ -16,9 +18,9 @@ pub(super) struct CoreArgs {
     /// End after the first harness that configured a flight
     #[arg(long)]
     once: bool,
-    /// Seconds to wait for a silent harness, but at most 5 for its hello
-    #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
-    patience: u64,
+    /// Seconds to wait for a silent harness, but at most 5 for its hello [default: 10]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    patience: Option<Duration>,
     /// Field of obstacles (TOML, as docs/fields.md) that the planner knows whole: the core is an oracle
     #[arg(long, value_name = "FIELD")]
     oracle: Option<PathBuf>,
@@ -38,7 +40,7 @@ pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
     talk(format_args!(
         "core listens on {address}; fly it with: sil-harness fly --link tcp:{address}"
     ));
-    let patience = Duration::from_secs(args.patience);
+    let patience = args.patience.unwrap_or(PATIENCE);
     serve(&listener, args.once, patience, oracle.as_ref(), |line| {
         talk(line);
     })

@@ -1,12 +1,14 @@
 //! `campaign --faults`: pairs of flights without and with named faults.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
-use super::campaign::{CampaignArgs, failure, lists, progress_bar};
+use super::campaign::{CampaignArgs, failure, lists};
+use super::loudness::progress_bar;
 use super::signals::Signals;
 use crate::campaign::{CampaignError, run_faults};
 use mpp_analysis::campaign::{FaultCampaign, FaultReport, NamedFault};
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
+    args.loudness.set();
     let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
     if args.preset.len() > 1 || args.paths.len() > 1 {
         return Err(usage(
@@ -18,7 +20,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     let campaign = FaultCampaign::new(&scenario, &lists(args)?, args.trials, args.seed, &faults)
         .map_err(|error| usage(&error))?;
     let signals = Signals::heed()?;
-    let progress = progress_bar(campaign.jobs().len(), "flights");
+    let progress = progress_bar(campaign.jobs().len() as u64, "pairs");
     let flown = run_faults(&campaign, args.threads, || {
         progress.inc(1);
         signals

@@ -2,6 +2,7 @@
 
 use super::answer::{FAILURE, Failure, USAGE, talk};
 use super::campaign::{rows_of, set_beside_ceiling};
+use super::values::seed;
 use crate::files::write_whole;
 use mpp_analysis::campaign::Report;
 use mpp_analysis::figure::{
@@ -16,12 +17,13 @@ use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::FIGURES)]
 pub(super) struct FiguresArgs {
     /// Directory for the pictures (SVG)
     #[arg(long, default_value = "out/figures")]
     out: PathBuf,
     /// Seed of all flights in the pictures
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Row files of one campaign; its success rates are then drawn too
     #[arg(long, value_name = "FILE", num_args = 1..)]

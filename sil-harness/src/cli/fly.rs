@@ -1,14 +1,16 @@
 //! `fly`: flies one flight and writes its log and its picture.
 
-use super::answer::{FAILURE, Failure, LINK, USAGE, data, talk};
+use super::answer::{FAILURE, Failure, LEFT_BAND, LINK, USAGE, data, talk};
+use super::detail::{flown_conditions, told_plans};
 use super::file_name::file_name;
 use super::ground::GroundArgs;
+use super::help::{CORE, OUTPUT, PLANNER, WORLD};
+use super::loudness::{Loudness, progress_bar};
 use super::scenario::{ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{generator, preset};
+use super::values::{generator, preset, seconds, seed};
 use crate::files::{read_field, write_field, write_log, write_whole};
 use crate::link::{FifoLink, PATIENCE, TcpLink};
-use indicatif::{ProgressBar, ProgressStyle};
 use mpp_analysis::figure::flight_svg;
 use mpp_sim::field::FieldFile;
 use mpp_sim::flight::{FlyError, fly_with};
@@ -23,51 +25,57 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::FLY)]
 pub(super) struct FlyArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
     /// Seed of the field, of all noise and of the planner [default: 1]
-    #[arg(long)]
+    #[arg(long, help_heading = WORLD, value_parser = seed, allow_negative_numbers = true)]
     seed: Option<u64>,
     /// Field of obstacles (TOML, as docs/fields.md); it stands alone unless --obstacles is given
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     field: Option<PathBuf>,
     /// Write all obstacles of the flight as a field, for --field
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     save_field: Option<PathBuf>,
     /// Generator of random obstacles [default: paper]
-    #[arg(long, value_parser = generator())]
+    #[arg(long, help_heading = WORLD, value_parser = generator())]
     generator: Option<GeneratorName>,
     /// Number of obstacles between 25 m and 240 m downrange [default: 20]
-    #[arg(long)]
+    #[arg(long, help_heading = WORLD)]
     obstacles: Option<usize>,
     /// Number of candidate paths of a planning cycle; with 0 the core tracks the shortest path
     /// itself, without refinement [default: 25]
-    #[arg(long)]
+    #[arg(long, help_heading = PLANNER)]
     paths: Option<u16>,
     /// Preset, which is a set of parameters and rules [default: flight]
-    #[arg(long, value_parser = preset())]
+    #[arg(long, help_heading = PLANNER, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
-    #[arg(long)]
+    #[arg(long, help_heading = PLANNER)]
     replan_hz: Option<f64>,
     /// Let an oracle fly, which knows the true field and state and replans at 10 Hz of the reference aircraft
-    #[arg(long, conflicts_with = "link")]
+    #[arg(long, help_heading = CORE, conflicts_with = "link")]
     oracle: bool,
     /// Place where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and
     /// to-harness [default: in this process]
-    #[arg(long)]
+    #[arg(long, help_heading = CORE)]
     link: Option<String>,
-    /// Seconds to wait for a silent core over TCP
-    #[arg(long, default_value_t = PATIENCE.as_secs(), value_parser = clap::value_parser!(u64).range(1..))]
-    patience: u64,
+    /// Seconds to wait for a silent core over TCP [default: 10]
+    #[arg(long, help_heading = CORE, value_name = "SECONDS", value_parser = seconds)]
+    patience: Option<Duration>,
     #[command(flatten)]
     ground: GroundArgs,
+    /// Fail with exit code 5 if the flight survives and leaves the altitude band of +-11 m
+    #[arg(long, help_heading = OUTPUT)]
+    strict: bool,
+    #[command(flatten)]
+    loudness: Loudness,
     /// Print the result as one JSON object
-    #[arg(long)]
+    #[arg(long, help_heading = OUTPUT)]
     json: bool,
     /// Directory for the log and the picture; their names say what differs from the preset's flight
-    #[arg(long, default_value = "out")]
+    #[arg(long, help_heading = OUTPUT, default_value = "out")]
     out: PathBuf,
 }
 
@@ -144,7 +152,7 @@ impl FlyArgs {
     fn connect(&self, scenario: &Scenario) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
             None => Ok(Box::new(PipeLink::of(scenario))),
-            Some(text) => connect(text, Duration::from_secs(self.patience)),
+            Some(text) => connect(text, self.patience.unwrap_or(PATIENCE)),
         }
     }
 }
@@ -183,6 +191,7 @@ struct ResultLine<'a> {
 }
 
 pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
+    args.loudness.set();
     let recorded = args.ground.recorded()?;
     let scenario = match &recorded {
         Some(log) => args.scenario_of(log)?,
@@ -205,7 +214,8 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
             place => place.unwrap_or("in this process"),
         },
     ));
-    let progress = progress_bar(u64::from(scenario.ticks));
+    args.loudness.tell(|| flown_conditions(&scenario));
+    let progress = progress_bar(u64::from(scenario.ticks), "ticks");
     let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
     let result = fly_with(&scenario, link.as_mut(), &mut crew);
     // The files first: nothing that goes wrong at the end of a link costs the log.
@@ -221,16 +231,6 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     ended?;
     let was = log.summary.outcome == Outcome::Interrupted;
     Ok(interrupted.filter(|_| was).unwrap_or(code))
-}
-
-/// Makes a progress bar. It is drawn on a terminal only.
-fn progress_bar(ticks: u64) -> ProgressBar {
-    let bar = ProgressBar::new(ticks);
-    let style = ProgressStyle::with_template("{wide_bar} {pos}/{len} ticks, {per_sec}, {eta} left");
-    if let Ok(style) = style {
-        bar.set_style(style);
-    }
-    bar
 }
 
 fn exit_code(error: &FlyError) -> u8 {
@@ -292,6 +292,11 @@ fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
         let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
         talk(format_args!("log {}, picture {figure}", line.log));
         data(text_line(&line))?;
+    }
+    args.loudness.tell(|| told_plans(log));
+    let left_band = log.summary.outcome == Outcome::Survived && !log.summary.strict;
+    if args.strict && left_band {
+        return Ok(LEFT_BAND);
     }
     Ok(log.summary.outcome.exit_code())
 }

@@ -26,6 +26,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(next_help_heading = super::help::GROUND)]
 pub(super) struct GroundArgs {
     /// Answer MAVLink ground stations at udp:HOST:PORT [default: udp:127.0.0.1:14550 and :14540].
     /// Without --mavlink-key whoever reaches the socket may command, even end the flight: every

@@ -1,7 +1,7 @@
 //! The command line: data on stdout, messages on stderr.
 //!
 //! Exit codes: 0 the end was reached, 1 failure, 2 usage, 3 collision, 4 extreme state, 6 link,
-//! 8 terminated from the ground, 130 and 143 interrupted.
+//! 5 left the altitude band (`fly --strict`), 8 terminated from the ground, 130 and 143 interrupted.
 
 mod aircraft;
 mod answer;
@@ -10,19 +10,24 @@ mod campaign;
 mod ceiling;
 mod check;
 mod core;
+mod detail;
+mod export;
 mod fault_campaign;
 mod figures;
 mod file_name;
 mod fly;
 mod ground;
+mod help;
+mod loudness;
+mod manual;
 mod params;
 mod replay;
 mod scenario;
 mod signals;
 mod values;
 
-use answer::talk;
-use clap::{Parser, Subcommand};
+use answer::complain;
+use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Software in the loop for Model Predictive Planning: flies the flight core through obstacle
@@ -59,6 +64,12 @@ enum Command {
     Params(params::ParamsArgs),
     /// Check core and plant against data recorded from the authors' code
     CheckReference(check::CheckArgs),
+    /// Make CSV, MCAP or Parquet of a flight's log or a campaign's rows
+    Export(export::ExportArgs),
+    /// Print the completions of a shell
+    Completions(manual::CompletionsArgs),
+    /// Print the manual page, or write those of all commands
+    Man(manual::ManArgs),
 }
 
 /// Parses the command line and does what it says.
@@ -78,11 +89,14 @@ pub fn run() -> ExitCode {
         Some(Command::Replay(args)) => replay::run(&args),
         Some(Command::Params(args)) => params::run(&args),
         Some(Command::CheckReference(args)) => check::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
+        Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
+        Some(Command::Man(args)) => manual::man(&args, Cli::command()),
     };
     match result {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            talk(format_args!("error: {}", failure.message));
+            complain(format_args!("error: {}", failure.message));
             ExitCode::from(failure.code)
         }
     }

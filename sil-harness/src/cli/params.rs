@@ -7,6 +7,7 @@ use mpp_node::parameters::{self, PARAMETERS, Parameter, Tuning};
 use mpp_sim::scenario::{Preset, Scenario};
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::PARAMS)]
 pub(super) struct ParamsArgs {
     /// Preset whose values are printed
     #[arg(long, value_parser = preset(), default_value_t = Preset::Flight)]

@@ -6,6 +6,7 @@ use mpp_analysis::picture::replay::replay;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::REPLAY)]
 pub(super) struct ReplayArgs {
     /// Log of the flight
     log: PathBuf,

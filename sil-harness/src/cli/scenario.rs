@@ -2,45 +2,44 @@
 //! it.
 
 use super::answer::{Failure, USAGE};
+use super::help::{PLANNER, WORLD};
 use super::values::{navigation, scene};
 use crate::files::{read_aircraft, read_lidar, read_scenario};
-use mpp_sim::scenario::{
-    LidarTable, NavigationSource, Scenario, ScenarioFile, TICK_MS, TICKS_PER_SECOND,
-};
+use mpp_sim::scenario::{LidarTable, NavigationSource, Scenario, ScenarioFile, TICK_MS};
 use mpp_sim::scene::Scene;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(super) struct ScenarioArgs {
     /// Scenario (TOML, as docs/scenarios/example.toml); the other flags take precedence over it
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     scenario: Option<PathBuf>,
     /// Challenge scene; it stands alone unless --obstacles is given
-    #[arg(long, value_parser = scene())]
+    #[arg(long, help_heading = WORLD, value_parser = scene())]
     scene: Option<Scene>,
     /// Aircraft, of plant and core: reference, paper, example, zagi, aerosonde, cessna182, or a file (TOML, as
     /// docs/aircraft.md describes) [default: reference]
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
     aircraft: Option<String>,
     /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's
     /// speed squared]
-    #[arg(long, value_name = "FACTOR")]
+    #[arg(long, help_heading = WORLD, value_name = "FACTOR")]
     world_scale: Option<f64>,
     /// Lidar (TOML, as docs/lidars/example.toml); its keys take precedence over the scenario's
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
     lidar: Option<PathBuf>,
     /// Source of positions: their rate, errors and delay [default: rtk; of presets paper and reference: ideal]
-    #[arg(long, value_parser = navigation())]
+    #[arg(long, help_heading = WORLD, value_parser = navigation())]
     navigation: Option<NavigationSource>,
     /// Simulated time from a scan until its plan is flown [ms], a multiple of 10 [default: 10]
-    #[arg(long)]
+    #[arg(long, help_heading = PLANNER)]
     latency_ms: Option<u32>,
     /// Planner slices that run between two ticks [default: all that the cycle needs]
-    #[arg(long)]
+    #[arg(long, help_heading = PLANNER)]
     slices_per_tick: Option<u32>,
-    /// Length of the flight [s] [default: 20]
-    #[arg(long)]
-    duration: Option<u32>,
+    /// Length of the flight [s], a multiple of 0.01 [default: 20]
+    #[arg(long, help_heading = WORLD)]
+    duration: Option<f64>,
 }
 
 impl ScenarioArgs {
@@ -87,7 +86,7 @@ impl ScenarioArgs {
         let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
             read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
         });
-        let seconds = other(self.duration, flown.ticks / TICKS_PER_SECOND);
+        let seconds = (self.duration).is_some_and(|asked| (asked - flown.duration()).abs() > 1e-6);
         Ok([
             ("--lidar", other_lidar),
             ("--scene", self.scene.is_some() && self.scene != flown.scene),

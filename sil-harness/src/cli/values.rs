@@ -6,6 +6,7 @@ use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use std::error::Error;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Reads one of these names.
 fn named<T>(names: impl IntoIterator<Item = PossibleValue>) -> impl TypedValueParser<Value = T>
@@ -13,6 +14,22 @@ where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(names).try_map(|name| name.parse())
+}
+
+/// Reads a seed.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    let advice = format!("a seed is a whole number from 0 to {}", u64::MAX);
+    text.parse().map_err(|_| advice)
+}
+
+/// Reads a time to wait \[s\].
+pub(super) fn seconds(text: &str) -> Result<Duration, String> {
+    let found = text
+        .parse()
+        .ok()
+        .filter(|seconds| (0.001..=1e6).contains(seconds));
+    let advice = || "give 0.001 to 1000000 seconds".to_owned();
+    found.map(Duration::from_secs_f64).ok_or_else(advice)
 }
 
 /// Reads a preset.

@@ -1,7 +1,10 @@
 //! The command line as a user meets it: exit codes, what is printed where, what is written.
 
 mod aircraft;
+mod export;
+mod pages;
 mod peers;
+mod speech;
 
 use serde_json::Value;
 use std::path::PathBuf;

@@ -4,9 +4,8 @@
 use super::FlightPlanner;
 use super::candidate::Candidate;
 use crate::config::{KNOTS, STAGES};
-use crate::tuning::UNKNOWN_PRICE;
 use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
-use crate::tuning::{ROOM, UNKNOWN_AHEAD};
+use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 
 /// Worst lack of clearance \[m\], effort, and the price that ranks candidates.
 pub(super) struct Judgement {
@@ -36,7 +35,7 @@ impl FlightPlanner {
                 let outside = ((z - self.altitude).abs() - own.band).max(0.0);
                 let distance = field.distance(x, z);
                 let missing = (own.margin - distance).max(0.0) + outside;
-                let crowded = (ROOM - distance).max(0.0);
+                let crowded = (self.limits.wanted_room - distance).max(0.0);
                 lack = lack.max(missing);
                 price += weight * LACK_PRICE * discount * missing * missing;
                 price += weight * self.limits.room_price * discount * crowded * crowded;

@@ -1,7 +1,7 @@
 //! Limits of the plans of one cycle.
 
 use crate::settings::FlightSettings;
-use crate::tuning::{faces, judgement, limits};
+use crate::tuning::{ROOM, faces, judgement, limits, open};
 use crate::units::REFERENCE_CRUISE;
 use crate::vehicle::{ActuatorLimits, Airframe};
 
@@ -21,7 +21,9 @@ pub(super) struct Limits {
     pub(super) thrust_max: f64,
     /// Greatest curvature of a path in level flight at cruise [1/m].
     pub(super) curvature: f64,
-    /// Price of the squared lack of room [1/m^2].
+    /// Clearance whose lack has a price \[m\].
+    pub(super) wanted_room: f64,
+    /// Price of the squared lack of it [1/m^2].
     pub(super) room_price: f64,
     /// Distance that a program keeps where its candidate already has that much room \[m\].
     pub(super) room: f64,
@@ -35,6 +37,7 @@ impl Limits {
         flight_path: 0.0,
         thrust_max: 0.0,
         curvature: 0.0,
+        wanted_room: ROOM,
         room_price: 0.0,
         room: 0.0,
     };
@@ -65,8 +68,20 @@ impl Limits {
                 * a.turn_gain(REFERENCE_CRUISE),
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.
+            wanted_room: ROOM,
             room_price: judgement::ROOM_PRICE * (1.0 - agility),
             room: own.margin * (1.0 / agility).min(faces::MOST_MARGINS),
         }
+    }
+    /// Asks for more room in open country: clearance costs nothing there. `openness` is the share of the map's cells ahead
+    /// that are open.
+    pub(super) fn widen(&mut self, margin: f64, openness: f64) {
+        let share = libm::pow(openness, open::POWER);
+        let price = open::PRICE * share;
+        if price > self.room_price {
+            (self.wanted_room, self.room_price) = (open::ROOM, price);
+        }
+        let margins = (1.0 + open::MARGINS * share).min(open::MOST_MARGINS);
+        self.room = self.room.max(margin * margins);
     }
 }

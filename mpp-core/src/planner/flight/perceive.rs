@@ -29,6 +29,8 @@ impl FlightPlanner {
             return;
         }
         self.field.build(&self.map, self.settings.body_radius);
+        self.limits
+            .widen(self.settings.margin, self.field.openness());
         self.take_up_previous();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
         self.lattice.start(&LatticeTask {
@@ -38,6 +40,7 @@ impl FlightPlanner {
             altitude: self.altitude,
             band: self.settings.band,
             curvature: self.limits.curvature,
+            room: self.limits.wanted_room,
             room_price: self.limits.room_price,
         });
         self.phase = Phase::Lattice;

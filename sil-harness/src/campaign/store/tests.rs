@@ -9,7 +9,7 @@ use std::sync::Mutex;
 
 fn short() -> Campaign {
     let scenario = ScenarioFile {
-        duration: Some(1),
+        duration: Some(1.0),
         ..ScenarioFile::default()
     };
     Campaign::new(scenario, Lists::default(), 4, Some(11)).unwrap()

@@ -1,0 +1,213 @@
+//! Whether exports hold what the log holds, under the names that the page gives.
+
+#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+
+use mpp_analysis::campaign::{Campaign, Lists, Row};
+use mpp_export::schema::{ALL, Kind, SENSORS, TICKS};
+use mpp_export::table::Table;
+use mpp_export::{ExportError, csv::csv, flight, mcap::mcap, parquet::parquet, rows};
+use mpp_sim::flight::fly;
+use mpp_sim::log::FlightLog;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::witness::Witness;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use std::collections::BTreeMap;
+
+fn scenario(text: &str) -> Scenario {
+    ScenarioFile::parse("", text).unwrap().build().unwrap()
+}
+
+fn flown(text: &str) -> FlightLog {
+    fly(&scenario(text), &mut PipeLink::new(), |_| {}).unwrap()
+}
+
+#[test]
+fn the_page_has_every_column_with_kind_unit_frame_and_meaning() {
+    let page = include_str!("../../docs/logs.md");
+    for schema in ALL {
+        let part = page
+            .split(&format!("### Table `{}`", schema.name))
+            .nth(1)
+            .unwrap();
+        let part = part.split("\n#").next().unwrap();
+        let listed: Vec<&str> = part
+            .lines()
+            .filter(|line| line.starts_with("| `"))
+            .collect();
+        let row = |column: &mpp_export::schema::Column| {
+            let kind = format!("{:?}", column.kind).to_lowercase();
+            let (name, unit, frame, about) = (column.name, column.unit, column.frame, column.about);
+            format!("| `{name}` | {kind} | {unit} | {frame} | {about} |")
+        };
+        let expected: Vec<String> = schema.columns.iter().map(row).collect();
+        assert_eq!(listed, expected);
+    }
+}
+
+#[test]
+fn csv_reads_back_to_the_same_numbers() {
+    let log = flown("seed = 3\nduration = 1.5");
+    let table = flight::table(&log, &TICKS).unwrap();
+    let text = String::from_utf8(csv(&table)).unwrap();
+    let mut lines = text.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let place = |name: &str| names.iter().position(|found| *found == name).unwrap();
+    let cells: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| -> Vec<Option<f64>> {
+        cells
+            .iter()
+            .map(|row| row[place(name)].parse().ok())
+            .collect()
+    };
+    let whole = |column: &[f64]| column.iter().copied().map(Some).collect::<Vec<_>>();
+    assert_eq!(column("z"), whole(&log.ticks.z));
+    assert_eq!(
+        column("applied_elevator"),
+        whole(&log.ticks.applied_elevator)
+    );
+    assert_eq!(column("ref_x"), log.ticks.ref_x);
+    assert!(log.ticks.ref_x.contains(&None) && cells.len() == 150);
+}
+
+#[test]
+fn parquet_reads_back_to_the_same_numbers() {
+    let log = flown("seed = 3\nduration = 1.5");
+    let bytes = parquet(&flight::table(&log, &TICKS).unwrap()).unwrap();
+    let reader = SerializedFileReader::new(bytes::Bytes::from(bytes)).unwrap();
+    let metadata = reader
+        .metadata()
+        .file_metadata()
+        .key_value_metadata()
+        .unwrap();
+    assert!(metadata.iter().any(|pair| pair.key == "mpp.schema_version"));
+    let mut rows = 0;
+    for (row, tick) in reader.get_row_iter(None).unwrap().zip(0..) {
+        let row: BTreeMap<String, Field> = row.unwrap().into_columns().into_iter().collect();
+        assert_eq!(row["z"], Field::Double(log.ticks.z[tick]));
+        assert_eq!(
+            row["ref_z"],
+            log.ticks.ref_z[tick].map_or(Field::Null, Field::Double)
+        );
+        rows += 1;
+    }
+    assert_eq!(rows, 150);
+}
+
+#[test]
+fn mcap_has_every_topic_in_the_order_of_time_and_the_logs_hash() {
+    let log = flown(
+        "seed = 3\nduration = 2.5\n[[field.circle]]\nx = 90.0\nz = 50.0\nradius = 1.0\nvelocity = [1.0, 0.0]",
+    );
+    let bytes = mcap(&log).unwrap();
+    let mut counts = BTreeMap::new();
+    let mut last = 0;
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        assert!(message.log_time >= last);
+        last = message.log_time;
+        let schema = message.channel.schema.clone().unwrap();
+        let value: serde_json::Value = serde_json::from_slice(&message.data).unwrap();
+        let schema: serde_json::Value = serde_json::from_slice(&schema.data).unwrap();
+        let properties = schema["properties"].as_object().unwrap();
+        assert!(
+            value
+                .as_object()
+                .unwrap()
+                .keys()
+                .all(|key| properties.contains_key(key))
+        );
+        *counts.entry(message.channel.topic.clone()).or_insert(0) += 1;
+    }
+    let expected = [
+        ("/estimate", 250),
+        ("/field", 25),
+        ("/plan", 3),
+        ("/plans", 3),
+        ("/pose", 250),
+        ("/scan", 3),
+        ("/tf", 250),
+        ("/ticks", 250),
+    ];
+    assert_eq!(
+        counts,
+        expected
+            .map(|(topic, count)| (topic.to_owned(), count))
+            .into()
+    );
+    let hash = log.hash().unwrap();
+    assert!(
+        bytes
+            .windows(hash.len())
+            .any(|part| part == hash.as_bytes())
+    );
+    // Another flight than its seed gives has no scans and no cycles.
+    let mut other = log;
+    other.ticks.x[10] += 1.0;
+    let fewer = mcap(&other).unwrap();
+    let topics = mcap::MessageStream::new(&fewer).unwrap();
+    assert!(
+        topics
+            .map(|message| message.unwrap().channel.topic.clone())
+            .all(|topic| topic != "/scan")
+    );
+}
+
+#[test]
+fn every_value_of_a_row_has_a_column() {
+    let file = ScenarioFile::parse("", "preset = \"reference\"\nduration = 4").unwrap();
+    let lists = Lists {
+        obstacles: vec![60],
+        ..Lists::default()
+    };
+    let campaign = Campaign::new(file, lists, 1, Some(1)).unwrap();
+    let cell = campaign.cells().remove(0);
+    // This flight fails: a failure has values of its own.
+    let log = flown("preset = \"reference\"\nduration = 8\nobstacles = 60\nseed = 2");
+    assert!(log.summary.failure.is_some());
+    let row = Row::new(
+        cell,
+        &log,
+        &Witness::default(),
+        log.hash().unwrap(),
+        Some(1.25),
+    );
+    let table = rows::table(std::slice::from_ref(&row)).unwrap();
+    let value = |name: &str| {
+        table
+            .columns()
+            .find(|(column, _)| column.name == name)
+            .unwrap()
+            .1[0]
+            .clone()
+    };
+    assert_eq!(value("seed"), 2);
+    assert_eq!(value("generator"), "paper");
+    assert_eq!(value("core_ms"), 1.25);
+    assert!(value("failure_cause").is_string() && value("t_end").is_f64());
+    for (column, values) in table.columns() {
+        let fits = |value: &&serde_json::Value| match column.kind {
+            Kind::Real => value.is_number(),
+            Kind::Whole => value.is_u64(),
+            Kind::Truth => value.is_boolean(),
+            Kind::Text => value.is_string(),
+        };
+        assert!(
+            values.iter().filter(|value| !value.is_null()).all(fits),
+            "{}",
+            column.name
+        );
+    }
+}
+
+#[test]
+fn a_key_without_a_column_is_refused() {
+    let object = serde_json::json!({ "tick": 1, "colour": "red" });
+    let objects = [object.as_object().unwrap().clone()];
+    let refused = Table::of_objects(&SENSORS, objects).unwrap_err();
+    assert!(
+        matches!(&refused, ExportError::NoColumn(key, _) if key == "colour"),
+        "{refused}"
+    );
+}

@@ -1,0 +1,122 @@
+//! `export`: makes tables of a flight's log or a campaign's rows, for other programs.
+
+use super::answer::{FAILURE, Failure, USAGE, data_bytes, talk};
+use crate::campaign::read as read_rows;
+use crate::files::{is_row_file, read_log, write_whole};
+use clap::ValueEnum;
+use mpp_export::schema::{PLANS, REJECTIONS, SENSORS, Schema, TICKS};
+use mpp_export::table::Table;
+use mpp_export::{ExportError, csv::csv, flight, mcap::mcap, parquet::parquet, rows};
+use std::path::{Path, PathBuf};
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::EXPORT)]
+pub(super) struct ExportArgs {
+    /// Log of a flight, or row file of a campaign
+    file: PathBuf,
+    /// Format; MCAP and Parquet need a build with the cargo feature `formats`
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    format: Format,
+    /// Table of a flight, for CSV and Parquet [default: ticks]
+    #[arg(long, value_enum)]
+    table: Option<FlightTable>,
+    /// File to write [default: CSV to the standard output, else the name of the log with another ending]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// One table with a line of names; null is empty
+    Csv,
+    /// A whole flight with time series, scans, obstacles and plans, for Foxglove
+    Mcap,
+    /// One table with units in its metadata
+    Parquet,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum FlightTable {
+    /// State, estimate, reference, controls and wind, 100 times a second
+    Ticks,
+    /// The plans that the core delivered
+    Plans,
+    /// The inputs that the core refused
+    Rejections,
+    /// The changes of the core's trust in a sensor
+    Sensors,
+}
+
+impl FlightTable {
+    fn schema(self) -> &'static Schema {
+        match self {
+            Self::Ticks => &TICKS,
+            Self::Plans => &PLANS,
+            Self::Rejections => &REJECTIONS,
+            Self::Sensors => &SENSORS,
+        }
+    }
+}
+
+pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
+    let bytes = bytes(args)?;
+    let out = match (&args.out, args.format) {
+        (Some(out), _) => out.clone(),
+        (None, Format::Csv) => return data_bytes(&bytes).map(|()| 0),
+        (None, Format::Mcap) => args.file.with_extension("mcap"),
+        (None, Format::Parquet) => args.file.with_extension("parquet"),
+    };
+    if let Some(directory) = out.parent() {
+        let failed =
+            |error| Failure::new(FAILURE, format!("cannot write {}: {error}", out.display()));
+        std::fs::create_dir_all(directory).map_err(failed)?;
+    }
+    write_whole(&out, &bytes).map_err(|error| Failure::new(FAILURE, error))?;
+    talk(format_args!("{} bytes in {}", bytes.len(), out.display()));
+    Ok(0)
+}
+
+fn bytes(args: &ExportArgs) -> Result<Vec<u8>, Failure> {
+    let usage = |why: &str| Failure::new(USAGE, format!("{}: {why}", args.file.display()));
+    if is_row_file(&args.file).map_err(|error| Failure::new(USAGE, error))? {
+        if args.table.is_some() {
+            return Err(usage("a row file has one table: leave --table out"));
+        }
+        if args.format == Format::Mcap {
+            return Err(usage(
+                "a row file has no times: take --format csv or parquet",
+            ));
+        }
+        return of_table(&row_table(&args.file)?, args.format);
+    }
+    let log = read_log(&args.file).map_err(|error| Failure::new(USAGE, error))?;
+    match (args.format, args.table) {
+        (Format::Mcap, Some(_)) => Err(usage("MCAP holds every table: leave --table out")),
+        (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),
+        (format, table) => {
+            let schema = table.unwrap_or(FlightTable::Ticks).schema();
+            let table = flight::table(&log, schema).map_err(|error| failed(&error))?;
+            of_table(&table, format)
+        }
+    }
+}
+
+fn row_table(file: &Path) -> Result<Table, Failure> {
+    let (_, found) = read_rows(file).map_err(|error| Failure::new(USAGE, error))?;
+    rows::table(&found).map_err(|error| failed(&error))
+}
+
+fn of_table(table: &Table, format: Format) -> Result<Vec<u8>, Failure> {
+    match format {
+        Format::Parquet => parquet(table).map_err(|error| failed(&error)),
+        Format::Csv | Format::Mcap => Ok(csv(table)),
+    }
+}
+
+fn failed(error: &ExportError) -> Failure {
+    let code = match error {
+        ExportError::NotBuilt(_) => USAGE,
+        ExportError::Write(..) | ExportError::NoColumn(..) => FAILURE,
+    };
+    Failure::new(code, error)
+}

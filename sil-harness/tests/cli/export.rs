@@ -1,0 +1,82 @@
+//! `export` as a user meets it. What the files hold is tested in `mpp-export`.
+
+use super::{harness, run};
+use std::path::Path;
+use std::process::Output;
+
+#[expect(
+    clippy::unwrap_used,
+    reason = "a binary that does not start fails the test"
+)]
+fn export(arguments: &[&str], file: &Path) -> Output {
+    harness()
+        .arg("export")
+        .args(arguments)
+        .arg(file)
+        .output()
+        .unwrap()
+}
+
+#[test]
+fn csv_goes_to_the_standard_output_or_into_a_file() {
+    let (_, out) = run("export", &["fly", "--duration", "1", "--seed", "5"]);
+    let log = out.join("flight-seed5-1s.json");
+    let printed = export(&[], &log);
+    assert!(printed.status.success() && printed.stdout.starts_with(b"t,x,z,airspeed,"));
+    assert_eq!(
+        printed.stdout.iter().filter(|byte| **byte == b'\n').count(),
+        101
+    );
+    let file = out.join("tables/ticks.csv");
+    let written = export(&["--out", file.to_str().unwrap()], &log);
+    assert!(written.status.success() && written.stdout.is_empty());
+    assert_eq!(std::fs::read(&file).unwrap(), printed.stdout);
+    let plans = export(&["--table", "plans"], &log);
+    assert!(plans.stdout.starts_with(b"tick,used_from_tick,outcome,"));
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_with_what_to_do() {
+    let (_, out) = run("no-export", &["fly", "--duration", "1"]);
+    let log = out.join("flight-seed1-1s.json");
+    let rows = out.join("rows.jsonl");
+    let campaign = ["campaign", "--trials", "1", "--duration", "1", "--out"];
+    assert!(
+        harness()
+            .args(campaign)
+            .arg(&rows)
+            .output()
+            .unwrap()
+            .status
+            .success()
+    );
+    assert!(
+        export(&[], &rows)
+            .stdout
+            .starts_with(b"preset,field,generator,")
+    );
+    let noise = out.join("noise.json");
+    std::fs::write(&noise, "{\"schema\": 3}").unwrap();
+    for (flags, file, hint) in [
+        (
+            &["--format", "mcap"][..],
+            &rows,
+            "take --format csv or parquet",
+        ),
+        (&["--table", "plans"], &rows, "leave --table out"),
+        (
+            &["--format", "mcap", "--table", "plans"],
+            &log,
+            "leave --table out",
+        ),
+        (&[], &noise, "flight log has schema 3"),
+        (&[], &out.join("none.json"), "cannot read"),
+    ] {
+        let output = export(flags, file);
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(2), "{talk}");
+        assert!(talk.contains(hint) && output.stdout.is_empty(), "{talk}");
+    }
+    std::fs::remove_dir_all(out).unwrap();
+}
