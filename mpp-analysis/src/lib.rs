@@ -21,6 +21,7 @@
 //! * [`mod@bench`]: times our parts beside others.
 //! * [`campaign`]: reports about many flights over a grid, with intervals; [`rows`]: the first line of a file of them.
 //! * [`aircraft`]: what follows from an aircraft file before any flight.
+//! * [`ceiling`]: which fields can be passed at all, proven either way.
 //! * [`figure`]: counterparts of the paper's figures; [`picture`]: pages for a browser.
 //!
 //! The caller reads and writes the files, and runs the threads if there are any.
