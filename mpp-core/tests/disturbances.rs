@@ -155,24 +155,42 @@ fn plans_ask_for_no_more_than_the_actuators_give() {
     assert!(asked.0 < 2.0 + 1e-9 && asked.1 <= 5.0, "{asked:?}");
 }
 
-/// An aircraft that turns little cannot win back the distance that a gust takes.
+const SLUGGISH: ActuatorLimits = ActuatorLimits {
+    elevator_below: Some(2.0),
+    elevator_above: Some(2.0),
+    ..ActuatorLimits::NONE
+};
+
+/// Clearance from the first disc of a plan among discs.
+fn clearance(actuators: ActuatorLimits, discs: &[(f64, f64, f64)]) -> f64 {
+    let planner = plan_in(&with_actuators(actuators), &Wind::STILL, discs);
+    let (plan, first) = (planner.best(), discs[0]);
+    (0..450_u32)
+        .filter_map(|tick| plan.sample(plan.start + TICK_PERIOD * f64::from(tick)))
+        .map(|it| libm::hypot(it.state.x - first.0, it.state.z - first.1) - first.2)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Every aircraft passes an obstacle that stands alone at a distance.
 #[test]
-fn an_aircraft_that_turns_little_keeps_more_room() {
-    let disc = (135.0, 49.5, 1.0);
-    let clearance = |actuators: ActuatorLimits| {
-        let planner = plan_in(&with_actuators(actuators), &Wind::STILL, &[disc]);
-        let plan = planner.best();
-        (0..450_u32)
-            .filter_map(|tick| plan.sample(plan.start + TICK_PERIOD * f64::from(tick)))
-            .map(|it| libm::hypot(it.state.x - disc.0, it.state.z - disc.1) - disc.2)
-            .fold(f64::INFINITY, f64::min)
-    };
-    let agile = clearance(ActuatorLimits::NONE);
-    let sluggish = clearance(ActuatorLimits {
-        elevator_below: Some(2.0),
-        elevator_above: Some(2.0),
-        ..ActuatorLimits::NONE
+fn open_country_is_passed_with_room() {
+    for actuators in [ActuatorLimits::NONE, SLUGGISH] {
+        let found = clearance(actuators, &[(135.0, 49.5, 1.0)]);
+        assert!(found > 1.3, "{found}");
+    }
+}
+
+/// An aircraft that turns little cannot win back the distance that a gust takes. An agile aircraft keeps no more room
+/// between rows of obstacles than it needs.
+#[test]
+fn an_aircraft_that_turns_little_keeps_more_room_in_a_crowd() {
+    let rows = (0..20).flat_map(|place| {
+        let x = 102.0 + 2.5 * f64::from(place);
+        [(x, 57.5, 1.0), (x, 42.5, 1.0)]
     });
+    let discs: Vec<(f64, f64, f64)> = core::iter::once((135.0, 49.5, 1.0)).chain(rows).collect();
+    let agile = clearance(ActuatorLimits::NONE, &discs);
+    let sluggish = clearance(SLUGGISH, &discs);
     assert!(agile > 0.3 && sluggish > agile + 0.4, "{agile} {sluggish}");
 }
 

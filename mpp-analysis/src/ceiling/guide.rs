@@ -12,7 +12,7 @@ const DEPTH: f32 = 300.0;
 const CLOSED: f32 = 1e4;
 /// Price of a metre of way along an edge [1/m]; it falls with the square of the lack of room.
 const TIGHT: f32 = 4.0;
-/// Price of a squared change of slope by a step; it prefers flights that save their turns.
+/// Price of a change of slope by a step; it prefers flights that save their turns.
 const TURN: f32 = 0.02;
 
 /// Prices over a grid of places, heights and slopes.

@@ -1,6 +1,6 @@
 //! The proof that a field can be passed: a flight of the simulated aircraft, found by a search that knows the field.
 //!
-//! The search flies the plant itself. From each state it tries some angles of attack for a tenth of a second, and keeps the states from
+//! The search flies the plant itself. From each state it tries some angles of attack for a short time, and keeps the states from
 //! which the [`Guide`] promises the best way on. What it returns is a list of commands; whoever doubts it flies them again.
 
 use super::envelope::Envelope;
@@ -43,50 +43,49 @@ pub(super) struct Search<'a> {
     pub(super) width: usize,
 }
 
-/// A state, the command that led to it, and the index of the state before it.
+/// How a state was reached: the index of the state before it, and the command.
+type Leg = (usize, f64);
+
+/// A state, and how it was reached.
 struct Node {
     aircraft: Aircraft,
-    before: usize,
-    angle_of_attack: f64,
+    leg: Leg,
 }
 
-/// The commands of a flight that passes the field: an angle of attack for each [`HOLD`].
+/// The commands of a flight that passes the field: angles of attack \[rad\], each for the duration of a command.
 pub(super) type Commands = Vec<f64>;
 
 impl Search<'_> {
     /// Looks for a flight to the end.
     pub(super) fn run(&self) -> Option<Commands> {
-        let mut layers: Vec<Vec<Node>> = vec![vec![Node {
+        let mut layer = vec![Node {
             aircraft: self.start.clone(),
-            before: 0,
-            angle_of_attack: 0.0,
-        }]];
+            leg: (0, 0.0),
+        }];
+        let mut legs: Vec<Vec<Leg>> = Vec::new();
         let longest = 3.0 * self.end / (self.cruise * self.hold * self.units.time);
         for _ in 0..longest as usize {
+            let near = self.near(&layer);
             let mut next = Vec::new();
-            let layer = layers.last()?;
-            let near = self.near(layer);
             for (before, node) in layer.iter().enumerate() {
                 for angle_of_attack in self.tried() {
                     let mut aircraft = node.aircraft.clone();
                     if !self.fly(&mut aircraft, angle_of_attack, &near) {
                         continue;
                     }
-                    let arrived = aircraft.state().x >= self.end;
-                    let node = Node {
-                        aircraft,
-                        before,
-                        angle_of_attack,
-                    };
-                    if arrived {
-                        layers.push(vec![node]);
-                        return Some(commands(&layers));
+                    let leg = (before, angle_of_attack);
+                    if aircraft.state().x >= self.end {
+                        return Some(commands(&legs, leg));
                     }
-                    let price = self.price(&node);
-                    next.push((price, node));
+                    let node = Node { aircraft, leg };
+                    next.push((self.price(&node), node));
                 }
             }
-            layers.push(self.best(next));
+            layer = self.best(next);
+            if layer.is_empty() {
+                return None;
+            }
+            legs.push(layer.iter().map(|node| node.leg).collect());
         }
         None
     }
@@ -178,14 +177,14 @@ impl Search<'_> {
     }
 }
 
-/// The commands that led to the first state of the last layer.
-fn commands(layers: &[Vec<Node>]) -> Commands {
-    let mut commands = Vec::new();
-    let mut index = 0;
-    for layer in layers.iter().skip(1).rev() {
-        let node = &layer[index];
-        commands.push(node.angle_of_attack);
-        index = node.before;
+/// The commands up to a last one.
+fn commands(legs: &[Vec<Leg>], last: Leg) -> Commands {
+    let (mut index, angle_of_attack) = last;
+    let mut commands = vec![angle_of_attack];
+    for layer in legs.iter().rev() {
+        let (before, angle_of_attack) = layer[index];
+        commands.push(angle_of_attack);
+        index = before;
     }
     commands.reverse();
     commands
