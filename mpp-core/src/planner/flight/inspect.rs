@@ -36,6 +36,12 @@ impl FlightPlanner {
         self.shared.stages()
     }
 
+    /// Price of the best trajectory so far, by which the planner ranks trajectories. It is infinite without one.
+    #[must_use]
+    pub fn price(&self) -> f64 {
+        self.best_price
+    }
+
     /// Number of candidates of the last cycle.
     #[must_use]
     pub fn offers(&self) -> usize {
