@@ -21,7 +21,7 @@ def planner():
         ({"sed": 1}, "unknown field `sed`"),
         ({"seed": -1}, "negative"),
         ({"obstacles": 10**9}, "at most 1000"),
-        ({"duration": 0}, "give 1 to 3600 s"),
+        ({"duration": 0}, "give 0.01 to 3600 s"),
         ({"replan_hz": NAN}, "replan_hz"),
         ({"preset": "best"}, "unknown variant `best`"),
         ({"generator": "maze"}, "unknown variant `maze`"),

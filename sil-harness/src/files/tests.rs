@@ -23,6 +23,7 @@ fn the_named_conditions_are_sound() {
     assert_eq!(
         names,
         [
+            "actuators",
             "actuators-elevator",
             "actuators-thrust",
             "all-together",
