@@ -1,6 +1,7 @@
 """A connection to one vehicle. Commands and parameters get an answer, or they fail with an error."""
 
 import hashlib
+import struct
 import threading
 import time
 
@@ -15,6 +16,20 @@ RESULTS = {
     number: entry.name.removeprefix("MAV_RESULT_")
     for number, entry in mavlink.enums["MAV_RESULT"].items()
 }
+
+
+# How the bytes of a parameter's value are read, by its type. Those of another type are a float.
+INTEGERS = {
+    mavlink.MAV_PARAM_TYPE_UINT8: "<Bxxx", mavlink.MAV_PARAM_TYPE_INT8: "<bxxx",
+    mavlink.MAV_PARAM_TYPE_UINT16: "<Hxx", mavlink.MAV_PARAM_TYPE_INT16: "<hxx",
+    mavlink.MAV_PARAM_TYPE_UINT32: "<I", mavlink.MAV_PARAM_TYPE_INT32: "<i",
+}
+
+
+def parameter_value(message):
+    """The value in a PARAM_VALUE. A vehicle whose version was asked for sends whole numbers as integers."""
+    layout = INTEGERS.get(message.param_type)
+    return message.param_value if layout is None else struct.unpack(layout, struct.pack("<f", message.param_value))[0]
 
 
 class GroundError(Exception):
@@ -131,19 +146,19 @@ class Vehicle:
             while (message := self.receive("PARAM_VALUE", 0.5)) is not None:
                 count = message.param_count
                 if message.param_index < count:
-                    found[message.param_index] = (message.param_id, message.param_value)
+                    found[message.param_index] = (message.param_id, parameter_value(message))
                 if len(found) == count:
                     return dict(found[index] for index in range(count))
         raise GroundError(f"{len(found)} of {count or 'the'} parameters came")
 
     def read(self, name):
         mav = self.master.mav
-        return self.ask(
+        return parameter_value(self.ask(
             lambda: mav.param_request_read_send(self.system, COMPONENT, name.encode(), -1),
             "PARAM_VALUE",
             lambda value: value.param_id == name,
             f"a read of {name}",
-        ).param_value
+        ))
 
     def write(self, name, value):
         """Sets a parameter. Raises an error if the value in force is different."""
@@ -155,9 +170,10 @@ class Vehicle:
             lambda answer: answer.param_id == name,
             f"a write of {name}",
         )
-        if abs(answer.param_value - value) > 1e-6 * max(1.0, abs(value)):
-            raise GroundError(f"{name} stays {answer.param_value:g}: {value:g} is refused{self.why(name)}")
-        return answer.param_value
+        in_force = parameter_value(answer)
+        if abs(in_force - value) > 1e-6 * max(1.0, abs(value)):
+            raise GroundError(f"{name} stays {in_force:g}: {value:g} is refused{self.why(name)}")
+        return in_force
 
     def why(self, name):
         """The vehicle's text about a refused write, if there is one."""

@@ -2,9 +2,11 @@
 
 import json
 import os
+import shutil
 import statistics
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -146,6 +148,9 @@ def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
     assert code == 0 and "MPP_ALT_M,50\n" in out
     assert run("params", "set", "MPP_ALT_M", "-3")[0] == 1
     assert "capabilities" in run("command", "request", "autopilot_version")[1]
+    # From here on whole numbers come as integers.
+    assert run("params", "get", "MPP_PATHS") == (0, "MPP_PATHS,25\n")
+    assert run("params", "set", "MPP_PATHS", "24") == (0, "MPP_PATHS,24\n")
     assert run("command", "interval", "attitude", "25")[0] == 0
     assert run("command", "interval", "no_such_thing", "25")[0] == 1
     assert run("command", "mode", "cruise")[0] == 0
@@ -187,6 +192,24 @@ def test_a_recording_has_the_same_bytes_and_others_read_it(tmp_path):
     assert count == {"ATTITUDE": 50, "HEARTBEAT": 6, "STATUSTEXT": 1}
     assert not any("BAD_DATA" in line for line in dump)
     assert dump[0].startswith("2026-01-01 00:00:00.00") and dump[-1].startswith("2026-01-01 00:00:05.00")
+
+
+def test_the_wheel_says_its_version_and_brings_its_licences(tmp_path):
+    source = Path(__file__).resolve().parents[1]
+    build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", "-w", tmp_path]
+    # A copy, because a build leaves its folders beside the source.
+    copy = shutil.copytree(source, tmp_path / "ground", ignore=shutil.ignore_patterns("build", "*.egg-info"))
+    subprocess.run([*build, copy], check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    names = zipfile.ZipFile(wheel).namelist()
+    for licence in ("LICENSE-MIT", "LICENSE-APACHE"):
+        (found,) = [name for name in names if name.endswith(licence)]
+        assert zipfile.ZipFile(wheel).read(found) == (source.parent / licence).read_bytes()
+    assert "mpp_ground/mpp.xml" in names
+    said = subprocess.run(
+        [Path(sys.executable).with_name("mpp-ground"), "--version"], check=True, capture_output=True, text=True,
+    ).stdout
+    assert said == f"mpp-ground {wheel.name.split('-')[1]}\n"
 
 
 def test_a_silent_vehicle_is_an_error():

@@ -94,6 +94,8 @@ def test_mavproxy_reads_tunes_arms_and_records(proxy):
     proxy.hears("Got COMMAND_ACK: SET_MESSAGE_INTERVAL: ACCEPTED")
     proxy.type("long 31999 1")
     proxy.hears("command : 31999, result : 3")
+    proxy.type("ftp list /")
+    proxy.hears("parameter.json")
     proxy.type("wp list")
     proxy.hears("Requesting 0 waypoints")
     proxy.type("mode CRUISE")

@@ -9,7 +9,7 @@ from simulation import LASTING, LIMIT, parameters, until
 pytest.importorskip("mavsdk", reason="mavsdk is not installed")
 
 from mavsdk import ComponentType, Configuration, Mavsdk
-from mavsdk.plugins.action import Action
+from mavsdk.plugins.action import Action, ActionError, ActionResult
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.log_files import LogFiles, LogFilesError, LogFilesResult
 from mavsdk.plugins.mission_raw import MissionRaw
@@ -41,14 +41,24 @@ def test_mavsdk_finds_tunes_arms_and_watches(simulate):
         assert system is not None
 
         param = Param(system)
-        values = {p.name: p.value for p in param.get_all_params().float_params}
-        assert values == pytest.approx(parameters(), rel=1e-6)
+        # mavsdk asks for the vehicle's version when it finds it, and reads there that whole numbers are integers.
+        every = param.get_all_params()
+        integers = {p.name: p.value for p in every.int_params}
+        floats = {p.name: p.value for p in every.float_params}
+        assert {**integers, **floats} == pytest.approx(parameters(), rel=1e-6)
+        assert "MPP_PATHS" in integers and "MPP_ALT_M" in floats
+        assert param.get_param_int("MPP_PATHS") == 25
+        param.set_param_int("MPP_PATHS", 12)
+        assert param.get_param_int("MPP_PATHS") == 12
         param.set_param_float("MPP_ALT_M", 51.5)
         assert param.get_param_float("MPP_ALT_M") == 51.5
         with pytest.raises(ParamError):
             param.get_param_float("NO_SUCH_THING")
 
         telemetry = Telemetry(system)
+        with pytest.raises(ActionError) as refused:
+            Action(system).goto_location(47.4, 8.5, 60.0, 0.0)
+        assert refused.value.result == ActionResult.COMMAND_DENIED
         Action(system).arm()
         until(telemetry.armed, "an armed vehicle")
 

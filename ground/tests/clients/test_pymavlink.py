@@ -1,5 +1,6 @@
 """pymavlink as anybody uses it, and its parser compared with our framer."""
 
+import json
 import os
 import random
 import statistics
@@ -8,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from simulation import LASTING, LIMIT, ROOT, parameters, until
+from simulation import LASTING, LIMIT, ROOT, free_port, parameters, until
 from mpp_ground.dialect import load
 
 mavlink = load()
 
-from pymavlink import mavutil
+from pymavlink import mavftp, mavutil
 
 FRAMES = Path(os.environ.get("FRAMES", ROOT / "target" / "release" / "examples" / "frames"))
 
@@ -85,6 +86,72 @@ def test_an_interval_change_is_measured(vehicle):
     vehicle.mav.command_long_send(5, 1, 511, 0, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000, *[0] * 5)
     assert ack(vehicle, 511) == mavlink.MAV_RESULT_ACCEPTED
     assert interval() == 20
+
+
+def test_each_of_two_stations_has_its_own_rates(simulate):
+    other_port = free_port()
+    simulation = simulate(*LASTING, others=(other_port,))
+    first = mavutil.mavlink_connection(simulation.address, source_system=254)
+    second = mavutil.mavlink_connection(f"udpin:127.0.0.1:{other_port}", source_system=253)
+    assert first.wait_heartbeat(timeout=LIMIT) and second.wait_heartbeat(timeout=LIMIT)
+
+    def interval(master):
+        times = [awaited(master, "ATTITUDE").time_boot_ms for _ in range(30)]
+        return statistics.median(b - a for a, b in zip(times[10:], times[11:]))
+
+    first.mav.command_long_send(1, 1, 511, 0, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000, *[0] * 5)
+    assert ack(first, 511) == mavlink.MAV_RESULT_ACCEPTED
+    second.mav.request_data_stream_send(1, 1, mavlink.MAV_DATA_STREAM_ALL, 4, 1)
+    while interval(second) != 250:
+        pass
+    while interval(first) != 20:
+        pass
+    assert interval(second) == 250
+    for master in (first, second):
+        # By the numbers of the frames, apart from a datagram that the machine lost.
+        assert master.packet_loss() < 5
+        master.close()
+
+
+def test_what_a_station_asks_for_once_is_sent_once(vehicle):
+    vehicle.arducopter_arm()
+    awaited(vehicle, "MPP_TRAJECTORY")
+    names = [
+        "AVAILABLE_MODES", "CURRENT_MODE", "COMPONENT_METADATA", "GPS_GLOBAL_ORIGIN", "MPP_LIDAR_SCAN",
+        "MPP_PLAN_STATUS", "MPP_TRAJECTORY",
+    ]
+    for name in names:
+        number = getattr(mavlink, f"MAVLINK_MSG_ID_{name}")
+        vehicle.mav.command_long_send(5, 1, 512, 0, number, *[0] * 6)
+        awaited(vehicle, name)
+        assert ack(vehicle, 512) == mavlink.MAV_RESULT_ACCEPTED, name
+    # The core has no such message: it is refused, and nothing waits for it.
+    vehicle.mav.command_long_send(5, 1, 512, 0, mavlink.MAVLINK_MSG_ID_COMPONENT_INFORMATION, *[0] * 6)
+    assert ack(vehicle, 512) == mavlink.MAV_RESULT_DENIED
+
+
+def test_the_metadata_of_parameters_come_as_files(vehicle, tmp_path):
+    """The way of a station: message, general file, file of parameters, each read by pymavlink's own client."""
+    number = mavlink.MAVLINK_MSG_ID_COMPONENT_METADATA
+    vehicle.mav.command_long_send(5, 1, 512, 0, number, *[0] * 6)
+    about = awaited(vehicle, "COMPONENT_METADATA")
+    ftp = mavftp.MAVFTP(vehicle, target_system=5, target_component=1)
+
+    def read(uri):
+        to = tmp_path / Path(uri).name
+        ftp.cmd_get([uri.removeprefix("mftp://"), str(to)])
+        result = ftp.process_ftp_reply("OpenFileRO", timeout=LIMIT)
+        assert result.error_code == mavftp.FtpError.Success, result.error_code
+        return json.loads(to.read_text())
+
+    (entry,) = read(about.uri)["metadataTypes"]
+    described = {one["name"]: one for one in read(entry["uri"])["parameters"]}
+    assert set(parameters()) <= set(described)
+    assert described["MPP_PATHS"]["type"] == "Int32" and described["MPP_ALT_M"]["units"] == "m"
+    listed = {one.name for one in ftp.cmd_list(["/"]).directory_listing}
+    assert listed >= {"general.json", "parameter.json"}
+    refused = ftp.cmd_rm(["/general.json"])
+    assert refused.error_code == mavftp.FtpError.FileProtected
 
 
 def test_tens_of_vehicles_are_told_apart(simulate):

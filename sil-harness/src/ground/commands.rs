@@ -13,6 +13,7 @@ mod number {
     pub(super) const CHANGE_SPEED: u16 = 178;
     pub(super) const TERMINATE: u16 = 185;
     pub(super) const CHANGE_ALTITUDE: u16 = 186;
+    pub(super) const REPOSITION: u16 = 192;
     pub(super) const ARM: u16 = 400;
     pub(super) const HOME: u16 = 410;
     pub(super) const GET_INTERVAL: u16 = 510;
@@ -63,6 +64,8 @@ impl Vehicle {
                 number: long.command,
                 first: long.param1,
                 second: long.param2,
+                has_place: !(long.param5.is_nan() && long.param6.is_nan()),
+                altitude: long.param7,
                 from,
             };
             let COMMAND_LONG_DATA {
@@ -76,6 +79,9 @@ impl Vehicle {
                 number: int.command,
                 first: int.param1,
                 second: int.param2,
+                // This number stands for none.
+                has_place: [int.x, int.y] != [i32::MAX; 2],
+                altitude: int.z,
                 from,
             };
             (
@@ -96,7 +102,7 @@ impl Vehicle {
             (
                 ask.target_system,
                 ask.target_component,
-                Demand::Streams(ask),
+                Demand::Streams(ask, from),
             )
         };
         self.is_target(system, component).then_some(demand)
@@ -110,10 +116,12 @@ impl Vehicle {
                 Some(mode) => self.order(Order::Mode { mode }, Waiting::Nobody),
                 None => self.say(Severity::Warning, "No such mode: AUTO or CRUISE"),
             },
-            Demand::Streams(ask) => {
+            Demand::Streams(ask, from) => {
                 let start = ask.start_stop == 1;
-                self.streams
-                    .set_group(ask.req_stream_id, ask.req_message_rate, start);
+                if let Some(own) = self.channels.own(from) {
+                    own.streams
+                        .set_group(ask.req_stream_id, ask.req_message_rate, start);
+                }
             }
         }
     }
@@ -123,13 +131,13 @@ impl Vehicle {
             number::ARM => self.arm(command),
             number::SET_MODE => self.set_mode(command),
             number::TERMINATE => self.terminate(command),
-            number::CHANGE_ALTITUDE => self.change_altitude(command),
+            number::CHANGE_ALTITUDE => self.change_altitude(command.first, command),
+            number::REPOSITION => self.reposition(command),
             number::CHANGE_SPEED => self.change_speed(command),
-            number::SET_INTERVAL => accepted_if(
-                whole(command.first).is_some_and(|id| self.streams.set(id, command.second)),
-            ),
+            number::SET_INTERVAL => self.set_interval(command),
             number::REQUEST_MESSAGE => match whole(command.first) {
-                Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second),
+                Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second, command.from),
+                Some(AUTOPILOT_VERSION_DATA::ID) => self.answer_version(command),
                 Some(AVAILABLE_MODES_DATA::ID) => {
                     let number = whole(command.second);
                     accepted_if(number.is_some_and(|number| self.list_modes(number)))
@@ -137,10 +145,10 @@ impl Vehicle {
                 id => self.request(id),
             },
             // These are older requests for the same messages.
-            number::GET_INTERVAL => self.tell_interval(command.first),
+            number::GET_INTERVAL => self.tell_interval(command.first, command.from),
             number::HOME => self.request(Some(HOME_POSITION_DATA::ID)),
             number::REQUEST_PROTOCOL => self.request(Some(PROTOCOL_VERSION_DATA::ID)),
-            number::REQUEST_VERSION => self.request(Some(AUTOPILOT_VERSION_DATA::ID)),
+            number::REQUEST_VERSION => self.answer_version(command),
             _ => Some(Outcome::Unsupported),
         };
         if let Some(outcome) = outcome {
@@ -194,11 +202,23 @@ impl Vehicle {
     }
 
     /// Sets the height to which the aircraft returns, by the parameter for it.
-    fn change_altitude(&mut self, command: &Command) -> Option<Outcome> {
+    fn change_altitude(&mut self, metres: f32, command: &Command) -> Option<Outcome> {
         let name = ALTITUDE.to_owned();
-        let value = decimal(command.first);
+        let value = decimal(metres);
         self.order(Order::Parameter { name, value }, waiting(command));
         None
+    }
+
+    /// Takes the altitude of a position. The vehicle flies straight on in one plane, so it can fly to no place.
+    fn reposition(&mut self, command: &Command) -> Option<Outcome> {
+        if command.has_place || command.altitude.is_nan() {
+            self.say(
+                Severity::Warning,
+                "It flies straight on: only an altitude can be set",
+            );
+            return Some(Outcome::Denied);
+        }
+        self.change_altitude(command.altitude, command)
     }
 
     /// Sets the airspeed of level flight, by the parameter for it. A speed over ground cannot be asked for.
@@ -213,10 +233,23 @@ impl Vehicle {
         None
     }
 
-    fn tell_interval(&mut self, of: f32) -> Option<Outcome> {
+    /// Sets the rate of a message at the address from which the command came, and at no other.
+    fn set_interval(&mut self, command: &Command) -> Option<Outcome> {
+        let own = self.channels.own(command.from);
+        let set = |id| own.is_some_and(|own| own.streams.set(id, command.second));
+        accepted_if(whole(command.first).is_some_and(set))
+    }
+
+    fn answer_version(&mut self, command: &Command) -> Option<Outcome> {
+        self.tell_version(command.from);
+        Some(Outcome::Accepted)
+    }
+
+    fn tell_interval(&mut self, of: f32, from: Address) -> Option<Outcome> {
         let known = whole(of).and_then(|id| Some((id, u16::try_from(id).ok()?)));
         if let Some((id, message_id)) = known {
-            let interval_us = self.streams.interval(id);
+            let channel = self.channels.of(from.peer);
+            let interval_us = channel.map_or(0, |channel| channel.streams.interval(id));
             self.send(&MESSAGE_INTERVAL_DATA {
                 message_id,
                 interval_us,

@@ -2,15 +2,17 @@
 
 use hil_protocol::mavlink::messages::{PARAM_SET_DATA, REQUEST_DATA_STREAM_DATA, SET_MODE_DATA};
 use std::collections::VecDeque;
+use std::net::SocketAddr;
 
 /// Demands that are met in a tick.
 pub(super) const A_TICK: usize = 16;
 /// Demands that may wait for a later one.
 pub(super) const WAITING: usize = 256;
 
-/// A station or one of its parts.
+/// A station or one of its parts, and where it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Address {
+    pub(super) peer: SocketAddr,
     pub(super) system: u8,
     pub(super) component: u8,
 }
@@ -20,6 +22,9 @@ pub(super) struct Command {
     pub(super) number: u16,
     pub(super) first: f32,
     pub(super) second: f32,
+    /// Whether it names a latitude or a longitude.
+    pub(super) has_place: bool,
+    pub(super) altitude: f32,
     pub(super) from: Address,
 }
 
@@ -28,7 +33,7 @@ pub(super) enum Demand {
     Command(Command),
     Parameter(PARAM_SET_DATA),
     Mode(SET_MODE_DATA),
-    Streams(REQUEST_DATA_STREAM_DATA),
+    Streams(REQUEST_DATA_STREAM_DATA, Address),
 }
 
 /// What is to be met, in its order.

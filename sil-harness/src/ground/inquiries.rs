@@ -34,8 +34,11 @@ const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
 const GEOFENCE: u32 = 0x10_0000;
 /// The vehicle would fly if it were armed.
 const PREARM: u32 = 0x1000_0000;
-/// MAV_PROTOCOL_CAPABILITY: missions in integers, COMMAND_INT, termination, MAVLink 2, parameters as plain floats.
-const CAPABILITIES: u64 = 4 | 8 | 2048 | 8192 | 131_072;
+/// MAV_PROTOCOL_CAPABILITY: missions in integers, COMMAND_INT, termination, MAVLink 2.
+const CAPABILITIES: u64 = 4 | 8 | 2048 | 8192;
+/// MAV_PROTOCOL_CAPABILITY: whole parameters as the bytes of an integer, or all of them as plain floats.
+const PARAMETERS_BYTEWISE: u64 = 16;
+const PARAMETERS_AS_FLOATS: u64 = 131_072;
 /// Position of the start on maps \[deg\]. The place is arbitrary. It counts as sea level, so that
 /// every altitude is a height.
 pub(super) const HOME: (f64, f64) = (47.397_742, 8.545_594);
@@ -130,7 +133,6 @@ impl Vehicle {
             | LOCAL_POSITION_NED_DATA::ID
             | GLOBAL_POSITION_INT_DATA::ID
             | VFR_HUD_DATA::ID => self.send_motion(id),
-            AUTOPILOT_VERSION_DATA::ID => self.send_version(),
             HOME_POSITION_DATA::ID => self.send_home(),
             PROTOCOL_VERSION_DATA::ID => self.send(&PROTOCOL_VERSION_DATA {
                 version: 200,
@@ -173,9 +175,7 @@ impl Vehicle {
             outcome: report.outcome as u8,
             complete: u8::from(report.complete),
         };
-        if self.streams.wants(MPP_PLAN_STATUS_DATA::ID) {
-            self.send(&message);
-        }
+        self.send_event(&message);
         self.last.plan = Some(message);
     }
 
@@ -271,7 +271,19 @@ impl Vehicle {
         }
     }
 
-    fn send_version(&mut self) {
+    /// Tells a station what the vehicle can do. From here on the station knows that whole parameters come as integers;
+    /// one that never asks gets every parameter as a float.
+    pub(super) fn tell_version(&mut self, from: Address) {
+        let own = self.channels.own(from);
+        let typed = own.is_some_and(|channel| {
+            channel.typed = true;
+            true
+        });
+        let form = if typed {
+            PARAMETERS_BYTEWISE
+        } else {
+            PARAMETERS_AS_FLOATS
+        };
         let part = |text: &str| text.parse().unwrap_or(0_u8);
         let version = [
             0,
@@ -279,12 +291,14 @@ impl Vehicle {
             part(env!("CARGO_PKG_VERSION_MINOR")),
             part(env!("CARGO_PKG_VERSION_MAJOR")),
         ];
-        self.send(&AUTOPILOT_VERSION_DATA {
-            capabilities: CAPABILITIES,
+        let message = AUTOPILOT_VERSION_DATA {
+            capabilities: CAPABILITIES | form,
             flight_sw_version: u32::from_le_bytes(version),
             uid: u64::from(self.system),
             ..AUTOPILOT_VERSION_DATA::DEFAULT
-        });
+        };
+        // What is true for this station is not for others.
+        self.send_to_station(&message, from);
     }
 
     fn send_home(&mut self) {
@@ -326,23 +340,19 @@ impl Vehicle {
                 *place = centimetres(*range);
             }
         }
-        if self.streams.wants(MPP_LIDAR_SCAN_DATA::ID) {
-            self.send(&message);
-        }
+        self.send_event(&message);
         self.last.scan = Some(message);
-        if self.streams.wants(DISTANCE_SENSOR_DATA::ID) {
-            let beams = scan.ranges.len().saturating_sub(1) as f32;
-            self.send(&DISTANCE_SENSOR_DATA {
-                time_boot_ms: self.milliseconds(),
-                min_distance: 0,
-                max_distance: reach,
-                // A value beyond the greatest range means that nothing is there.
-                current_distance: nearest.unwrap_or(reach.saturating_add(1)),
-                covariance: u8::MAX,
-                vertical_fov: beams * scan.angle_increment,
-                ..DISTANCE_SENSOR_DATA::DEFAULT
-            });
-        }
+        let beams = scan.ranges.len().saturating_sub(1) as f32;
+        self.send_event(&DISTANCE_SENSOR_DATA {
+            time_boot_ms: self.milliseconds(),
+            min_distance: 0,
+            max_distance: reach,
+            // A value beyond the greatest range means that nothing is there.
+            current_distance: nearest.unwrap_or(reach.saturating_add(1)),
+            covariance: u8::MAX,
+            vertical_fov: beams * scan.angle_increment,
+            ..DISTANCE_SENSOR_DATA::DEFAULT
+        });
     }
 
     pub(super) fn send_trajectory(&mut self, trajectory: &PlanTrajectory) {
@@ -361,9 +371,7 @@ impl Vehicle {
         for (((x, z), gamma), knot) in places.zip(&trajectory.knots) {
             [*x, *z, *gamma] = *knot;
         }
-        if self.streams.wants(MPP_TRAJECTORY_DATA::ID) {
-            self.send(&message);
-        }
+        self.send_event(&message);
         self.last.trajectory = Some(message);
     }
 }

@@ -15,11 +15,13 @@
 //! A station changes a flight only by its requests. Messages that it receives, misses or damages
 //! change nothing.
 
+mod channels;
 mod commands;
 mod demands;
 mod guests;
 pub mod heard;
 mod inquiries;
+mod metadata;
 mod notes;
 pub mod param_file;
 mod parameter_queue;

@@ -3,7 +3,7 @@
 use super::stations::Change;
 use super::vehicle::{COMPONENT, Severity, Vehicle};
 use hil_protocol::mavlink::messages::STATUSTEXT_DATA;
-use hil_protocol::mavlink::{Frame, MessageData, text};
+use hil_protocol::mavlink::{Frame, text};
 use mpp_sim::scenario::Scenario;
 
 impl Vehicle {
@@ -45,12 +45,10 @@ impl Vehicle {
     }
 
     pub(super) fn say(&mut self, severity: Severity, line: &str) {
-        if self.streams.wants(STATUSTEXT_DATA::ID) {
-            self.send(&STATUSTEXT_DATA {
-                severity: severity as u8,
-                text: text(line),
-                ..STATUSTEXT_DATA::DEFAULT
-            });
-        }
+        self.send_event(&STATUSTEXT_DATA {
+            severity: severity as u8,
+            text: text(line),
+            ..STATUSTEXT_DATA::DEFAULT
+        });
     }
 }

@@ -1,15 +1,24 @@
 //! The parameter protocol: lists, reads and writes.
 //!
-//! Every value is sent as a 32-bit float. A value that comes back unchanged changes nothing. Any
-//! other value means the decimal number that a person would have typed.
+//! A value is sent as a 32-bit float. A station that has asked for the vehicle's version knows from there that whole
+//! numbers come as the bytes of an integer, and gets them so. A value that comes back unchanged changes nothing. Any
+//! other float means the decimal number that a person would have typed.
 
+use super::channels::Channel;
+use super::metadata::is_whole;
 use super::vehicle::{Severity, Vehicle, Waiting};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{CharArray, text};
 use mpp_node::parameters::{self, PARAMETERS, Tuning};
 use mpp_sim::orders::{Order, Refused};
 
-/// MAV_PARAM_TYPE_REAL32.
+/// MAV_PARAM_TYPE: integers of 8, 16 and 32 bits without and with a sign, and the float of 32 bits.
+const UINT8: u8 = 1;
+const INT8: u8 = 2;
+const UINT16: u8 = 3;
+const INT16: u8 = 4;
+const UINT32: u8 = 5;
+const INT32: u8 = 6;
 const REAL32: u8 = 9;
 /// MAV_PARAM_ERROR_DOES_NOT_EXIST and MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE.
 const UNKNOWN: u8 = 1;
@@ -42,11 +51,15 @@ impl Vehicle {
             self.refuse_parameter(write.param_id, -1, UNKNOWN);
             return;
         };
-        if (current as f32).to_bits() == write.param_value.to_bits() {
+        let value = match integer(write.param_value, write.param_type) {
+            Some(value) => value,
+            None if (current as f32).to_bits() == write.param_value.to_bits() => current,
+            None => decimal(write.param_value),
+        };
+        if value.to_bits() == current.to_bits() {
             self.send_parameter(number);
             return;
         }
-        let value = decimal(write.param_value);
         self.order(Order::Parameter { name, value }, Waiting::Parameter(number));
     }
 
@@ -74,14 +87,37 @@ impl Vehicle {
         let index = present.iter().position(|other| *other == number);
         let parameter = PARAMETERS.get(usize::from(number));
         if let (Some(value), Some(index), Some(parameter)) = (value, index, parameter) {
-            self.send(&PARAM_VALUE_DATA {
+            let as_float = PARAM_VALUE_DATA {
                 param_id: text(parameter.name),
                 param_value: value as f32,
                 param_type: REAL32,
                 param_count: present.len() as u16,
                 param_index: index as u16,
-            });
+            };
+            let is_whole = is_whole(parameter);
+            let as_bytes = PARAM_VALUE_DATA {
+                param_value: f32::from_bits(value as i32 as u32),
+                param_type: INT32,
+                ..as_float.clone()
+            };
+            let wants_bytes = |channel: &Channel| is_whole && channel.typed;
+            self.send_where(&as_float, true, |channel| !wants_bytes(channel));
+            self.send_where(&as_bytes, false, wants_bytes);
         }
+    }
+}
+
+/// The number in the bytes of a written value, if its type is that of an integer.
+fn integer(value: f32, kind: u8) -> Option<f64> {
+    let [a, b, c, d] = value.to_bits().to_le_bytes();
+    match kind {
+        UINT8 => Some(f64::from(a)),
+        INT8 => Some(f64::from(i8::from_le_bytes([a]))),
+        UINT16 => Some(f64::from(u16::from_le_bytes([a, b]))),
+        INT16 => Some(f64::from(i16::from_le_bytes([a, b]))),
+        UINT32 => Some(f64::from(u32::from_le_bytes([a, b, c, d]))),
+        INT32 => Some(f64::from(i32::from_le_bytes([a, b, c, d]))),
+        _ => None,
     }
 }
 

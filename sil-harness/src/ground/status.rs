@@ -3,6 +3,7 @@
 
 use super::commands::mode_number;
 use super::inquiries::{HOME, north};
+use super::metadata::GENERAL_URI;
 use super::vehicle::{Last, Vehicle};
 use hil_protocol::SensorState;
 use hil_protocol::mavlink::messages::*;
@@ -66,10 +67,10 @@ impl Vehicle {
                 custom_mode: mode_number(self.mode),
                 intended_custom_mode: mode_number(self.mode),
             }),
-            // There is no metadata: an empty address ends the search for it.
             COMPONENT_METADATA_DATA::ID => self.send(&COMPONENT_METADATA_DATA {
                 time_boot_ms: self.milliseconds(),
-                ..COMPONENT_METADATA_DATA::DEFAULT
+                file_crc: self.stores.general_sum(),
+                uri: text(GENERAL_URI),
             }),
             _ => return false,
         }

@@ -40,7 +40,13 @@ const USUAL: [(u32, Rate); 16] = [
     (MPP_TRAJECTORY_DATA::ID, Rate::Event),
 ];
 
-/// The rates in force.
+/// All messages with a rate, in the order in which those of a tick are sent.
+pub(super) fn ids() -> impl Iterator<Item = u32> {
+    USUAL.iter().map(|(id, _)| *id)
+}
+
+/// The rates in force at one channel.
+#[derive(Clone)]
 pub(super) struct Streams(Vec<(u32, Rate)>);
 
 impl Streams {
@@ -48,13 +54,10 @@ impl Streams {
         Self(USUAL.to_vec())
     }
 
-    /// Messages that are due at a tick, in the order of the table.
-    pub(super) fn due(&self, tick: u32) -> Vec<u32> {
-        let due = |(id, rate): &(u32, Rate)| match rate {
-            Rate::Every(ticks) => tick.is_multiple_of(*ticks).then_some(*id),
-            Rate::Event | Rate::Never => None,
-        };
-        self.0.iter().filter_map(due).collect()
+    /// Whether a message is due at a tick.
+    pub(super) fn is_due(&self, id: u32, tick: u32) -> bool {
+        let due = |rate: &Rate| matches!(rate, Rate::Every(ticks) if tick.is_multiple_of(*ticks));
+        self.0.iter().any(|(own, rate)| *own == id && due(rate))
     }
 
     /// Whether a message is sent when there is something new.
@@ -139,12 +142,17 @@ mod tests {
         assert_eq!(streams.interval(ATTITUDE_DATA::ID), 100_000);
         assert!(streams.set(ATTITUDE_DATA::ID, 20_000.0));
         assert_eq!(streams.interval(ATTITUDE_DATA::ID), 20_000);
-        let due = (0..100).filter(|tick| streams.due(*tick).contains(&ATTITUDE_DATA::ID));
-        assert_eq!(due.count(), 50);
+        let due = |streams: &Streams| {
+            let ticks = 0..100;
+            ticks
+                .filter(|tick| streams.is_due(ATTITUDE_DATA::ID, *tick))
+                .count()
+        };
+        assert_eq!(due(&streams), 50);
         assert!(streams.set(ATTITUDE_DATA::ID, 1.0));
         assert_eq!(streams.interval(ATTITUDE_DATA::ID), 10_000);
         assert!(streams.set(ATTITUDE_DATA::ID, -1.0));
-        assert!((0..100).all(|tick| !streams.due(tick).contains(&ATTITUDE_DATA::ID)));
+        assert_eq!(due(&streams), 0);
         assert!(streams.set(ATTITUDE_DATA::ID, 0.0));
         assert_eq!(streams.interval(ATTITUDE_DATA::ID), 100_000);
     }
@@ -156,7 +164,8 @@ mod tests {
         assert!(!streams.set(ATTITUDE_DATA::ID, f32::NAN));
         assert!(!streams.set(9999, 1e5));
         streams.set_group(0, 0, false);
-        assert_eq!(streams.due(0), [HEARTBEAT_DATA::ID]);
+        let due: Vec<_> = ids().filter(|id| streams.is_due(*id, 0)).collect();
+        assert_eq!(due, [HEARTBEAT_DATA::ID]);
     }
 
     #[test]

@@ -179,6 +179,13 @@ impl Transport {
         let since_start = self.vehicle.microseconds();
         self.vehicle.set_signing_time(signing_time());
         self.guests.expire(since_start);
+        let Self {
+            vehicle,
+            peers,
+            guests,
+            ..
+        } = self;
+        vehicle.keep(|peer| peers.contains(peer) || guests.addresses().any(|guest| guest == peer));
         let mut buffer = [0; DATAGRAM];
         // Any other answer of the socket ends the loop, for instance that nobody listens yet. The
         // cause may be gone at the next tick.
@@ -187,7 +194,7 @@ impl Transport {
             else {
                 break;
             };
-            let frames = self.vehicle.receive(&buffer[..length]);
+            let frames = self.vehicle.receive(from, &buffer[..length]);
             if !frames.is_empty() && !self.peers.contains(&from) {
                 self.guests.hear(from, since_start);
             }
@@ -202,11 +209,16 @@ impl Transport {
         for frame in self.vehicle.take_outgoing() {
             if let Some(socket) = &self.socket {
                 for peer in self.peers.iter().chain(self.guests.addresses()) {
-                    // A failed send is no error, because no station needs to be there.
-                    let _ = socket.send_to(frame.wire.as_bytes(), peer);
+                    let key = self.vehicle.key(*peer);
+                    for (_, datagram) in frame.wire.iter().filter(|(to, _)| *to == key) {
+                        // A failed send is no error, because no station needs to be there.
+                        let _ = socket.send_to(datagram.as_bytes(), peer);
+                    }
                 }
             }
-            self.write(since_start, frame.plain.as_bytes());
+            if let Some(plain) = frame.plain {
+                self.write(since_start, plain.as_bytes());
+            }
         }
         for note in self.vehicle.take_notes() {
             (self.report)(&note);

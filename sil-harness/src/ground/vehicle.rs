@@ -3,21 +3,24 @@
 //! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks
 //! since the start; ticks before the flight count too.
 
+use super::channels::Channels;
+pub use super::channels::Outgoing;
 use super::demands::{Address, Demand, Demands};
 use super::heard::Heard;
 use super::parameter_queue::ParameterQueue;
 use super::security::Security;
 use super::stations::Stations;
-use super::streams::Streams;
+use super::stores::Stores;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
-use hil_protocol::mavlink::{Datagram, Frame, Framer, Key, MessageData, Sender};
+use hil_protocol::mavlink::{Frame, Framer, Key, Sender};
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
 use mpp_node::parameters::{self, Tuning};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Mode, Order, Refused};
 use mpp_sim::scenario::{TICK_MS, TICK_US};
 use std::collections::VecDeque;
+use std::net::SocketAddr;
 
 /// MAV_COMP_ID_AUTOPILOT1.
 pub(super) const COMPONENT: u8 = 1;
@@ -46,15 +49,6 @@ pub struct VehicleConfig {
     pub key: Option<(Key, u64)>,
 }
 
-/// A frame on its way to every station.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Outgoing {
-    /// The frame as it is sent.
-    pub wire: Datagram,
-    /// The frame without its signature, which is different each time.
-    pub plain: Datagram,
-}
-
 /// The receiver of an order's result.
 pub(super) enum Waiting {
     /// The sender of a command.
@@ -75,15 +69,14 @@ pub(super) struct Last {
 /// The vehicle.
 pub struct Vehicle {
     pub(super) system: u8,
-    sender: Sender,
+    pub(super) channels: Channels,
     pub(super) security: Security,
     framer: Framer,
-    pub(super) streams: Streams,
     stations: Stations,
+    pub(super) stores: Stores,
     demands: Demands<Demand>,
     pub(super) parameters: ParameterQueue,
     pub(super) tuning: Option<Tuning>,
-    outbox: Vec<Outgoing>,
     pub(super) notes: Vec<String>,
     orders: Vec<Order>,
     waiting: VecDeque<Waiting>,
@@ -112,15 +105,14 @@ impl Vehicle {
         let system = config.instance.saturating_add(1);
         Self {
             system,
-            sender: Sender::new(system, COMPONENT),
+            channels: Channels::new(&Sender::new(system, COMPONENT)),
             security: Security::new(config.key.clone()),
             framer: Framer::new(),
-            streams: Streams::new(),
             stations: Stations::new(config.patience),
+            stores: Stores::new(),
             demands: Demands::new(),
             parameters: ParameterQueue::default(),
             tuning: None,
-            outbox: Vec::new(),
             notes: Vec::new(),
             orders: Vec::new(),
             waiting: VecDeque::new(),
@@ -197,12 +189,12 @@ impl Vehicle {
         self.stations.set_patience(patience, self.now);
     }
 
-    /// Handles a datagram from a station. Returns the intact frames in it.
-    pub fn receive(&mut self, datagram: &[u8]) -> Vec<Vec<u8>> {
+    /// Handles a datagram that came from an address. Returns the intact frames in it.
+    pub fn receive(&mut self, peer: SocketAddr, datagram: &[u8]) -> Vec<Vec<u8>> {
         let mut frames = Vec::new();
         let mut framer = std::mem::take(&mut self.framer);
         framer.receive_datagram(datagram, |frame| {
-            self.handle(frame);
+            self.handle(frame, peer);
             frames.push(frame.bytes.to_vec());
         });
         self.framer = framer;
@@ -216,7 +208,18 @@ impl Vehicle {
 
     /// Takes the frames that are to be sent.
     pub fn take_outgoing(&mut self) -> Vec<Outgoing> {
-        std::mem::take(&mut self.outbox)
+        self.channels.take_outgoing()
+    }
+
+    /// The key of an address in [`Outgoing::wire`].
+    #[must_use]
+    pub fn key(&self, peer: SocketAddr) -> Option<SocketAddr> {
+        self.channels.key(peer)
+    }
+
+    /// Forgets what addresses asked for that are gone.
+    pub fn keep(&mut self, is_there: impl Fn(&SocketAddr) -> bool) {
+        self.channels.keep(is_there);
     }
 
     /// Takes the lines for the person who started the vehicle.
@@ -288,9 +291,11 @@ impl Vehicle {
 
     /// Ends a tick: sends what is due and advances the time.
     fn pass(&mut self) {
-        for id in self.streams.due(self.now) {
+        for id in self.channels.due(self.now) {
+            self.channels.set_turn(Some((id, self.now)));
             self.send_by_id(id);
         }
+        self.channels.set_turn(None);
         for number in self.parameters.due() {
             self.send_parameter(number);
         }
@@ -309,12 +314,14 @@ impl Vehicle {
         }
     }
 
-    fn handle(&mut self, frame: &Frame<'_>) {
+    fn handle(&mut self, frame: &Frame<'_>, peer: SocketAddr) {
         let trusted = self.security.trusts(frame);
         let from = Address {
+            peer,
             system: frame.system,
             component: frame.component,
         };
+        self.channels.hear(from);
         if let Some(heartbeat) = frame.decode::<HEARTBEAT_DATA>() {
             self.note_twin(frame);
             // A sender without the key must not count as a station.
@@ -346,12 +353,6 @@ impl Vehicle {
     pub(super) fn order(&mut self, order: Order, waiting: Waiting) {
         self.orders.push(order);
         self.waiting.push_back(waiting);
-    }
-
-    pub(super) fn send<M: MessageData>(&mut self, message: &M) {
-        let plain = self.sender.clone().frame(message);
-        let wire = self.security.frame(&mut self.sender, message);
-        self.outbox.push(Outgoing { wire, plain });
     }
 
     /// Time since the start \[ms\].

@@ -1,6 +1,6 @@
 //! Tests the link itself: bad, silent, signed, recorded.
 
-use crate::radio::{CONFIG, Channel, Radio, command, heartbeat, scenario, write};
+use crate::radio::{CONFIG, Channel, HERE, Radio, command, heartbeat, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
 use mpp_sim::flight::fly;
@@ -229,21 +229,21 @@ fn signatures_go_with_the_time() {
     vehicle.hold();
     let mut station = Verifier::new(Key::of_passphrase("secret"), NOW + TEN_MINUTES);
     for frame in vehicle.take_outgoing() {
-        Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
+        Framer::new().receive_datagram(frame.wire[0].1.as_bytes(), |frame| {
             assert_eq!(station.verify(frame), Ok(()));
         });
     }
-    vehicle.receive(&signed(NOW));
+    vehicle.receive(HERE, &signed(NOW));
     assert_eq!(vehicle.refused_signatures(), 1);
     // A station whose clock is a little ahead moves the vehicle's time on.
     let ahead = NOW + TEN_MINUTES + TEN_MINUTES / 20;
-    vehicle.receive(&signed(ahead));
+    vehicle.receive(HERE, &signed(ahead));
     assert_eq!(vehicle.refused_signatures(), 1);
     vehicle.take_outgoing();
     vehicle.end("here");
     let mut station = Verifier::new(Key::of_passphrase("secret"), ahead);
     for frame in vehicle.take_outgoing() {
-        Framer::new().receive_datagram(frame.wire.as_bytes(), |frame| {
+        Framer::new().receive_datagram(frame.wire[0].1.as_bytes(), |frame| {
             assert_eq!(station.verify(frame), Ok(()));
         });
     }
@@ -261,11 +261,11 @@ fn arming(system: u8, time: u64) -> Vec<u8> {
 fn a_stamp_from_far_ahead_locks_nobody_out() {
     const MINUTE: u64 = 6_000_000;
     let mut vehicle = Vehicle::new(&keyed());
-    vehicle.receive(&arming(250, NOW + 365 * 24 * 60 * MINUTE));
-    vehicle.receive(&arming(251, NOW + MINUTE + 1));
+    vehicle.receive(HERE, &arming(250, NOW + 365 * 24 * 60 * MINUTE));
+    vehicle.receive(HERE, &arming(251, NOW + MINUTE + 1));
     assert_eq!(vehicle.refused_signatures(), 2);
-    vehicle.receive(&arming(252, NOW + MINUTE));
-    vehicle.receive(&arming(253, NOW));
+    vehicle.receive(HERE, &arming(252, NOW + MINUTE));
+    vehicle.receive(HERE, &arming(253, NOW));
     assert_eq!(vehicle.refused_signatures(), 2);
 }
 
@@ -273,15 +273,15 @@ fn a_stamp_from_far_ahead_locks_nobody_out() {
 #[test]
 fn a_frame_of_the_flight_before_is_refused() {
     let mut first = Vehicle::new(&keyed());
-    first.receive(&arming(254, NOW + 7));
+    first.receive(HERE, &arming(254, NOW + 7));
     assert_eq!(first.refused_signatures(), 0);
     let kept = first.heard().unwrap().format();
     let mut second = Vehicle::new(&keyed());
     second.remember(&sil_harness::ground::heard::Heard::parse(&kept).unwrap());
-    second.receive(&arming(254, NOW + 7));
+    second.receive(HERE, &arming(254, NOW + 7));
     assert_eq!(second.refused_signatures(), 1);
-    second.receive(&arming(254, NOW + 8));
-    second.receive(&arming(253, NOW + 7));
+    second.receive(HERE, &arming(254, NOW + 8));
+    second.receive(HERE, &arming(253, NOW + 7));
     assert_eq!(second.refused_signatures(), 1);
 }
 

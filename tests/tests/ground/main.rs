@@ -4,7 +4,9 @@
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 #![expect(clippy::float_cmp, reason = "what is told is what is, to the last bit")]
 
+mod addresses;
 mod commands;
+mod files;
 mod inquiries;
 mod link;
 mod parameters;

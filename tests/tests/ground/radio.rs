@@ -11,7 +11,8 @@ use mpp_sim::orders::{Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::ground::tlog::TlogWriter;
-use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
+use sil_harness::ground::vehicle::{Outgoing, Vehicle, VehicleConfig};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 
 pub(crate) const CONFIG: VehicleConfig = VehicleConfig {
     instance: 0,
@@ -19,6 +20,11 @@ pub(crate) const CONFIG: VehicleConfig = VehicleConfig {
     hold: false,
     key: None,
 };
+
+/// The address of the station.
+pub(crate) const HERE: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 14_550);
+/// The address of another station.
+pub(crate) const THERE: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 14_540);
 
 pub(crate) fn scenario() -> Scenario {
     Scenario {
@@ -33,13 +39,15 @@ pub(crate) type Channel = Box<dyn FnMut(Vec<Vec<u8>>) -> Vec<Vec<u8>>>;
 /// A vehicle, a station that sends at given ticks, and everything that the station hears.
 pub(crate) struct Radio {
     pub(crate) vehicle: Vehicle,
-    /// Tick of the flight and datagram; -1 means before the flight.
-    script: Vec<(i64, Vec<u8>)>,
+    /// Tick of the flight, datagram and address; -1 means before the flight.
+    script: Vec<(i64, Vec<u8>, SocketAddr)>,
     pub(crate) up: Channel,
     pub(crate) down: Channel,
     framer: Framer,
     /// Ticks since the start, and message.
     pub(crate) heard: Vec<(u32, MavMessage)>,
+    /// The same at the other address, with the number of the frame.
+    pub(crate) heard_there: Vec<(u32, u8, MavMessage)>,
     pub(crate) tlog: TlogWriter<Vec<u8>>,
     pub(crate) notes: Vec<String>,
     held: u32,
@@ -54,6 +62,7 @@ impl Radio {
             down: Box::new(|datagrams| datagrams),
             framer: Framer::new(),
             heard: Vec::new(),
+            heard_there: Vec::new(),
             tlog: TlogWriter::new(Vec::new()),
             notes: Vec::new(),
             held: 0,
@@ -63,13 +72,20 @@ impl Radio {
     /// Sends a message before a tick is flown.
     pub(crate) fn at<M: MessageData>(&mut self, tick: i64, message: &M) -> &mut Self {
         let frame = Sender::new(255, 190).frame(message);
-        self.script.push((tick, frame.as_bytes().to_vec()));
+        self.bytes_at(tick, frame.as_bytes());
+        self
+    }
+
+    /// Sends a message from the other address.
+    pub(crate) fn there_at<M: MessageData>(&mut self, tick: i64, message: &M) -> &mut Self {
+        let frame = Sender::new(245, 190).frame(message);
+        self.script.push((tick, frame.as_bytes().to_vec(), THERE));
         self
     }
 
     /// Sends bytes before a tick is flown.
     pub(crate) fn bytes_at(&mut self, tick: i64, bytes: &[u8]) {
-        self.script.push((tick, bytes.to_vec()));
+        self.script.push((tick, bytes.to_vec(), HERE));
     }
 
     /// Sends a message before a tick is flown, signed at a time.
@@ -81,12 +97,12 @@ impl Radio {
         time: u64,
     ) {
         let frame = Sender::new(255, 190).signed_frame(message, &mut Signer::new(key, 1, time));
-        self.script.push((tick, frame.as_bytes().to_vec()));
+        self.bytes_at(tick, frame.as_bytes());
     }
 
     /// Flies and returns the log.
     pub(crate) fn fly(&mut self, scenario: &Scenario) -> FlightLog {
-        self.script.sort_by_key(|(tick, _)| *tick);
+        self.script.sort_by_key(|(tick, ..)| *tick);
         fly_with(scenario, &mut PipeLink::new(), self).unwrap()
     }
 
@@ -131,26 +147,44 @@ impl Radio {
     }
 
     fn speak(&mut self, tick: i64) {
-        let due = self.script.iter().take_while(|(at, _)| *at <= tick).count();
-        let datagrams = self
+        let due = self
             .script
-            .drain(..due)
-            .map(|(_, datagram)| datagram)
-            .collect();
-        for datagram in (self.up)(datagrams) {
-            self.vehicle.receive(&datagram);
+            .iter()
+            .take_while(|(at, ..)| *at <= tick)
+            .count();
+        let due: Vec<_> = self.script.drain(..due).collect();
+        let (here, there): (Vec<_>, Vec<_>) = due.into_iter().partition(|(.., from)| *from == HERE);
+        let here = here.into_iter().map(|(_, datagram, _)| datagram).collect();
+        for datagram in (self.up)(here) {
+            self.vehicle.receive(HERE, &datagram);
         }
+        for (_, datagram, from) in there {
+            self.vehicle.receive(from, &datagram);
+        }
+    }
+
+    /// What an address gets.
+    fn datagrams(&self, at: SocketAddr, outgoing: &[Outgoing]) -> Vec<Vec<u8>> {
+        let key = self.vehicle.key(at);
+        let frames = outgoing.iter().flat_map(|frame| &frame.wire);
+        let own = frames.filter(|(to, _)| *to == key);
+        own.map(|(_, datagram)| datagram.as_bytes().to_vec())
+            .collect()
     }
 
     fn listen(&mut self, now: u32, since_start: u64) {
         let outgoing = self.vehicle.take_outgoing();
-        for frame in &outgoing {
-            self.tlog
-                .write(since_start, frame.plain.as_bytes())
-                .unwrap();
+        for plain in outgoing.iter().filter_map(|frame| frame.plain.as_ref()) {
+            self.tlog.write(since_start, plain.as_bytes()).unwrap();
         }
-        let datagrams = outgoing.iter().map(|frame| frame.wire.as_bytes().to_vec());
-        for datagram in (self.down)(datagrams.collect()) {
+        for datagram in self.datagrams(THERE, &outgoing) {
+            let heard = &mut self.heard_there;
+            Framer::new().receive_datagram(&datagram, |frame| {
+                heard.push((now, frame.bytes[4], message(frame.id, frame.payload)));
+            });
+        }
+        let datagrams = self.datagrams(HERE, &outgoing);
+        for datagram in (self.down)(datagrams) {
             let heard = &mut self.heard;
             self.framer.receive_datagram(&datagram, |frame| {
                 heard.push((now, message(frame.id, frame.payload)));
