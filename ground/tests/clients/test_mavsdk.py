@@ -1,5 +1,6 @@
 """mavsdk for Python, used as in a program on a companion computer."""
 
+import json
 import statistics
 
 import pytest
@@ -10,6 +11,7 @@ pytest.importorskip("mavsdk", reason="mavsdk is not installed")
 
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action, ActionError, ActionResult
+from mavsdk.plugins.component_metadata import ComponentMetadata, ComponentMetadataError, MetadataType
 from mavsdk.plugins.info import Info
 from mavsdk.plugins.log_files import LogFiles, LogFilesError, LogFilesResult
 from mavsdk.plugins.mission_raw import MissionRaw
@@ -31,6 +33,23 @@ def test_mavsdk_sees_a_healthy_vehicle_in_the_air(simulate):
         with pytest.raises(LogFilesError) as refused:
             LogFiles(system).get_entries()
         assert refused.value.result == LogFilesResult.NO_LOGFILES
+
+
+def test_mavsdk_reads_what_the_vehicle_says_of_its_parameters(simulate):
+    simulation = simulate(*LASTING)
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        sdk.add_any_connection(simulation.address.replace("udpin:", "udpin://"))
+        metadata = ComponentMetadata(sdk.first_autopilot(LIMIT))
+        metadata.request_autopilot_component()
+
+        def described():
+            try:
+                return metadata.get_metadata(1, MetadataType.PARAMETER).json_metadata
+            except ComponentMetadataError:
+                return None
+
+        told = json.loads(until(described, "the metadata of parameters"))["parameters"]
+        assert set(parameters()) <= {one["name"] for one in told}
 
 
 def test_mavsdk_finds_tunes_arms_and_watches(simulate):
