@@ -1,8 +1,6 @@
 //! Registers of the board. The board is an MPS2 with the image AN500.
 
-use cortex_m::Peripherals;
-use cortex_m::peripheral::scb::SystemHandler;
-use cortex_m::peripheral::syst::SystClkSource;
+use crate::protection::Region;
 
 /// Frequency of the processor and of the timers \[Hz\].
 const CLOCK: u32 = 25_000_000;
@@ -18,33 +16,13 @@ const WATCHDOG: *mut u32 = 0x4000_8000 as *mut u32;
 const PATIENCE: u32 = 10 * TICK;
 const UNLOCK: u32 = 0x1ACC_E551;
 
-/// Sets the priorities: the UART (at the reset value, 0) is above the step, and the step is above the
-/// restart.
-pub fn set_priorities(peripherals: &mut Peripherals) {
-    // SAFETY: no code relies on masking by priority.
-    unsafe {
-        peripherals.SCB.set_priority(SystemHandler::SysTick, 1 << 5);
-        peripherals.SCB.set_priority(SystemHandler::PendSV, 7 << 5);
-    }
-}
-
-/// Starts SysTick at 100 Hz.
-pub fn start_ticking(peripherals: &mut Peripherals) {
-    let systick = &mut peripherals.SYST;
-    systick.set_clock_source(SystClkSource::Core);
-    systick.set_reload(TICK - 1);
-    systick.clear_current();
-    systick.enable_interrupt();
-    systick.enable_counter();
-}
-
-/// Whether the counter of SysTick has wrapped around since the last call.
-#[must_use]
-pub fn tick_passed() -> bool {
-    const CONTROL: *const u32 = 0xE000_E010 as *const u32;
-    // SAFETY: reading the register clears the flag, and no other code reads this flag.
-    unsafe { CONTROL.read_volatile() & (1 << 16) != 0 }
-}
+/// What the image may use: the regions of `memory.x`, and the board's timer, UART and watchdog.
+pub const REGIONS: [Region; 4] = [
+    Region::code(0, 21),
+    Region::data(0x2000_0000, 17),
+    Region::data(0x6000_0000, 19),
+    Region::device(0x4000_0000, 16),
+];
 
 /// Starts the free-running timer.
 pub fn start_timer() {
@@ -78,16 +56,4 @@ pub fn start_watchdog() {
 pub fn feed_watchdog() {
     // SAFETY: the write only clears the interrupt and reloads the time.
     unsafe { WATCHDOG.add(3).write_volatile(1) };
-}
-
-/// Sleeps until an interrupt, unless `ready` returns true. An interrupt between the call of `ready` and
-/// the sleep also ends the sleep.
-pub fn sleep_unless(ready: impl FnOnce() -> bool) {
-    cortex_m::interrupt::disable();
-    if !ready() {
-        // A pending interrupt ends the sleep although interrupts are masked.
-        cortex_m::asm::wfi();
-    }
-    // SAFETY: interrupts were enabled before.
-    unsafe { cortex_m::interrupt::enable() };
 }

@@ -1,4 +1,4 @@
-//! The flight core on a bare Cortex-M7 (QEMU's mps2-an500).
+//! The flight core on a bare Cortex-M7: QEMU's mps2-an500, and in the folder `nucleo` a board that one can buy.
 //!
 //! ```text
 //! priority   what runs                                    owns
@@ -13,7 +13,7 @@
 //! task masks the interrupt of the step, except for a short check before the thread sleeps. A plan goes to
 //! the step as a value, and the step takes it over at a tick boundary.
 //!
-//! There are two programs. `uart` flies over a serial line, with timer, watchdog and restart of a stuck
+//! There are two programs for the emulated board. `uart` flies over a serial line, with timer, watchdog and restart of a stuck
 //! planner. `fifo` flies over semihosting, for campaigns and measurements. The image that flies is `uart`
 //! without any feature; `Cargo.toml` says what the features add for tests and comparisons.
 #![no_std]
@@ -27,10 +27,12 @@ mod mailbox;
 pub mod mark;
 mod owned;
 pub mod panic_gate;
+pub mod processor;
 pub mod protection;
 pub mod report;
 pub mod restart;
 mod ring;
+pub mod serial;
 pub mod tasks;
 pub mod trap;
 pub mod uart;

@@ -4,14 +4,43 @@
 
 use cortex_m::peripheral::MPU;
 
-/// End of the flash.
-pub const FLASH_END: u32 = 2 << 20;
-
 /// A region: its start, the logarithm of its size, and its rights.
-struct Region {
+pub struct Region {
     start: u32,
     log_size: u32,
     rights: u32,
+}
+
+impl Region {
+    /// Code and constants.
+    #[must_use]
+    pub const fn code(start: u32, log_size: u32) -> Self {
+        Self {
+            start,
+            log_size,
+            rights: READ | NORMAL,
+        }
+    }
+
+    /// Memory for data.
+    #[must_use]
+    pub const fn data(start: u32, log_size: u32) -> Self {
+        Self {
+            start,
+            log_size,
+            rights: WRITE | NORMAL | NEVER_EXECUTE,
+        }
+    }
+
+    /// Registers of the board.
+    #[must_use]
+    pub const fn device(start: u32, log_size: u32) -> Self {
+        Self {
+            start,
+            log_size,
+            rights: WRITE | DEVICE | NEVER_EXECUTE,
+        }
+    }
 }
 
 /// Bits of RASR. Access for privileged code: read and write, or read only.
@@ -25,38 +54,14 @@ const ENABLE: u32 = 1;
 /// Bit of RBAR: the register also has the region's number.
 const WITH_NUMBER: u32 = 1 << 4;
 
-/// The regions of `memory.x`, and the board's timer, UART and watchdog.
-const REGIONS: [Region; 4] = [
-    Region {
-        start: 0,
-        log_size: FLASH_END.ilog2(),
-        rights: READ | NORMAL,
-    },
-    Region {
-        start: 0x2000_0000,
-        log_size: 17,
-        rights: WRITE | NORMAL | NEVER_EXECUTE,
-    },
-    Region {
-        start: 0x6000_0000,
-        log_size: 19,
-        rights: WRITE | NORMAL | NEVER_EXECUTE,
-    },
-    Region {
-        start: 0x4000_0000,
-        log_size: 16,
-        rights: WRITE | DEVICE | NEVER_EXECUTE,
-    },
-];
-
-/// Switches the protection on. It is off in the handlers of traps.
-pub fn start(unit: &mut MPU) {
-    for (number, region) in REGIONS.iter().enumerate() {
+/// Switches the protection on. It is off in the handlers of traps. `regions` has all that the image uses.
+pub fn start(unit: &mut MPU, regions: &[Region]) {
+    for (number, region) in regions.iter().enumerate() {
         // SAFETY: the regions contain all memory that the image uses, with the rights that it needs.
         unsafe {
             unit.rbar.write(region.start | WITH_NUMBER | number as u32);
             unit.rasr
-                .write(region.rights | (region.log_size - 1) << 1 | ENABLE);
+                .write(region.rights | (region.log_size.wrapping_sub(1)) << 1 | ENABLE);
         }
     }
     // SAFETY: as above.

@@ -205,6 +205,7 @@ extern "C" fn trapped(exception_return: u32, address: u32, exception: u32) {
 fn fault() -> Fault {
     unsafe extern "C" {
         static _stack_end: u32;
+        static _flash_end: u32;
     }
     // SAFETY: the registers exist on every Cortex-M7. A write of ones clears the bits that are set.
     let (status, at) = unsafe {
@@ -216,7 +217,7 @@ fn fault() -> Fault {
     };
     let below_stack = status & ADDRESS_VALID != 0 && at < (&raw const _stack_end) as u32;
     // Flash lies below the stack too, and is allowed to read.
-    let below_stack = below_stack && at >= crate::protection::FLASH_END;
+    let below_stack = below_stack && at >= (&raw const _flash_end) as u32;
     if status & STACKING != 0 || below_stack {
         Fault::Stack
     } else if status & MEMORY != 0 {

@@ -72,7 +72,7 @@ fn measure() -> Result<Vec<Figure>> {
     let mut figures = Vec::new();
     let mut add = |table, name, value| figures.push(Figure { table, name, value });
 
-    let (flash, static_ram) = sizes()?;
+    let (flash, static_ram) = sizes(Image::Uart)?;
     let flight = fly(Image::Fifo, "--preset flight --obstacles 20")?;
     let reference = fly(Image::Comparison, "--preset reference --obstacles 20")?;
     let dense = fly(Image::Fifo, "--preset flight --obstacles 40")?;
@@ -126,8 +126,8 @@ fn measure() -> Result<Vec<Figure>> {
 }
 
 /// Flash and static RAM of the image that flies \[bytes\].
-fn sizes() -> Result<(u64, u64)> {
-    let bytes = std::fs::read(Image::Uart.path()?)?;
+pub(crate) fn sizes(image: Image) -> Result<(u64, u64)> {
+    let bytes = std::fs::read(image.path()?)?;
     let file = object::File::parse(&*bytes)?;
     let size = |names: &[&str]| -> u64 {
         let sections = names.iter().filter_map(|name| file.section_by_name(name));

@@ -48,19 +48,21 @@ pub(crate) fn flash(bytes: &[u8]) -> Result<Vec<u8>> {
             .with_context(|| format!("no symbol {name}"))?
             .address())
     };
+    let base = address("__vector_table")?;
     let end = address("__sidata")? + address("__edata")? - address("__sdata")?;
-    let mut flash = vec![0; usize::try_from(end)?];
+    let length = end.checked_sub(base).context("the contents of RAM before the flash")?;
+    let mut flash = vec![0; usize::try_from(length)?];
     let endian = file.endian();
     for segment in file.elf_program_headers() {
         let (start, size) = (segment.p_paddr(endian), segment.p_filesz(endian));
         let is_loaded = segment.p_type(endian) == PT_LOAD && size > 0;
-        if is_loaded && u64::from(start) < end {
+        if is_loaded && (base..end).contains(&u64::from(start)) {
             let data = segment
                 .data(endian, bytes)
                 .ok()
                 .context("a segment beyond the file")?;
             flash
-                .get_mut(start as usize..)
+                .get_mut(usize::try_from(u64::from(start) - base)?..)
                 .and_then(|flash| flash.get_mut(..data.len()))
                 .context("a segment beyond the first contents of RAM")?
                 .copy_from_slice(data);

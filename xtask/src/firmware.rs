@@ -24,9 +24,11 @@ pub(crate) enum Image {
     UartFaults,
     /// The image [`Image::Fifo`] with faults for tests.
     FifoFaults,
+    /// Flies over the serial line of a Nucleo-H743ZI.
+    Nucleo,
 }
 
-/// All images.
+/// All images for the emulator.
 const ALL: [Image; 6] = [
     Image::Uart,
     Image::Lockstep,
@@ -45,6 +47,7 @@ impl Image {
             Self::Comparison => "comparison",
             Self::UartFaults => "flight-faults",
             Self::FifoFaults => "semihosting-faults",
+            Self::Nucleo => "nucleo-h743zi",
         }
     }
 
@@ -57,6 +60,15 @@ impl Image {
             Self::Comparison => ("fifo", &["--features", "paper"]),
             Self::UartFaults => ("uart", &["--features", "lockstep,faults"]),
             Self::FifoFaults => ("fifo", &["--features", "faults"]),
+            Self::Nucleo => ("nucleo", &[]),
+        }
+    }
+
+    /// The folder of the program's crate.
+    fn folder(self) -> &'static str {
+        match self {
+            Self::Nucleo => "firmware/nucleo",
+            _ => "firmware",
         }
     }
 
@@ -89,18 +101,16 @@ pub(crate) fn build_all() -> Result<()> {
 
 /// Builds images. An image links only if nothing in it can panic.
 pub(crate) fn build(images: &[Image]) -> Result<()> {
-    // The workspace's versions are used for everything. This is not --locked: cargo drops the
-    // packages that are not used here.
-    std::fs::copy(
-        root().join("Cargo.lock"),
-        root().join("firmware/Cargo.lock"),
-    )?;
     let toolchain = Toolchain::find(THUMB)?;
     for image in images {
         let (program, features) = image.program();
+        // The workspace's versions are used for everything. This is not --locked: cargo drops the
+        // packages that are not used here.
+        let lock = root().join(image.folder()).join("Cargo.lock");
+        std::fs::copy(root().join("Cargo.lock"), lock)?;
         // Stack sizes are not loaded: the image is the same with and without them.
         let stack_sizes = ["-Z", "emit-stack-sizes", "-C", "link-arg=-Tstack_sizes.x"];
-        let mut command = toolchain.cargo("rustc", "firmware")?;
+        let mut command = toolchain.cargo("rustc", image.folder())?;
         command
             .env("RUSTC_BOOTSTRAP", "1")
             .args(["--release", "--bin", program])
@@ -115,7 +125,8 @@ pub(crate) fn build(images: &[Image]) -> Result<()> {
         let bytes = std::fs::read(release()?.join(program))?;
         std::fs::write(image.path()?, contents::sealed(bytes)?)?;
     }
-    has_no_faults(Image::Uart)
+    has_no_faults(Image::Uart)?;
+    has_no_faults(Image::Nucleo)
 }
 
 /// Checks that an image contains no fault of `firmware/src/faults.rs`, if it is built.
@@ -134,7 +145,7 @@ fn has_no_faults(image: Image) -> Result<()> {
 
 /// Links an image in spite of its panics, and prints the places of the panics.
 fn list_panics(toolchain: &Toolchain, image: Image) -> Result<()> {
-    let mut command = toolchain.cargo("rustc", "firmware")?;
+    let mut command = toolchain.cargo("rustc", image.folder())?;
     let handler = "link-arg=--defsym=a_panic_path_is_still_reachable=0";
     let (program, features) = image.program();
     command.args(["--release", "--bin", program]).args(features);

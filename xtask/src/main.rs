@@ -19,6 +19,7 @@ mod fuzz;
 mod golden;
 mod identity;
 mod limits;
+mod nucleo;
 mod pil;
 mod qemu;
 mod readme;
@@ -64,6 +65,8 @@ enum Command {
     C(c::CArgs),
     /// Fly the same seeds on this machine, a Cortex-M7, aarch64, WebAssembly and from Python, and compare the hashes
     Identity(identity::IdentityArgs),
+    /// Build the image for the board Nucleo-H743ZI, which nobody has run yet, and say what it takes
+    Nucleo,
     /// Build the firmware in two folders and compare the images, byte for byte
     Reproduce,
     /// Make the Debian package of the harness, in target/deb
@@ -86,6 +89,7 @@ fn main() -> ExitCode {
         Command::Web => wasm::page(),
         Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),
+        Command::Nucleo => nucleo::run(),
         Command::Reproduce => reproduce::run(),
         Command::Deb => deb::run(),
         Command::Fuzz(args) => fuzz::run(&args),

@@ -11,7 +11,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use cortex_m::peripheral::SCB;
 use cortex_m_rt::{entry, exception};
 use firmware::host::{self, Host};
-use firmware::{board, protection, report, tasks};
+use firmware::{board, processor, protection, report, tasks};
 use mpp_node::Pace;
 
 static TIMED: AtomicBool = AtomicBool::new(false);
@@ -26,7 +26,7 @@ fn main() -> ! {
         Pace::Lockstep
     };
     if let Some(mut peripherals) = cortex_m::Peripherals::take() {
-        protection::start(&mut peripherals.MPU);
+        protection::start(&mut peripherals.MPU, &board::REGIONS);
         // SAFETY: no interrupt is enabled yet.
         unsafe {
             tasks::set_up(pace);
@@ -34,11 +34,11 @@ fn main() -> ! {
             let host = host::get();
             tasks::step_side().announce(|bytes| host.send(bytes));
         }
-        board::set_priorities(&mut peripherals);
+        processor::set_priorities(&mut peripherals);
         board::start_timer();
         if timed {
             board::start_watchdog();
-            board::start_ticking(&mut peripherals);
+            processor::start_ticking(&mut peripherals, board::TICK);
         }
     }
     planner_thread()

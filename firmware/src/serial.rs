@@ -1,0 +1,99 @@
+//! The link over a serial line by interrupts, with a ring of fixed size in each direction.
+
+use crate::mark::{self, Region};
+use crate::ring::{HALF, Ring};
+use crate::tasks::StepSide;
+use core::sync::atomic::{AtomicU32, Ordering};
+use cortex_m::peripheral::SCB;
+use mpp_node::Pace;
+
+/// The flight image's step never waits for a plan. An image that is compared with the host does.
+pub const PACE: Pace = if cfg!(feature = "lockstep") {
+    Pace::Lockstep
+} else {
+    Pace::RealTime
+};
+
+/// The last byte of a frame.
+const DELIMITER: u8 = 0;
+/// Greatest number of bytes that one run of the step takes.
+const BYTES_PER_RUN: usize = 2048;
+
+/// The registers of a board's serial line.
+pub trait Line {
+    /// Takes note of what raised the interrupt.
+    fn acknowledge();
+    /// Takes the oldest byte that has come.
+    fn take() -> Option<u8>;
+    /// Whether the line takes another byte to send.
+    fn has_room() -> bool;
+    /// Gives the line a byte to send. It has room.
+    fn put(byte: u8);
+    /// Says whether the line shall interrupt when it has room again.
+    fn await_room(wanted: bool);
+}
+
+static RECEIVED: Ring = Ring::new();
+static TO_SEND: Ring = Ring::new();
+/// Number of bytes lost because a ring was full.
+static LOST: AtomicU32 = AtomicU32::new(0);
+/// Number of lost bytes that the step has reported.
+static REPORTED: AtomicU32 = AtomicU32::new(0);
+
+/// Puts bytes into the ring; the line's interrupt sends them. Only the step may call this function.
+pub fn send(bytes: &[u8]) {
+    count_lost(TO_SEND.push(bytes));
+}
+
+/// Number of bytes lost in both directions since the start.
+#[must_use]
+pub fn lost() -> u32 {
+    LOST.load(Ordering::Relaxed)
+}
+
+fn count_lost(bytes: usize) {
+    if bytes > 0 {
+        LOST.fetch_add(bytes as u32, Ordering::Relaxed);
+    }
+}
+
+/// Gives the received bytes to the step. Only the step may call this function.
+pub fn run(side: &mut StepSide) {
+    let lost = lost();
+    let unreported = lost.wrapping_sub(REPORTED.load(Ordering::Relaxed));
+    // The step reports only if there is room, because the count would be lost with a lost report.
+    if unreported > 0 && TO_SEND.len() <= HALF {
+        REPORTED.store(lost, Ordering::Relaxed);
+        side.bytes_lost(unreported, send);
+    }
+    for _ in 0..BYTES_PER_RUN {
+        if side.waits() {
+            return;
+        }
+        let Some(byte) = RECEIVED.pop() else {
+            return;
+        };
+        side.receive(byte, send);
+    }
+}
+
+/// Handles the interrupt of the line.
+pub fn interrupt<L: Line>() {
+    mark::begin();
+    L::acknowledge();
+    while let Some(byte) = L::take() {
+        count_lost(RECEIVED.push(&[byte]));
+        // The step must also take bytes in time if no delimiter comes.
+        if byte == DELIMITER || RECEIVED.len() == HALF {
+            SCB::set_pendst();
+        }
+    }
+    while L::has_room() {
+        let Some(byte) = TO_SEND.pop() else {
+            break;
+        };
+        L::put(byte);
+    }
+    L::await_room(TO_SEND.len() > 0);
+    mark::end(Region::Uart);
+}
