@@ -27,7 +27,7 @@ from programs import Program, read_programs
 from solvers import DAQP_NATIVE, PEERS, Answer, Peer
 
 ROOT = Path(__file__).resolve().parents[2]
-CARGO = ["cargo", "run", "--release", "-q", "-p", "sil-harness", "--"]
+CARGO = ["cargo", "run", "--release", "-q", "-p", "sil-harness", "--features", "clarabel", "--"]
 HEADER = (
     "solver", "version", "form", "clock", "timed", "n", "median us", "p99 us", "max us",
     "verdict errors", "cost error", "row error",

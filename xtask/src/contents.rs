@@ -50,7 +50,9 @@ pub(crate) fn flash(bytes: &[u8]) -> Result<Vec<u8>> {
     };
     let base = address("__vector_table")?;
     let end = address("__sidata")? + address("__edata")? - address("__sdata")?;
-    let length = end.checked_sub(base).context("the contents of RAM before the flash")?;
+    let length = end
+        .checked_sub(base)
+        .context("the contents of RAM before the flash")?;
     let mut flash = vec![0; usize::try_from(length)?];
     let endian = file.endian();
     for segment in file.elf_program_headers() {

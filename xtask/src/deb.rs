@@ -14,7 +14,7 @@ pub(crate) fn run() -> Result<()> {
     install(&[("/usr/bin/dpkg-deb", "dpkg")])?;
     let mut cargo = Command::new("cargo");
     cargo.current_dir(root());
-    let features = ["-p", "sil-harness", "--features", "formats"];
+    let features = ["-p", "sil-harness", "--features", "formats,clarabel"];
     succeed(
         cargo
             .args(["build", "--release", "--locked"])

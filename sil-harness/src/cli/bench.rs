@@ -5,7 +5,7 @@ use super::scenario::{ScenarioArgs, replace};
 use super::values::{preset, seed};
 use crate::files::{read_instances, write_instances};
 use indicatif::ProgressBar;
-use mpp_analysis::bench::{CycleBench, generate, run_cycle, run_qp};
+use mpp_analysis::bench::{CycleBench, generate, run_cycle};
 use mpp_analysis::instance::Instance;
 use mpp_sim::scenario::Preset;
 use serde::Serialize;
@@ -21,7 +21,8 @@ pub(super) struct BenchArgs {
 
 #[derive(Clone, Debug, clap::Subcommand)]
 enum What {
-    /// Compare the QP solver with Clarabel on the same programs; one thread, best of several runs
+    /// Compare the QP solver with Clarabel on the same programs; one thread, best of several runs. It
+    /// needs a build with the cargo feature `clarabel`, except to export the programs
     Qp(QpArgs),
     /// Compare a planning cycle of preset flight with one of reference, stage by stage, on the same
     /// recorded cycles; one thread, best of several runs
@@ -115,6 +116,11 @@ fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure>
 }
 
 fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
+    if args.export.is_none() && cfg!(not(feature = "clarabel")) {
+        let why = "bench qp: this program was built without Clarabel: build it with `--features clarabel`, \
+                   or write the programs to a file with --export";
+        return Err(Failure::new(USAGE, why));
+    }
     let instances = instances(args)?;
     if let Some(path) = &args.export {
         write_instances(path, &instances).map_err(|error| Failure::new(FAILURE, error))?;
@@ -125,13 +131,21 @@ fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
         ));
         return Ok(0);
     }
+    compare(&instances, args.json)
+}
+
+#[cfg(feature = "clarabel")]
+fn compare(instances: &[Instance], json: bool) -> Result<u8, Failure> {
     let progress = ProgressBar::new(instances.len() as u64);
-    let report = run_qp(&instances, || progress.inc(1));
+    let report = mpp_analysis::bench::run_qp(instances, || progress.inc(1));
     progress.finish_and_clear();
-    print(
-        &report.map_err(|error| Failure::new(FAILURE, error))?,
-        args.json,
-    )
+    print(&report.map_err(|error| Failure::new(FAILURE, error))?, json)
+}
+
+#[cfg(not(feature = "clarabel"))]
+fn compare(_: &[Instance], _: bool) -> Result<u8, Failure> {
+    // Refused above, before the programs are made.
+    Ok(USAGE)
 }
 
 fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {

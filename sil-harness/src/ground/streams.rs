@@ -15,13 +15,14 @@ enum Rate {
 }
 
 /// The messages that are sent without a request for each: id and usual rate.
-const USUAL: [(u32, Rate); 16] = [
+const USUAL: [(u32, Rate); 17] = [
     (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (EXTENDED_SYS_STATE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (BATTERY_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (GPS_RAW_INT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (WIND_COV_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (CURRENT_MODE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (
         LOCAL_POSITION_NED_DATA::ID,
@@ -111,6 +112,7 @@ impl Streams {
                 BATTERY_STATUS_DATA::ID,
                 GPS_RAW_INT_DATA::ID,
                 WIND_COV_DATA::ID,
+                CURRENT_MODE_DATA::ID,
                 ATTITUDE_DATA::ID,
                 LOCAL_POSITION_NED_DATA::ID,
                 GLOBAL_POSITION_INT_DATA::ID,

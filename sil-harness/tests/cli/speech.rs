@@ -98,3 +98,14 @@ fn completions_and_manual_know_every_command() {
     assert!(text(&main.stdout).contains(".TH sil-harness 1"));
     assert!(!scratch("man").exists());
 }
+
+/// Clarabel takes long to build and no flight needs it, so a usual build is without it and says so.
+#[cfg(not(feature = "clarabel"))]
+#[test]
+fn a_benchmark_beside_clarabel_names_the_feature_that_it_needs() {
+    let arguments = ["bench", "qp", "--generate", "1"];
+    let output = harness().args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    let said = text(&output.stderr);
+    assert!(said.contains("--features clarabel"), "{said}");
+}

@@ -251,3 +251,20 @@ fn another_vehicle_with_the_same_number_is_told_once() {
         .filter(|note| note.contains("--instance"));
     assert_eq!(told.count(), 1);
 }
+
+/// The mode in force is told once a second, and at once when it changes.
+#[test]
+fn a_change_of_the_mode_is_told_at_once() {
+    let mut radio = Radio::new(&CONFIG);
+    radio.at(150, &command(176, 1.0, 7.0));
+    radio.fly(&short());
+    let modes = radio.all(|message| match message {
+        MavMessage::CURRENT_MODE(mode) => Some((mode.custom_mode, mode.standard_mode)),
+        _ => None,
+    });
+    let (auto, cruise) = ((10, 0), (7, 3));
+    assert_eq!(
+        modes,
+        [(0, auto), (100, auto), (150, cruise), (200, cruise)]
+    );
+}
