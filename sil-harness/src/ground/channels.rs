@@ -4,7 +4,6 @@
 use super::demands::Address;
 use super::security::Security;
 use super::streams::{self, Streams};
-use super::vehicle::Vehicle;
 use hil_protocol::mavlink::{Datagram, MessageData, Sender};
 use std::net::SocketAddr;
 
@@ -24,7 +23,7 @@ pub struct Outgoing {
 /// What an address is sent.
 pub(super) struct Channel {
     /// The address; `None` stands for all that have no channel of their own.
-    peer: Option<SocketAddr>,
+    pub(super) peer: Option<SocketAddr>,
     sender: Sender,
     pub(super) streams: Streams,
     /// System and component that spoke last.
@@ -138,7 +137,8 @@ impl Channels {
         self.all.iter().any(who)
     }
 
-    fn send<M: MessageData>(
+    /// Sends a message to some channels. `record` says whether it goes to the recording, too.
+    pub(super) fn send<M: MessageData>(
         &mut self,
         message: &M,
         security: &mut Security,
@@ -163,36 +163,5 @@ impl Channels {
 
     pub(super) fn take_outgoing(&mut self) -> Vec<Outgoing> {
         std::mem::take(&mut self.outbox)
-    }
-}
-
-impl Vehicle {
-    /// Sends a message to all, or to those at which a stream is due if it is the turn of one.
-    pub(super) fn send<M: MessageData>(&mut self, message: &M) {
-        self.send_where(message, true, |_| true);
-    }
-
-    /// Sends what is new to those who want it.
-    pub(super) fn send_event<M: MessageData>(&mut self, message: &M) {
-        self.send_where(message, true, |channel| channel.streams.wants(M::ID));
-    }
-
-    /// Sends what is meant for one station to its address, or to all that share its channel.
-    pub(super) fn send_to_station<M: MessageData>(&mut self, message: &M, to: Address) {
-        let key = self.channels.key(to.peer);
-        self.send_where(message, true, |channel| channel.peer == key);
-    }
-
-    /// Sends a message to some channels. `record` says whether it goes to the recording, too.
-    pub(super) fn send_where<M: MessageData>(
-        &mut self,
-        message: &M,
-        record: bool,
-        who: impl Fn(&Channel) -> bool,
-    ) {
-        let Self {
-            channels, security, ..
-        } = self;
-        channels.send(message, security, record, who);
     }
 }

@@ -18,6 +18,7 @@
 mod channels;
 mod commands;
 mod demands;
+mod files;
 mod guests;
 pub mod heard;
 mod inquiries;
@@ -27,6 +28,7 @@ pub mod param_file;
 mod parameter_queue;
 mod parameters;
 mod security;
+mod sending;
 mod stations;
 mod status;
 mod stores;

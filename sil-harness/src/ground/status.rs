@@ -69,7 +69,7 @@ impl Vehicle {
             }),
             COMPONENT_METADATA_DATA::ID => self.send(&COMPONENT_METADATA_DATA {
                 time_boot_ms: self.milliseconds(),
-                file_crc: self.stores.general_sum(),
+                file_crc: self.files.general_sum(),
                 uri: text(GENERAL_URI),
             }),
             _ => return false,

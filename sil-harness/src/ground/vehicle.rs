@@ -6,11 +6,11 @@
 use super::channels::Channels;
 pub use super::channels::Outgoing;
 use super::demands::{Address, Demand, Demands};
+use super::files::Files;
 use super::heard::Heard;
 use super::parameter_queue::ParameterQueue;
 use super::security::Security;
 use super::stations::Stations;
-use super::stores::Stores;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, Framer, Key, MessageData, Sender};
@@ -73,7 +73,7 @@ pub struct Vehicle {
     pub(super) security: Security,
     framer: Framer,
     stations: Stations,
-    pub(super) stores: Stores,
+    pub(super) files: Files,
     demands: Demands<Demand>,
     pub(super) parameters: ParameterQueue,
     pub(super) tuning: Option<Tuning>,
@@ -109,7 +109,7 @@ impl Vehicle {
             security: Security::new(config.key.clone()),
             framer: Framer::new(),
             stations: Stations::new(config.patience),
-            stores: Stores::new(),
+            files: Files::new(),
             demands: Demands::new(),
             parameters: ParameterQueue::default(),
             tuning: None,
