@@ -96,8 +96,8 @@ def test_each_of_two_stations_has_its_own_rates(simulate):
     assert first.wait_heartbeat(timeout=LIMIT) and second.wait_heartbeat(timeout=LIMIT)
 
     def interval(master):
-        times = [awaited(master, "ATTITUDE").time_boot_ms for _ in range(30)]
-        return statistics.median(b - a for a, b in zip(times[10:], times[11:]))
+        times = [awaited(master, "ATTITUDE").time_boot_ms for _ in range(12)]
+        return statistics.median(b - a for a, b in zip(times[4:], times[5:]))
 
     first.mav.command_long_send(1, 1, 511, 0, mavlink.MAVLINK_MSG_ID_ATTITUDE, 20_000, *[0] * 5)
     assert ack(first, 511) == mavlink.MAV_RESULT_ACCEPTED
@@ -107,10 +107,11 @@ def test_each_of_two_stations_has_its_own_rates(simulate):
     while interval(first) != 20:
         pass
     assert interval(second) == 250
-    for master in (first, second):
-        # By the numbers of the frames, apart from a datagram that the machine lost.
-        assert master.packet_loss() < 5
-        master.close()
+    # By the numbers of its frames it has lost none, apart from a datagram that the machine lost: those of the first
+    # station are not among them. (The first one gets more than this test reads.)
+    assert second.packet_loss() < 5
+    first.close()
+    second.close()
 
 
 def test_what_a_station_asks_for_once_is_sent_once(vehicle):
