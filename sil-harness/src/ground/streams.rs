@@ -22,7 +22,8 @@ const USUAL: [(u32, Rate); 17] = [
     (BATTERY_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (GPS_RAW_INT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (WIND_COV_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
-    (CURRENT_MODE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    // pymavlink 2.4.50 does not know it, and counts every such frame as two that were lost.
+    (CURRENT_MODE_DATA::ID, Rate::Never),
     (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (
         LOCAL_POSITION_NED_DATA::ID,
@@ -112,7 +113,6 @@ impl Streams {
                 BATTERY_STATUS_DATA::ID,
                 GPS_RAW_INT_DATA::ID,
                 WIND_COV_DATA::ID,
-                CURRENT_MODE_DATA::ID,
                 ATTITUDE_DATA::ID,
                 LOCAL_POSITION_NED_DATA::ID,
                 GLOBAL_POSITION_INT_DATA::ID,

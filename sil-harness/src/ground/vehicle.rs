@@ -13,7 +13,7 @@ use super::security::Security;
 use super::stations::Stations;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
-use hil_protocol::mavlink::{Frame, Framer, Key, MessageData, Sender};
+use hil_protocol::mavlink::{Frame, Framer, Key, Sender};
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
 use mpp_node::parameters::{self, Tuning};
 use mpp_sim::moment::Moment;
@@ -232,10 +232,7 @@ impl Vehicle {
         self.tuning = Some(*tuning);
         if result.is_ok() {
             match order {
-                Order::Mode { mode } => {
-                    self.mode = *mode;
-                    self.send_by_id(CURRENT_MODE_DATA::ID);
-                }
+                Order::Mode { mode } => self.mode = *mode,
                 Order::Motor { on } => self.armed = *on,
                 Order::Parameter { .. }
                 | Order::Terminate
