@@ -36,6 +36,8 @@ def open_page(browser):
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
         page.goto(url)
+        # A page unpacks what it holds before anybody can use it.
+        page.wait_for_function("!document.body.inert")
         pages.append(page)
         return page
 
