@@ -352,11 +352,11 @@ def test_the_table_says_what_each_candidate_cost_and_why_one_was_chosen(flight, 
                 assert sum(parts) == pytest.approx(judged["price"], rel=1e-9)
     page = open_page(page.as_uri() + "#t=7.3")
     rows = page.locator("#why tr")
-    assert rows.nth(0).inner_text().split()[:7] == ["candidate", "round", "clearance", "unknown", "onward", "effort", "price"]
+    assert rows.nth(0).inner_text().split()[:7] == ["candidate", "round", "price", "clearance", "unknown", "onward", "effort"]
     assert rows.count() == 1 + int(value(page, "candidates"))
     assert page.locator("#why tr.chosen").count() == 1
     cells = page.locator("#why tr.chosen td").all_inner_texts()
-    assert "chosen" in cells[0] and cells[6] == value(page, "cost")
+    assert "chosen" in cells[0] and cells[7] == value(page, "cost")
     # A row shows its path.
     before = pixels(page)
     rows.nth(4).hover()

@@ -38,14 +38,14 @@ function showWhy(flight, now, look, changed) {
   said.textContent = detail.chosen === null ? "The cycle chose no candidate." : byParts
     ? "The lowest price wins. The first rounds refine every candidate, further rounds the best of them."
     : "The paper's method ranks by violation, then by cost. It knows only the cost of a candidate that beat those before it.";
-  const head = byParts ? ["", "candidate", "round", "clearance", "unknown", "onward", "effort", "price", "lack [m]", "feasible"]
+  const head = byParts ? ["", "candidate", "round", "price", "clearance", "unknown", "onward", "effort", "lack [m]", "feasible"]
     : ["", "candidate", "cost", "feasible"];
   const rounds = {};
   const rows = detail.judged.map(({ candidate, feasible, price, parts }, index) => {
     const round = rounds[candidate] = (rounds[candidate] || 0) + 1;
     const p = parts || {}, mark = index === detail.chosen ? "\u2713 chosen" : "", fits = feasible ? "yes" : "no";
-    return byParts ? [mark, candidate + 1, round, number(p.clearance), number(p.unknown), number(p.onward), number(p.effort),
-      number(price), number(p.lack, 3), fits] : [mark, candidate + 1, number(price), fits];
+    return byParts ? [mark, candidate + 1, round, number(price), number(p.clearance), number(p.unknown), number(p.onward),
+      number(p.effort), number(p.lack, 3), fits] : [mark, candidate + 1, number(price), fits];
   });
   const line = (cells, kind) => {
     const row = document.createElement("tr");

@@ -36,7 +36,10 @@ mod tests {
 
     #[test]
     fn the_page_draws_the_limits_that_flights_are_judged_by() {
-        let (pitch, path) = (PITCH_LIMIT.to_degrees().round(), FLIGHT_PATH_LIMIT.to_degrees().round());
+        let (pitch, path) = (
+            PITCH_LIMIT.to_degrees().round(),
+            FLIGHT_PATH_LIMIT.to_degrees().round(),
+        );
         let limits = format!(
             "pitch: {pitch}, flight_path: {path}, altitude: {ALTITUDE}, band: {ALTITUDE_BAND} }}"
         );

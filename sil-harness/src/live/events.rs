@@ -52,7 +52,10 @@ impl Events {
     pub(super) fn since(&self, number: usize) -> Vec<Arc<str>> {
         let first = self.first.iter().filter(|_| number == 0);
         let skipped = number.saturating_sub(1 + self.dropped);
-        first.chain(self.newest.iter().skip(skipped)).cloned().collect()
+        first
+            .chain(self.newest.iter().skip(skipped))
+            .cloned()
+            .collect()
     }
 }
 
