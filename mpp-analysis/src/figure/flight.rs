@@ -8,18 +8,13 @@ use super::page::{document, draw_mark};
 use super::palette::{CLOSEST, FLOWN, OBSTACLE, REFERENCE, of_outcome};
 use super::panel::{self, Axis, Canvas, Curve, DrawingError, Panel};
 use super::range::bounds;
-use super::strips::field_panels;
+use super::strips::{CANVAS, FIELD_HEIGHT, field_panels, unbroken};
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::{FLIGHT_PATH_LIMIT, PITCH_LIMIT};
 use plotters::prelude::*;
-use std::ops::Range;
 
-/// Size on the canvas \[px\]; shown as 1000 x 600.
-pub(super) const CANVAS: (u32, u32) = (4000, 2400);
-/// Heights from top to bottom \[px\]: the legend, the field, the upper row over time. The lower row
-/// takes the rest.
+/// Heights \[px\] of the legend above the field and of the upper row over time below it. The lower row takes the rest.
 const LEGEND_HEIGHT: u32 = 150;
-pub(super) const FIELD_HEIGHT: u32 = 720;
 const ROW_HEIGHT: u32 = 685;
 /// Draws the flight as an SVG document. The same log gives the same bytes.
 ///
@@ -111,20 +106,6 @@ fn motion_panel(
     marks::add_closest_time(&mut panel, log);
     panel.curves.extend(curves);
     panel
-}
-
-/// The tick ranges over which the reference is one plan's, from one replan to the next.
-pub(super) fn unbroken(log: &FlightLog) -> Vec<Range<usize>> {
-    let count = log.ticks.t.len();
-    let mut breaks: Vec<usize> = log
-        .plans
-        .iter()
-        .filter_map(|plan| usize::try_from(plan.used_from_tick?).ok())
-        .filter(|&tick| tick < count)
-        .chain([0, count])
-        .collect();
-    breaks.sort_unstable();
-    breaks.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
 /// Draws the names of the colours, in one line above the field.

@@ -1,7 +1,6 @@
 //! A flight among the obstacles, true to scale: in one panel, or in strips one below the other.
 
 use super::field;
-use super::flight::{CANVAS, FIELD_HEIGHT, unbroken};
 use super::marks;
 use super::page::to_scale;
 use super::palette::{FLOWN, REFERENCE};
@@ -11,6 +10,10 @@ use mpp_sim::field::Shape;
 use mpp_sim::log::FlightLog;
 use std::ops::Range;
 
+/// Size on the canvas of a flight in one panel \[px\]; shown as 1000 x 600.
+pub(super) const CANVAS: (u32, u32) = (4000, 2400);
+/// Height of the panel of the field in it \[px\].
+pub(super) const FIELD_HEIGHT: u32 = 720;
 /// Least length of a strip, and how far a field is shown beyond the flight \[m\].
 const STRIP: f64 = 300.0;
 const BEYOND: f64 = 60.0;
@@ -99,4 +102,18 @@ fn strip_height(x: &Range<f64>, z: &Range<f64>) -> u32 {
     let (width, plot) = panel::plot_size((CANVAS.0, FIELD_HEIGHT), true);
     let frame = f64::from(FIELD_HEIGHT) - plot;
     (frame + ((z.end - z.start) * width / (x.end - x.start)).max(LEAST_PLOT)) as u32
+}
+
+/// The tick ranges over which the reference is one plan's, from one replan to the next.
+pub(super) fn unbroken(log: &FlightLog) -> Vec<Range<usize>> {
+    let count = log.ticks.t.len();
+    let mut breaks: Vec<usize> = log
+        .plans
+        .iter()
+        .filter_map(|plan| usize::try_from(plan.used_from_tick?).ok())
+        .filter(|&tick| tick < count)
+        .chain([0, count])
+        .collect();
+    breaks.sort_unstable();
+    breaks.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }

@@ -1,8 +1,7 @@
 //! Tests the pictures of small flights.
 
-use super::flight::{CANVAS, FIELD_HEIGHT};
 use super::panel::{self, Axis};
-use super::strips::field_panels;
+use super::strips::{CANVAS, FIELD_HEIGHT, field_panels};
 use super::*;
 use crate::campaign::{Campaign, Lists, Report};
 use mpp_core::estimate::Conditions;

@@ -77,20 +77,25 @@ fn columns(ticks: &Columns) -> BTreeMap<&'static str, (f64, Steps)> {
 }
 
 fn steps(values: impl Iterator<Item = Option<f64>>, unit: f64) -> Steps {
-    let mut before = 0;
-    let step = |value: f64| {
-        let whole = (value / unit).round() as i64;
-        let step = whole - before;
-        before = whole;
+    let mut before = 0_i64;
+    let mut step = |value: f64| {
+        // A log may hold any number; one that is too great for its unit becomes the greatest that fits.
+        let step = ((value / unit).round() as i64).saturating_sub(before);
+        before += step;
         step
     };
-    let mut step = step;
     values.map(|value| value.map(&mut step)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_beyond_all_bounds_are_packed_without_harm() {
+        let values = [Some(1e300), Some(-1e300), Some(0.0)];
+        assert_eq!(steps(values.into_iter(), FINE).len(), 3);
+    }
 
     #[test]
     fn steps_add_up_to_the_values_and_gaps_stay_gaps() {

@@ -1,13 +1,14 @@
 //! Pictures as PDF, with the cargo feature `formats`.
 
-use super::answer::{FAILURE, Failure, USAGE};
+use super::answer::Failure;
 
 /// A picture as PDF. Its text is set in DejaVu Sans if this machine has it, else in any font.
 ///
 /// # Errors
-/// [`USAGE`] without the cargo feature, [`FAILURE`] without any font.
+/// A failure without any font, or without the cargo feature.
 #[cfg(feature = "formats")]
 pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Failure> {
+    use super::answer::FAILURE;
     use svg2pdf::usvg::{Options, Tree, fontdb::Database};
     const WANTED: &str = "DejaVu Sans";
 
@@ -34,9 +35,9 @@ pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Failure> {
 /// Says that this build makes no PDF.
 ///
 /// # Errors
-/// [`USAGE`], always.
+/// Always: the command asks for what this build has not.
 #[cfg(not(feature = "formats"))]
 pub(super) fn pdf(_: &str) -> Result<Vec<u8>, Failure> {
     let why = "this program was built without PDF: build it with `--features formats`, or leave out `--pdf`";
-    Err(Failure::new(USAGE, why))
+    Err(Failure::new(super::answer::USAGE, why))
 }

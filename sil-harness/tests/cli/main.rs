@@ -262,7 +262,14 @@ fn a_cycle_is_benched_by_stage_in_both_presets() {
 fn figures_are_drawn_into_a_directory() {
     let (output, out) = run("figures", &["figures"]);
     assert!(output.status.success(), "{output:?}");
-    let names = ["challenge", "flight", "scan", "rays", "trajectory", "candidates"];
+    let names = [
+        "challenge",
+        "flight",
+        "scan",
+        "rays",
+        "trajectory",
+        "candidates",
+    ];
     for name in names {
         let svg = std::fs::read_to_string(out.join(name).with_extension("svg")).unwrap();
         assert!(
