@@ -4,13 +4,12 @@ import os
 import shutil
 
 import pytest
+from flown import LIMIT, fly, page_of
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 CHROMIUM = shutil.which("chromium")
 SHOTS = os.environ.get("SCREENSHOTS")
-# Nothing takes so long, on however slow a machine [ms].
-LIMIT = 60_000
 
 
 @pytest.fixture(scope="session")
@@ -54,3 +53,18 @@ def shot():
         if SHOTS:
             page.screenshot(path=f"{SHOTS}/{name}.png", full_page=True)
     return shot_
+
+
+@pytest.fixture(scope="session")
+def flight(tmp_path_factory):
+    path, log = fly(tmp_path_factory.mktemp("flight"), "--seed", "1")
+    return page_of(path), log
+
+
+@pytest.fixture(scope="session")
+def collided(tmp_path_factory):
+    """A flight that ends in an obstacle."""
+    arguments = ["--preset", "reference", "--paths", "1", "--obstacles", "40", "--seed", "8"]
+    path, log = fly(tmp_path_factory.mktemp("collided"), *arguments)
+    assert log["summary"]["outcome"] == "collision"
+    return page_of(path), log

@@ -24,7 +24,7 @@ const LEAST_PLOT: f64 = 100.0;
 /// Least room that is shown around the field \[m\].
 const FIELD_MARGIN: f64 = 4.0;
 /// Radius of the dot of a replan in a single panel and in strips \[px\].
-const REPLAN: [u32; 2] = [13, 6];
+const REPLAN: [u32; 2] = [13, 9];
 
 /// The panels with the flight among the obstacles and their heights \[px\]: one, or the strips of a long flight. Both
 /// axes of each have the same scale.
