@@ -9,6 +9,7 @@ use super::palette::{CLOSEST, FLOWN, OBSTACLE, REFERENCE, of_outcome};
 use super::panel::{self, Axis, Canvas, Curve, DrawingError, Panel};
 use super::range::bounds;
 use super::strips::{CANVAS, FIELD_HEIGHT, field_panels, unbroken};
+use crate::closest::{Closest, closest};
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::{FLIGHT_PATH_LIMIT, PITCH_LIMIT};
 use plotters::prelude::*;
@@ -29,13 +30,19 @@ pub fn flight_svg(log: &FlightLog) -> Result<String, FigureError> {
     if log.ticks.t.is_empty() {
         return Err(FigureError::EmptyFlight);
     }
-    let strips = field_panels(log);
+    let closest = closest(log);
+    let strips = field_panels(log, closest.as_ref());
     let field: u32 = strips.iter().map(|(_, height)| height).sum();
     let size = (CANVAS.0, CANVAS.1 - FIELD_HEIGHT + field);
-    document(size, |canvas| draw(log, &strips, canvas))
+    document(size, |canvas| draw(log, &strips, closest.as_ref(), canvas))
 }
 
-fn draw(log: &FlightLog, strips: &[(Panel, u32)], canvas: &Canvas<'_>) -> Result<(), DrawingError> {
+fn draw(
+    log: &FlightLog,
+    strips: &[(Panel, u32)],
+    closest: Option<&Closest>,
+    canvas: &Canvas<'_>,
+) -> Result<(), DrawingError> {
     let (legend, mut rest) = canvas.split_vertically(LEGEND_HEIGHT);
     draw_legend(&legend, log)?;
     for (strip, height) in strips {
@@ -47,29 +54,26 @@ fn draw(log: &FlightLog, strips: &[(Panel, u32)], canvas: &Canvas<'_>) -> Result
     let t = &log.ticks;
     let half = CANVAS.0 / 2;
     let (left, right) = upper.split_horizontally(half);
-    let angle = |words, limit: f64, flown: &[f64], planned| {
-        let labels = ("", words);
-        motion_panel(
-            log,
-            labels,
-            1_f64.to_degrees(),
-            flown,
-            planned,
-            Some(limit.to_degrees()),
-        )
+    let angle = |(words, limit): (_, f64), flown: &[f64], planned| {
+        let limit = Some(limit.to_degrees());
+        motion_panel(log, ("", words), 1_f64.to_degrees(), flown, planned, limit)
     };
-    angle(
-        "Path γ (deg)",
-        FLIGHT_PATH_LIMIT,
-        &t.flight_path,
-        &t.ref_flight_path,
-    )
-    .draw(&left)?;
-    angle("Pitch θ (deg)", PITCH_LIMIT, &t.pitch, &t.ref_pitch).draw(&right)?;
+    let marked = |mut panel: Panel, area: &Canvas<'_>| {
+        marks::add_closest_time(&mut panel, closest);
+        panel.draw(area)
+    };
+    let path = ("Path γ (deg)", FLIGHT_PATH_LIMIT);
+    marked(angle(path, &t.flight_path, &t.ref_flight_path), &left)?;
+    let pitch = ("Pitch θ (deg)", PITCH_LIMIT);
+    marked(angle(pitch, &t.pitch, &t.ref_pitch), &right)?;
     let (left, right) = lower.split_horizontally(half);
     let speed = ("Time (s)", "Airspeed (m/s)");
-    motion_panel(log, speed, 1.0, &t.airspeed, &t.ref_airspeed, None).draw(&left)?;
-    motion_panel(log, ("Time (s)", "Thrust (N)"), 1.0, &t.thrust, &[], None).draw(&right)
+    marked(
+        motion_panel(log, speed, 1.0, &t.airspeed, &t.ref_airspeed, None),
+        &left,
+    )?;
+    let thrust = ("Time (s)", "Thrust (N)");
+    marked(motion_panel(log, thrust, 1.0, &t.thrust, &[], None), &right)
 }
 
 /// A panel with one column over time, times `scale`, and with the reference's column.
@@ -103,7 +107,6 @@ fn motion_panel(
     if let Some(limit) = limit {
         marks::add_limits(&mut panel, limit);
     }
-    marks::add_closest_time(&mut panel, log);
     panel.curves.extend(curves);
     panel
 }

@@ -3,10 +3,10 @@
 use super::mark::{Mark, Outline};
 use super::palette::{CLOSEST, GOOD, LIMIT, REFERENCE, of_outcome};
 use super::panel::Panel;
-use crate::closest::closest;
+use crate::closest::Closest;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::{ALTITUDE_BAND, Outcome};
-use mpp_sim::scenario::ALTITUDE;
+use mpp_sim::scenario::{ALTITUDE, Scenario};
 
 /// Width of the lines \[px\].
 pub(super) const WIDTH: u32 = 6;
@@ -22,7 +22,12 @@ pub(super) fn add_goal(panel: &mut Panel, log: &FlightLog) {
 }
 
 /// Adds a dot of this radius \[px\] on the flown path wherever a plan took over, the closest approach, and the end.
-pub(super) fn add_events(panel: &mut Panel, log: &FlightLog, radius: u32) {
+pub(super) fn add_events(
+    panel: &mut Panel,
+    log: &FlightLog,
+    closest: Option<&Closest>,
+    radius: u32,
+) {
     let ticks = &log.ticks;
     for tick in log.plans.iter().filter_map(|plan| plan.used_from_tick) {
         let row = usize::try_from(tick).unwrap_or(usize::MAX);
@@ -30,7 +35,7 @@ pub(super) fn add_events(panel: &mut Panel, log: &FlightLog, radius: u32) {
             panel.dot((*x, *z), radius, REFERENCE);
         }
     }
-    if let Some(found) = closest(log) {
+    if let Some(found) = closest {
         panel.mark((found.x, found.z), Outline::Ring, CLOSEST);
     }
     add_end(panel, log);
@@ -68,10 +73,9 @@ pub(super) fn add_limits(panel: &mut Panel, limit: f64) {
 }
 
 /// Adds the time of the closest approach as an upright line.
-pub(super) fn add_closest_time(panel: &mut Panel, log: &FlightLog) {
-    let time = closest(log).and_then(|found| log.ticks.t.get(found.tick).copied());
-    if let Some(time) = time {
-        let range = panel.y.range.clone();
+pub(super) fn add_closest_time(panel: &mut Panel, closest: Option<&Closest>) {
+    if let Some(found) = closest {
+        let (time, range) = (Scenario::time(found.tick as u32), panel.y.range.clone());
         panel.line(CLOSEST, WIDTH, &[(time, range.start), (time, range.end)]);
     }
 }

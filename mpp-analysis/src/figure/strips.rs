@@ -6,6 +6,7 @@ use super::page::to_scale;
 use super::palette::{FLOWN, REFERENCE};
 use super::panel::{self, Axis, Curve, Panel};
 use super::range::{bounds, widened};
+use crate::closest::Closest;
 use mpp_sim::field::Shape;
 use mpp_sim::log::FlightLog;
 use std::ops::Range;
@@ -28,7 +29,7 @@ const REPLAN: [u32; 2] = [13, 9];
 
 /// The panels with the flight among the obstacles and their heights \[px\]: one, or the strips of a long flight. Both
 /// axes of each have the same scale.
-pub(super) fn field_panels(log: &FlightLog) -> Vec<(Panel, u32)> {
+pub(super) fn field_panels(log: &FlightLog, closest: Option<&Closest>) -> Vec<(Panel, u32)> {
     let t = &log.ticks;
     let curves = [
         Curve::flown(FLOWN, &t.x, &t.z),
@@ -67,7 +68,7 @@ pub(super) fn field_panels(log: &FlightLog) -> Vec<(Panel, u32)> {
                 panel.line(curve.colour, curve.width, piece);
             }
         }
-        marks::add_events(panel, log, REPLAN[usize::from(count > 1.0)]);
+        marks::add_events(panel, log, closest, REPLAN[usize::from(count > 1.0)]);
         strip
     };
     (0..count as u32).map(strip).collect()

@@ -174,7 +174,7 @@ fn a_flight_of_ten_minutes_is_drawn_in_strips_to_scale() {
         (*x, *t) = (3.6 * row as f64, 0.3 * row as f64);
     }
     log.ticks.ref_x.fill(None);
-    let strips = field_panels(&log);
+    let strips = field_panels(&log, None);
     assert_eq!(strips.len(), 8);
     let mut shown = strips[0].0.x.range().start;
     for (panel, height) in &strips {
@@ -209,7 +209,7 @@ fn a_scene_shows_where_the_flight_with_one_path_failed() {
 #[test]
 fn circles_and_axes_have_one_scale() {
     for (count, obstacles) in [(2000, 20), (300, 1), (2, 0)] {
-        let panels = field_panels(&example(count, obstacles));
+        let panels = field_panels(&example(count, obstacles), None);
         let [(field, FIELD_HEIGHT)] = &panels[..] else {
             panic!("{} panels", panels.len());
         };
