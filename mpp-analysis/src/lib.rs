@@ -44,4 +44,5 @@ pub mod ceiling;
 
 pub mod figure;
 
+mod closest;
 pub mod picture;

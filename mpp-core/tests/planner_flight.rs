@@ -78,6 +78,32 @@ fn plans_do_not_drift_when_nothing_changes() {
 }
 
 #[test]
+fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
+    let mut planner = planner(&Settings::flight());
+    let state = level(&planner);
+    let discs = [(125.0, 50.5, 1.0), (138.0, 47.0, 1.0)];
+    planner.begin(3.0, &state, &Conditions::STILL, &scan(&discs, &state));
+    let (mut least, mut effort, mut priced) = (f64::INFINITY, f64::NAN, 0);
+    while planner.advance() {
+        let own = planner.flight().unwrap();
+        let Some((price, parts)) = own.price_parts(own.at_hand()) else {
+            continue;
+        };
+        let sum = parts.clearance + parts.unknown + parts.onward + parts.effort;
+        assert!((sum - price).abs() < 1e-9 * price, "{parts:?} of {price}");
+        if price < least {
+            (least, effort) = (price, parts.effort);
+        }
+        priced += 1;
+    }
+    assert!(priced > 3);
+    let own = planner.flight().unwrap();
+    assert_eq!(own.price().to_bits(), least.to_bits());
+    assert_eq!(planner.summary().cost.to_bits(), effort.to_bits());
+    assert!(own.price_parts(own.offers()).is_none());
+}
+
+#[test]
 fn the_previous_plan_is_a_candidate_as_long_as_it_lasts() {
     let candidates = |time: f64| {
         let mut planner = planner(&Settings::flight());

@@ -8,7 +8,7 @@ use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::map::GridPoint;
 use mpp_core::planner::flight::FlightPlanner;
-use mpp_core::planner::{Planner, SetupError};
+use mpp_core::planner::{PlanSummary, Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
@@ -44,13 +44,45 @@ pub struct PlanDetail {
     pub map: Map,
     /// Collocation points of every candidate path.
     pub paths: Vec<Vec<Place>>,
-    /// The candidate that was chosen.
+    /// What came of each of these paths.
+    pub judged: Vec<Judged>,
+    /// The path from whose program the chosen trajectory comes.
     pub chosen: Option<usize>,
     /// Corridor of the chosen candidate: a polygon for each stage boundary, empty where nothing is
     /// left.
     pub corridor: Vec<Vec<Place>>,
     /// The trajectory that was chosen.
     pub trajectory: Vec<Place>,
+}
+
+/// The planner's judgement of a path after it was refined.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Judged {
+    /// Index of the candidate. The flight planner refines the best candidates in several rounds, and each round is a
+    /// path of its own.
+    pub candidate: usize,
+    /// Whether the trajectory met every constraint.
+    pub feasible: bool,
+    /// The price that ranks the trajectories; null if no program of the candidate had a solution. Of the paper's
+    /// method it is the cost of a trajectory that was better than all before it, and null of the others.
+    pub price: Option<f64>,
+    /// The parts of the price; null of the paper's method, whose cost has no parts.
+    pub parts: Option<Parts>,
+}
+
+/// The parts of a price [-], and the lack of clearance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Parts {
+    /// Price of what is missing of the margin, of the wanted room and of the altitude band.
+    pub clearance: f64,
+    /// Price of unknown cells near ahead.
+    pub unknown: f64,
+    /// Price of the way on after the window in which the planner refines.
+    pub onward: f64,
+    /// Price of controls and of the end state.
+    pub effort: f64,
+    /// Worst lack of clearance \[m\].
+    pub lack: f64,
 }
 
 /// The planner's knowledge of obstacles.
@@ -103,7 +135,11 @@ impl Inspector {
         let mut best_violation = f64::INFINITY;
         for _ in 0..slices(tuning) {
             let refining = planner.candidate().is_some();
+            let before = *planner.summary();
             let more = planner.advance();
+            if planner.summary().candidates > before.candidates {
+                detail.judged.push(judged(planner, &before, length));
+            }
             if let Some((path, problem)) = planner.candidate()
                 && !refining
             {
@@ -114,7 +150,7 @@ impl Inspector {
             let summary = planner.summary();
             if (summary.cost, summary.violation) != (best, best_violation) {
                 (best, best_violation) = (summary.cost, summary.violation);
-                detail.chosen = detail.paths.len().checked_sub(1);
+                detail.chosen = detail.judged.len().checked_sub(1);
                 if let (Some(bounds), Some(path)) = (&corridor, detail.paths.last()) {
                     let cruise = planner.trim().state.airspeed;
                     detail.corridor = polygons(&bounds.0, cruise, path, length);
@@ -134,6 +170,35 @@ impl Inspector {
         }
         let _ = planner.finish();
         Some(detail)
+    }
+}
+
+/// The judgement of the path that the last slice finished. `before` is the summary before that slice.
+fn judged(planner: &Planner, before: &PlanSummary, length: f64) -> Judged {
+    let now = planner.summary();
+    let feasible = now.feasible > before.feasible;
+    let Some(own) = planner.flight() else {
+        let better = (now.cost, now.violation) != (before.cost, before.violation);
+        return Judged {
+            candidate: before.candidates,
+            feasible,
+            price: better.then_some(now.cost),
+            parts: None,
+        };
+    };
+    let candidate = own.at_hand();
+    let (price, parts) = own.price_parts(candidate).unzip();
+    Judged {
+        candidate,
+        feasible,
+        price,
+        parts: parts.map(|parts| Parts {
+            clearance: parts.clearance,
+            unknown: parts.unknown,
+            onward: parts.onward,
+            effort: parts.effort,
+            lack: parts.lack * length,
+        }),
     }
 }
 

@@ -1,14 +1,16 @@
 //! The live view of a flight: one page, and a stream of server-sent events.
 //!
-//! The flight waits for nobody. It puts events into a list, and every viewer reads them from there,
-//! from the first event on. Viewers send back only pause and speed. These change when a tick is
+//! The flight waits for nobody. It puts events into a ring, and every viewer reads them from there,
+//! from the oldest that is kept. Viewers send back only pause and speed. These change when a tick is
 //! flown, never what is flown. Only the server's own page may send them.
 
 mod door;
+mod events;
 mod request;
 
 use crate::pace::{self, Speed};
 use door::Door;
+use events::Events;
 use mpp_analysis::picture::live_page;
 use mpp_node::parameters::Tuning;
 use mpp_sim::entries::Columns;
@@ -24,6 +26,8 @@ use std::time::{Duration, Instant};
 
 /// Number of ticks that are sent together.
 const BATCH: usize = 5;
+/// The events that are kept \[bytes\]: more than half an hour with a plan each second.
+const KEPT: usize = 64 << 20;
 /// Greatest number of connections at a time. Further ones are refused with 503.
 const PLACES: usize = 32;
 /// The longest time that a viewer may take to accept data.
@@ -47,7 +51,7 @@ pub struct Wish {
 }
 
 struct State {
-    events: Vec<Arc<str>>,
+    events: Events,
     wish: Wish,
     /// Connections.
     places: usize,
@@ -87,7 +91,7 @@ impl Live {
         let address = listener.local_addr()?;
         let shared = Arc::new(Shared {
             state: Mutex::new(State {
-                events: Vec::new(),
+                events: Events::new(KEPT),
                 wish: Wish {
                     pause: false,
                     speed: None,
@@ -304,7 +308,7 @@ fn follow(mut stream: &TcpStream, shared: &Shared) -> io::Result<()> {
     let mut seen = 0;
     loop {
         let mut state = shared.lock();
-        while state.events.len() == seen {
+        while state.events.end() == seen {
             if state.ended {
                 return Ok(());
             }
@@ -319,10 +323,10 @@ fn follow(mut stream: &TcpStream, shared: &Shared) -> io::Result<()> {
                 state = shared.lock();
             }
         }
-        let news = state.events[seen..].to_vec();
+        let news = state.events.since(seen);
+        seen = state.events.end();
         // The events are sent without the lock: a slow viewer must not stop the flight.
         drop(state);
-        seen += news.len();
         for event in news {
             stream.write_all(event.as_bytes())?;
         }

@@ -4,13 +4,12 @@ import os
 import shutil
 
 import pytest
+from flown import LIMIT, fly, page_of
 
 playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
 
 CHROMIUM = shutil.which("chromium")
 SHOTS = os.environ.get("SCREENSHOTS")
-# Nothing takes so long, on however slow a machine [ms].
-LIMIT = 60_000
 
 
 @pytest.fixture(scope="session")
@@ -36,6 +35,8 @@ def open_page(browser):
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
         page.goto(url)
+        # A page unpacks what it holds before anybody can use it.
+        page.wait_for_function("!document.body.inert")
         pages.append(page)
         return page
 
@@ -52,3 +53,18 @@ def shot():
         if SHOTS:
             page.screenshot(path=f"{SHOTS}/{name}.png", full_page=True)
     return shot_
+
+
+@pytest.fixture(scope="session")
+def flight(tmp_path_factory):
+    path, log = fly(tmp_path_factory.mktemp("flight"), "--seed", "1")
+    return page_of(path), log
+
+
+@pytest.fixture(scope="session")
+def collided(tmp_path_factory):
+    """A flight that ends in an obstacle."""
+    arguments = ["--preset", "reference", "--paths", "1", "--obstacles", "40", "--seed", "8"]
+    path, log = fly(tmp_path_factory.mktemp("collided"), *arguments)
+    assert log["summary"]["outcome"] == "collision"
+    return page_of(path), log

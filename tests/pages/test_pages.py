@@ -1,61 +1,13 @@
 """The pages of flights in headless Chromium: no error, what they say is what the log holds."""
 
 import json
-import os
 import re
 import subprocess
 import urllib.request
 from pathlib import Path
 
 import pytest
-
-ROOT = Path(__file__).resolve().parents[2]
-BINARY = Path(os.environ.get("SIL_HARNESS", ROOT / "target" / "release" / "sil-harness"))
-PHONE = {"width": 390, "height": 844}
-# Nothing takes so long, on however slow a machine [ms].
-LIMIT = 60_000
-
-
-def fly(out, *arguments):
-    subprocess.run([BINARY, "fly", "--out", out, *arguments], check=False, capture_output=True)
-    (log,) = out.glob("*.json")
-    return log, json.loads(log.read_text())
-
-
-def page_of(log):
-    page = log.with_suffix(".html")
-    subprocess.run([BINARY, "replay", log, "--out", page], check=True, capture_output=True)
-    return page
-
-
-@pytest.fixture(scope="module")
-def flight(tmp_path_factory):
-    path, log = fly(tmp_path_factory.mktemp("flight"), "--seed", "1")
-    return page_of(path), log
-
-
-def value(page, name):
-    return page.inner_text(f"#v-{name}")
-
-
-def says_what_the_log_holds(page, log, tick):
-    ticks = log["ticks"]
-    assert page.input_value("#time") == str(tick)
-    assert page.inner_text("#clock") == f"{ticks['t'][tick]:.2f} s"
-    assert float(value(page, "downrange").split()[0]) == pytest.approx(ticks["x"][tick], abs=0.0051)
-    assert float(value(page, "height").split()[0]) == pytest.approx(ticks["z"][tick], abs=0.0051)
-    assert float(value(page, "airspeed").split()[0]) == pytest.approx(ticks["airspeed"][tick], abs=0.0051)
-    assert float(value(page, "thrust").split()[0]) == pytest.approx(ticks["thrust"][tick], abs=0.0051)
-    flown = [plan for plan in log["plans"] if plan["used_from_tick"] <= tick]
-    if flown:
-        assert value(page, "candidates") == str(flown[-1]["candidates"])
-        assert value(page, "feasible") == str(flown[-1]["feasible"])
-        assert value(page, "plan") == f"{len(flown)} of {len(log['plans'])}"
-        assert float(value(page, "cost")) == pytest.approx(flown[-1]["cost"], abs=0.0051)
-
-
-def pixels(page):
-    return page.evaluate("document.getElementById('view').toDataURL()")
+from flown import BINARY, LIMIT, PHONE, data_of, fly, holds, page_of, pixels, says_what_the_log_holds, value
 
 
 def test_the_text_is_the_logs_and_the_slider_moves_the_aircraft(flight, open_page, shot):
@@ -95,7 +47,7 @@ def test_keys_buttons_layers_and_links(flight, open_page):
     page.wait_for_function("document.getElementById('time').value === '1230'")
     assert page.get_attribute("#link", "href") == "#t=12.30"
     seen = {pixels(page)}
-    for layer in ["field", "scan", "occupancy", "candidates", "corridor", "plan", "reference", "flown"]:
+    for layer in ["field", "scan", "occupancy", "candidates", "corridor", "plan", "reference", "flown", "unknown"]:
         page.click(f"#layer-{layer}")
         picture = pixels(page)
         assert picture not in seen, layer
@@ -127,11 +79,6 @@ def test_a_wide_page_is_dark_where_that_is_wanted(flight, open_page, shot):
     shot(page, "dark")
 
 
-def data_of(page):
-    (line,) = [line for line in page.read_text().splitlines() if line.startswith("const DATA = ")]
-    return json.loads(line.removeprefix("const DATA = ").removesuffix(";"))
-
-
 # One whose planner has too few slices is flown again, too.
 @pytest.mark.parametrize("flags", [
     ["--seed", "1"],
@@ -143,10 +90,11 @@ def test_what_the_planner_considered_is_what_it_reported(flags, open_page, tmp_p
     path, log = fly(tmp_path, *flags, "--duration", "10")
     page = page_of(path)
     data = data_of(page)
-    assert data["log"] == log
+    holds(data, log)
     assert [detail["tick"] for detail in data["details"]] == [plan["tick"] for plan in log["plans"]]
     for detail, plan in zip(data["details"], log["plans"]):
-        assert len(detail["paths"]) == plan["candidates"]
+        assert len(detail["paths"]) == len(detail["judged"]) == plan["candidates"]
+        assert sum(judged["feasible"] for judged in detail["judged"]) == plan["feasible"]
         assert (detail["chosen"] is not None) == (plan["cost"] is not None)
         assert len(detail["trajectory"]) == (0 if detail["chosen"] is None else 19)
     assert any(detail["paths"] for detail in data["details"])
@@ -229,6 +177,26 @@ def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, 
     says_what_the_log_holds(page, log, 11_999)
     _, alone = fly(tmp_path / "alone", "--duration", "120")
     assert alone == log
+
+
+def test_a_live_page_keeps_the_newest_ticks_and_cycles(live, open_page):
+    process, url, out = live
+    page = open_page(url)
+    page.evaluate("kept = 1000; keptCycles = 10")
+    page.select_option("#speed", "max")
+    page.wait_for_function("document.title.includes('after 120.00 s')")
+    length, first, cycles = page.evaluate("[flights[0].ticks.t.length, flights[0].first, flights[0].details.size]")
+    assert 1000 <= length <= 1105 and first + length == 12_000 and cycles == 10
+    assert page.evaluate("flights[0].plans.length") <= 13
+    out_, _ = process.communicate(timeout=LIMIT / 1000)
+    log = json.loads(Path(json.loads(out_)["log"]).read_text())
+    for tick in (11_999, 11_500):
+        page.locator("#time").fill(str(tick))
+        assert page.inner_text("#clock") == f"{tick / 100:.2f} s"
+        assert float(value(page, "height").split()[0]) == pytest.approx(log["ticks"]["z"][tick], abs=0.0051)
+    # What is no longer there cannot be chosen.
+    page.keyboard.press("Home")
+    assert page.input_value("#time") == str(first)
 
 
 def test_the_server_refuses_what_it_does_not_know(live):

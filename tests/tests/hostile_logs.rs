@@ -68,7 +68,7 @@ fn hostile() -> impl Strategy<Value = Value> {
 /// Reads a log and makes its page, if there is one to be made.
 fn look(bytes: &[u8]) {
     if let Ok(log) = FlightLog::from_json(bytes)
-        && let Ok((page, _)) = replay(&log)
+        && let Ok((page, _)) = replay(&log, None)
     {
         assert!(page.len() < 100 * (bytes.len() + 10_000));
     }

@@ -10,11 +10,13 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Greatest size of the page as a server would send it \[bytes\].
 const PAGE_MAX: usize = 500_000;
 /// The parts of the page, in order. The module comes after the last one.
-const PARTS: [&str; 5] = [
+const PARTS: [&str; 7] = [
     "mpp-analysis/src/picture/page_head.html",
     "mpp-analysis/src/picture/page.css",
     "bindings/web/page/body.html",
     "mpp-analysis/src/picture/draw.js",
+    "mpp-analysis/src/picture/charts.js",
+    "mpp-analysis/src/picture/numbers.js",
     "bindings/web/page/fly.js",
 ];
 

@@ -12,9 +12,9 @@ const WIND = 1.5, DROPOUTS = 0.3;
 
 let module = null, settings = { ...USUAL }, flight = null, now = 0;
 let playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null;
-let pending = [], planning = [], placeOf = null, drag = null;
-const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])),
-  note: text => { $("occupancy").textContent = text; } };
+let pending = [], planning = [], placeOf = null, drag = null, heard = false;
+const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])), window: null, hover: null,
+  cursor: null, marked: null, note: text => { $("occupancy").textContent = text; } };
 
 // Asks the module and returns the bytes of its answer.
 function askBytes(question) {
@@ -52,8 +52,10 @@ function begin(orders = [], until = null) {
   } catch (error) {
     return fail(error);
   }
-  flight = { header: begun.header, ticks: Object.fromEntries(columns.map(name => [name, []])), plans: [], orders: [],
-    details: new Map() };
+  // The listeners of the charts hold this object.
+  flight = Object.assign(flight || { id: "", first: 0 }, { header: begun.header, plans: [], orders: [], details: new Map(),
+    ticks: Object.fromEntries(columns.map(name => [name, []])), far: undefined, summary: null });
+  if (!heard) { heard = true; hearCharts(flight, look, stir, null); hearView(flight, look, stir, () => placeOf); }
   [now, ended, due, last, planning, pending, drag, target] = [0, false, 0, null, [], [], null, until];
   for (const id of ["wind", "dropouts", "elevator"]) $(id).checked = false;
   const h = flight.header, count = Object.values(h.field).reduce((sum, kind) => sum + kind.length, 0);
@@ -64,6 +66,9 @@ function begin(orders = [], until = null) {
   fly(1);
   setPlaying(until === null);
 }
+
+// Draws anew after the pointer moved. While it flies, the next frame does so anyway.
+function stir() { if (!playing && target === null && !drag) show(); }
 
 function fail(error) {
   setPlaying(false);
@@ -171,7 +176,9 @@ function show(time = null) {
     ["cycle time", cost.length ? number(planning[planning.length - 1]) : "-"],
     ["cycle median", cost.length ? number(cost[cost.length >> 1]) : "-"],
     ["pace", pace === null ? "-" : pace.toFixed(1) + " x"]]);
-  drawCharts(flight, now, Math.max(0, now - WINDOW));
+  showWhy(flight, now, look, stir);
+  look.window = [Math.max(0, now - WINDOW), Math.max(now, 1)];
+  drawCharts(flight, now, look);
   if (!ended) say(`${T.t[now].toFixed(2)} s, ${playing ? "flying" : target === null ? "paused" : "going to the moment"}`);
 }
 
@@ -183,6 +190,7 @@ function say(text, over = false) {
 // Hash and outcome of the flight so far. They cost time, so they are shown while the flight stands.
 function showLog() {
   const { hash, summary } = ask({ ask: "log" });
+  if (ended) flight.summary = summary;
   $("hash").textContent = hash;
   if (ended) say(`${summary.outcome.replace(/-/g, " ")} after ${summary.t_end.toFixed(2)} s and ` +
     `${summary.x_end.toFixed(0)} m`, summary.outcome !== "survived");

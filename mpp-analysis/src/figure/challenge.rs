@@ -2,8 +2,10 @@
 
 use super::error::FigureError;
 use super::field;
+use super::mark::Outline;
+use super::marks;
 use super::page::{COLUMN, Sample, document, legend, legend_height, to_scale};
-use super::palette::{FLOWN, OBSTACLE};
+use super::palette::{BAD, FLOWN, OBSTACLE};
 use super::panel::{Axis, BELOW_SAVED, Curve, Panel};
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::ALTITUDE_BAND;
@@ -13,20 +15,25 @@ use plotters::prelude::*;
 
 /// The edges of the altitude band.
 const BAND: RGBColor = RGBColor(140, 140, 140);
+/// A flight with a single path.
+const ALONE: RGBColor = RGBColor(150, 150, 150);
 /// Ranges that are shown downrange and in height \[m\].
 const SHOWN_X: (f64, f64) = (15.0, 105.0);
 const SHOWN_Z: (f64, f64) = (33.0, 67.0);
 /// Height of the last panel, whose downrange axis is labelled \[px\].
 const HEIGHT: u32 = 1000;
 
-/// Draws a panel for each scene with the flights through it. The panels stand one below the other.
+/// Draws a panel for each scene with the flights through it: one with a single path and one with many, in this order.
+/// The panels stand one below the other.
 ///
 /// # Errors
 /// [`FigureError`].
 pub fn challenge_svg(scenes: &[(Scene, Vec<FlightLog>)]) -> Result<String, FigureError> {
     let entries = [
-        (Sample::Line(FLOWN, Curve::FLOWN_WIDTH), "flown"),
+        (Sample::Line(ALONE, Curve::FLOWN_WIDTH), "flown with 1 path"),
+        (Sample::Line(FLOWN, Curve::FLOWN_WIDTH), "with many paths"),
         (Sample::Dot(OBSTACLE), "obstacle"),
+        (Sample::Mark(BAD, Outline::Cross), "failed here"),
         (Sample::Line(BAND, Curve::PLANNED_WIDTH), "altitude band"),
     ];
     let top = legend_height(entries.len());
@@ -83,11 +90,15 @@ fn panel(scene: Scene, logs: &[FlightLog], labelled: bool) -> Panel {
         ];
         panel.area(BAND.to_rgba(), &corners.map(|(x, off)| (x, edge + off)));
     }
-    for log in logs {
+    if let Some(log) = logs.first() {
         field::add(&mut panel, &field::drawn(log), scale);
+    }
+    for log in logs {
+        let colour = if log.header.paths == 1 { ALONE } else { FLOWN };
         let ticks = log.ticks.x.iter().copied().zip(log.ticks.z.iter().copied());
         let path: Vec<(f64, f64)> = ticks.step_by(4).collect();
-        panel.line(FLOWN, Curve::FLOWN_WIDTH, &path);
+        panel.line(colour, Curve::FLOWN_WIDTH, &path);
+        marks::add_failure(&mut panel, log);
     }
     panel
 }

@@ -2,30 +2,27 @@
 //! over time below it.
 
 use super::error::FigureError;
-use super::field;
-use super::page::{document, to_scale};
-use super::palette::{FLOWN, OBSTACLE, REFERENCE};
+use super::mark::Outline;
+use super::marks;
+use super::page::{document, draw_mark};
+use super::palette::{CLOSEST, FLOWN, OBSTACLE, REFERENCE, of_outcome};
 use super::panel::{self, Axis, Canvas, Curve, DrawingError, Panel};
-use super::range::{bounds, widened};
+use super::range::bounds;
+use super::strips::{CANVAS, FIELD_HEIGHT, field_panels, unbroken};
+use crate::closest::{Closest, closest};
 use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::{FLIGHT_PATH_LIMIT, PITCH_LIMIT};
 use plotters::prelude::*;
-use std::ops::Range;
 
-/// Size on the canvas \[px\]; shown as 1000 x 600.
-pub(super) const CANVAS: (u32, u32) = (4000, 2400);
-/// Heights from top to bottom \[px\]: the legend, the field, the upper row over time. The lower row
-/// takes the rest.
+/// Heights \[px\] of the legend above the field and of the upper row over time below it. The lower row takes the rest.
 const LEGEND_HEIGHT: u32 = 150;
-pub(super) const FIELD_HEIGHT: u32 = 720;
 const ROW_HEIGHT: u32 = 685;
-/// Least room that is shown around the field \[m\].
-const FIELD_MARGIN: f64 = 4.0;
-
 /// Draws the flight as an SVG document. The same log gives the same bytes.
 ///
 /// The upper part shows the reference (blue, broken where a new plan takes over) and the flown path
-/// (orange) among the obstacles, both axes to the same scale. The lower part shows flight path
-/// angle, pitch, airspeed and commanded thrust over time.
+/// (orange) among the obstacles, both axes to the same scale; a flight of more than 300 m goes on in further strips. The
+/// lower part shows flight path angle, pitch, airspeed and commanded thrust over time, with the limits that the values
+/// come at least half as far as.
 ///
 /// # Errors
 /// [`FigureError`].
@@ -33,39 +30,50 @@ pub fn flight_svg(log: &FlightLog) -> Result<String, FigureError> {
     if log.ticks.t.is_empty() {
         return Err(FigureError::EmptyFlight);
     }
-    document(CANVAS, |canvas| draw(log, canvas))
+    let closest = closest(log);
+    let strips = field_panels(log, closest.as_ref());
+    let field: u32 = strips.iter().map(|(_, height)| height).sum();
+    let size = (CANVAS.0, CANVAS.1 - FIELD_HEIGHT + field);
+    document(size, |canvas| draw(log, &strips, closest.as_ref(), canvas))
 }
 
-fn draw(log: &FlightLog, canvas: &Canvas<'_>) -> Result<(), DrawingError> {
-    let (legend, rest) = canvas.split_vertically(LEGEND_HEIGHT);
-    let (field, rest) = rest.split_vertically(FIELD_HEIGHT);
-    let (upper, lower) = rest.split_vertically(ROW_HEIGHT);
+fn draw(
+    log: &FlightLog,
+    strips: &[(Panel, u32)],
+    closest: Option<&Closest>,
+    canvas: &Canvas<'_>,
+) -> Result<(), DrawingError> {
+    let (legend, mut rest) = canvas.split_vertically(LEGEND_HEIGHT);
     draw_legend(&legend, log)?;
-    field_panel(log).draw(&field)?;
-
+    for (strip, height) in strips {
+        let (area, below) = rest.split_vertically(*height);
+        rest = below;
+        strip.draw(&area)?;
+    }
+    let (upper, lower) = rest.split_vertically(ROW_HEIGHT);
     let t = &log.ticks;
-    let degrees = 1_f64.to_degrees();
     let half = CANVAS.0 / 2;
     let (left, right) = upper.split_horizontally(half);
-    motion_panel(
-        log,
-        ("", "Path γ (deg)"),
-        degrees,
-        &t.flight_path,
-        &t.ref_flight_path,
-    )
-    .draw(&left)?;
-    motion_panel(log, ("", "Pitch θ (deg)"), degrees, &t.pitch, &t.ref_pitch).draw(&right)?;
+    let angle = |(words, limit): (_, f64), flown: &[f64], planned| {
+        let limit = Some(limit.to_degrees());
+        motion_panel(log, ("", words), 1_f64.to_degrees(), flown, planned, limit)
+    };
+    let marked = |mut panel: Panel, area: &Canvas<'_>| {
+        marks::add_closest_time(&mut panel, closest);
+        panel.draw(area)
+    };
+    let path = ("Path γ (deg)", FLIGHT_PATH_LIMIT);
+    marked(angle(path, &t.flight_path, &t.ref_flight_path), &left)?;
+    let pitch = ("Pitch θ (deg)", PITCH_LIMIT);
+    marked(angle(pitch, &t.pitch, &t.ref_pitch), &right)?;
     let (left, right) = lower.split_horizontally(half);
-    motion_panel(
-        log,
-        ("Time (s)", "Airspeed (m/s)"),
-        1.0,
-        &t.airspeed,
-        &t.ref_airspeed,
-    )
-    .draw(&left)?;
-    motion_panel(log, ("Time (s)", "Thrust (N)"), 1.0, &t.thrust, &[]).draw(&right)
+    let speed = ("Time (s)", "Airspeed (m/s)");
+    marked(
+        motion_panel(log, speed, 1.0, &t.airspeed, &t.ref_airspeed, None),
+        &left,
+    )?;
+    let thrust = ("Time (s)", "Thrust (N)");
+    marked(motion_panel(log, thrust, 1.0, &t.thrust, &[], None), &right)
 }
 
 /// A panel with one column over time, times `scale`, and with the reference's column.
@@ -75,6 +83,7 @@ fn motion_panel(
     scale: f64,
     flown: &[f64],
     planned: &[Option<f64>],
+    limit: Option<f64>,
 ) -> Panel {
     let time = &log.ticks.t;
     let flown: Vec<_> = flown.iter().map(|value| scale * value).collect();
@@ -83,61 +92,23 @@ fn motion_panel(
         .map(|value| value.map(|v| scale * v))
         .collect();
     let planned_time: Vec<_> = time.iter().copied().map(Some).collect();
-    let curves = vec![
+    let curves = [
         Curve::flown(FLOWN, time, &flown),
         Curve::planned(REFERENCE, &planned_time, &planned, &unbroken(log)),
     ];
     let span = bounds(time.iter().copied().chain([log.summary.t_end]));
-    let values = bounds(curves.iter().flat_map(Curve::points).map(|point| point.1));
-    Panel {
-        curves,
-        ..Panel::new(
-            Axis::tight(x_label, span, 5),
-            Axis::around(y_label, values, 4),
-        )
+    let mut values = bounds(curves.iter().flat_map(Curve::points).map(|point| point.1));
+    let limit = limit.filter(|limit| 2.0 * values.end.max(-values.start) >= *limit);
+    if let Some(limit) = limit {
+        values = values.start.min(-limit)..values.end.max(limit);
     }
-}
-
-/// A panel with the flight among the obstacles. Both axes have the same scale.
-pub(super) fn field_panel(log: &FlightLog) -> Panel {
-    let t = &log.ticks;
-    let curves = vec![
-        Curve::flown(FLOWN, &t.x, &t.z),
-        Curve::planned(REFERENCE, &t.ref_x, &t.ref_z, &unbroken(log)),
-    ];
-    let shapes = field::drawn(log);
-    let edges = |pick: fn(&(f64, f64)) -> f64| {
-        let extents = shapes.iter().flat_map(field::extent);
-        extents.flat_map(move |(point, room)| [pick(&point) - room, pick(&point) + room])
-    };
-    let points = |pick: fn(&(f64, f64)) -> f64| curves.iter().flat_map(Curve::points).map(pick);
-    let x = widened(bounds(points(|p| p.0).chain(edges(|p| p.0))), FIELD_MARGIN);
-    let z = widened(bounds(points(|p| p.1).chain(edges(|p| p.1))), FIELD_MARGIN);
-
-    let (x, z, scale) = to_scale((CANVAS.0, FIELD_HEIGHT), true, x, z);
-    let mut panel = Panel {
-        curves,
-        ..Panel::new(
-            Axis::tight("Downrange distance (m)", x, 8),
-            Axis::tight("Height (m)", z, 4),
-        )
-    };
-    field::add(&mut panel, &shapes, scale);
+    let x = Axis::tight(x_label, span, 5);
+    let mut panel = Panel::new(x, Axis::around(y_label, values, 4));
+    if let Some(limit) = limit {
+        marks::add_limits(&mut panel, limit);
+    }
+    panel.curves.extend(curves);
     panel
-}
-
-/// The tick ranges over which the reference is one plan's, from one replan to the next.
-fn unbroken(log: &FlightLog) -> Vec<Range<usize>> {
-    let count = log.ticks.t.len();
-    let mut breaks: Vec<usize> = log
-        .plans
-        .iter()
-        .filter_map(|plan| usize::try_from(plan.used_from_tick?).ok())
-        .filter(|&tick| tick < count)
-        .chain([0, count])
-        .collect();
-    breaks.sort_unstable();
-    breaks.windows(2).map(|pair| pair[0]..pair[1]).collect()
 }
 
 /// Draws the names of the colours, in one line above the field.
@@ -150,15 +121,26 @@ fn draw_legend(area: &Canvas<'_>, log: &FlightLog) -> Result<(), DrawingError> {
     };
     for (x, colour, width, words) in [
         (450, REFERENCE, Curve::PLANNED_WIDTH, "reference"),
-        (1250, FLOWN, Curve::FLOWN_WIDTH, "flown"),
+        (1150, FLOWN, Curve::FLOWN_WIDTH, "flown"),
     ] {
         let line = vec![(x, MIDDLE), (x + SAMPLE, MIDDLE)];
         area.draw(&PathElement::new(line, colour.stroke_width(width)))?;
         area.draw(&text(words, x + SAMPLE + 50))?;
     }
     if !log.header.field.is_empty() {
-        area.draw(&Circle::new((1950, MIDDLE), 28, OBSTACLE.filled()))?;
-        area.draw(&text("obstacle", 2030))?;
+        area.draw(&Circle::new((1730, MIDDLE), 28, OBSTACLE.filled()))?;
+        area.draw(&text("obstacle", 1790))?;
+        draw_mark(area, (2330, MIDDLE), Outline::Ring, CLOSEST)?;
+        area.draw(&text("closest", 2390))?;
     }
-    Ok(())
+    let outcome = log.summary.outcome;
+    draw_mark(
+        area,
+        (2880, MIDDLE),
+        marks::of_end(outcome),
+        of_outcome(outcome),
+    )?;
+    let colour = of_outcome(outcome);
+    let style = panel::text_style().color(&colour).pos(panel::left_middle());
+    area.draw(&Text::new(outcome.to_string(), (2940, MIDDLE), style))
 }

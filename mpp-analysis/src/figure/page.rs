@@ -1,6 +1,7 @@
 //! Canvas, scale and legend of a picture.
 
 use super::error::FigureError;
+use super::mark::{Mark, Offsets, Outline};
 use super::panel::{self, Canvas, DrawingError};
 use super::range::widened;
 use plotters::prelude::*;
@@ -55,6 +56,10 @@ pub(super) fn to_scale(
 pub(super) enum Sample {
     /// A line of this width \[px\].
     Line(RGBColor, u32),
+    /// A line with a mark.
+    Curve(RGBColor, Outline),
+    /// A mark.
+    Mark(RGBColor, Outline),
     /// A filled circle.
     Dot(RGBColor),
     /// A circle's edge.
@@ -82,6 +87,12 @@ pub(super) fn legend(area: &Canvas<'_>, entries: &[(Sample, &str)]) -> Result<()
                 let line = vec![(x, y), (x + SAMPLE, y)];
                 area.draw(&PathElement::new(line, colour.stroke_width(*width)))?;
             }
+            Sample::Curve(colour, outline) => {
+                let line = vec![(x, y), (x + SAMPLE, y)];
+                area.draw(&PathElement::new(line, colour.stroke_width(16)))?;
+                draw_mark(area, middle, *outline, *colour)?;
+            }
+            Sample::Mark(colour, outline) => draw_mark(area, middle, *outline, *colour)?,
             Sample::Dot(colour) => area.draw(&Circle::new(middle, 28, colour.filled()))?,
             Sample::Ring(colour) => {
                 area.draw(&Circle::new(middle, 28, colour.stroke_width(RING)))?;
@@ -93,6 +104,34 @@ pub(super) fn legend(area: &Canvas<'_>, entries: &[(Sample, &str)]) -> Result<()
         }
         let style = panel::text_style().pos(panel::left_middle());
         area.draw(&Text::new((*words).to_owned(), (x + SAMPLE + 40, y), style))?;
+    }
+    Ok(())
+}
+
+/// Draws a mark in a legend.
+pub(super) fn draw_mark(
+    area: &Canvas<'_>,
+    at: (i32, i32),
+    outline: Outline,
+    colour: RGBColor,
+) -> Result<(), DrawingError> {
+    let mark = Mark {
+        at: (0.0, 0.0),
+        outline,
+        colour,
+    };
+    let placed = |offsets: Offsets| {
+        offsets
+            .iter()
+            .map(|(x, y)| (at.0 + x, at.1 + y))
+            .collect::<Offsets>()
+    };
+    if let Some(filled) = mark.filled() {
+        area.draw(&Polygon::new(placed(filled), colour.filled()))?;
+    }
+    let (lines, colour) = mark.lines();
+    for line in lines {
+        area.draw(&PathElement::new(placed(line), colour.stroke_width(RING)))?;
     }
     Ok(())
 }

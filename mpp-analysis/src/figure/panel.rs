@@ -1,7 +1,8 @@
 //! One pair of axes, and everything that is drawn between them.
 
+pub(super) use super::axis::Axis;
+use super::mark::Mark;
 use plotters::coord::Shift;
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
@@ -24,6 +25,9 @@ const BELOW: u32 = 35;
 /// Height that a panel saves without words on its downrange axis \[px\].
 pub(super) const BELOW_SAVED: u32 = BELOW_LABELLED - BELOW;
 
+/// Width of the lines of marks \[px\].
+const MARK_LINE: u32 = 8;
+
 const GREY: RGBColor = RGBColor(222, 222, 222);
 const DARK: RGBColor = RGBColor(40, 40, 40);
 
@@ -44,82 +48,10 @@ pub(super) fn plot_size(panel: (u32, u32), labelled: bool) -> (f64, f64) {
     )
 }
 
-/// One axis: its label, its range and the distance of its ticks. An axis with an empty label has no
-/// numbers either.
-#[derive(Clone)]
-pub(super) struct Axis {
-    label: &'static str,
-    range: Range<f64>,
-    step: f64,
-}
-
-impl Axis {
-    /// An axis exactly over this range, with at most this number of ticks, on round values.
-    pub(super) fn tight(label: &'static str, range: Range<f64>, most_ticks: u32) -> Self {
-        const STEPS: [f64; 12] = [
-            0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0,
-        ];
-        let least = (range.end - range.start) / f64::from(most_ticks);
-        let step = STEPS.into_iter().find(|&step| step >= least);
-        Self {
-            label,
-            range,
-            step: step.unwrap_or(least),
-        }
-    }
-
-    /// An axis with a little room around this range. It is so wide that noise does not look like
-    /// motion.
-    pub(super) fn around(label: &'static str, range: Range<f64>, most_ticks: u32) -> Self {
-        const LEAST_SPAN: f64 = 2.0;
-        let span = (range.end - range.start).max(LEAST_SPAN);
-        let middle = 0.5 * (range.start + range.end);
-        Self::tight(
-            label,
-            middle - 0.57 * span..middle + 0.57 * span,
-            most_ticks,
-        )
-    }
-}
-
-/// The axis is a coordinate of `plotters` with our own ticks and numbers, because those of
-/// `plotters` use the platform's logarithm.
-impl Ranged for Axis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
-        let share = (value - self.range.start) / (self.range.end - self.range.start);
-        first + (f64::from(last - first) * share).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _: Hint) -> Vec<f64> {
-        let first = (self.range.start / self.step).ceil() as i64;
-        let last = (self.range.end / self.step).floor() as i64;
-        (first..=last).map(|k| k as f64 * self.step).collect()
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.range.clone()
-    }
-}
-
-impl ValueFormatter<f64> for Axis {
-    fn format_ext(&self, value: &f64) -> String {
-        if self.label.is_empty() {
-            String::new()
-        } else if self.step < 1.0 {
-            format!("{value:.1}")
-        } else {
-            format!("{value:.0}")
-        }
-    }
-}
-
 /// A line in one colour, in pieces.
 pub(super) struct Curve {
-    colour: RGBColor,
-    width: u32,
+    pub(super) colour: RGBColor,
+    pub(super) width: u32,
     pieces: Vec<Vec<(f64, f64)>>,
 }
 
@@ -155,18 +87,25 @@ impl Curve {
         }
     }
 
+    /// The pieces, each of which is drawn without a gap.
+    pub(super) fn pieces(&self) -> &[Vec<(f64, f64)>] {
+        &self.pieces
+    }
+
     pub(super) fn points(&self) -> impl Iterator<Item = &(f64, f64)> {
         self.pieces.iter().flatten()
     }
 }
 
-/// Every fourth point and the last one. 25 points in a second draw a smooth line; 100 points on
-/// whole pixels draw a ragged line.
-fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
+/// Every fourth point and the last one; of a long line, one for each few pixels. 25 points in a second draw a smooth
+/// line; 100 points on whole pixels draw a ragged line.
+pub(super) fn thinned(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     const STRIDE: usize = 4;
+    const MOST: usize = 6000;
     let last = points.len().saturating_sub(1);
+    let stride = STRIDE.max(points.len() / MOST);
     let kept = points.into_iter().enumerate();
-    kept.filter(|(index, _)| index % STRIDE == 0 || *index == last)
+    kept.filter(|(index, _)| index % stride == 0 || *index == last)
         .map(|(_, point)| point)
         .collect()
 }
@@ -215,6 +154,8 @@ pub(super) struct Panel {
     pub(super) curves: Vec<Curve>,
     /// Dots. They are like the circles, but lie upon the curves.
     pub(super) dots: Vec<((f64, f64), u32, RGBColor)>,
+    /// Marks upon the curves.
+    pub(super) marks: Vec<Mark>,
     /// Words. Their position is their left middle.
     pub(super) labels: Vec<((f64, f64), String, RGBColor)>,
 }
@@ -228,6 +169,7 @@ impl Panel {
             circles: Vec::new(),
             curves: Vec::new(),
             dots: Vec::new(),
+            marks: Vec::new(),
             labels: Vec::new(),
         }
     }
@@ -290,11 +232,14 @@ impl Panel {
                 return None;
             }
         }
-        let at = |share: f64| {
-            (
+        // An end within the panel stays what it is, to the last bit: pieces are joined there.
+        let at = |share: f64| match share {
+            ..=0.0 => from,
+            1.0.. => to,
+            _ => (
                 from.0 + share * (to.0 - from.0),
                 from.1 + share * (to.1 - from.1),
-            )
+            ),
         };
         (first < last).then(|| [at(first), at(last)])
     }
@@ -332,6 +277,17 @@ impl Panel {
             chart.draw_series(lines.map(|piece| PathElement::new(piece.clone(), style)))?;
         }
         chart.draw_series(self.dots.iter().map(circle))?;
+        for mark in &self.marks {
+            let filled = mark
+                .filled()
+                .into_iter()
+                .map(|area| EmptyElement::at(mark.at) + Polygon::new(area, mark.colour.filled()));
+            chart.draw_series(filled)?;
+            let (lines, colour) = mark.lines();
+            chart.draw_series(lines.into_iter().map(|line| {
+                EmptyElement::at(mark.at) + PathElement::new(line, colour.stroke_width(MARK_LINE))
+            }))?;
+        }
         chart.draw_series(self.labels.iter().map(|(place, words, colour)| {
             let style = text_style().color(colour).pos(left_middle());
             Text::new(words.clone(), *place, style)

@@ -2,7 +2,7 @@
 //! candidates.
 
 use super::error::FigureError;
-use super::one_replan::OneReplan;
+use super::one_replan::{Candidate, OneReplan};
 use super::page::{COLUMN, RING, Sample, document, legend, legend_height, to_scale};
 use super::palette::{FLOWN, OBSTACLE, REFERENCE};
 use super::panel::{Axis, BELOW_SAVED, Panel, clipped};
@@ -99,16 +99,7 @@ pub fn rays_svg(cycle: &OneReplan) -> Result<String, FigureError> {
         (Sample::Area(region_colour()), "allowed region"),
         (Sample::Area(CELL.to_rgba()), "occupied cell"),
     ];
-    let feasible = cycle
-        .candidates
-        .iter()
-        .filter(|candidate| candidate.refined.is_some());
-    let tightest = feasible
-        .map(|candidate| (candidate, most_enclosed(cycle, &candidate.points)))
-        .min_by(|a, b| a.1.1.total_cmp(&b.1.1));
-    let Some((candidate, (stage, _))) = tightest else {
-        return Err(FigureError::NoCandidate);
-    };
+    let (candidate, stage) = tightest(cycle)?;
     let top = legend_height(entries.len());
     document((COLUMN, top + 2 * HEIGHT), |canvas| {
         let (head, rest) = canvas.split_vertically(top);
@@ -138,6 +129,41 @@ pub fn rays_svg(cycle: &OneReplan) -> Result<String, FigureError> {
         near.dot((x, z), 40, POINT);
         near.draw(&lower)
     })
+}
+
+/// Draws one path and the trajectory that its program makes of it: the last step of a cycle with a single path. The path
+/// is that of [`rays_svg`].
+///
+/// # Errors
+/// [`FigureError`].
+pub fn trajectory_svg(cycle: &OneReplan) -> Result<String, FigureError> {
+    let entries = [
+        (Sample::Dot(POINT), "path"),
+        (Sample::Line(REFERENCE, THICK), "trajectory"),
+        (Sample::Dot(FLOWN), "aircraft"),
+        (Sample::Area(CELL.to_rgba()), "occupied cell"),
+    ];
+    let (candidate, _) = tightest(cycle)?;
+    let top = legend_height(entries.len());
+    document((COLUMN, top + HEIGHT), |canvas| {
+        let (head, rest) = canvas.split_vertically(top);
+        legend(&head, &entries)?;
+        let (mut panel, _) = about_the_aircraft(cycle, true);
+        add_cells(&mut panel, cycle);
+        add_path(&mut panel, cycle, &candidate.points);
+        let trajectory = candidate.refined.as_deref().unwrap_or_default();
+        panel.line(REFERENCE, THICK, trajectory);
+        panel.draw(&rest)
+    })
+}
+
+/// The feasible candidate whose path is most enclosed, and the stage where it is.
+fn tightest(cycle: &OneReplan) -> Result<(&Candidate, usize), FigureError> {
+    let feasible = cycle.candidates.iter().filter(|one| one.refined.is_some());
+    let enclosed = feasible.map(|one| (one, most_enclosed(cycle, &one.points)));
+    let tightest = enclosed.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+    let (candidate, (stage, _)) = tightest.ok_or(FigureError::NoCandidate)?;
+    Ok((candidate, stage))
 }
 
 /// Draws every candidate and the chosen trajectory. A candidate is drawn as its refined trajectory,

@@ -1,6 +1,7 @@
 //! Success rates over the number of obstacles, with their 95 % bands (paper, Figure 8).
 
 use super::error::FigureError;
+use super::mark::{Mark, Outline};
 use super::page::{COLUMN, Sample, document, legend, legend_height};
 use super::panel::{Axis, Panel};
 use crate::campaign::{AgainstCeiling, Cell, CellReport, Report};
@@ -42,7 +43,7 @@ pub enum Rule {
 }
 
 /// Draws a panel for each preset and replanning rate of a campaign, with a curve for each number of
-/// paths. Dots in the curves' colours are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
+/// paths. Rings beside a curve's marks are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
 /// ceiling's band reaches from the fields that are proven to be passable to those that are not proven to be blocked.
 ///
 /// # Errors
@@ -53,10 +54,18 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
     let mut entries: Vec<(Sample, &str)> = names
         .iter()
         .enumerate()
-        .map(|(index, name)| (Sample::Line(shade(index, paths.len()), 16), name.as_str()))
+        .map(|(index, name)| {
+            (
+                Sample::Curve(shade(index, paths.len()), Outline::of_curve(index)),
+                name.as_str(),
+            )
+        })
         .collect();
     if report.campaign.oracle {
-        entries.push((Sample::Line(ORACLE, 16), "oracle"));
+        entries.push((
+            Sample::Curve(ORACLE, Outline::of_curve(paths.len())),
+            "oracle",
+        ));
     }
     if report
         .cells
@@ -67,7 +76,7 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
     }
     let compared = rule == Rule::Paper && report.campaign.preset.contains(&Preset::Reference);
     if compared {
-        entries.push((Sample::Dot(PUBLISHED), "published"));
+        entries.push((Sample::Ring(PUBLISHED), "published"));
     }
     let top = legend_height(entries.len());
     let panels: Vec<Panel> = panels(report, rule);
@@ -119,17 +128,34 @@ fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
                     let key = (cell.preset, cell.paths, cell.oracle);
                     key == (preset, paths, false) && cell.replan_hz.to_bits() == replan_hz.to_bits()
                 });
-                curve(&mut panel, &cells, rule, shade(index, campaign.paths.len()));
+                let colour = shade(index, campaign.paths.len());
+                // Marks of one number of obstacles stand beside each other.
+                let beside =
+                    (index as f64 - 0.5 * (campaign.paths.len() as f64 - 1.0)) * 0.012 * most;
+                let look = Look {
+                    colour,
+                    outline: Outline::of_curve(index),
+                    beside,
+                };
+                curve(&mut panel, &cells, rule, &look);
                 if rule == Rule::Paper && preset == Preset::Reference {
-                    let colour = shade(index, campaign.paths.len());
-                    for dot in published(paths) {
-                        panel.dot(dot, 30, PUBLISHED);
-                        panel.dot(dot, 20, colour);
-                    }
+                    let beside = |(x, rate): (f64, f64)| (x + beside, rate);
+                    panel
+                        .marks
+                        .extend(published(paths).into_iter().map(beside).map(|at| Mark {
+                            at,
+                            outline: Outline::Ring,
+                            colour: PUBLISHED,
+                        }));
                 }
             }
             let oracle = cells(report, |cell| cell.oracle);
-            curve(&mut panel, &oracle, rule, ORACLE);
+            let look = Look {
+                colour: ORACLE,
+                outline: Outline::of_curve(campaign.paths.len()),
+                beside: 0.0,
+            };
+            curve(&mut panel, &oracle, rule, &look);
             ceiling(&mut panel, &cells(report, |_| true));
             let of_panel = cells(report, |cell| {
                 cell.preset == preset && cell.replan_hz.to_bits() == replan_hz.to_bits()
@@ -160,8 +186,16 @@ fn flights(cells: &[&CellReport]) -> String {
     }
 }
 
-/// Adds a curve upon its band.
-fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, colour: RGBColor) {
+/// How a curve looks: its colour, the shape of its marks, and how far they stand beside their place [obstacles].
+struct Look {
+    colour: RGBColor,
+    outline: Outline,
+    beside: f64,
+}
+
+/// Adds a curve upon its band, with a mark for each cell.
+fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, look: &Look) {
+    let colour = look.colour;
     if cells.is_empty() {
         return;
     }
@@ -182,7 +216,13 @@ fn curve(panel: &mut Panel, cells: &[&CellReport], rule: Rule, colour: RGBColor)
     let middle = cells
         .iter()
         .map(|cell| at(cell, value(cell).1.unwrap_or(0.0)));
-    panel.line(colour, 16, &middle.collect::<Vec<_>>());
+    let middle: Vec<_> = middle.collect();
+    panel.line(colour, 16, &middle);
+    panel.marks.extend(middle.iter().map(|(x, rate)| Mark {
+        at: (x + look.beside, *rate),
+        outline: look.outline,
+        colour,
+    }));
 }
 
 /// Adds the curve of the passable fields upon its band.

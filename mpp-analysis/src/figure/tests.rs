@@ -1,7 +1,7 @@
 //! Tests the pictures of small flights.
 
-use super::flight::{CANVAS, FIELD_HEIGHT, field_panel};
 use super::panel::{self, Axis};
+use super::strips::{CANVAS, FIELD_HEIGHT, field_panels};
 use super::*;
 use crate::campaign::{Campaign, Lists, Report};
 use mpp_core::estimate::Conditions;
@@ -16,6 +16,7 @@ use mpp_sim::log::{FlightLog, Header, SCHEMA, Summary};
 use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::{Class, Outcome, Score};
 use mpp_sim::scenario::{Preset, Scenario, ScenarioFile};
+use mpp_sim::scene::Scene;
 use mpp_sim::sensors::{AirDataNoise, AirDataSensors};
 use plotters::prelude::Ranged;
 
@@ -131,11 +132,15 @@ fn a_flight_is_drawn_and_always_the_same() {
     let svg = flight_svg(&log).unwrap();
     assert_eq!(svg, flight_svg(&log).unwrap());
     assert!(svg.starts_with("<svg width=\"1000\" height=\"600\" viewBox=\"0 0 4000 2400\""));
-    // The legend has one circle, and the field has twenty.
-    assert_eq!(svg.matches("<circle").count(), 21);
-    // There are five flown curves. The reference of four panels has a piece for each plan.
+    // The legend has one circle, the field has twenty, and so many plans took over.
+    assert_eq!(svg.matches("<circle").count(), 21 + 19);
+    // There are five flown curves. The reference of four panels has a piece for each plan, and each plan a dot.
     assert_eq!(svg.matches("#E67800").count(), 5 + 1);
-    assert_eq!(svg.matches("#0072B2").count(), 4 * 19 + 1);
+    assert_eq!(svg.matches("#0072B2").count(), 4 * 19 + 19 + 1);
+    // Goal, legend and end; both edges of the band; the closest approach in five panels and the legend.
+    assert_eq!(svg.matches("#1C7A3E").count(), 1 + 2 + 1);
+    assert!(svg.contains("survived"));
+    assert_eq!(svg.matches("#783C96").count(), 5 + 1);
     for words in [
         "Downrange distance (m)",
         "Height (m)",
@@ -148,16 +153,73 @@ fn a_flight_is_drawn_and_always_the_same() {
 }
 
 #[test]
+fn a_flight_that_failed_says_so_and_shows_the_limit_that_it_broke() {
+    let mut log = example(2000, 20);
+    let limits = |log: &FlightLog| flight_svg(log).unwrap().matches("#E17878").count();
+    let before = limits(&log);
+    log.ticks.pitch[1200] = 61_f64.to_radians();
+    assert_eq!(limits(&log), before + 2);
+    log.summary.outcome = Outcome::PitchLimit;
+    let svg = flight_svg(&log).unwrap();
+    assert!(svg.contains("pitch limit") && !svg.contains("survived"));
+    // Two strokes of a cross at the end and two in the legend, and the words.
+    assert_eq!(svg.matches("#C62828").count(), 2 + 2 + 1);
+}
+
+#[test]
+fn a_flight_of_ten_minutes_is_drawn_in_strips_to_scale() {
+    let mut log = example(2000, 20);
+    // The same motion at another pace, as if it had gone on for ten minutes.
+    for (row, (x, t)) in log.ticks.x.iter_mut().zip(&mut log.ticks.t).enumerate() {
+        (*x, *t) = (3.6 * row as f64, 0.3 * row as f64);
+    }
+    log.ticks.ref_x.fill(None);
+    let strips = field_panels(&log, None);
+    assert_eq!(strips.len(), 8);
+    let mut shown = strips[0].0.x.range().start;
+    for (panel, height) in &strips {
+        let (width, height) = panel::plot_size((CANVAS.0, *height), true);
+        let scale = |axis: &Axis, pixels| (axis.range().end - axis.range().start) / pixels;
+        let (x, z) = (scale(&panel.x, width), scale(&panel.y, height));
+        assert!((x / z - 1.0).abs() < 0.02, "{x} and {z} m/px");
+        // One goes on where the other one ends, but for a rounding to whole pixels.
+        assert!((panel.x.range().start - shown).abs() < 20.0);
+        shown = panel.x.range().end;
+    }
+    assert!(shown > 7196.0 && shown < 7400.0, "{shown}");
+    assert!(flight_svg(&log).unwrap().contains("Downrange distance (m)"));
+}
+
+#[test]
+fn a_scene_shows_where_the_flight_with_one_path_failed() {
+    let flown = |paths| {
+        let mut log = example(700, 3);
+        log.header.paths = paths;
+        log
+    };
+    let mut alone = flown(1);
+    alone.summary.outcome = Outcome::Collision;
+    let both = |logs: Vec<FlightLog>| challenge_svg(&[(Scene::Flytrap, logs)]).unwrap();
+    let svg = both(vec![alone, flown(25)]);
+    let crosses = |svg: &str| svg.matches("#C62828").count();
+    assert_eq!(crosses(&svg), 2 + crosses(&both(vec![flown(1), flown(25)])));
+    assert!(svg.contains("flown with 1 path") && svg.contains("failed here"));
+}
+
+#[test]
 fn circles_and_axes_have_one_scale() {
     for (count, obstacles) in [(2000, 20), (300, 1), (2, 0)] {
-        let field = field_panel(&example(count, obstacles));
+        let panels = field_panels(&example(count, obstacles), None);
+        let [(field, FIELD_HEIGHT)] = &panels[..] else {
+            panic!("{} panels", panels.len());
+        };
         let (width, height) = panel::plot_size((CANVAS.0, FIELD_HEIGHT), true);
         let scale = |axis: &Axis, pixels| (axis.range().end - axis.range().start) / pixels;
         let (x, z) = (scale(&field.x, width), scale(&field.y, height));
         assert!((x / z - 1.0).abs() < 1e-9, "{x} and {z} m/px");
-        for (_, radius, _) in field.circles {
+        for (_, radius, _) in &field.circles {
             // The radius is a whole number of pixels, so it may be wrong by half a pixel.
-            assert!((f64::from(radius) * x - 1.0).abs() <= 0.5 * x);
+            assert!((f64::from(*radius) * x - 1.0).abs() <= 0.5 * x);
         }
     }
 }
@@ -205,6 +267,10 @@ fn a_planning_cycle_is_drawn_step_by_step() {
     assert_eq!(scan.matches("#C81E46").count(), 2 * cycle.hits.len() + 1);
     let paths = candidates_svg(&cycle).unwrap();
     assert_eq!(paths.matches("#009E73").count(), feasible(&cycle) + 1);
+    // The trajectory of the single path, and the legend.
+    let single = trajectory_svg(&cycle).unwrap();
+    assert_eq!(single.matches("#0072B2").count(), 1 + 1);
+    assert!(single.contains("occupied cell"));
     let rays = rays_svg(&cycle).unwrap();
     for words in ["collocation point", "allowed region", "Height (m)"] {
         assert!(rays.contains(words), "{words}");
@@ -241,10 +307,11 @@ fn success_curves_show_every_cell_and_the_papers_results() {
     };
     let report = flown(report);
     let svg = success_svg(&report, Rule::Paper).unwrap();
-    // Each of four curves has a band. Two curves have a ring and a dot for each of five published
-    // results, and the legend has one dot.
-    assert_eq!(svg.matches("<polygon").count(), 4);
-    assert_eq!(svg.matches("<circle").count(), 2 * 2 * 5 + 1);
+    // Each of four curves has a band, and a mark for each of three cells; the legend has two marks.
+    assert_eq!(svg.matches("<polygon").count(), 4 + 4 * 3 + 2);
+    // Two curves have a ring for each of five published results, and the legend has one.
+    let published = "#1E1E1E";
+    assert_eq!(svg.matches(published).count(), 2 * 5 + 1);
     assert!(svg.contains("reference, 1 Hz, n = 4") && svg.contains("flight, 1 Hz, n = 4"));
     let strict = success_svg(&report, Rule::Strict).unwrap();
     assert!(strict.contains("Strict success (%)") && !strict.contains("published"));
@@ -252,6 +319,8 @@ fn success_curves_show_every_cell_and_the_papers_results() {
     campaign.oracle = true;
     let beside = flown(Report::new(&campaign, &[]));
     let svg = success_svg(&beside, Rule::Strict).unwrap();
-    assert_eq!(svg.matches("<polygon").count(), 4 + 2);
+    // Two curves more: their bands, three marks each, and one in the legend.
+    let strict = strict.matches("<polygon").count();
+    assert_eq!(svg.matches("<polygon").count(), strict + 2 * (1 + 3) + 1);
     assert!(svg.contains(">\noracle\n<"));
 }

@@ -1,41 +1,90 @@
-// The page of a flight that was flown, or that is watched while it is flown.
+// The page of flights that were flown, or of one that is watched while it is flown.
 const DATA = /*DATA*/null;
 const live = DATA === null, TOKEN = "/*TOKEN*/";
-const columns = ["t", "x", "z", "airspeed", "pitch", "pitch_rate", "flight_path", "ref_x", "ref_z", "ref_airspeed",
-  "ref_pitch", "ref_flight_path", "est_airspeed", "est_pitch", "est_flight_path", "thrust", "elevator"];
-const log = live ? { header: null, ticks: Object.fromEntries(columns.map(name => [name, []])), plans: [], orders: [],
-  summary: null } : DATA.log;
-const T = log.ticks;
-log.orders ||= [];
-log.details = new Map((live ? [] : DATA.details).map(detail => [detail.tick, detail]));
-const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])),
+const columns = ["t", "x", "z", "airspeed", "pitch", "flight_path", "ref_x", "ref_z", "ref_airspeed", "ref_pitch",
+  "ref_flight_path", "thrust", "elevator"];
+// How much a live page keeps: so many ticks, and the newest cycles. What is older is dropped.
+let kept = 60_000, keptCycles = 600;
+// What both flights share: layers, the window of the charts, the tick under the pointer, the last tick of all.
+const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])), window: null, hover: null, last: 0,
   note: text => { $("occupancy").textContent = text; } };
+const flights = [];
 let now = 0, playing = live, speed = 1, started = null, changed = false;
 
-function show() {
-  if (!T.t.length) return;
-  now = Math.min(Math.max(now, 0), T.t.length - 1);
-  $("time").max = T.t.length - 1;
-  $("time").value = now;
-  $("clock").value = T.t[now].toFixed(2) + " s";
-  showValues(log, now);
-  $("link").textContent = $("link").href = "#t=" + T.t[now].toFixed(2);
-  $("link").href = $("link").textContent;
-  look.follow = $("follow").checked;
-  drawView(log, now, look);
-  drawCharts(log, now, 0);
+function addFlight(parts) {
+  const flight = { id: flights.length ? "-b" : "", header: null, plans: [], orders: [], summary: null, closest: null, first: 0,
+    details: new Map(), ticks: Object.fromEntries(columns.map(name => [name, []])), ...parts };
+  // The pointer in one view says nothing about the other.
+  flight.look = Object.assign(Object.create(look), { cursor: null, marked: null });
+  if (flights.length) {
+    const other = $("flight").cloneNode(true);
+    for (const element of [other, ...other.querySelectorAll("[id]")]) element.id += flight.id;
+    $("flights").append(other);
+  }
+  flights.push(flight);
+  const redraw = () => { changed = true; };
+  hearCharts(flight, look, redraw, go);
+  hearView(flight, flight.look, redraw, () => flight.place);
 }
 
-function title() {
-  const h = log.header, s = log.summary;
+// The packed flights: columns are whole multiples of a unit, each as its step from the one before.
+async function unpack(text) {
+  const bytes = Uint8Array.from(atob(text), letter => letter.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+  for (const { ticks, details, ...rest } of await new Response(stream).json()) {
+    const T = Object.fromEntries(Object.entries(ticks).map(([name, [unit, steps]]) => {
+      let sum = 0;
+      return [name, steps.map(step => step === null ? null : (sum += step) * unit)];
+    }));
+    T.t = T.x.map((_, tick) => tick / 100);
+    addFlight({ ...rest, ticks: T, details: new Map(details.map(detail => [detail.tick, detail])) });
+  }
+}
+
+const begins = () => flights[0].first;
+const ends = () => Math.max(...flights.map(lastTick));
+
+function show() {
+  if (!flights.length || !flights[0].ticks.t.length) return;
+  look.last = flights.length > 1 ? ends() : 0;
+  now = Math.min(Math.max(now, begins()), ends());
+  $("time").min = begins();
+  $("time").max = ends();
+  $("time").value = now;
+  $("clock").value = (now / 100).toFixed(2) + " s";
+  $("link").textContent = "#t=" + (now / 100).toFixed(2);
+  $("link").href = $("link").textContent;
+  look.follow = $("follow").checked;
+  // While it plays, the window of the charts goes along.
+  if (look.window && playing && (now < look.window[0] || now > look.window[1])) {
+    const span = look.window[1] - look.window[0], start = Math.max(begins(), Math.min(now, ends() - span));
+    look.window = [start, start + span];
+  }
+  for (const flight of flights) {
+    const tick = Math.min(now, lastTick(flight));
+    showValues(flight, tick);
+    showWhy(flight, tick, flight.look, () => { changed = true; });
+    flight.place = drawView(flight, tick, flight.look);
+    drawCharts(flight, tick, look);
+  }
+}
+
+// A flight in a sentence, with its outcome in colour.
+function title(flight) {
+  const h = flight.header, s = flight.summary, heading = $("title" + flight.id);
   const obstacles = Object.values(h.field).reduce((count, kind) => count + kind.length, 0);
-  let line = `seed ${h.seed}, preset ${h.preset}, ${obstacles} obstacles, ${h.paths} paths`;
-  if (s) line += `: ${s.outcome.replace(/-/g, " ")} after ${s.t_end.toFixed(2)} s, clearance ` +
-    (s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m") + `, ${s.replans} replans, ` +
-    `${s.candidates} candidates, ${s.feasible} feasible`;
-  if (!live) line += `, log ${DATA.hash}`;
-  $("title").textContent = document.title = line;
-  $("orders").replaceChildren(...log.orders.map(order => {
+  heading.replaceChildren(`seed ${h.seed}, preset ${h.preset}, ${obstacles} obstacles, ${h.paths} paths`);
+  if (s) {
+    const outcome = document.createElement("span");
+    outcome.textContent = s.outcome.replace(/-/g, " ");
+    outcome.className = isGood(s.outcome) ? "good" : "bad";
+    heading.append(": ", outcome, ` after ${s.t_end.toFixed(2)} s, clearance ` +
+      (s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m") + `, ${s.replans} replans, ` +
+      `${s.candidates} candidates, ${s.feasible} feasible`);
+  }
+  if (flight.hash) heading.append(`, log ${flight.hash}`);
+  document.title = flights.map(one => $("title" + one.id).textContent).join(" | ");
+  $("orders" + flight.id).replaceChildren(...flight.orders.map(order => {
     const item = document.createElement("li");
     item.textContent = orderText(order);
     return item;
@@ -47,24 +96,24 @@ function setPlaying(value) {
   started = null;
   $("play").textContent = playing ? "Pause" : "Play";
   if (live) control({ pause: playing ? 0 : 1 });
-  else if (!playing) history.replaceState(null, "", "#t=" + T.t[now].toFixed(2));
+  else if (!playing) history.replaceState(null, "", "#t=" + (now / 100).toFixed(2));
 }
 
 function go(tick) { now = tick; started = null; if (!live && playing) setPlaying(false); show(); }
 
 function toPlan(direction) {
-  const starts = log.plans.map(plan => plan.used_from_tick);
+  const starts = flights[0].plans.map(plan => plan.used_from_tick).filter(tick => tick !== null);
   const next = direction > 0 ? starts.find(tick => tick > now) : starts.filter(tick => tick < now).pop();
   if (next !== undefined) go(next);
 }
 
 function frame(time) {
   if (changed) { changed = false; show(); }
-  if (playing && !live && T.t.length) {
-    if (started === null) started = { time, now: now === T.t.length - 1 ? 0 : now };
-    now = Math.min(Math.round(started.now + (time - started.time) / 10 * speed), T.t.length - 1);
+  if (playing && !live) {
+    if (started === null) started = { time, now: now === ends() ? 0 : now };
+    now = Math.min(Math.round(started.now + (time - started.time) / 10 * speed), ends());
     show();
-    if (now === T.t.length - 1) setPlaying(false);
+    if (now === ends()) setPlaying(false);
   }
   requestAnimationFrame(frame);
 }
@@ -75,7 +124,14 @@ function control(values) {
 
 function fromHash() {
   const match = /^#t=([\d.]+)$/.exec(location.hash);
-  if (match && T.t.length) { now = Math.round(parseFloat(match[1]) * 100); show(); }
+  if (match) { now = Math.round(parseFloat(match[1]) * 100); show(); }
+}
+
+// Zooms the charts about the time that is shown.
+function zoom(factor) {
+  const flight = flights[0], all = shownTicks(flight, { ...look, window: null });
+  look.window = factor === Infinity ? null : zoomed(shownTicks(flight, look), all, now, factor);
+  show();
 }
 
 addLayers(look.on, show);
@@ -88,6 +144,9 @@ $("play").onclick = () => setPlaying(!playing);
 $("back").onclick = () => toPlan(-1);
 $("next").onclick = () => toPlan(1);
 $("follow").onchange = show;
+$("zoom-in").onclick = () => zoom(0.5);
+$("zoom-out").onclick = () => zoom(2);
+$("zoom-all").onclick = () => zoom(Infinity);
 addEventListener("resize", show);
 addEventListener("hashchange", fromHash);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); show(); });
@@ -98,8 +157,11 @@ addEventListener("keydown", event => {
   if (event.key === " ") setPlaying(!playing);
   else if (event.key === "ArrowLeft") go(now - step);
   else if (event.key === "ArrowRight") go(now + step);
-  else if (event.key === "Home") go(0);
-  else if (event.key === "End") go(T.t.length - 1);
+  else if (event.key === "Home") go(begins());
+  else if (event.key === "End") go(ends());
+  else if (event.key === "+") zoom(0.5);
+  else if (event.key === "-") zoom(2);
+  else if (event.key === "0") zoom(Infinity);
   else if (event.key === "[") toPlan(-1);
   else if (event.key === "]") toPlan(1);
   else if (event.key === "f") { $("follow").checked = !$("follow").checked; show(); }
@@ -108,33 +170,75 @@ addEventListener("keydown", event => {
   event.preventDefault();
 });
 
-readColours();
-if (live) {
+// The part of a live flight that is kept. After a gap, which a slow page may have, it begins anew.
+function keep(flight, rows) {
+  const T = flight.ticks, tick = Math.round(rows.t[0] * 100);
+  if (!T.t.length || tick !== lastTick(flight) + 1) {
+    for (const name of columns) T[name].length = 0;
+    flight.first = tick;
+  }
+  for (const name of columns) T[name].push(...rows[name]);
+  const over = T.t.length - kept;
+  // Many at once, because it moves all the others.
+  if (over > kept / 10) {
+    for (const name of columns) T[name].splice(0, over);
+    flight.first += over;
+    flight.plans.splice(0, Math.max(planAt(flight.plans, flight.first), 0));
+  }
+}
+
+function watch() {
+  addFlight({});
+  const [flight] = flights;
   $("play").textContent = "Pause";
   $("title").textContent = "waiting for the flight";
   const source = new EventSource("/events");
-  source.addEventListener("begin", event => { log.header = JSON.parse(event.data); title(); });
+  source.addEventListener("begin", event => {
+    // A connection that was lost begins again with all that the server kept.
+    Object.assign(flight, { header: JSON.parse(event.data), plans: [], orders: [], first: 0 });
+    for (const name of columns) flight.ticks[name].length = 0;
+    flight.details.clear();
+    now = 0;
+    title(flight);
+  });
   source.addEventListener("ticks", event => {
-    const rows = JSON.parse(event.data);
-    const atEnd = now >= T.t.length - 1;
-    for (const name of columns) T[name].push(...rows[name]);
-    if (atEnd) now = T.t.length - 1;
+    const rows = JSON.parse(event.data), atEnd = !flight.ticks.t.length || now >= lastTick(flight);
+    if (!rows.t.length) return;
+    keep(flight, rows);
+    if (atEnd) now = lastTick(flight);
     changed = true;
   });
-  source.addEventListener("plan", event => { log.plans.push(JSON.parse(event.data)); });
-  source.addEventListener("detail", event => { const d = JSON.parse(event.data); log.details.set(d.tick, d); });
+  source.addEventListener("plan", event => { flight.plans.push(JSON.parse(event.data)); });
+  source.addEventListener("detail", event => {
+    const detail = JSON.parse(event.data);
+    flight.details.set(detail.tick, detail);
+    for (const tick of flight.details.keys()) if (flight.details.size > keptCycles) flight.details.delete(tick);
+  });
   source.addEventListener("end", event => {
-    log.summary = JSON.parse(event.data);
+    flight.summary = JSON.parse(event.data);
     source.close();
-    title();
+    title(flight);
     show();
     $("play").disabled = true;
   });
-} else {
-  title();
-  if (!log.details.size)
-    for (const name of ["scan", "occupancy", "candidates", "corridor", "plan"]) $("layer-" + name).disabled = true;
+}
+
+async function start() {
+  readColours();
+  if (live) return watch();
+  // Nothing can be steered before it is unpacked.
+  document.body.inert = true;
+  try {
+    await unpack(DATA);
+  } catch (error) {
+    $("title").textContent = "this browser cannot unpack the flight: " + error.message;
+    return;
+  }
+  flights.forEach(title);
+  if (!flights.some(flight => flight.details.size))
+    for (const name of ["scan", "occupancy", "candidates", "corridor", "plan", "unknown"]) $("layer-" + name).disabled = true;
   fromHash();
   show();
+  document.body.inert = false;
 }
-requestAnimationFrame(frame);
+start().then(() => requestAnimationFrame(frame));

@@ -6,6 +6,8 @@ const PAGE: &str = concat!(
     include_str!("page.css"),
     include_str!("page_body.html"),
     include_str!("draw.js"),
+    include_str!("charts.js"),
+    include_str!("numbers.js"),
     include_str!("page.js"),
     "</script>\n</html>\n"
 );
@@ -14,15 +16,33 @@ const DATA: &str = "/*DATA*/null";
 /// Where the page of a live flight takes its token from.
 const TOKEN: &str = "/*TOKEN*/";
 
-/// Returns the page with its data, which is a JSON text. With `null` the page shows a live flight.
+/// The page of flights: their JSON, through gzip, as text of 64 letters.
 #[must_use]
-pub fn page(data: &str) -> String {
-    // Inside a script, `</` would end the script. JSON can write the same text without it.
-    PAGE.replacen(DATA, &data.replace("</", "<\\/"), 1)
+pub(super) fn page(packed: &str) -> String {
+    PAGE.replacen(DATA, &format!("\"{packed}\""), 1)
 }
 
 /// The page of a live flight, which may change its pace with this token, a text of digits and letters.
 #[must_use]
 pub fn live_page(token: &str) -> String {
     PAGE.replacen(TOKEN, token, 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PAGE;
+    use mpp_sim::outcome::{ALTITUDE_BAND, FLIGHT_PATH_LIMIT, PITCH_LIMIT};
+    use mpp_sim::scenario::ALTITUDE;
+
+    #[test]
+    fn the_page_draws_the_limits_that_flights_are_judged_by() {
+        let (pitch, path) = (
+            PITCH_LIMIT.to_degrees().round(),
+            FLIGHT_PATH_LIMIT.to_degrees().round(),
+        );
+        let limits = format!(
+            "pitch: {pitch}, flight_path: {path}, altitude: {ALTITUDE}, band: {ALTITUDE_BAND} }}"
+        );
+        assert!(PAGE.contains(&limits), "{limits}");
+    }
 }

@@ -1,5 +1,6 @@
-//! One flight on one page.
+//! One flight on one page, or two.
 
+use super::pack::{Packed, packed};
 use super::page::page;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
@@ -9,31 +10,22 @@ use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Again, Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
-use serde::Serialize;
 
-/// The data of the page.
-#[derive(Serialize)]
-struct Data<'a> {
-    log: &'a FlightLog,
-    hash: String,
-    details: &'a [PlanDetail],
-}
-
-/// Returns the page of a flight, and whether it shows the details of the planning cycles. To get
-/// the details, the flight is flown again; they count only if the result is the same to the last
-/// byte.
+/// Returns the page of a flight, or of two side by side, and whether it shows the details of all planning cycles. To
+/// get the details, a flight is flown again; they count only if the result is the same to the last byte.
 ///
 /// # Errors
-/// [`LogError`] when the log holds a value that cannot be flown or written.
-pub fn replay(log: &FlightLog) -> Result<(String, bool), LogError> {
-    log.header.scenario()?;
-    let details = details(log).unwrap_or_default();
-    let data = Data {
-        log,
-        hash: log.hash()?,
-        details: &details,
-    };
-    Ok((page(&serde_json::to_string(&data)?), !details.is_empty()))
+/// [`LogError`] when a log holds a value that cannot be flown or written.
+pub fn replay(log: &FlightLog, against: Option<&FlightLog>) -> Result<(String, bool), LogError> {
+    let mut whole = true;
+    let mut flights = Vec::new();
+    for log in [Some(log), against].into_iter().flatten() {
+        log.header.scenario()?;
+        let details = details(log).unwrap_or_default();
+        whole &= !details.is_empty();
+        flights.push(Packed::of(log, details)?);
+    }
+    Ok((page(&packed(&flights)?), whole))
 }
 
 /// The planning cycles of a flight; `None` if the flight cannot be repeated.

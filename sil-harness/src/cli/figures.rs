@@ -2,19 +2,20 @@
 
 use super::answer::{FAILURE, Failure, USAGE, talk};
 use super::campaign::{rows_of, set_beside_ceiling};
+use super::pdf::pdf;
 use super::values::seed;
 use crate::files::write_whole;
 use mpp_analysis::campaign::Report;
 use mpp_analysis::figure::{
     FigureError, OneReplan, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
-    success_svg,
+    success_svg, trajectory_svg,
 };
 use mpp_sim::flight::fly;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario, TICKS_PER_SECOND};
 use mpp_sim::scene::Scene;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = super::help::FIGURES)]
@@ -22,6 +23,9 @@ pub(super) struct FiguresArgs {
     /// Directory for the pictures (SVG)
     #[arg(long, default_value = "out/figures")]
     out: PathBuf,
+    /// Also write each picture as PDF, which needs a build with the cargo feature `formats`
+    #[arg(long)]
+    pdf: bool,
     /// Seed of all flights in the pictures
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
@@ -37,6 +41,10 @@ pub(super) struct FiguresArgs {
 const CYCLE_OBSTACLES: usize = 30;
 
 pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
+    if args.pdf {
+        // Who cannot have it is told before anything is flown.
+        pdf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1\" height=\"1\"/>")?;
+    }
     let drawing = |error: FigureError| Failure::new(FAILURE, error);
     let mut pictures = vec![
         ("challenge", challenge(args.seed)?),
@@ -48,6 +56,7 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     let cycle = telling_cycle(args.seed)?;
     pictures.push(("scan", scan_svg(&cycle).map_err(drawing)?));
     pictures.push(("rays", rays_svg(&cycle).map_err(drawing)?));
+    pictures.push(("trajectory", trajectory_svg(&cycle).map_err(drawing)?));
     pictures.push(("candidates", candidates_svg(&cycle).map_err(drawing)?));
     if !args.rows.is_empty() {
         let (campaign, rows) = rows_of(&args.rows).map_err(|error| Failure::new(USAGE, error))?;
@@ -67,8 +76,15 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
     for (name, svg) in pictures {
         let path = args.out.join(name).with_extension("svg");
-        write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
-        talk(path.display());
+        let write = |path: &Path, bytes: &[u8]| {
+            write_whole(path, bytes).map_err(|error| Failure::new(FAILURE, error))?;
+            talk(path.display());
+            Ok(())
+        };
+        write(&path, svg.as_bytes())?;
+        if args.pdf {
+            write(&path.with_extension("pdf"), &pdf(&svg)?)?;
+        }
     }
     Ok(0)
 }
@@ -95,16 +111,20 @@ fn telling_cycle(seed: u64) -> Result<OneReplan, Failure> {
     telling.map(|(_, cycle)| cycle).ok_or_else(none)
 }
 
-/// Draws every challenge scene with one flight through it.
+/// Draws every challenge scene with two flights through it: with one path, and with as many as usual.
 fn challenge(seed: u64) -> Result<String, Failure> {
     let mut scenes = Vec::new();
     for scene in Scene::ALL {
-        let scenario = Scenario {
+        let many = Scenario {
             obstacles: 0,
             scene: Some(scene),
             ..Scenario::new(Preset::Flight, seed)
         };
-        scenes.push((scene, vec![flown(&scenario)?]));
+        let alone = Scenario {
+            paths: 1,
+            ..many.clone()
+        };
+        scenes.push((scene, vec![flown(&alone)?, flown(&many)?]));
     }
     challenge_svg(&scenes).map_err(|error| Failure::new(FAILURE, error))
 }

@@ -71,7 +71,8 @@ Examples:
 
 pub(super) const REPLAY: &str = "\
 Examples:
-  sil-harness replay out/flight-seed1.json --out flight.html";
+  sil-harness replay out/flight-seed1.json --out flight.html
+  sil-harness replay out/flight-seed1.json --against out/flight-seed2.json";
 
 pub(super) const PARAMS: &str = "\
 Examples:

@@ -21,6 +21,7 @@ mod help;
 mod loudness;
 mod manual;
 mod params;
+mod pdf;
 mod replay;
 mod scenario;
 mod signals;

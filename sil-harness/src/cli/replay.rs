@@ -10,18 +10,23 @@ use std::path::PathBuf;
 pub(super) struct ReplayArgs {
     /// Log of the flight
     log: PathBuf,
+    /// Log of another flight, which stands beside it on the same page
+    #[arg(long, value_name = "LOG")]
+    against: Option<PathBuf>,
     /// Page to write
     #[arg(long, default_value = "out/replay.html")]
     out: PathBuf,
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
-    let log = read_log(&args.log).map_err(|error| Failure::new(USAGE, error))?;
-    let (page, whole) = replay(&log)
+    let read = |path: &PathBuf| read_log(path).map_err(|error| Failure::new(USAGE, error));
+    let log = read(&args.log)?;
+    let against = args.against.as_ref().map(read).transpose()?;
+    let (page, whole) = replay(&log, against.as_ref())
         .map_err(|error| Failure::new(USAGE, format!("{}: {error}", args.log.display())))?;
     if !whole {
         talk(
-            "the page has no scans and candidates: flown again, this flight does not come out the \
+            "the page has no scans and candidates of a flight: flown again, it does not come out the \
              same (another version, or settings that its log does not hold)",
         );
     }

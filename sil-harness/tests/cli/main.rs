@@ -262,7 +262,15 @@ fn a_cycle_is_benched_by_stage_in_both_presets() {
 fn figures_are_drawn_into_a_directory() {
     let (output, out) = run("figures", &["figures"]);
     assert!(output.status.success(), "{output:?}");
-    for name in ["challenge", "flight", "scan", "rays", "candidates"] {
+    let names = [
+        "challenge",
+        "flight",
+        "scan",
+        "rays",
+        "trajectory",
+        "candidates",
+    ];
+    for name in names {
         let svg = std::fs::read_to_string(out.join(name).with_extension("svg")).unwrap();
         assert!(
             svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"),
@@ -272,6 +280,33 @@ fn figures_are_drawn_into_a_directory() {
     // Success rates are only drawn from rows.
     assert!(!out.join("success.svg").exists());
     std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn two_flights_come_onto_one_page_and_a_log_that_is_none_is_refused() {
+    let (_, out) = run("against", &["fly", "--duration", "2", "--obstacles", "0"]);
+    let log = out.join("flight-seed1-o0-2s.json");
+    let page = |against: &std::path::Path| {
+        let mut replay = harness();
+        replay.arg("replay").arg(&log).arg("--against").arg(against);
+        replay.arg("--out").arg(out.join("two.html"));
+        replay.output().unwrap()
+    };
+    let output = page(&log);
+    assert!(output.status.success(), "{output:?}");
+    assert!(std::fs::metadata(out.join("two.html")).unwrap().len() > 20_000);
+    assert_eq!(page(&out.join("none.json")).status.code(), Some(2));
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[cfg(not(feature = "formats"))]
+#[test]
+fn a_build_without_pdf_says_so_before_it_flies() {
+    let (output, out) = run("pdf", &["figures", "--pdf"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--features formats"));
+    assert!(!out.join("flight.svg").exists());
+    let _ = std::fs::remove_dir_all(out);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! What others may see of a cycle: map, candidates, programs. And another candidate than the best, for whoever
 //! chooses himself.
 
+use super::judge::PriceParts;
 use super::{FlightPlanner, Phase};
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::{ClearanceField, MemoryMap};
@@ -66,6 +67,21 @@ impl FlightPlanner {
             STAGE_PERIOD * units.time,
         );
         Some(candidate.price)
+    }
+
+    /// Index of the candidate that the planner improved last or improves now.
+    #[must_use]
+    pub fn at_hand(&self) -> usize {
+        self.at_hand
+    }
+
+    /// The price of a candidate of the present cycle, as its last round left it, and the parts of this price.
+    /// `None` if there is no such candidate, or if no program of the candidate had a solution.
+    #[must_use]
+    pub fn price_parts(&self, index: usize) -> Option<(f64, PriceParts)> {
+        let candidate = self.candidates.get(index)?;
+        let priced = candidate.price.is_finite();
+        priced.then(|| (candidate.price, self.parts_of(candidate)))
     }
 
     /// Takes a candidate of the last cycle for the best one: the next cycle then counts on it being flown. Gives

@@ -7,6 +7,30 @@ use crate::config::{KNOTS, STAGES};
 use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 
+/// The price of a roll-out by its parts, and what it lacks of clearance. The parts add up to the price, up to
+/// rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PriceParts {
+    /// Price of what is missing of the margin, of the wanted room and of the altitude band.
+    pub clearance: f64,
+    /// Price of unknown cells near ahead.
+    pub unknown: f64,
+    /// Price of the way on from the via station.
+    pub onward: f64,
+    /// The program's cost function.
+    pub effort: f64,
+    /// Worst lack of clearance, in own units of length.
+    pub lack: f64,
+}
+
+/// A part to which a summand of the price belongs.
+#[derive(Clone, Copy)]
+enum Part {
+    Clearance,
+    Unknown,
+    Onward,
+}
+
 /// Worst lack of clearance \[m\], effort, and the price that ranks candidates.
 pub(super) struct Judgement {
     pub(super) lack: f64,
@@ -17,16 +41,41 @@ pub(super) struct Judgement {
 impl FlightPlanner {
     /// Computes lack of clearance, effort and price of a roll-out.
     pub(super) fn judge(&self, flown: &Candidate) -> Judgement {
+        self.add_up(flown, |_, _| {})
+    }
+
+    /// The parts of the price that [`Self::judge`] gives.
+    pub(super) fn parts_of(&self, flown: &Candidate) -> PriceParts {
+        let mut parts = PriceParts::default();
+        let judgement = self.add_up(flown, |part, summand| match part {
+            Part::Clearance => parts.clearance += summand,
+            Part::Unknown => parts.unknown += summand,
+            Part::Onward => parts.onward += summand,
+        });
+        PriceParts {
+            effort: judgement.effort,
+            lack: judgement.lack,
+            ..parts
+        }
+    }
+
+    /// Adds up the price, and tells `note` of each summand.
+    fn add_up(&self, flown: &Candidate, mut note: impl FnMut(Part, f64)) -> Judgement {
         let (field, lattice, own) = (&self.field, &self.lattice, &self.settings);
         let via = lattice.via();
         let (mut lack, mut price) = (0.0_f64, 0.0);
+        let mut add = |part, summand: f64| {
+            price += summand;
+            note(part, summand);
+        };
         for (stage, pair) in flown.knots.windows(2).enumerate() {
             let [from, to] = pair else { continue };
             let discount = 1.0 - LAST_STAGE * stage as f64 / STAGES as f64;
             let (run, rise) = (to.x - from.x, to.z - from.z);
             if from.x <= via && via < to.x {
                 let slope = rise / run;
-                price += lattice.onward(from.z + slope * (via - from.x), slope);
+                let onward = lattice.onward(from.z + slope * (via - from.x), slope);
+                add(Part::Onward, onward);
             }
             for sample in 1..=SAMPLES {
                 let share = sample as f64 / SAMPLES as f64;
@@ -37,11 +86,14 @@ impl FlightPlanner {
                 let missing = (own.margin - distance).max(0.0) + outside;
                 let crowded = (self.limits.wanted_room - distance).max(0.0);
                 lack = lack.max(missing);
-                price += weight * LACK_PRICE * discount * missing * missing;
-                price += weight * self.limits.room_price * discount * crowded * crowded;
+                let lacking = weight * LACK_PRICE * discount * missing * missing;
+                add(Part::Clearance, lacking);
+                let crowding = weight * self.limits.room_price * discount * crowded * crowded;
+                add(Part::Clearance, crowding);
                 let ahead = x - self.state.x;
                 if ahead < UNKNOWN_AHEAD && field.is_unknown(x, z) {
-                    price += weight * UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                    let hidden = weight * UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                    add(Part::Unknown, hidden);
                 }
             }
         }

@@ -48,6 +48,7 @@ use crate::vehicle::{
     ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
 };
 use candidate::{Candidate, Frame};
+pub use judge::PriceParts;
 use limits::Limits;
 use rand_pcg::Pcg64Mcg;
 
