@@ -71,7 +71,9 @@ fn plans_do_not_drift_when_nothing_changes() {
         for _ in 0..6 {
             let now = next();
             let dearest = last[0].1.max(last[1].1);
-            assert!(now.0 <= last[1].0 && now.1 <= dearest * 1.01);
+            // A plan that is improved again may move by far less than a millimetre.
+            let most = last[0].0.max(last[1].0) + 1e-3;
+            assert!(now.0 <= most && now.1 <= dearest * 1.01);
             last = [last[1], now];
         }
     }

@@ -11,8 +11,8 @@ mod edges;
 
 use crate::map::{ClearanceField, split};
 use crate::tuning::lattice::{
-    ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE, SPACING,
-    STRETCH,
+    AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE,
+    SPACING, STRETCH,
 };
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
@@ -108,10 +108,8 @@ impl Lattice {
     /// Starts a search. For an aircraft that turns less, the stations are farther apart and the slopes finer.
     pub fn start(&mut self, task: &LatticeTask) {
         self.task = *task;
-        // One step of slope over one spacing is the curvature. RISE = spacing * step / 2 holds at every
-        // spacing.
-        let full = 2.0 * RISE / (SPACING * SPACING);
-        let stretch = libm::sqrt(full / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
+        // RISE = spacing * step / 2 holds at every spacing.
+        let stretch = libm::sqrt(AGILE / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
         self.spacing = SPACING * stretch;
         self.slope_step = 2.0 * RISE / self.spacing;
         self.station = 0;
