@@ -102,7 +102,7 @@ pub mod lattice {
     pub const RISE: f64 = 0.25;
     /// Distance between stations for an agile aircraft \[m\]. Over it the slope changes by one step at most: a
     /// curvature of 0.087 per metre, 1.6 times [`AGILE`]; roll-outs reach 1.75 times. With 3 m, the curvature of
-    /// programs, 1,470 of 1,600 flights past 160 obstacles succeeded, and 1,488 with 2.4 m. Source: D22.
+    /// programs, 1,040 of 1,200 flights past 160 obstacles succeeded, and 1,077 with 2.4 m. Source: D22.
     pub const SPACING: f64 = 2.4;
     /// Curvature of an aircraft's programs from which on its stations stand at [`SPACING`] [1/m]: that of the
     /// reference aircraft with 0.2 rad. Source: derived.
