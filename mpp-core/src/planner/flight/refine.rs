@@ -9,6 +9,7 @@ use super::{FlightPlanner, MAX_CANDIDATES, Phase};
 use crate::config::STAGE_PERIOD;
 use crate::corridor::Keep;
 use crate::qp::Status;
+use crate::tuning::candidates::HOPELESS;
 use crate::tuning::faces::ROUNDING;
 
 impl FlightPlanner {
@@ -77,6 +78,7 @@ impl FlightPlanner {
         let scaled = |limits: [f64; 2]| limits.map(|limit| ANGLE_SCALE * limit);
         (self.solver.problem.bounds)
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
+        self.solver.problem.cost_limit = HOPELESS * self.best_price;
         self.solver.problem.initial = frame.deviation(&frame.start, 0).into();
         self.solver.begin(&self.shared);
         self.phase = Phase::Improve;

@@ -37,7 +37,6 @@ impl FlightPlanner {
         self.try_program()?;
         // A flight computer hands over zeroed memory, so the code must not rely on the values of `new`.
         self.solver.problem.bounds.clear();
-        self.solver.problem.cost_limit = f64::INFINITY;
         self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
         self.map.clear();
         self.best.clear();

@@ -5,7 +5,7 @@
 //! controls, so this module computes the complement from the vector.
 
 use super::direction::{Direction, Stand};
-use super::{Active, Solver};
+use super::{Active, Entering, Solver};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
 use crate::qp::controls::{CONTROLS, ControlVector, dot};
@@ -24,11 +24,11 @@ impl Solver {
     pub(super) fn resolve(
         &self,
         shared: &Condensed,
-        entering: &Active,
-        violation: f64,
+        entering: &Entering,
         direction: &mut Direction,
     ) -> Stand {
-        self.correct(shared, entering, direction);
+        let violation = entering.violation;
+        self.correct(shared, &entering.row, direction);
         let (rates, complement) = (&direction.rates, direction.complement);
         // The excess includes the rounding errors of the active rows.
         let active = self.active.iter().zip(rates);
@@ -75,6 +75,7 @@ impl Solver {
             .map(|(active, rate)| self.elasticity(active) * rate * rate)
             .sum();
         direction.complement = dot(&rest, &rest) + elastic;
+        direction.slope = direction.complement;
     }
 
     /// `Y' (c_p - C_A' r)`

@@ -12,6 +12,8 @@ pub(super) struct Direction {
     pub(super) norm: f64,
     /// Schur complement of the entering row against the active rows. It is 0 if the row depends on them.
     pub(super) complement: f64,
+    /// Decrease of the violation with the multiplier: the complement as it is computed, without a floor.
+    pub(super) slope: f64,
 }
 
 /// Relation of an entering row to active rows on which it depends.

@@ -48,6 +48,28 @@ struct Active {
     yielded: bool,
 }
 
+/// The row that enters, and what the directions of its steps are made of.
+#[derive(Clone, Debug)]
+struct Entering {
+    row: Active,
+    /// Excess of the row over its bound, less the amount by which it yields.
+    violation: f64,
+    /// Squared norm of the row's response, `|Y' c_p|^2`.
+    norm: f64,
+    /// Products of the row's response with those of the active rows, `C_A Y Y' c_p`.
+    products: [f64; CAPACITY],
+}
+
+impl Entering {
+    /// Moves the product with an active row behind those with the others, as the row itself moves or leaves.
+    fn move_last(&mut self, index: usize, active: usize) {
+        let from_index = self.products.get_mut(index..active);
+        if let Some(from_index) = from_index.filter(|products| !products.is_empty()) {
+            from_index.rotate_left(1);
+        }
+    }
+}
+
 /// Workspace of the solver.
 ///
 /// # Example
@@ -97,12 +119,14 @@ pub struct Solver {
     normalised: ControlVector,
     trajectory: Solution,
     outputs: [f64; OUTPUTS],
+    /// Whether the multipliers have changed since the controls were computed.
+    stale: bool,
     active: heapless::Vec<Active, CAPACITY>,
     /// Bounds of the rows that may enter, with the tolerance added; infinite for rows that must not enter.
     open: Bounds,
     /// Whether the program has attitude rows.
     attitude_rows: bool,
-    entering: Option<Active>,
+    entering: Option<Entering>,
     factor: Factor,
     dual: f64,
     /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because a
@@ -129,6 +153,7 @@ impl Solver {
             normalised: [0.0; CONTROLS],
             trajectory: Solution::new(),
             outputs: [0.0; OUTPUTS],
+            stale: false,
             active: heapless::Vec::new(),
             open: Bounds::none(),
             attitude_rows: false,
@@ -171,6 +196,7 @@ impl Solver {
         self.feedforward = shared.feedforward(&self.problem.target);
         self.normalised = [0.0; CONTROLS];
         self.follow(shared);
+        self.stale = false;
         self.dual = shared.cost(&self.trajectory, &self.problem.target);
         self.absurd_rise = if self.problem.penalty.is_some() {
             f64::INFINITY

@@ -1,10 +1,10 @@
 //! One step of the method: from one event to the next.
 
 use super::direction::{Direction, Stand};
-use super::{Active, Solver, TOLERANCE};
+use super::{Active, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, add_scaled, dot};
+use crate::qp::controls::{CONTROLS, dot};
 use crate::qp::factor::CAPACITY;
 use crate::qp::rows::{RowPattern, most_violated};
 
@@ -32,65 +32,89 @@ enum Event {
 impl Solver {
     /// One step of the method: from one event to the next.
     pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
-        let entering = match self.entering.take() {
+        let mut entering = match self.entering.take() {
             Some(entering) => entering,
-            None => {
-                let by_effort = self.problem.penalty.is_none();
-                let worst = most_violated(
-                    &self.outputs,
-                    &self.open,
-                    &shared.prices,
-                    by_effort,
-                    self.attitude_rows,
-                );
-                let Some(row) = worst else {
-                    return Some(Status::Optimal);
-                };
-                let Some(pattern) = RowPattern::of(row) else {
-                    return Some(Status::NumericalFailure);
-                };
-                Active {
-                    row,
-                    pattern,
-                    multiplier: 0.0,
-                    yielded: false,
-                }
-            }
+            None => match self.select(shared) {
+                Ok(entering) => entering,
+                Err(status) => return Some(status),
+            },
         };
-        let violation = self.violation(&entering);
-        let mut direction = self.direction(shared, &entering);
-        let mut full = (violation / direction.complement).max(0.0);
+        let mut direction = self.direction(&entering);
+        let mut full = (entering.violation / direction.complement).max(0.0);
         let mut touches = false;
-        if direction.complement <= 0.0 || 0.5 * violation * full > self.absurd_rise {
-            let stand = self.resolve(shared, &entering, violation, &mut direction);
+        let rise = 0.5 * entering.violation * full;
+        if direction.complement <= 0.0 || rise > self.absurd_rise {
+            self.refresh(shared, Some(&entering.row));
+            entering.violation = self.violation(&entering.row);
+            let stand = self.resolve(shared, &entering, &mut direction);
             touches = stand == Stand::Touches;
             full = match stand {
                 Stand::Apart(length) => length.max(0.0),
                 Stand::Touches | Stand::Contradicts => f64::INFINITY,
             };
         }
-        let (event, length) = self.first_event(&entering, &direction.rates, full);
+        let (event, length) = self.first_event(&entering.row, &direction.rates, full);
         if length == f64::INFINITY {
             return if touches {
-                self.touch(entering, &mut direction)
+                self.touch(entering.row, &mut direction)
             } else {
-                Some(self.contradiction(shared, &entering, &direction.rates))
+                Some(self.contradiction(shared, &entering.row, &direction.rates))
             };
         }
-        self.dual += length * (violation - 0.5 * length * direction.complement);
-        let entering = self.move_by(shared, length, &direction.rates, entering);
+        self.dual += length * (entering.violation - 0.5 * length * direction.complement);
+        self.move_by(length, &direction, &mut entering);
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
         }
         // The factor is 2, because the dual starts from the cost of the optimum without rows, and
         // because rounding must not decide.
         if self.dual > 2.0 * self.absurd_rise {
-            return Some(self.excessive_multipliers(shared, &entering));
+            return Some(self.excessive_multipliers(shared, &entering.row));
         }
         if !self.dual.is_finite() {
             return Some(Status::NumericalFailure);
         }
         self.apply(shared, event, entering, &direction)
+    }
+
+    /// Selects the row that enters next. The error is the status of a solver that ends here.
+    fn select(&mut self, shared: &Condensed) -> Result<Entering, Status> {
+        self.refresh(shared, None);
+        let by_effort = self.problem.penalty.is_none();
+        let worst = most_violated(
+            &self.outputs,
+            &self.open,
+            &shared.prices,
+            by_effort,
+            self.attitude_rows,
+        );
+        let row = worst.ok_or(Status::Optimal)?;
+        let pattern = RowPattern::of(row).ok_or(Status::NumericalFailure)?;
+        Ok(self.meet(
+            shared,
+            Active {
+                row,
+                pattern,
+                multiplier: 0.0,
+                yielded: false,
+            },
+        ))
+    }
+
+    /// Computes what the directions of a row are made of.
+    fn meet(&self, shared: &Condensed, row: Active) -> Entering {
+        let mut normal = [0.0; CONTROLS];
+        shared.add_normal(&mut normal, &row.pattern, 1.0);
+        let mut products = [0.0; CAPACITY];
+        for (product, active) in products.iter_mut().zip(&self.active) {
+            *product = shared.change(&active.pattern, &normal);
+        }
+        Entering {
+            violation: self.violation(&row),
+            row,
+            norm: dot(&normal, &normal),
+            products,
+        }
     }
 
     /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
@@ -107,33 +131,25 @@ impl Solver {
     }
 
     /// The direction of a step for a row.
-    fn direction(&self, shared: &Condensed, own: &Active) -> Direction {
-        let mut normal = [0.0; CONTROLS];
-        shared.add_normal(&mut normal, &own.pattern, 1.0);
-        let mut products = [0.0; CAPACITY];
-        for (product, active) in products.iter_mut().zip(&self.active) {
-            *product = shared.change(&active.pattern, &normal);
-        }
+    fn direction(&self, entering: &Entering) -> Direction {
+        let mut products = entering.products;
         self.factor.forward(&mut products);
         let mut rates = products;
         self.factor.backward(&mut rates);
-        let norm = dot(&normal, &normal);
+        let norm = entering.norm;
+        let known = products.iter().take(self.active.len());
+        let rest = norm - known.map(|product| product * product).sum::<f64>();
         Direction {
             products,
             rates,
             norm,
-            complement: self.complement(own, norm, &products),
+            complement: self.complement(&entering.row, norm, rest),
+            slope: rest + self.elasticity(&entering.row),
         }
     }
 
-    /// The Schur complement of a row with the norm `norm`.
-    fn complement(&self, own: &Active, norm: f64, products: &[f64; CAPACITY]) -> f64 {
-        let explained: f64 = products
-            .iter()
-            .take(self.active.len())
-            .map(|product| product * product)
-            .sum();
-        let rest = norm - explained;
+    /// The Schur complement of a row with the norm `norm` of which `rest` does not depend on the active rows.
+    fn complement(&self, own: &Active, norm: f64, rest: f64) -> f64 {
         if self.is_soft(own.row) {
             rest.max(FLOOR * norm) + self.elasticity(own)
         } else if rest > DEPENDENT * norm {
@@ -190,50 +206,58 @@ impl Solver {
         first
     }
 
-    /// Moves multipliers and controls: `lambda_p += t`, `lambda_A -= t r`,
-    /// `v -= t Y' (c_p - C_A' r)`.
-    fn move_by(
-        &mut self,
-        shared: &Condensed,
-        length: f64,
-        rates: &[f64; CAPACITY],
-        mut entering: Active,
-    ) -> Active {
-        let rest = self.remainder(shared, &entering, rates);
-        add_scaled(&mut self.normalised, &rest, -length);
-        self.follow(shared);
-        for (active, rate) in self.active.iter_mut().zip(rates) {
+    /// Moves the multipliers: `lambda_p += t`, `lambda_A -= t r`. The controls follow when they are needed.
+    fn move_by(&mut self, length: f64, direction: &Direction, entering: &mut Entering) {
+        for (active, rate) in self.active.iter_mut().zip(&direction.rates) {
             // Rounding may take the multiplier of a row that leaves below zero.
             active.multiplier = (active.multiplier - length * rate).max(0.0);
         }
-        entering.multiplier += length;
-        entering
+        entering.row.multiplier += length;
+        entering.violation -= length * direction.slope;
+        self.stale = true;
+    }
+
+    /// Computes controls, trajectory and outputs of the present multipliers, if they have changed:
+    /// `v = -Y' (C_A' lambda_A + c_p lambda_p)`.
+    fn refresh(&mut self, shared: &Condensed, entering: Option<&Active>) {
+        if !self.stale {
+            return;
+        }
+        self.normalised = [0.0; CONTROLS];
+        for row in self.active.iter().chain(entering) {
+            shared.add_normal(&mut self.normalised, &row.pattern, -row.multiplier);
+        }
+        self.follow(shared);
+        self.stale = false;
     }
 
     fn apply(
         &mut self,
         shared: &Condensed,
         event: Event,
-        mut entering: Active,
+        mut entering: Entering,
         direction: &Direction,
     ) -> Option<Status> {
+        let active = self.active.len();
         match event {
             Event::Enter => {
-                return self.activate(entering, direction);
+                return self.activate(entering.row, direction);
             }
-            Event::EnteringYields => entering.yielded = true,
+            Event::EnteringYields => entering.row.yielded = true,
             Event::Leave(index) => {
                 self.deactivate(index);
+                entering.move_last(index, active);
             }
             Event::Toggle(index) => {
-                if let Some(mut active) = self.deactivate(index) {
-                    active.yielded = !active.yielded;
-                    let direction = self.direction(shared, &active);
-                    let failed = self.activate(active, &direction);
+                if let Some(mut row) = self.deactivate(index) {
+                    row.yielded = !row.yielded;
+                    let again = self.meet(shared, row);
+                    let failed = self.activate(again.row, &self.direction(&again));
                     if failed.is_some() {
                         return failed;
                     }
                 }
+                entering.move_last(index, active);
             }
         }
         self.entering = Some(entering);
