@@ -238,6 +238,14 @@ def test_a_speed_of_the_command_line_is_shown(begin, open_page, tmp_path):
     page.wait_for_function("$('speed').value === '2.5'")
 
 
+def test_orders_are_listed(begin, open_page, tmp_path):
+    (tmp_path / "set.parm").write_text("MPP_PATHS,7\n")
+    _, url = begin(tmp_path, "--params", tmp_path / "set.parm")
+    page = open_page(url)
+    flies(page, 50)
+    assert page.inner_text("#orders") == "0.00 s: parameter MPP_PATHS 7"
+
+
 def test_the_closest_approach_is_marked_while_the_flight_goes_on(live, open_page, tmp_path):
     process, url, _ = live
     page = open_page(url, loses=True)
