@@ -9,6 +9,7 @@ mod door;
 mod events;
 mod request;
 mod server;
+mod shared;
 
 use crate::pace::Speed;
 use door::Door;
@@ -21,9 +22,11 @@ use mpp_sim::log::{FlightLog, Header};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Order, OrderEntry};
 use serde::Serialize;
+pub use shared::Wish;
+use shared::{Shared, State};
 use std::io;
 use std::net::{SocketAddr, TcpListener};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 
 /// Number of ticks that are sent together.
@@ -33,50 +36,6 @@ const KEPT: usize = 64 << 20;
 /// The longest time that the end of a flight waits for its viewers. It does not wait for a viewer
 /// that reads no more.
 const FAREWELL: Duration = Duration::from_secs(10);
-
-/// The pause and the speed that the pages ask for.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wish {
-    /// Whether the flight pauses.
-    pub pause: bool,
-    /// Speed relative to real time.
-    pub speed: Speed,
-}
-
-impl Wish {
-    /// What pages are told of it.
-    fn text(&self) -> String {
-        format!(r#"{{"pause":{},"speed":"{}"}}"#, self.pause, self.speed)
-    }
-}
-
-struct State {
-    events: Events,
-    wish: Wish,
-    /// Connections.
-    places: usize,
-    /// Number of viewers that have not seen the last event.
-    behind: usize,
-    ended: bool,
-}
-
-struct Shared {
-    state: Mutex<State>,
-    changed: Condvar,
-    door: Door,
-}
-
-impl Shared {
-    fn lock(&self) -> MutexGuard<'_, State> {
-        // A viewer's thread that died leaves no half-done change.
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn tell(&self, kind: &'static str, data: &str) {
-        self.lock().events.push(kind, data);
-        self.changed.notify_all();
-    }
-}
 
 /// The server of one flight.
 pub struct Live {

@@ -1,7 +1,7 @@
 //! The server of the live page: it answers requests, each on a thread of its own.
 
 use super::request::{Request, head};
-use super::{Shared, Wish};
+use super::shared::{Shared, Wish};
 use crate::pace;
 use mpp_analysis::picture::live_page;
 use std::io::{self, Read, Write};
