@@ -44,5 +44,6 @@ pub mod ceiling;
 
 pub mod figure;
 
-mod closest;
+pub mod closest;
+
 pub mod picture;

@@ -1,5 +1,7 @@
 //! The speed of a flight relative to real time.
 
+use std::fmt;
+
 /// Slowest and fastest speed relative to real time. At a slower speed a tick would take more than a
 /// second.
 const RANGE: std::ops::RangeInclusive<f64> = 0.01..=1000.0;
@@ -14,6 +16,15 @@ pub enum Speed {
     Max,
     /// So many times that of the clock.
     Times(f64),
+}
+
+impl fmt::Display for Speed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Max => f.write_str("max"),
+            Self::Times(times) => write!(f, "{times}"),
+        }
+    }
 }
 
 /// Reads a speed.
@@ -37,6 +48,7 @@ mod tests {
         assert_eq!(speed("max"), Ok(Speed::Max));
         for times in [0.01, 0.25, 1.0, 1000.0] {
             assert_eq!(speed(&times.to_string()), Ok(Speed::Times(times)));
+            assert_eq!(Speed::Times(times).to_string(), times.to_string());
         }
         for nonsense in [
             "", "0", "-1", "1e-300", "1e-4", "0.0099", "1000.1", "1e300", "inf", "NaN", "fast",

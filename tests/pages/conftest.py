@@ -27,11 +27,17 @@ def open_page(browser):
     """Opens a page; afterwards it must have complained of nothing and asked nobody else."""
     pages, complaints = [], []
 
-    def open_(url, **options):
+    def complain(message, loses):
+        lost = loses and message.text.startswith("Failed to load resource")
+        if message.type in ("error", "warning") and not lost:
+            complaints.append(message.text)
+
+    def open_(url, loses=False, **options):
+        """`loses` says that the page will not reach its server all the time; the browser complains of that."""
         page = browser.new_page(**options)
         page.set_default_timeout(LIMIT)
         own = url.split("#")[0]
-        page.on("console", lambda m: complaints.append(m.text) if m.type in ("error", "warning") else None)
+        page.on("console", lambda message: complain(message, loses))
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
         page.goto(url)

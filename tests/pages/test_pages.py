@@ -1,13 +1,9 @@
 """The pages of flights in headless Chromium: no error, what they say is what the log holds."""
 
 import json
-import re
-import subprocess
-import urllib.request
-from pathlib import Path
 
 import pytest
-from flown import BINARY, LIMIT, PHONE, data_of, fly, holds, page_of, pixels, says_what_the_log_holds, value
+from flown import PHONE, data_of, fly, holds, page_of, pixels, says_what_the_log_holds
 
 
 def test_the_text_is_the_logs_and_the_slider_moves_the_aircraft(flight, open_page, shot):
@@ -131,91 +127,3 @@ def test_a_flight_that_cannot_be_flown_again_has_a_page_without_candidates(fligh
     page = open_page(page_of(path).as_uri())
     assert page.is_disabled("#layer-scan") and not page.is_disabled("#layer-flown")
     says_what_the_log_holds(page, log, 0)
-
-
-@pytest.fixture
-def live(tmp_path):
-    process = subprocess.Popen(
-        [BINARY, "fly", "--live", "127.0.0.1:0", "--duration", "120", "--json", "--out", tmp_path],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )
-    for line in process.stderr:
-        if found := re.search(r"live at (http://127\.0\.0\.1:\d+/)", line):
-            yield process, found[1], tmp_path
-            break
-    process.kill()
-    process.communicate()
-
-
-def stands_still(page):
-    """Waits until the flight does not move for a second; gives the tick."""
-    before = None
-    for _ in range(LIMIT // 1000):
-        now = page.input_value("#time")
-        if now == before:
-            return int(now)
-        before = now
-        page.wait_for_timeout(1000)
-    pytest.fail("the flight goes on")
-
-
-def test_a_live_flight_is_watched_paused_hurried_and_unchanged(live, open_page, tmp_path, shot):
-    process, url, out = live
-    page = open_page(url)
-    page.wait_for_function("Number(document.getElementById('time').value) > 150")
-    shot(page, "live")
-    assert int(page.inner_text("#v-candidates")) > 0
-    page.click("#play")
-    still = stands_still(page)
-    page.select_option("#speed", "max")
-    page.click("#play")
-    page.wait_for_function("document.title.includes('after 120.00 s')")
-    assert still < 11_000
-    out_, _ = process.communicate(timeout=LIMIT / 1000)
-    result = json.loads(out_)
-    log = json.loads(Path(result["log"]).read_text())
-    says_what_the_log_holds(page, log, 11_999)
-    _, alone = fly(tmp_path / "alone", "--duration", "120")
-    assert alone == log
-
-
-def test_a_live_page_keeps_the_newest_ticks_and_cycles(live, open_page):
-    process, url, out = live
-    page = open_page(url)
-    page.evaluate("kept = 1000; keptCycles = 10")
-    page.select_option("#speed", "max")
-    page.wait_for_function("document.title.includes('after 120.00 s')")
-    length, first, cycles = page.evaluate("[flights[0].ticks.t.length, flights[0].first, flights[0].details.size]")
-    assert 1000 <= length <= 1105 and first + length == 12_000 and cycles == 10
-    assert page.evaluate("flights[0].plans.length") <= 13
-    out_, _ = process.communicate(timeout=LIMIT / 1000)
-    log = json.loads(Path(json.loads(out_)["log"]).read_text())
-    for tick in (11_999, 11_500):
-        page.locator("#time").fill(str(tick))
-        assert page.inner_text("#clock") == f"{tick / 100:.2f} s"
-        assert float(value(page, "height").split()[0]) == pytest.approx(log["ticks"]["z"][tick], abs=0.0051)
-    # What is no longer there cannot be chosen.
-    page.keyboard.press("Home")
-    assert page.input_value("#time") == str(first)
-
-
-def test_the_server_refuses_what_it_does_not_know(live):
-    _, url, _ = live
-
-    def status(path, method="GET", **headers):
-        headers = {name.replace("_", "-"): value for name, value in headers.items()}
-        request = urllib.request.Request(url + path, method=method, headers=headers)
-        try:
-            return urllib.request.urlopen(request, timeout=LIMIT / 1000).status
-        except urllib.error.HTTPError as error:
-            return error.code
-
-    assert status("") == 200
-    assert status("passwd") == 404
-    assert status("", Host="evil.example") == 403
-    assert status("", Origin="http://evil.example") == 403
-    assert status("control?pause=1", "POST") == 403
-    page = urllib.request.urlopen(url, timeout=LIMIT / 1000).read().decode()
-    token = re.search(r'TOKEN = "([0-9a-f]{32})"', page)[1]
-    assert status("control?speed=-1", "POST", X_Token=token) == 400
-    assert status("control?pause=0", "POST", X_Token=token) == 204

@@ -75,7 +75,7 @@ pub(super) fn add_limits(panel: &mut Panel, limit: f64) {
 /// Adds the time of the closest approach as an upright line.
 pub(super) fn add_closest_time(panel: &mut Panel, closest: Option<&Closest>) {
     if let Some(found) = closest {
-        let (time, range) = (Scenario::time(found.tick as u32), panel.y.range.clone());
+        let (time, range) = (Scenario::time(found.tick), panel.y.range.clone());
         panel.line(CLOSEST, WIDTH, &[(time, range.start), (time, range.end)]);
     }
 }

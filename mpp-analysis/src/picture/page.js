@@ -95,8 +95,13 @@ function setPlaying(value) {
   playing = value;
   started = null;
   $("play").textContent = playing ? "Pause" : "Play";
-  if (live) control({ pause: playing ? 0 : 1 });
-  else if (!playing) history.replaceState(null, "", "#t=" + (now / 100).toFixed(2));
+  if (!live && !playing) history.replaceState(null, "", "#t=" + (now / 100).toFixed(2));
+}
+
+// A live flight is asked; its server then tells every page.
+function press() {
+  if (live) control({ pause: playing ? 1 : 0 });
+  else setPlaying(!playing);
 }
 
 function go(tick) { now = tick; started = null; if (!live && playing) setPlaying(false); show(); }
@@ -140,7 +145,7 @@ const speeds = live ? [["0.25", "0.25 x"], ["1", "real time"], ["4", "4 x"], ["m
 for (const [value, text] of speeds) $("speed").append(new Option(text, value, false, value === "1"));
 $("speed").onchange = event => { if (live) control({ speed: event.target.value }); else { speed = Number(event.target.value); started = null; } };
 $("time").oninput = event => go(Number(event.target.value));
-$("play").onclick = () => setPlaying(!playing);
+$("play").onclick = press;
 $("back").onclick = () => toPlan(-1);
 $("next").onclick = () => toPlan(1);
 $("follow").onchange = show;
@@ -154,7 +159,7 @@ addEventListener("keydown", event => {
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
   const layer = LAYERS[Number(event.key) - 1];
   const step = event.shiftKey ? 100 : 10;
-  if (event.key === " ") setPlaying(!playing);
+  if (event.key === " ") press();
   else if (event.key === "ArrowLeft") go(now - step);
   else if (event.key === "ArrowRight") go(now + step);
   else if (event.key === "Home") go(begins());
@@ -170,13 +175,10 @@ addEventListener("keydown", event => {
   event.preventDefault();
 });
 
-// The part of a live flight that is kept. After a gap, which a slow page may have, it begins anew.
+// The part of a live flight that is kept.
 function keep(flight, rows) {
-  const T = flight.ticks, tick = Math.round(rows.t[0] * 100);
-  if (!T.t.length || tick !== lastTick(flight) + 1) {
-    for (const name of columns) T[name].length = 0;
-    flight.first = tick;
-  }
+  const T = flight.ticks;
+  if (!T.t.length) flight.first = Math.round(rows.t[0] * 100);
   for (const name of columns) T[name].push(...rows[name]);
   const over = T.t.length - kept;
   // Many at once, because it moves all the others.
@@ -187,36 +189,63 @@ function keep(flight, rows) {
   }
 }
 
+// How a page stands to the server of its flight.
+function tellState(flight, source) {
+  $("state").textContent = flight.summary
+    ? "The flight has ended. When another flight begins at this address, this page shows it."
+    : source.readyState === EventSource.OPEN ? ""
+    : "The server is gone. This page tries to reach it again, and goes on when the server is back.";
+}
+
 function watch() {
   addFlight({});
-  const [flight] = flights;
   $("play").textContent = "Pause";
   $("title").textContent = "waiting for the flight";
-  const source = new EventSource("/events");
-  source.addEventListener("begin", event => {
-    // A connection that was lost begins again with all that the server kept.
-    Object.assign(flight, { header: JSON.parse(event.data), plans: [], orders: [], first: 0 });
+  connect(flights[0]);
+}
+
+// Follows the server's events. A browser that lost the connection asks for what came after the last event.
+function connect(flight) {
+  const source = new EventSource("/events"), told = () => tellState(flight, source);
+  const hear = (kind, act) => source.addEventListener(kind, event => act(JSON.parse(event.data), event));
+  source.onopen = told;
+  source.onerror = () => {
+    told();
+    // A browser gives up when it gets another answer than events, for instance that there is no place.
+    if (source.readyState === EventSource.CLOSED) setTimeout(connect, 2000, flight);
+  };
+  hear("begin", (header, event) => {
+    // Another flight has another server, which obeys only the page that it served.
+    if (!event.lastEventId.startsWith(TOKEN)) return location.reload();
+    Object.assign(flight, { header, plans: [], orders: [], first: 0, summary: null, closest: null });
     for (const name of columns) flight.ticks[name].length = 0;
     flight.details.clear();
     now = 0;
     title(flight);
   });
-  source.addEventListener("ticks", event => {
-    const rows = JSON.parse(event.data), atEnd = !flight.ticks.t.length || now >= lastTick(flight);
+  hear("pace", ({ pause, speed }) => {
+    setPlaying(!pause);
+    const choice = $("speed");
+    if (![...choice.options].some(option => option.value === speed)) choice.append(new Option(speed + " x", speed));
+    choice.value = speed;
+  });
+  hear("ticks", rows => {
+    const atEnd = !flight.ticks.t.length || now >= lastTick(flight);
     if (!rows.t.length) return;
     keep(flight, rows);
     if (atEnd) now = lastTick(flight);
     changed = true;
   });
-  source.addEventListener("plan", event => { flight.plans.push(JSON.parse(event.data)); });
-  source.addEventListener("detail", event => {
-    const detail = JSON.parse(event.data);
+  hear("plan", plan => { flight.plans.push(plan); });
+  hear("detail", detail => {
     flight.details.set(detail.tick, detail);
     for (const tick of flight.details.keys()) if (flight.details.size > keptCycles) flight.details.delete(tick);
   });
-  source.addEventListener("end", event => {
-    flight.summary = JSON.parse(event.data);
-    source.close();
+  hear("closest", closest => { flight.closest = closest; changed = true; });
+  hear("order", order => { flight.orders.push(order); title(flight); });
+  hear("end", summary => {
+    flight.summary = summary;
+    told();
     title(flight);
     show();
     $("play").disabled = true;

@@ -1,18 +1,16 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
-use super::help::{OUTPUT, PLANNER, RUN, WORLD};
+use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
-use super::scenario::{ScenarioArgs, replace};
+use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{generator, preset, seed};
+use super::values::{preset, seed};
 use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
-use crate::files::read_field;
 use mpp_analysis::campaign::{
-    Campaign, Cell, CellReport, Lists, NamedField, Report, Row, Shard, Taxonomy, merge,
+    Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
 };
 use mpp_analysis::rows::Header;
-use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::Preset;
 use std::collections::HashSet;
 use std::path::PathBuf;
@@ -23,16 +21,8 @@ use std::sync::{Mutex, PoisonError};
 pub(super) struct CampaignArgs {
     #[command(flatten)]
     pub(super) scenario: ScenarioArgs,
-    /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
-    /// --obstacles is given
-    #[arg(long, help_heading = WORLD, value_name = "FILE")]
-    field: Vec<PathBuf>,
-    /// Generators of random obstacles, a list [default: the scenario's, else paper]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
-    generator: Vec<GeneratorName>,
-    /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
-    obstacles: Vec<usize>,
+    #[command(flatten)]
+    field: FieldArgs,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
     #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
     pub(super) paths: Vec<u16>,
@@ -179,26 +169,13 @@ pub(super) fn rows_of(paths: &[PathBuf]) -> Result<(Campaign, Vec<Row>), Campaig
     Ok((campaign, rows))
 }
 
-/// The fields of these files.
-pub(super) fn named_fields(paths: &[PathBuf]) -> Result<Vec<NamedField>, Failure> {
-    let named = |path: &PathBuf| {
-        Ok(NamedField {
-            name: path.display().to_string(),
-            content: read_field(path).map_err(|error| Failure::new(USAGE, error))?,
-        })
-    };
-    paths.iter().map(named).collect()
-}
-
 /// The lists of the command line.
 pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
     Ok(Lists {
         preset: args.preset.clone(),
-        field: named_fields(&args.field)?,
-        generator: args.generator.clone(),
-        obstacles: args.obstacles.clone(),
         paths: args.paths.clone(),
         replan_hz: args.replan_hz.clone(),
+        ..args.field.lists()?
     })
 }
 

@@ -1,33 +1,23 @@
 //! `ceiling`: which fields can be passed at all, proven either way.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
-use super::campaign::{failure, named_fields};
+use super::campaign::failure;
 use super::help::{OUTPUT, RUN, WORLD};
 use super::loudness::progress_bar;
-use super::scenario::ScenarioArgs;
+use super::scenario::{FieldArgs, ScenarioArgs};
 use super::signals::Signals;
-use super::values::{generator, seed};
+use super::values::seed;
 use crate::campaign::{CampaignError, decide_all};
-use mpp_analysis::campaign::{Campaign, Lists};
+use mpp_analysis::campaign::Campaign;
 use mpp_analysis::ceiling::{CeilingCell, CeilingReport};
-use mpp_sim::generator::GeneratorName;
-use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = super::help::CEILING)]
 pub(super) struct CeilingArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
-    /// --obstacles is given
-    #[arg(long, help_heading = WORLD, value_name = "FILE")]
-    field: Vec<PathBuf>,
-    /// Generators of random obstacles, a list [default: the scenario's, else paper]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
-    generator: Vec<GeneratorName>,
-    /// Numbers of random obstacles, a list such as 160,320 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
-    obstacles: Vec<usize>,
+    #[command(flatten)]
+    field: FieldArgs,
     /// Margins that a flight keeps beside the body's radius [m], a list
     #[arg(long, help_heading = WORLD, value_delimiter = ',', default_values_t = [0.0])]
     margin: Vec<f64>,
@@ -46,13 +36,12 @@ pub(super) struct CeilingArgs {
 }
 
 pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
-    let lists = Lists {
-        field: named_fields(&args.field)?,
-        generator: args.generator.clone(),
-        obstacles: args.obstacles.clone(),
-        ..Lists::default()
-    };
-    let campaign = Campaign::new(args.scenario.file()?, lists, args.fields, args.seed);
+    let campaign = Campaign::new(
+        args.scenario.file()?,
+        args.field.lists()?,
+        args.fields,
+        args.seed,
+    );
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;
     let cells = campaign.cells();

@@ -83,7 +83,8 @@ impl GroundArgs {
         };
         let refused = |why: String| Failure::new(LINK, format!("--live {address}: {why}"));
         let header = Header::of(scenario, &scenario.field());
-        let live = Live::open(address, &header).map_err(|error| refused(error.to_string()))?;
+        let live = Live::open(address, &header, self.speed());
+        let live = live.map_err(|error| refused(error.to_string()))?;
         talk(format_args!("live at http://{}/", live.address()));
         Ok(Some(live))
     }

@@ -3,8 +3,10 @@
 
 use super::answer::{Failure, USAGE};
 use super::help::{PLANNER, WORLD};
-use super::values::{navigation, scene};
-use crate::files::{read_aircraft, read_lidar, read_scenario};
+use super::values::{generator, navigation, scene};
+use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
+use mpp_analysis::campaign::{Lists, NamedField};
+use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{LidarTable, NavigationSource, Scenario, ScenarioFile, TICK_MS};
 use mpp_sim::scene::Scene;
 use std::path::PathBuf;
@@ -112,6 +114,39 @@ impl ScenarioArgs {
     /// Whether a file was given.
     pub(super) fn has_file(&self) -> bool {
         self.scenario.is_some()
+    }
+}
+
+/// The fields of a grid of cells. Each list that is given takes precedence over the scenario.
+#[derive(Clone, Debug, clap::Args)]
+pub(super) struct FieldArgs {
+    /// Field of obstacles (TOML, as docs/fields.md); given again, each is a cell. It stands alone unless
+    /// --obstacles is given
+    #[arg(long, help_heading = WORLD, value_name = "FILE")]
+    field: Vec<PathBuf>,
+    /// Generators of random obstacles, a list [default: the scenario's, else paper]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
+    generator: Vec<GeneratorName>,
+    /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
+    obstacles: Vec<usize>,
+}
+
+impl FieldArgs {
+    /// The lists of a campaign that has no others.
+    pub(super) fn lists(&self) -> Result<Lists, Failure> {
+        let named = |path: &PathBuf| {
+            Ok(NamedField {
+                name: path.display().to_string(),
+                content: read_field(path).map_err(|error| Failure::new(USAGE, error))?,
+            })
+        };
+        Ok(Lists {
+            field: self.field.iter().map(named).collect::<Result<_, _>>()?,
+            generator: self.generator.clone(),
+            obstacles: self.obstacles.clone(),
+            ..Lists::default()
+        })
     }
 }
 

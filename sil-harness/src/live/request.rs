@@ -16,6 +16,8 @@ pub(super) struct Request {
     pub(super) host: Option<String>,
     pub(super) origin: Option<String>,
     pub(super) token: Option<String>,
+    /// The last event that the browser got before it lost the connection.
+    pub(super) last_event: Option<String>,
 }
 
 /// Reads a head with `read`, which waits no longer than it is told; `elapsed` is the time since the
@@ -55,6 +57,7 @@ fn parse(head: &str) -> Request {
             "host" => request.host = value,
             "origin" => request.origin = value,
             "x-token" => request.token = value,
+            "last-event-id" => request.last_event = value,
             _ => {}
         }
     }
@@ -68,13 +71,14 @@ mod tests {
     #[test]
     fn a_head_is_read_in_whatever_bits_it_comes() {
         let text =
-            b"POST /control?pause=1 HTTP/1.1\r\nhost: a:1\r\nORIGIN:http://b\r\nX-Token: c\r\n\r\n";
+            b"POST /control?pause=1 HTTP/1.1\r\nhost: a:1\r\nORIGIN:http://b\r\nX-Token: c\r\nLast-Event-ID: d-1\r\n\r\n";
         let wanted = Request {
             method: "POST".to_owned(),
             path: "/control?pause=1".to_owned(),
             host: Some("a:1".to_owned()),
             origin: Some("http://b".to_owned()),
             token: Some("c".to_owned()),
+            last_event: Some("d-1".to_owned()),
         };
         for size in [1, 7, 1000] {
             let mut bits = text.chunks(size);

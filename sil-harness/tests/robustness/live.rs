@@ -5,18 +5,18 @@ use mpp_sim::log::Header;
 use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::live::{Live, Wish};
 use sil_harness::pace::Speed;
-use std::io::{Read, Write};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 
 const AS_STARTED: Wish = Wish {
     pause: false,
-    speed: None,
+    speed: Speed::Times(1.0),
 };
 
 fn open() -> Live {
     let scenario = Scenario::new(Preset::Flight, 1);
     let header = Header::of(&scenario, &scenario.field());
-    Live::open("127.0.0.1:0", &header).unwrap()
+    Live::open("127.0.0.1:0", &header, AS_STARTED.speed).unwrap()
 }
 
 /// Sends a request with these lines in its head.
@@ -105,7 +105,7 @@ fn a_speed_out_of_range_is_refused_with_the_range() {
     }
     let answer = answer(ask(&live, "POST /control?speed=0.01", &token));
     assert_eq!(status(&answer), "204");
-    assert_eq!(live.wish().speed, Some(Speed::Times(0.01)));
+    assert_eq!(live.wish().speed, Speed::Times(0.01));
     for speed in ["1e-300", "1e-4", "1001"] {
         let output = harness().args(["fly", "--speed", speed]).output().unwrap();
         assert_eq!(output.status.code(), Some(2), "{speed}");
@@ -135,4 +135,89 @@ fn who_comes_when_all_places_are_taken_is_told_so() {
         looker.read_exact(&mut head).unwrap();
         assert_eq!(&head, b"HTTP/1.1 200 OK");
     }
+}
+
+/// Reads events until one of this kind has come; gives the name of each of them.
+fn events_until(stream: TcpStream, kind: &str) -> Vec<(String, String)> {
+    let mut lines = BufReader::new(stream).lines().map(Result::unwrap);
+    let mut events: Vec<(String, String)> = Vec::new();
+    while events.last().is_none_or(|(_, last)| last != kind) {
+        let line = lines.next().unwrap();
+        if let Some(id) = line.strip_prefix("id: ") {
+            let event = lines.next().unwrap();
+            events.push((
+                id.to_owned(),
+                event.strip_prefix("event: ").unwrap().to_owned(),
+            ));
+        }
+    }
+    events
+}
+
+#[test]
+fn who_lost_the_connection_goes_on_where_it_was() {
+    let live = open();
+    let token = format!("X-Token: {}\r\n", token(&live));
+    let pace = |query: &str| {
+        let answer = answer(ask(&live, &format!("POST /control?{query}"), &token));
+        assert_eq!(status(&answer), "204");
+    };
+    let since = |last: &str| {
+        let lines = format!("Last-Event-ID: {last}\r\n");
+        let events = events_until(ask(&live, "GET /events", &lines), "pace");
+        events.into_iter().map(|(_, kind)| kind).collect::<Vec<_>>()
+    };
+    let events = events_until(ask(&live, "GET /events", ""), "pace");
+    assert_eq!(
+        events
+            .iter()
+            .map(|(_, kind)| kind.as_str())
+            .collect::<Vec<_>>(),
+        ["begin", "pace"]
+    );
+    let (begin, first_pace) = (&events[0].0, &events[1].0);
+    assert_eq!(since(begin), ["pace"]);
+    // Nothing comes twice: the next event is the new one.
+    pace("pause=1");
+    assert_eq!(since(first_pace), ["pace"]);
+    // A name that is none of this flight gets everything.
+    let other = open();
+    let foreign = &events_until(ask(&other, "GET /events", ""), "begin")[0].0;
+    assert_ne!(foreign, begin);
+    for name in [foreign, "", "7"] {
+        assert_eq!(since(name), ["begin", "pace"], "{name}");
+    }
+}
+
+#[test]
+fn every_viewer_is_told_of_the_pace() {
+    let live = open();
+    let mut viewers = [ask(&live, "GET /events", ""), ask(&live, "GET /events", "")];
+    for viewer in &mut viewers {
+        // Both look before anything changes.
+        assert!(
+            read_until(viewer, r#""pause":false"#).contains(r#"data: {"pause":false,"speed":"1"}"#)
+        );
+    }
+    let token = format!("X-Token: {}\r\n", token(&live));
+    let request = "POST /control?pause=1&speed=max";
+    assert_eq!(status(&answer(ask(&live, request, &token))), "204");
+    let late = ask(&live, "GET /events", "");
+    for mut viewer in viewers.into_iter().chain([late]) {
+        let told = read_until(&mut viewer, r#""pause":true"#);
+        assert!(
+            told.ends_with(r#"data: {"pause":true,"speed":"max"}"#),
+            "{told}"
+        );
+    }
+}
+
+/// Reads up to the end of the line that holds this.
+fn read_until(stream: &mut TcpStream, wanted: &str) -> String {
+    let (mut text, mut byte) = (String::new(), [0]);
+    while !(text.ends_with('\n') && text.contains(wanted)) {
+        stream.read_exact(&mut byte).unwrap();
+        text.push(char::from(byte[0]));
+    }
+    text.trim_end().to_owned()
 }

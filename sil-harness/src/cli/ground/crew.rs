@@ -42,7 +42,7 @@ impl Crew {
             Err(error) => error.to_string(),
         };
         if let (Some(live), Ok(log)) = (self.live, result) {
-            live.end(&log.summary);
+            live.end(log);
         }
         let Some(transport) = self.transport else {
             return Ok(());
@@ -86,6 +86,9 @@ impl Ground for Crew {
 
     fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {
         self.tuning = Some(*tuning);
+        if let (Some(live), Ok(())) = (&mut self.live, result) {
+            live.ordered(order);
+        }
         if self.unsettled > 0 {
             self.unsettled -= 1;
             if let Err(refused) = result {

@@ -21,8 +21,6 @@ pub(super) fn patience(speed: Speed) -> Option<u32> {
 
 /// Keeps a flight at its pace.
 pub(super) struct Pacer {
-    /// The speed that the command line gave.
-    started: Speed,
     speed: Speed,
     begin: Instant,
     ticks: u32,
@@ -31,7 +29,6 @@ pub(super) struct Pacer {
 impl Pacer {
     pub(super) fn new(speed: Speed) -> Self {
         Self {
-            started: speed,
             speed,
             begin: Instant::now(),
             ticks: 0,
@@ -47,15 +44,11 @@ impl Pacer {
             std::thread::sleep(Duration::from_millis(20));
             wish = live.wish();
         }
-        let speed = wish.speed.unwrap_or(self.started);
-        let other = speed != self.speed;
+        let other = wish.speed != self.speed;
         if paused || other {
-            *self = Self {
-                started: self.started,
-                ..Self::new(speed)
-            };
+            *self = Self::new(wish.speed);
         }
-        other.then_some(speed)
+        other.then_some(wish.speed)
     }
 
     /// Waits for the end of a tick. A tick before the flight takes real time even at maximum speed.
