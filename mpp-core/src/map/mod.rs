@@ -18,7 +18,7 @@ use crate::vehicle::VehicleState;
 pub(crate) use cell::rounded_down;
 pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
-pub use memory::MemoryMap;
+pub use memory::{LoneHits, MemoryMap};
 pub use point::GridPoint;
 pub(crate) use walk::CellWalk;
 

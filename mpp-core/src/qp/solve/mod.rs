@@ -244,6 +244,7 @@ impl Solver {
 
     /// Writes the trajectory that follows from the multipliers. Returns the status, or
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
+    #[inline(never)]
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
         let mut normalised = [0.0; CONTROLS];
         for active in &self.active {
