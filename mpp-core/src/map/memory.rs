@@ -121,11 +121,9 @@ impl MemoryMap {
         if rows == 0 {
             return;
         }
-        if up > 0.0 {
-            self.evidence.rotate_left(rows);
-        } else {
-            self.evidence.rotate_right(rows);
-        }
+        // A turn to the right is one to the left by the rest, and the image holds one rotation.
+        let left = if up > 0.0 { rows } else { ROWS - rows };
+        self.evidence.rotate_left(left);
         let fresh = if up > 0.0 { ROWS - rows..ROWS } else { 0..rows };
         for row in self.evidence.get_mut(fresh).unwrap_or_default() {
             *row = [0; COLS];
@@ -154,7 +152,8 @@ impl MemoryMap {
         self.insert_beams(scan, 0..scan.ranges.len(), sight, pose, &lone);
     }
 
-    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect.
+    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect. `lone` are
+    /// the cells of [`Self::write_lone_hits`] for the same scan and pose.
     pub fn insert_beams(
         &mut self,
         scan: &LidarScan,

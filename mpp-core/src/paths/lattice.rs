@@ -269,23 +269,29 @@ impl Lattice {
     /// only after the search.
     pub fn paths(&self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
         paths.clear();
-        let mut through = [(NEVER, 0); HEIGHTS];
+        // The least cost through each height, and its slope.
+        let (mut through, mut slopes) = ([0; HEIGHTS], [0_i8; HEIGHTS]);
+        through.fill(NEVER);
         let passes = self.to_via.iter().zip(&self.layer);
         for (slope, (to, from)) in (0..).zip(passes) {
-            for (best, (to, from)) in through.iter_mut().zip(to.iter().zip(from)) {
-                *best = (*best).min((to.saturating_add(*from), slope));
+            let best = through.iter_mut().zip(&mut slopes);
+            for ((least, best), (to, from)) in best.zip(to.iter().zip(from)) {
+                let cost = to.saturating_add(*from);
+                if cost < *least {
+                    (*least, *best) = (cost, slope);
+                }
             }
         }
         let mut minima: heapless::Vec<(u32, i32, i32), HEIGHTS> = heapless::Vec::new();
-        for (height, cost) in (0..).zip(through.iter()) {
+        for (height, (cost, slope)) in (0..).zip(through.iter().zip(&slopes)) {
             let at = |height: i32| {
                 let place = usize::try_from(height).ok();
                 place
-                    .and_then(|place| through.get(place))
-                    .map_or(NEVER, |cost| cost.0)
+                    .and_then(|place| through.get(place).copied())
+                    .unwrap_or(NEVER)
             };
-            if cost.0 < NEVER && cost.0 <= at(height - 1) && cost.0 < at(height + 1) {
-                let _ = minima.push((cost.0, height, cost.1));
+            if *cost < NEVER && *cost <= at(height - 1) && *cost < at(height + 1) {
+                let _ = minima.push((*cost, height, i32::from(*slope)));
             }
         }
         while !paths.is_full()

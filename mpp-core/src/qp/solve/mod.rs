@@ -199,6 +199,8 @@ impl Solver {
     }
 
     /// Makes up to `iterations` steps. Returns the status as soon as there is one.
+    // Not inlined, so that the steps do not lie on the stack beneath what follows the last of them.
+    #[inline(never)]
     pub fn advance(&mut self, shared: &Condensed, iterations: usize) -> Option<Status> {
         for _ in 0..iterations {
             if self.status.is_some() {
