@@ -18,8 +18,8 @@ use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
 pub use cost_to_go::CostToGo;
 use edges::{
-    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, PER_BYTE, POINTS, Place, Prices,
-    QUARTERS, SLOPES,
+    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, NO_PRICES,
+    PER_BYTE, POINTS, Place, Prices, QUARTERS, SLOPES, VIA,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -27,17 +27,9 @@ pub const STATIONS: usize = 17;
 /// Greatest number of paths from one search.
 pub const MAX_LATTICE_PATHS: usize = 6;
 
-/// The station at which the two passes meet.
-const VIA: usize = 6;
-const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
-
 /// Greatest distance of a path in height from where it starts \[m\].
 pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
-const NEVER: u32 = 1 << 28;
 
-/// Costs by slope and height.
-type Layer = [[u32; HEIGHTS]; SLOPES];
-const NO_COSTS: Layer = [[0; HEIGHTS]; SLOPES];
 /// The slope at the other end of the best edge for each height and slope, by its difference: [`Place`] tells
 /// where it lies.
 type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];

@@ -1,8 +1,7 @@
 //! What the lattice knows of the way on from the via station. It outlives the search, because it is part of the
 //! price of a roll-out.
 
-use super::edges::{COST_UNIT, HEIGHTS, LEVEL, SLOPES};
-use super::{Layer, MIDDLE, NEVER, NO_COSTS, VIA};
+use super::edges::{COST_UNIT, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, SLOPES, VIA};
 use crate::map::split;
 use crate::tuning::lattice::{DEAREST_ONWARD, RISE, SPACING};
 
