@@ -41,6 +41,8 @@ static LOST: AtomicU32 = AtomicU32::new(0);
 static REPORTED: AtomicU32 = AtomicU32::new(0);
 
 /// Puts bytes into the ring; the line's interrupt sends them. Only the step may call this function.
+// Not inlined, because each message would hold a copy.
+#[inline(never)]
 pub fn send(bytes: &[u8]) {
     count_lost(TO_SEND.push(bytes));
 }

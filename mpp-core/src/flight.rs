@@ -76,6 +76,8 @@ impl FlightLoop {
     }
 
     /// A loop with a regulator that was designed for these settings.
+    // Inlined, so that its parts are written where the loop will be, not first on the stack.
+    #[inline(always)]
     #[must_use]
     pub fn regulated(settings: &Settings, regulated: &Regulated) -> Self {
         let Regulated { trim, lqr } = *regulated;

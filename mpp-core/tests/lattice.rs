@@ -11,7 +11,7 @@ use common::draw::Draw;
 use common::memory::{field, random_map};
 use common::pose::pose;
 use mpp_core::map::{ClearanceField, MemoryMap};
-use mpp_core::paths::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
+use mpp_core::paths::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::sense::LidarScan;
 use mpp_core::tuning::UNKNOWN_AHEAD;
 use std::collections::BTreeMap;
@@ -218,7 +218,9 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
         let mut found = heapless::Vec::new();
         lattice.paths(&mut found);
         let spacing = lattice.spacing();
-        let via = ((lattice.via() - task.x) / spacing).round() as usize;
+        let mut cost_to_go = Box::new(CostToGo::new());
+        lattice.write_cost_to_go(&mut cost_to_go);
+        let via = ((cost_to_go.via() - task.x) / spacing).round() as usize;
         let costs = Costs {
             field: &field,
             task,
@@ -229,16 +231,16 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
             let rest = costs.path(&slopes) - costs.path(&slopes[..=via]);
             let rest = (f64::from(rest) / 16.0).min(2000.0);
             let slope = 2.0 * RISE / spacing * f64::from(slopes[via]);
-            let onward = lattice.onward(path[via], slope);
+            let onward = cost_to_go.at(path[via], slope);
             assert!((onward - rest).abs() < 1e-3, "seed {seed}: {onward}");
             // Half a step aside the cost lies between the costs at either end.
-            let aside = lattice.onward(path[via] + RISE, slope);
-            let between = lattice.onward(path[via] + 0.5 * RISE, slope);
+            let aside = cost_to_go.at(path[via] + RISE, slope);
+            let between = cost_to_go.at(path[via] + 0.5 * RISE, slope);
             assert!((between - 0.5 * (onward + aside)).abs() < 1e-3);
             compared += 1;
         }
         for (z, slope) in [(f64::INFINITY, 9.0), (f64::NEG_INFINITY, -9.0)] {
-            assert!((0.0..=2000.0).contains(&lattice.onward(z, slope)));
+            assert!((0.0..=2000.0).contains(&cost_to_go.at(z, slope)));
         }
     }
     assert!(compared > 50, "{compared}");

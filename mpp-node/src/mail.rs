@@ -1,10 +1,10 @@
 //! The messages between step and planner.
 
-use crate::parameters::Tuning;
 use mpp_core::estimate::Conditions;
 use mpp_core::map::Pose;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
+use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::VehicleState;
 
@@ -20,8 +20,8 @@ pub enum Order {
         /// Number of the set-up. It comes back with the answer, and the step drops an answer to an earlier
         /// set-up.
         number: u32,
-        /// The values in force.
-        tuning: Tuning,
+        /// The settings in force.
+        settings: Settings,
     },
     /// Starts a cycle. The answer is [`Answer::Plan`].
     Begin {
@@ -40,8 +40,12 @@ pub enum Order {
         conditions: Conditions,
         /// The scan.
         scan: LidarScan,
-        /// The values in force.
-        tuning: Tuning,
+        /// The settings of the planner in force.
+        planner: PlannerSettings,
+        /// Ticks from the start of the cycle until its plan is due.
+        latency_ticks: u32,
+        /// Number of slices that the cycle may use in a tick.
+        slices_per_tick: u32,
     },
 }
 

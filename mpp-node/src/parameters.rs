@@ -49,10 +49,21 @@ impl Tuning {
         value: f64,
         in_flight: bool,
     ) -> Result<Self, ParameterVerdict> {
+        self.change(number, value, in_flight)?;
+        Ok(self)
+    }
+
+    /// Changes one parameter. After a fault the values are of no use.
+    pub(crate) fn change(
+        &mut self,
+        number: u8,
+        value: f64,
+        in_flight: bool,
+    ) -> Result<(), ParameterVerdict> {
         let parameter = PARAMETERS
             .get(usize::from(number))
             .ok_or(ParameterVerdict::Unknown)?;
-        if get(parameter.name, &self).is_none() {
+        if get(parameter.name, self).is_none() {
             return Err(ParameterVerdict::NotInPreset);
         }
         let [least, most] = parameter.range;
@@ -69,7 +80,7 @@ impl Tuning {
         }
         let tracked = self.settings.planner.paths == 0;
         let cruise = self.settings.cruise;
-        set(parameter.name, &mut self, value);
+        set(parameter.name, self, value);
         let planner = &self.settings.planner;
         if planner.paths == 0 && planner.flight().is_some() {
             return Err(ParameterVerdict::SetUp(ConfigureVerdict::PathsZero));
@@ -90,7 +101,7 @@ impl Tuning {
         if let Some(setting) = self.settings.out_of_range() {
             return Err(ParameterVerdict::SetUp(convert::out_of_range(setting)));
         }
-        Ok(self)
+        Ok(())
     }
 }
 

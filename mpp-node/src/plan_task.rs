@@ -74,8 +74,8 @@ impl PlanTask {
         self.cycle = None;
         self.answer = None;
         match order {
-            Order::SetUp { number, tuning } => {
-                let result = self.planner.set_up(&tuning.settings);
+            Order::SetUp { number, settings } => {
+                let result = self.planner.set_up(settings);
                 self.answer = Some(Due::SetUp(*number, result));
             }
             Order::Begin {
@@ -86,12 +86,14 @@ impl PlanTask {
                 state,
                 conditions,
                 scan,
-                tuning,
+                planner,
+                latency_ticks,
+                slices_per_tick,
             } => {
-                self.latency = tuning.configure.latency_ticks;
-                self.slices_per_tick = tuning.configure.slices_per_tick;
+                self.latency = *latency_ticks;
+                self.slices_per_tick = *slices_per_tick;
                 // The step checks all values before it orders a cycle, so the planner refuses none of them.
-                let _ = self.planner.retune(&tuning.settings.planner);
+                let _ = self.planner.retune(planner);
                 if *forget {
                     self.planner.forget();
                 }

@@ -64,8 +64,8 @@ impl Oracle {
     /// Replaces the core's estimates and its map by the truth.
     fn advise(&self, order: &mut Order, planner: &mut Planner) {
         match order {
-            Order::SetUp { tuning, .. } => {
-                if let Some(own) = tuning.settings.planner.flight_mut() {
+            Order::SetUp { settings, .. } => {
+                if let Some(own) = settings.planner.flight_mut() {
                     own.deepened = MAX_PATHS;
                 }
             }
@@ -75,7 +75,7 @@ impl Oracle {
                 conditions,
                 scan,
                 time,
-                tuning,
+                planner: settings,
                 ..
             } => {
                 if let Some((truth, wind)) = &self.truth {
@@ -98,7 +98,7 @@ impl Oracle {
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
                 if let Some(planner) = planner.flight_mut() {
                     let map = planner.map_mut();
-                    map.roll(state.x / length, tuning.settings.planner.altitude / length);
+                    map.roll(state.x / length, settings.altitude / length);
                     map.know(|x, z| {
                         let (at, cell) = ((x * length, z * length), CELL * length);
                         near.iter().any(|one| occupies(one, at, cell, *time))

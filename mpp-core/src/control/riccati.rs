@@ -55,6 +55,8 @@ impl core::error::Error for RiccatiError {}
 ///
 /// # Errors
 /// [`RiccatiError`]: each variant names one cause.
+// Not inlined, so that its matrices do not lie on the stack beneath the check of the regulator.
+#[inline(never)]
 pub fn solve_riccati(
     a: &Matrix4<f64>,
     g: &Matrix4<f64>,

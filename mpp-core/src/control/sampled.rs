@@ -50,11 +50,11 @@ fn sampled(open: &Joint) -> Joint {
     let mut term = Joint::identity();
     let mut sum = term;
     for order in 1..=TERMS {
-        term = term * piece / f64::from(order);
+        term = product(&term, &piece) / f64::from(order);
         sum += term;
     }
     for _ in 0..HALVINGS {
-        sum *= sum;
+        sum = product(&sum, &sum);
     }
     sum
 }
@@ -78,11 +78,18 @@ fn closed(settings: &Settings, moves: &Joint, lqr: &Lqr, factor: f64) -> Joint {
 fn decays(closed: &Joint) -> bool {
     let mut power = closed / MOST_GROWTH;
     for _ in 0..SQUARINGS {
-        power *= power;
+        power = product(&power, &power);
         if power.norm() < 1e-6 {
             return true;
         }
     }
     // A number that is not finite is not below any bound.
     false
+}
+
+/// The product of two matrices.
+// Not inlined, because the image would hold four products.
+#[inline(never)]
+fn product(left: &Joint, right: &Joint) -> Joint {
+    left * right
 }

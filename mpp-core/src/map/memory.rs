@@ -55,9 +55,19 @@ pub struct MemoryMap {
     /// Height of the low edge of the window \[m\].
     floor: f64,
     started: bool,
-    /// Cells that a beam of the scan at hand ended in and that stand alone, columns as in `evidence`. The other
-    /// beams of the scan do not clear them.
-    lone_hits: [u128; ROWS],
+}
+
+/// Cells that a beam of a scan ended in and that stand alone, columns as in the map. The other beams of the scan
+/// do not clear them.
+#[derive(Clone, Debug)]
+pub struct LoneHits([u128; ROWS]);
+
+impl LoneHits {
+    /// No cell.
+    #[must_use]
+    pub const fn none() -> Self {
+        Self([0; ROWS])
+    }
 }
 
 impl MemoryMap {
@@ -72,7 +82,6 @@ impl MemoryMap {
             first_col: 0,
             floor: 0.0,
             started: false,
-            lone_hits: [0; ROWS],
         }
     }
 
@@ -112,11 +121,9 @@ impl MemoryMap {
         if rows == 0 {
             return;
         }
-        if up > 0.0 {
-            self.evidence.rotate_left(rows);
-        } else {
-            self.evidence.rotate_right(rows);
-        }
+        // A turn to the right is one to the left by the rest, and the image holds one rotation.
+        let left = if up > 0.0 { rows } else { ROWS - rows };
+        self.evidence.rotate_left(left);
         let fresh = if up > 0.0 { ROWS - rows..ROWS } else { 0..rows };
         for row in self.evidence.get_mut(fresh).unwrap_or_default() {
             *row = [0; COLS];
@@ -140,15 +147,22 @@ impl MemoryMap {
 
     /// Takes in a scan from a pose by a lidar with the range `sight` \[m\].
     pub fn insert(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
-        self.insert_beams(scan, 0..scan.ranges.len(), sight, pose);
+        let mut lone = LoneHits::none();
+        self.write_lone_hits(scan, sight, pose, &mut lone);
+        self.insert_beams(scan, 0..scan.ranges.len(), sight, pose, &lone);
     }
 
-    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect.
-    pub fn insert_beams(&mut self, scan: &LidarScan, beams: Range<usize>, sight: f64, pose: &Pose) {
+    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect. `lone` are
+    /// the cells of [`Self::write_lone_hits`] for the same scan and pose.
+    pub fn insert_beams(
+        &mut self,
+        scan: &LidarScan,
+        beams: Range<usize>,
+        sight: f64,
+        pose: &Pose,
+        lone: &LoneHits,
+    ) {
         let &Pose { x, z, pitch } = pose;
-        if beams.start == 0 {
-            self.note_lone_hits(scan, sight, pose);
-        }
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
         for (beam, range) in ranges.skip(beams.start) {
             let angle = pitch + scan.beam_angle(beam);
@@ -156,7 +170,7 @@ impl MemoryMap {
             let at = |range: f64| (x + range * ahead, z + range * up);
             let range = f64::from(*range);
             if is_return(range, sight) {
-                self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED);
+                self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED, lone);
                 let place = self.slot_at(self.locate(at(range)));
                 if let Some((row, slot)) = place
                     && let Some(cells) = self.evidence.get_mut(row)
@@ -164,7 +178,7 @@ impl MemoryMap {
                     cells[slot] = weighed(cells[slot], HIT);
                 }
             } else {
-                self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED);
+                self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED, lone);
             }
         }
     }
@@ -203,7 +217,13 @@ impl MemoryMap {
     /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\].
     // Both kinds of beams call it, and each would hold a copy.
     #[inline(never)]
-    fn pass(&mut self, at: impl Fn(f64) -> (f64, f64), length: f64, evidence_against: i8) {
+    fn pass(
+        &mut self,
+        at: impl Fn(f64) -> (f64, f64),
+        length: f64,
+        evidence_against: i8,
+        lone: &LoneHits,
+    ) {
         let mut last = None;
         for step in 0..MAX_STEPS {
             let along = FIRST_STEP + STEP * f64::from(step);
@@ -218,8 +238,7 @@ impl MemoryMap {
             let Some((row, slot)) = self.slot_at(place) else {
                 continue;
             };
-            let (Some(cells), Some(lone)) = (self.evidence.get_mut(row), self.lone_hits.get(row))
-            else {
+            let (Some(cells), Some(lone)) = (self.evidence.get_mut(row), lone.0.get(row)) else {
                 continue;
             };
             // A beam of this scan that ended in a cell that stands alone says more than others that pass.
@@ -229,9 +248,9 @@ impl MemoryMap {
         }
     }
 
-    /// Notes the cells that the beams of a scan ended in and that stand alone: a pole, a wire, or a bar end on.
+    /// Writes the cells that the beams of a scan ended in and that stand alone: a pole, a wire, or a bar end on.
     /// Beams that pass the rim of something larger clear the cells that errors of the range set beside it.
-    fn note_lone_hits(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
+    pub fn write_lone_hits(&self, scan: &LidarScan, sight: f64, pose: &Pose, lone: &mut LoneHits) {
         let mut hits = [0_u128; ROWS];
         for (beam, range) in scan.ranges.iter().enumerate() {
             let range = f64::from(*range);
@@ -245,7 +264,7 @@ impl MemoryMap {
                 }
             }
         }
-        for (row, lone) in self.lone_hits.iter_mut().enumerate() {
+        for (row, lone) in lone.0.iter_mut().enumerate() {
             *lone = 0;
             let near = hits.get(row.saturating_sub(2)..(row + 3).min(ROWS));
             let near = near.unwrap_or_default();

@@ -18,7 +18,7 @@ use crate::vehicle::VehicleState;
 pub(crate) use cell::rounded_down;
 pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
-pub use memory::MemoryMap;
+pub use memory::{LoneHits, MemoryMap};
 pub use point::GridPoint;
 pub(crate) use walk::CellWalk;
 
@@ -26,6 +26,8 @@ pub(crate) use walk::CellWalk;
 pub(crate) const MAX_WALK: usize = GRID_ROWS + GRID_COLS + 3;
 
 const WORDS: usize = GRID_COLS.div_ceil(64);
+/// No cell. As a constant it is one call that writes zeros, not a store for each word.
+const NO_CELLS: [[u64; WORDS]; GRID_ROWS] = [[0; WORDS]; GRID_ROWS];
 
 /// Position and pitch of the aircraft at a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,14 +62,12 @@ impl OccupancyGrid {
     /// A free grid.
     #[must_use]
     pub const fn new() -> Self {
-        Self {
-            rows: [[0; WORDS]; GRID_ROWS],
-        }
+        Self { rows: NO_CELLS }
     }
 
     /// Frees every cell.
     pub fn clear(&mut self) {
-        self.rows = [[0; WORDS]; GRID_ROWS];
+        self.rows = NO_CELLS;
     }
 
     /// Marks a cell as occupied. Returns false if the cell lies outside of the grid.

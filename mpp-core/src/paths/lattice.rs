@@ -7,18 +7,19 @@
 //! height. Each minimum of this cost gives a path. These paths differ in the way they pass the obstacles,
 //! or in their heights.
 
+mod cost_to_go;
 mod edges;
 
-use crate::map::{ClearanceField, split};
+use crate::map::ClearanceField;
 use crate::tuning::lattice::{
-    AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, DEAREST_ONWARD, MARGIN, MARGIN_PRICE, RISE,
-    SPACING, STRETCH,
+    AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, MARGIN, MARGIN_PRICE, RISE, SPACING, STRETCH,
 };
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
+pub use cost_to_go::CostToGo;
 use edges::{
-    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, NO_PRICES, PER_BYTE, POINTS, Place, Prices,
-    QUARTERS, SLOPES,
+    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, NO_PRICES,
+    PER_BYTE, POINTS, Place, Prices, QUARTERS, SLOPES, VIA,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -26,16 +27,9 @@ pub const STATIONS: usize = 17;
 /// Greatest number of paths from one search.
 pub const MAX_LATTICE_PATHS: usize = 6;
 
-/// The station at which the two passes meet.
-const VIA: usize = 6;
-const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
-
 /// Greatest distance of a path in height from where it starts \[m\].
 pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
-const NEVER: u32 = 1 << 28;
 
-/// Costs by slope and height.
-type Layer = [[u32; HEIGHTS]; SLOPES];
 /// The slope at the other end of the best edge for each height and slope, by its difference: [`Place`] tells
 /// where it lies.
 type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
@@ -72,6 +66,10 @@ pub struct Lattice {
     station: usize,
     /// Costs between the start and the present station, or between the present station and the far end.
     layer: Layer,
+    /// The same one station on, as far as the search knows it.
+    next: Layer,
+    /// Prices of the points of the present edges.
+    prices: Prices,
     /// Costs from the start to the via station.
     to_via: Layer,
     /// Best previous slope for each height and slope, at each station up to the via station.
@@ -98,8 +96,10 @@ impl Lattice {
             spacing: SPACING,
             slope_step: 0.0,
             station: STATIONS,
-            layer: [[NEVER; HEIGHTS]; SLOPES],
-            to_via: [[NEVER; HEIGHTS]; SLOPES],
+            layer: NO_COSTS,
+            next: NO_COSTS,
+            prices: NO_PRICES,
+            to_via: NO_COSTS,
             before: [[[0; HEIGHTS]; _]; VIA + 1],
             after: [[[0; HEIGHTS]; _]; STATIONS - VIA],
         }
@@ -113,7 +113,7 @@ impl Lattice {
         self.spacing = SPACING * stretch;
         self.slope_step = 2.0 * RISE / self.spacing;
         self.station = 0;
-        self.layer = [[NEVER; HEIGHTS]; SLOPES];
+        forbid(&mut self.layer);
         let steps =
             libm::round(task.slope / self.slope_step).clamp(-f64::from(LEVEL), LEVEL.into());
         let slope = (steps as i32 + LEVEL) as usize;
@@ -136,7 +136,7 @@ impl Lattice {
             station @ VIA..LAST => {
                 if station == VIA {
                     self.to_via = self.layer;
-                    self.layer = [[0; HEIGHTS]; SLOPES];
+                    self.layer = NO_COSTS;
                 }
                 // The second pass runs from the far end back to the via station.
                 self.backward(field, LAST - 1 - (station - VIA));
@@ -147,16 +147,14 @@ impl Lattice {
         self.station < LAST
     }
 
-    // The function holds a layer on the stack, so it is not inlined.
     #[inline(never)]
     fn forward(&mut self, field: &ClearanceField, station: usize) {
         let reached = reached(&self.layer);
-        let mut prices = NO_PRICES;
-        self.write_prices(field, station, &reached, &mut prices);
-        let mut next: Layer = [[NEVER; HEIGHTS]; SLOPES];
+        self.write_prices(field, station, &reached);
+        forbid(&mut self.next);
         let choices = self.before.get_mut(station + 1);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
-        for (to, costs) in (0..).zip(next.iter_mut()) {
+        for (to, costs) in (0..).zip(&mut self.next) {
             // The lowest start comes first: among equal costs the first one stays.
             for from in [to + 1, to, to - 1] {
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, from)) else {
@@ -173,7 +171,7 @@ impl Lattice {
                     row.unwrap_or_default(),
                 );
                 edges.relax(
-                    &prices,
+                    &self.prices,
                     heights.start,
                     known,
                     place.choosing(from - to),
@@ -181,19 +179,17 @@ impl Lattice {
                 );
             }
         }
-        self.layer = next;
+        self.layer = self.next;
     }
 
-    // The function holds a layer on the stack, so it is not inlined.
     #[inline(never)]
     fn backward(&mut self, field: &ClearanceField, station: usize) {
         let all = 0..HEIGHTS;
-        let mut prices = NO_PRICES;
-        self.write_prices(field, station, &all, &mut prices);
-        let mut previous: Layer = [[NEVER; HEIGHTS]; SLOPES];
+        self.write_prices(field, station, &all);
+        forbid(&mut self.next);
         let choices = self.after.get_mut(station - VIA);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
-        for (from, costs) in (0..).zip(previous.iter_mut()) {
+        for (from, costs) in (0..).zip(&mut self.next) {
             // The edge without a turn comes first: among equal costs the first one stays.
             for to in [from, from - 1, from + 1] {
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, to)) else {
@@ -209,27 +205,22 @@ impl Lattice {
                     costs.get_mut(heights).unwrap_or_default(),
                     row.unwrap_or_default(),
                 );
-                edges.relax(&prices, first, known, place.choosing(to - from), found);
+                edges.relax(&self.prices, first, known, place.choosing(to - from), found);
             }
         }
-        self.layer = previous;
+        self.layer = self.next;
     }
 
     /// Writes the prices of the points on the edges of a station that begin at certain heights. The last quarter
     /// also contains the price of the height itself.
     // Both passes call it, and each would hold a copy.
     #[inline(never)]
-    fn write_prices(
-        &self,
-        field: &ClearanceField,
-        station: usize,
-        heights: &Range<usize>,
-        prices: &mut Prices,
-    ) {
-        let task = &self.task;
+    fn write_prices(&mut self, field: &ClearanceField, station: usize, heights: &Range<usize>) {
+        let task = self.task;
+        self.prices = NO_PRICES;
         let first = (2 * heights.start).saturating_sub(EDGE_REACH);
         let last = (2 * heights.end + EDGE_REACH).min(POINTS);
-        for (quarter, prices) in prices.iter_mut().enumerate() {
+        for (quarter, prices) in self.prices.iter_mut().enumerate() {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
             let ahead = self.spacing * (station as f64 + share);
             let column = field.column(task.x + ahead);
@@ -258,48 +249,41 @@ impl Lattice {
         }
     }
 
-    /// Downrange position of the via station \[m\].
-    #[must_use]
-    pub fn via(&self) -> f64 {
-        self.task.x + self.spacing * VIA as f64
-    }
-
-    /// Cost of the best path from a height \[m\] and a slope at the via station to the far end. It is linear
-    /// between lattice points, and at most 2,000. It is valid only after the search.
-    #[must_use]
-    pub fn onward(&self, z: f64, slope: f64) -> f64 {
-        let (height, up) = split((z - self.task.z) / RISE + f64::from(MIDDLE), HEIGHTS);
-        let (slope, steeper) = split(slope / self.slope_step + f64::from(LEVEL), SLOPES);
-        let at = |height: usize, slope: usize| {
-            let costs = self.layer.get(slope);
-            let cost = costs.and_then(|costs| costs.get(height)).copied();
-            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(DEAREST_ONWARD)
-        };
-        let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
-        along(height) * (1.0 - up) + along(height + 1) * up
+    /// Writes the cost from the via station on. The call is valid only after the search.
+    pub fn write_cost_to_go(&self, to: &mut CostToGo) {
+        to.start = [self.task.x, self.task.z];
+        to.spacing = self.spacing;
+        to.slope_step = self.slope_step;
+        to.layer = self.layer;
     }
 
     /// Writes the paths through the best heights of the via station, the best path first. The call is valid
     /// only after the search.
     pub fn paths(&self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
         paths.clear();
-        let mut through = [(NEVER, 0); HEIGHTS];
+        // The least cost through each height, and its slope.
+        let (mut through, mut slopes) = ([0; HEIGHTS], [0_i8; HEIGHTS]);
+        through.fill(NEVER);
         let passes = self.to_via.iter().zip(&self.layer);
         for (slope, (to, from)) in (0..).zip(passes) {
-            for (best, (to, from)) in through.iter_mut().zip(to.iter().zip(from)) {
-                *best = (*best).min((to.saturating_add(*from), slope));
+            let best = through.iter_mut().zip(&mut slopes);
+            for ((least, best), (to, from)) in best.zip(to.iter().zip(from)) {
+                let cost = to.saturating_add(*from);
+                if cost < *least {
+                    (*least, *best) = (cost, slope);
+                }
             }
         }
         let mut minima: heapless::Vec<(u32, i32, i32), HEIGHTS> = heapless::Vec::new();
-        for (height, cost) in (0..).zip(through.iter()) {
+        for (height, (cost, slope)) in (0..).zip(through.iter().zip(&slopes)) {
             let at = |height: i32| {
                 let place = usize::try_from(height).ok();
                 place
-                    .and_then(|place| through.get(place))
-                    .map_or(NEVER, |cost| cost.0)
+                    .and_then(|place| through.get(place).copied())
+                    .unwrap_or(NEVER)
             };
-            if cost.0 < NEVER && cost.0 <= at(height - 1) && cost.0 < at(height + 1) {
-                let _ = minima.push((cost.0, height, cost.1));
+            if *cost < NEVER && *cost <= at(height - 1) && *cost < at(height + 1) {
+                let _ = minima.push((*cost, height, i32::from(*slope)));
             }
         }
         while !paths.is_full()
@@ -348,6 +332,13 @@ fn reached(layer: &Layer) -> Range<usize> {
     let mut heights = (0..HEIGHTS).filter(is_reached);
     let first = heights.next().unwrap_or(0);
     first..heights.next_back().unwrap_or(first) + 1
+}
+
+/// Sets costs that no path reaches. The compiler would write an array of such values as one store for each of
+/// them.
+#[inline(never)]
+fn forbid(layer: &mut Layer) {
+    layer.as_flattened_mut().fill(NEVER);
 }
 
 /// A row of a layer by the number of the slope.

@@ -9,7 +9,7 @@ use crate::Rules;
 use crate::config::{KNOTS, ORIGIN_COL, ORIGIN_ROW, PATH_POINTS, SEARCH_ROW};
 use crate::map::GridPoint;
 pub(crate) use lattice::CLIMB;
-pub use lattice::{Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
+pub use lattice::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 pub use rrt::{Extension, Search};
 pub use tree::{Node, Tree};
 

@@ -55,8 +55,6 @@ impl Search {
 
     /// Draws one sample in the search box: first the downrange position, then the height. `sample()` gives
     /// uniform numbers in [0, 1).
-    // Not inlined, so that the list of neighbours is not on the stack of the caller.
-    #[inline(never)]
     pub fn extend(&mut self, grid: &OccupancyGrid, mut sample: impl FnMut() -> f64) -> Extension {
         if self.tree.is_full() || self.samples >= TREE_SAMPLES {
             return Extension::Complete;

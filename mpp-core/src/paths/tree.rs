@@ -37,10 +37,12 @@ pub struct Node {
 #[derive(Clone, Debug)]
 pub struct Tree {
     nodes: heapless::Vec<Node, TREE_NODES>,
+    /// The nodes near the newest one.
+    near: heapless::Vec<Neighbour, TREE_NODES>,
 }
 
-/// A node near the new node.
-#[derive(Clone, Copy)]
+/// A node near the newest one.
+#[derive(Clone, Copy, Debug)]
 struct Neighbour {
     index: u16,
     parent: Option<u16>,
@@ -57,6 +59,7 @@ impl Tree {
     pub const fn new() -> Self {
         Self {
             nodes: heapless::Vec::new(),
+            near: heapless::Vec::new(),
         }
     }
 
@@ -103,21 +106,6 @@ impl Tree {
         nearest
     }
 
-    /// Cost from the root to a node \[m\]: the sum of the edges. In a tree of `n` nodes no path has more than
-    /// `n` nodes, which bounds the walk.
-    fn cost(&self, index: u16) -> f64 {
-        let mut cost = 0.0;
-        let mut next = Some(index);
-        for _ in 0..TREE_NODES {
-            let Some(node) = next.and_then(|index| self.nodes.get(usize::from(index))) else {
-                break;
-            };
-            cost += node.edge;
-            next = node.parent;
-        }
-        cost
-    }
-
     /// Connects the newest node to the neighbour that gives it the least cost, penalties included. The newest
     /// node then becomes the parent of every neighbour whose cost falls by that.
     pub(super) fn rewire_newest(&mut self, grid: &OccupancyGrid, rules: Rules) {
@@ -127,9 +115,9 @@ impl Tree {
         let point = newest.point;
         let parent = newest.parent;
         let current = earlier.len() as u16;
-        let mut neighbours = heapless::Vec::new();
-        self.find_neighbours((current, point, parent), grid, rules, &mut neighbours);
-        let cheapest = neighbours
+        self.find_neighbours((current, point, parent), grid, rules);
+        let cheapest = self
+            .near
             .iter()
             .fold(None, |best: Option<(f64, Neighbour)>, n| {
                 let cost = n.penalized + n.distance;
@@ -141,13 +129,14 @@ impl Tree {
         let Some((mut own_cost, parent)) = cheapest else {
             return;
         };
-        self.set_parent(current, parent.index, parent.distance, rules);
+        let Self { nodes, near } = self;
+        set_parent(nodes, current, parent.index, parent.distance, rules);
 
-        sort_by_cost(&mut neighbours);
+        sort_by_cost(near);
         let mut penalty_due = true;
-        for neighbour in &neighbours {
+        for neighbour in near {
             if own_cost + neighbour.distance < neighbour.cost {
-                self.set_parent(neighbour.index, current, neighbour.distance, rules);
+                set_parent(nodes, neighbour.index, current, neighbour.distance, rules);
                 if penalty_due {
                     own_cost += CLOSE_PENALTY;
                     penalty_due = false;
@@ -156,25 +145,17 @@ impl Tree {
         }
     }
 
-    fn set_parent(&mut self, index: u16, parent: u16, distance: f64, rules: Rules) {
-        if let Some(node) = self.nodes.get_mut(usize::from(index)) {
-            node.parent = Some(parent);
-            if !rules.are_authors() {
-                node.edge = distance;
-            }
-        }
-    }
-
-    /// Adds the nodes before the newest one, `(index, point, parent)`, within its rewiring radius, with their
-    /// penalties. The edge from the parent is known to be free. The caller owns the list, because each return by value would copy it.
+    /// Lists the nodes before the newest one, `(index, point, parent)`, within its rewiring radius, with their
+    /// penalties. The edge from the parent is known to be free.
     fn find_neighbours(
-        &self,
+        &mut self,
         (current, point, parent): (u16, GridPoint, Option<u16>),
         grid: &OccupancyGrid,
         rules: Rules,
-        neighbours: &mut heapless::Vec<Neighbour, TREE_NODES>,
     ) {
-        for (index, node) in (0..current).zip(&self.nodes) {
+        let Self { nodes, near } = self;
+        near.clear();
+        for (index, node) in (0..current).zip(nodes.iter()) {
             // Most nodes are far away, and a flight computer computes the root in software.
             let (row, col) = (node.point.row - point.row, node.point.col - point.col);
             if row * row + col * col > CERTAINLY_BEYOND {
@@ -186,9 +167,9 @@ impl Tree {
                     || parent == Some(index)
                     || grid.segment_is_free(node.point, point));
             if reachable {
-                let cost = self.cost(index);
+                let cost = cost(nodes, index);
                 // The list has as many places as the tree has nodes, so the push cannot fail.
-                let _ = neighbours.push(Neighbour {
+                let _ = near.push(Neighbour {
                     index,
                     parent: node.parent,
                     cost,
@@ -197,11 +178,9 @@ impl Tree {
                 });
             }
         }
-        for child in 0..neighbours.len() {
-            let parent = neighbours.get(child).and_then(|child| child.parent);
-            let near_parent = neighbours
-                .iter_mut()
-                .find(|near| Some(near.index) == parent);
+        for child in 0..near.len() {
+            let parent = near.get(child).and_then(|child| child.parent);
+            let near_parent = near.iter_mut().find(|near| Some(near.index) == parent);
             if let Some(near_parent) = near_parent {
                 near_parent.penalized += CLOSE_PENALTY;
             }
@@ -230,6 +209,30 @@ impl Tree {
         }
         path.reverse();
         true
+    }
+}
+
+/// Cost from the root to a node \[m\]: the sum of the edges. In a tree of `n` nodes no path has more than
+/// `n` nodes, which bounds the walk.
+fn cost(nodes: &[Node], index: u16) -> f64 {
+    let mut cost = 0.0;
+    let mut next = Some(index);
+    for _ in 0..TREE_NODES {
+        let Some(node) = next.and_then(|index| nodes.get(usize::from(index))) else {
+            break;
+        };
+        cost += node.edge;
+        next = node.parent;
+    }
+    cost
+}
+
+fn set_parent(nodes: &mut [Node], index: u16, parent: u16, distance: f64, rules: Rules) {
+    if let Some(node) = nodes.get_mut(usize::from(index)) {
+        node.parent = Some(parent);
+        if !rules.are_authors() {
+            node.edge = distance;
+        }
     }
 }
 

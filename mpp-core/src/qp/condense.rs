@@ -57,13 +57,16 @@ impl fmt::Display for CondenseError {
 impl core::error::Error for CondenseError {}
 
 impl Condensed {
-    /// An empty workspace.
+    /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             model: StageModel::at_rest(),
             dynamics: [Dynamics::at_rest(); STAGES],
-            weights: Weights::PAPER,
+            weights: Weights {
+                control: [0.0; 2],
+                terminal: 0.0,
+            },
             feedback: [Feedback::none(); STAGES],
             response: Response::new(),
             prices: [0.0; ROWS],
@@ -104,6 +107,8 @@ impl Condensed {
 
     /// Writes the response of the outputs to the normalised controls. It follows the response of the state
     /// from stage to stage, with a column for each control so far.
+    // Not inlined, so that its columns do not lie on the stack beneath the design of the feedback.
+    #[inline(never)]
     fn write_response(&mut self) {
         let mut columns = [Vector6::zeros(); CONTROLS];
         let stages = self.dynamics.iter().zip(&self.feedback).enumerate();

@@ -294,8 +294,8 @@ impl Bounds {
     pub(super) fn has_attitude(&self) -> bool {
         self.parts()
             .1
+            .as_flattened()
             .iter()
-            .flatten()
             .any(|bound| *bound != f64::INFINITY)
     }
 

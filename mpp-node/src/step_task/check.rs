@@ -10,9 +10,14 @@ impl StepTask {
     /// Takes the present values as the right ones, after a change from the ground.
     #[inline(never)]
     pub(super) fn keep_values(&mut self) {
-        self.spare = self.flight.as_ref().map(|flight| Spare {
+        let Some(flight) = &self.flight else {
+            self.spare = None;
+            return;
+        };
+        let design = flight.control.design();
+        self.spare = Some(Spare {
             tuning: [flight.tuning; 2],
-            design: [flight.control.design(); 2],
+            design: [design; 2],
         });
     }
 

@@ -13,8 +13,8 @@ impl StepTask {
         let Some(flight) = &self.flight else {
             return;
         };
-        let (tuning, ready) = (flight.tuning, flight.ready);
-        self.order_set_up(tuning);
+        let ready = flight.ready;
+        self.order_set_up();
         if ready {
             self.reject(RejectionCause::PlannerRestarted, send);
             self.give_cycle_up(send);

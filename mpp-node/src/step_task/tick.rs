@@ -204,7 +204,9 @@ impl StepTask {
             state: flight.control.state(),
             conditions: flight.control.conditions(),
             scan: self.scan.clone(),
-            tuning: flight.tuning,
+            planner: flight.tuning.settings.planner,
+            latency_ticks: flight.tuning.configure.latency_ticks,
+            slices_per_tick: flight.tuning.configure.slices_per_tick,
         });
         flight.restarts = restarts;
     }

@@ -25,7 +25,8 @@ impl StepTask {
             return Err(ParameterVerdict::NotConfigured);
         };
         let in_flight = flight.last_tick.is_some();
-        let tuning = (flight.tuning).with(set.parameter, set.value, in_flight)?;
+        let mut tuning = flight.tuning;
+        tuning.change(set.parameter, set.value, in_flight)?;
         if in_flight {
             flight.tuning = tuning;
         } else {
@@ -33,7 +34,7 @@ impl StepTask {
             let regulated = Regulated::new(&tuning.settings).map_err(failed)?;
             flight.asker = Asker::Parameter(set.parameter, flight.tuning);
             flight.refit(&tuning, &regulated);
-            self.order_set_up(tuning);
+            self.order_set_up();
         }
         self.keep_values();
         Ok(())
@@ -64,7 +65,7 @@ impl StepTask {
                 }
                 flight.asker = Asker::Nobody;
                 self.keep_values();
-                self.order_set_up(before);
+                self.order_set_up();
                 ParameterVerdict::SetUp(verdict)
             }
         };

@@ -8,6 +8,16 @@ pub(super) const HEIGHTS: usize = 97;
 /// Number of slopes at a station.
 pub(super) const SLOPES: usize = 9;
 pub(super) const LEVEL: i32 = (SLOPES as i32 - 1) / 2;
+pub(super) const MIDDLE: i32 = (HEIGHTS as i32 - 1) / 2;
+/// The station at which the two passes meet.
+pub(super) const VIA: usize = 6;
+
+/// Costs by slope and height.
+pub(super) type Layer = [[u32; HEIGHTS]; SLOPES];
+pub(super) const NO_COSTS: Layer = [[0; HEIGHTS]; SLOPES];
+/// Cost of what no path reaches.
+pub(super) const NEVER: u32 = 1 << 28;
+
 /// Number of points of an edge at which the search takes prices.
 pub(super) const QUARTERS: usize = 4;
 /// Number of heights of these points, in steps of half of [`RISE`].

@@ -2,6 +2,7 @@
 //! chooses himself.
 
 use super::judge::PriceParts;
+use super::workspace::Workspace;
 use super::{FlightPlanner, Phase};
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::{ClearanceField, MemoryMap};
@@ -31,10 +32,13 @@ impl FlightPlanner {
         Some((path, &self.solver.problem))
     }
 
-    /// The dynamics of every stage in the program of [`Self::candidate`].
+    /// The dynamics of every stage in the program of [`Self::candidate`], if there is one.
     #[must_use]
-    pub fn stages(&self) -> &[Dynamics; STAGES] {
-        self.shared.stages()
+    pub fn stages(&self) -> Option<&[Dynamics; STAGES]> {
+        match &self.workspace {
+            Workspace::Program(shared) => Some(shared.stages()),
+            _ => None,
+        }
     }
 
     /// Price of the best trajectory so far, by which the planner ranks trajectories. It is infinite without one.

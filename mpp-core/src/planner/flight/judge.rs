@@ -61,8 +61,8 @@ impl FlightPlanner {
 
     /// Adds up the price, and tells `note` of each summand.
     fn add_up(&self, flown: &Candidate, mut note: impl FnMut(Part, f64)) -> Judgement {
-        let (field, lattice, own) = (&self.field, &self.lattice, &self.settings);
-        let via = lattice.via();
+        let (field, cost_to_go, own) = (&self.field, &self.cost_to_go, &self.settings);
+        let via = cost_to_go.via();
         let (mut lack, mut price) = (0.0_f64, 0.0);
         let mut add = |part, summand: f64| {
             price += summand;
@@ -74,7 +74,7 @@ impl FlightPlanner {
             let (run, rise) = (to.x - from.x, to.z - from.z);
             if from.x <= via && via < to.x {
                 let slope = rise / run;
-                let onward = lattice.onward(from.z + slope * (via - from.x), slope);
+                let onward = cost_to_go.at(from.z + slope * (via - from.x), slope);
                 add(Part::Onward, onward);
             }
             for sample in 1..=SAMPLES {

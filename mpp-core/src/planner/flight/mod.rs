@@ -22,6 +22,7 @@
 //! | `candidate` | roll-out, linearisation and comparison of candidates |
 //! | `judge` | the price of a roll-out |
 //! | `inspect` | what others may see of a cycle, and choose |
+//! | `workspace` | the memory that the phases use one after the other |
 
 mod candidate;
 mod inspect;
@@ -31,14 +32,14 @@ mod perceive;
 mod propose;
 mod refine;
 mod setup;
+mod workspace;
 
 use super::shared::{NO_TRIM, STILL};
 use super::summary::{PlanSummary, Verdict};
-use crate::corridor::Corridor;
 use crate::estimate::Conditions;
-use crate::map::{ClearanceField, MemoryMap, OccupancyGrid, Pose};
-use crate::paths::{CLIMB, Lattice, MAX_LATTICE_PATHS, Search};
-use crate::qp::{Condensed, Solution, Solver, Weights};
+use crate::map::{ClearanceField, MemoryMap, Pose};
+use crate::paths::{CLIMB, CostToGo, MAX_LATTICE_PATHS};
+use crate::qp::{Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
@@ -51,6 +52,7 @@ use candidate::{Candidate, Frame};
 pub use judge::PriceParts;
 use limits::Limits;
 use rand_pcg::Pcg64Mcg;
+use workspace::{Intake, Workspace};
 
 /// Greatest number of candidates in a cycle: the previous plan, the paths of the lattice, and the paths
 /// of the tree.
@@ -114,16 +116,12 @@ pub struct FlightPlanner {
     airframe: Airframe,
     trim: Trim,
     limits: Limits,
-    scan: LidarScan,
-    /// Number of beams of the scan that the map has taken in.
-    beams: usize,
+    workspace: Workspace,
 
     // From the scan to paths. The map outlives the cycle.
     map: MemoryMap,
     field: ClearanceField,
-    lattice: Lattice,
-    grid: OccupancyGrid,
-    search: Search,
+    cost_to_go: CostToGo,
 
     // From paths to trajectories.
     candidates: heapless::Vec<Candidate, MAX_CANDIDATES>,
@@ -133,10 +131,7 @@ pub struct FlightPlanner {
     order: [usize; MAX_CANDIDATES],
     /// Index of the candidate that the planner improves now.
     at_hand: usize,
-    corridor: Corridor,
-    shared: Condensed,
     solver: Solver,
-    solution: Solution,
 
     // Results of the cycle. The best trajectory outlives the cycle.
     best: Trajectory,
@@ -176,21 +171,15 @@ impl FlightPlanner {
             airframe: Airframe::REFERENCE,
             trim: NO_TRIM,
             limits: Limits::NONE,
-            scan: LidarScan::new(),
-            beams: 0,
+            workspace: Workspace::NEW,
             map: MemoryMap::new(),
             field: ClearanceField::new(),
-            lattice: Lattice::new(),
-            grid: OccupancyGrid::new(),
-            search: Search::new(),
+            cost_to_go: CostToGo::new(),
             candidates: heapless::Vec::new(),
             improvements: 0,
             order: [0; MAX_CANDIDATES],
             at_hand: 0,
-            corridor: Corridor::new(),
-            shared: Condensed::new(),
             solver: Solver::new(),
-            solution: Solution::new(),
             best: Trajectory::new(),
             best_price: f64::INFINITY,
             summary: PlanSummary::NOTHING,
@@ -198,6 +187,8 @@ impl FlightPlanner {
     }
 
     /// Starts a cycle; see [`super::Planner::begin`].
+    // Not inlined, so that the scan does not lie on the stack beneath the set-up.
+    #[inline(never)]
     pub fn begin(
         &mut self,
         time: f64,
@@ -210,11 +201,11 @@ impl FlightPlanner {
         self.pose = self.units.own_pose(pose);
         self.state = self.taken_over(time, &self.units.own_state(state));
         self.time = time + self.settings.latency * self.units.time;
-        self.scan.clone_from(scan);
-        for range in &mut self.scan.ranges {
+        let mut scan = scan.clone();
+        for range in &mut scan.ranges {
             *range = (f64::from(*range) / self.units.length) as f32;
         }
-        self.beams = 0;
+        self.workspace = Workspace::Scan(Intake::new(scan));
         // A height beyond the reach of paths is approached in parts. Programs would climb too steeply.
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)

@@ -1,11 +1,12 @@
 //! The phases from the scan to the paths: the map with memory, its clearance field, the lattice, and the
 //! grid of the tree.
 
+use super::workspace::{Growth, Intake, Workspace};
 use super::{FlightPlanner, Phase};
 use crate::Rules;
 use crate::config::{GRID_COLS, GRID_ROWS};
 use crate::map::{GridPoint, rounded_down};
-use crate::paths::LatticeTask;
+use crate::paths::{Lattice, LatticeTask};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
 
 impl FlightPlanner {
@@ -13,19 +14,23 @@ impl FlightPlanner {
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
-        let pose = self.pose;
-        let beams = self.beams..self.beams + BEAMS_PER_SLICE;
-        if beams.start == 0 {
+        let Workspace::Scan(Intake { scan, beams, lone }) = &mut self.workspace else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let (pose, sight) = (self.pose, self.settings.sight);
+        if *beams == 0 {
             self.map.roll(pose.x, self.altitude);
-            if self.map.contradicts(&self.scan, self.settings.sight, &pose) {
+            if self.map.contradicts(scan, sight, &pose) {
                 self.summary.blind = true;
-                self.scan.ranges.clear();
+                scan.ranges.clear();
             }
+            self.map.write_lone_hits(scan, sight, &pose, lone);
         }
-        if beams.start < self.scan.ranges.len() {
-            self.beams = beams.end;
-            self.map
-                .insert_beams(&self.scan, beams, self.settings.sight, &pose);
+        if *beams < scan.ranges.len() {
+            let next = *beams..*beams + BEAMS_PER_SLICE;
+            *beams = next.end;
+            self.map.insert_beams(scan, next, sight, &pose, lone);
             return;
         }
         self.field.build(&self.map, self.settings.body_radius);
@@ -33,7 +38,7 @@ impl FlightPlanner {
             .widen(self.settings.margin, self.field.openness());
         self.take_up_previous();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
-        self.lattice.start(&LatticeTask {
+        let task = LatticeTask {
             x: self.state.x,
             z: self.state.z,
             slope: rise / run.max(1.0),
@@ -42,46 +47,60 @@ impl FlightPlanner {
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
             room_price: self.limits.room_price,
-        });
+        };
+        self.workspace = Workspace::Lattice(Lattice::new());
+        if let Workspace::Lattice(lattice) = &mut self.workspace {
+            lattice.start(&task);
+        }
         self.phase = Phase::Lattice;
     }
 
     /// Searches one station of the lattice. After the last one a tree starts in the same map.
     pub(super) fn search_lattice(&mut self) {
-        if !self.lattice.advance(&self.field) {
+        let Workspace::Lattice(lattice) = &mut self.workspace else {
+            self.phase = Phase::Done;
+            return;
+        };
+        if !lattice.advance(&self.field) {
             self.take_lattice_paths();
+            self.plant();
         }
     }
 
-    /// Makes the paths of the lattice candidates, and starts a tree.
+    /// Makes the paths of the lattice candidates.
     #[inline(never)]
     fn take_lattice_paths(&mut self) {
         let mut paths = heapless::Vec::new();
-        self.lattice.paths(&mut paths);
+        if let Workspace::Lattice(lattice) = &self.workspace {
+            lattice.paths(&mut paths);
+            lattice.write_cost_to_go(&mut self.cost_to_go);
+        }
         for path in &paths {
             let candidate = self.along(path);
             self.propose(candidate);
         }
-        self.project_map();
-        self.summary.tree_runs += 1;
-        self.search.restart(Rules::Corrected);
-        self.phase = Phase::Tree;
     }
 
-    /// Writes the map with memory to the grid that the tree grows in.
-    fn project_map(&mut self) {
+    /// Starts a tree, and writes the map with memory to the grid that it grows in.
+    #[inline(never)]
+    fn plant(&mut self) {
+        self.workspace = Workspace::Tree(Growth::new());
         let (x, z) = (self.state.x, self.state.z);
         let low = [x - GridPoint::AIRCRAFT.col, z - GridPoint::AIRCRAFT.row];
         let window = [
             [low[0], low[0] + GRID_COLS as f64],
             [low[1], low[1] + GRID_ROWS as f64],
         ];
-        self.grid.clear();
-        let grid = &mut self.grid;
+        let Workspace::Tree(Growth { grid, search, .. }) = &mut self.workspace else {
+            return;
+        };
+        search.restart(Rules::Corrected);
         self.field.surface(window[0], window[1], |x0, z0| {
             let row = rounded_down(z0 - z + GridPoint::AIRCRAFT.row);
             let col = rounded_down(x0 - x + GridPoint::AIRCRAFT.col);
             grid.mark(row, col);
         });
+        self.summary.tree_runs += 1;
+        self.phase = Phase::Tree;
     }
 }

@@ -3,11 +3,12 @@
 
 use super::super::shared::{SAMPLES_PER_SLICE, unit_interval};
 use super::candidate::{Candidate, same_signature};
+use super::workspace::{Growth, Workspace};
 use super::{FlightPlanner, Phase};
 use crate::Rules;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
-use crate::paths::{Extension, LatticePath, Path, resample};
+use crate::paths::{Extension, LatticePath, resample};
 use crate::tuning::candidates::TREE_PATHS;
 use crate::vehicle::{PathControl, PathState};
 
@@ -46,6 +47,8 @@ impl FlightPlanner {
     }
 
     /// A candidate with the aircraft's present state at every knot and the thrust of cruise.
+    // Not inlined, because four callers would hold a copy each.
+    #[inline(never)]
     pub(super) fn cruising(&self) -> Candidate {
         let thrust = self.trim.control.thrust;
         Candidate {
@@ -61,7 +64,7 @@ impl FlightPlanner {
     /// The candidate that follows a path of the lattice at cruise speed.
     pub(super) fn along(&self, path: &LatticePath) -> Candidate {
         let start = PathState::of(&self.state);
-        let spacing = self.lattice.spacing();
+        let spacing = self.cost_to_go.spacing();
         let at = |x: f64| {
             let stations = ((x - start.x) / spacing).clamp(0.0, (path.len() - 2) as f64);
             let station = stations as usize;
@@ -96,12 +99,14 @@ impl FlightPlanner {
     /// Draws some samples of the tree. When the tree is complete, it proposes paths of the tree.
     #[inline(never)]
     pub(super) fn grow_tree(&mut self) {
-        let Some(random) = &mut self.random else {
+        let (Some(random), Workspace::Tree(Growth { grid, search, .. })) =
+            (&mut self.random, &mut self.workspace)
+        else {
             self.phase = Phase::Done;
             return;
         };
         for _ in 0..SAMPLES_PER_SLICE {
-            if self.search.extend(&self.grid, || unit_interval(random)) == Extension::Complete {
+            if search.extend(grid, || unit_interval(random)) == Extension::Complete {
                 self.take_tree_paths();
                 return;
             }
@@ -112,15 +117,14 @@ impl FlightPlanner {
     /// obstacle.
     #[inline(never)]
     fn take_tree_paths(&mut self) {
-        let mut path = Path::new();
         let mut from = 0;
         let mut taken = 0;
-        while taken < TREE_PATHS {
-            let Some(next) = self.search.next_path(from, &mut path) else {
-                break;
-            };
+        while taken < TREE_PATHS
+            && let Workspace::Tree(Growth { search, path, .. }) = &mut self.workspace
+            && let Some(next) = search.next_path(from, path)
+        {
             from = next;
-            let points = resample(&path, Rules::Corrected);
+            let points = resample(path, Rules::Corrected);
             let mut candidate = self.cruising();
             let mut before = points[0];
             for (knot, point) in candidate.knots.iter_mut().zip(&points).skip(1) {
@@ -139,6 +143,7 @@ impl FlightPlanner {
                 self.propose(candidate);
             }
         }
+        self.workspace = Workspace::NEW;
         self.phase = Phase::Faces;
     }
 }

@@ -5,10 +5,11 @@ use super::super::shared::STEPS_PER_SLICE;
 use super::super::summary::FEASIBLE;
 use super::candidate::{ANGLE_SCALE, Candidate};
 use super::limits::Limits;
+use super::workspace::Workspace;
 use super::{FlightPlanner, MAX_CANDIDATES, Phase};
 use crate::config::STAGE_PERIOD;
-use crate::corridor::Keep;
-use crate::qp::Status;
+use crate::corridor::{Corridor, Keep};
+use crate::qp::{Solution, Status};
 use crate::tuning::candidates::HOPELESS;
 use crate::tuning::faces::ROUNDING;
 
@@ -34,8 +35,9 @@ impl FlightPlanner {
             ceiling: self.altitude + own.band,
         };
         let cruise = self.trim.state.airspeed;
-        self.corridor
-            .separate(&self.field, &candidate.knots, cruise, &keep);
+        let mut corridor = Corridor::new();
+        corridor.separate(&self.field, &candidate.knots, cruise, &keep);
+        self.solver.problem.bounds.set_corridor(&corridor);
         self.at_hand = index;
         self.phase = Phase::Linearise;
     }
@@ -56,11 +58,13 @@ impl FlightPlanner {
     #[inline(never)]
     pub(super) fn linearise(&mut self) {
         let frame = self.frame();
-        let Some(candidate) = self.candidates.get(self.at_hand) else {
+        let (Some(candidate), Workspace::Program(shared)) =
+            (self.candidates.get(self.at_hand), &mut self.workspace)
+        else {
             self.phase = Phase::Done;
             return;
         };
-        let condensed = self.shared.condense_varying(&self.weights, |dynamics| {
+        let condensed = shared.condense_varying(&self.weights, |dynamics| {
             frame.linearise(candidate, dynamics);
         });
         if condensed.is_err() {
@@ -69,7 +73,6 @@ impl FlightPlanner {
             self.phase = Phase::Faces;
             return;
         }
-        self.solver.problem.bounds.set_corridor(&self.corridor);
         let Limits {
             angle_of_attack: [down, up],
             flight_path,
@@ -80,33 +83,46 @@ impl FlightPlanner {
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
         self.solver.problem.cost_limit = HOPELESS * self.best_price;
         self.solver.problem.initial = frame.deviation(&frame.start, 0).into();
-        self.solver.begin(&self.shared);
+        self.solver.begin(shared);
         self.phase = Phase::Improve;
     }
 
     /// Makes some steps of the solver. After an optimal solution the roll-out replaces the candidate.
     #[inline(never)]
     pub(super) fn improve(&mut self) {
-        let before = self.solver.iterations();
-        let status = self.solver.advance(&self.shared, STEPS_PER_SLICE);
-        self.summary.solver_steps += self.solver.iterations() - before;
-        let Some(status) = status else {
+        let Workspace::Program(shared) = &self.workspace else {
+            self.phase = Phase::Done;
             return;
         };
-        self.summary.candidates += 1;
-        let solved = status == Status::Optimal
-            && self.solver.solution(&self.shared, &mut self.solution) == Status::Optimal;
-        if solved {
-            self.fly_out();
+        let before = self.solver.iterations();
+        let status = self.solver.advance(shared, STEPS_PER_SLICE);
+        self.summary.solver_steps += self.solver.iterations() - before;
+        if let Some(status) = status {
+            self.conclude(status);
         }
+    }
+
+    /// Ends the work on a program.
+    // Not inlined, so that the solution does not lie on the stack beneath the solver.
+    #[inline(never)]
+    fn conclude(&mut self, status: Status) {
+        let mut solution = Solution::new();
+        let solved = status == Status::Optimal
+            && matches!(&self.workspace, Workspace::Program(shared)
+                if self.solver.solution(shared, &mut solution) == Status::Optimal);
+        if solved {
+            self.fly_out(&solution);
+        }
+        self.summary.candidates += 1;
         self.improvements += 1;
         self.phase = Phase::Faces;
     }
 
     /// Computes the roll-out of the solution, judges it, and keeps it if it is the best.
-    fn fly_out(&mut self) {
+    #[inline(never)]
+    fn fly_out(&mut self, solution: &Solution) {
         let mut flown = self.cruising();
-        flown.roll_out(&self.solution, &self.frame(), &self.limits);
+        flown.roll_out(solution, &self.frame(), &self.limits);
         let judgement = self.judge(&flown);
         flown.price = judgement.price;
         self.summary.feasible += usize::from(judgement.lack <= FEASIBLE);

@@ -1,6 +1,7 @@
 //! The set-up of the flight planner and the checks of its settings.
 
 use super::super::error::{SetupError, check, check_planner};
+use super::workspace::Workspace;
 use super::{FlightPlanner, Phase};
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::qp::ModelError;
@@ -14,6 +15,8 @@ impl FlightPlanner {
     ///
     /// # Errors
     /// [`SetupError`]: the planner then plans nothing.
+    // Not inlined, so that the deep stack of the set-up is not that of a cycle.
+    #[inline(never)]
     pub fn set_up(&mut self, settings: &Settings, own: &FlightSettings) -> Result<(), SetupError> {
         // If a check below fails, the planner is not set up completely and must plan nothing.
         self.random = None;
@@ -84,7 +87,11 @@ impl FlightPlanner {
         };
         let cruising = self.cruising();
         let frame = self.frame();
-        self.shared
+        self.workspace = Workspace::NEW;
+        let Workspace::Program(shared) = &mut self.workspace else {
+            return Ok(());
+        };
+        shared
             .condense_varying(&self.weights, |dynamics| {
                 frame.linearise(&cruising, dynamics);
             })

@@ -58,6 +58,8 @@ impl Feedback {
 
 /// Computes the feedback of every stage from the last to the first. Returns `None` if a matrix `M` is not
 /// positive definite or the model is not finite.
+// Not inlined, so that its matrices do not lie on the stack beneath the response.
+#[inline(never)]
 pub(super) fn design(
     dynamics: &[Dynamics; STAGES],
     weights: &Weights,

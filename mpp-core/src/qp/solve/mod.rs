@@ -225,6 +225,8 @@ impl Solver {
     }
 
     /// Makes up to `iterations` steps. Returns the status as soon as there is one.
+    // Not inlined, so that the steps do not lie on the stack beneath what follows the last of them.
+    #[inline(never)]
     pub fn advance(&mut self, shared: &Condensed, iterations: usize) -> Option<Status> {
         for _ in 0..iterations {
             if self.status.is_some() {
@@ -270,6 +272,7 @@ impl Solver {
 
     /// Writes the trajectory that follows from the multipliers. Returns the status, or
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
+    #[inline(never)]
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
         let mut normalised = [0.0; CONTROLS];
         for active in &self.active {

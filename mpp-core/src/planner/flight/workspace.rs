@@ -1,0 +1,69 @@
+//! The memory that the phases of a cycle use one after the other.
+
+use crate::map::{LoneHits, OccupancyGrid};
+use crate::paths::{Lattice, Path, Search};
+use crate::qp::Condensed;
+use crate::sense::LidarScan;
+
+/// What a phase needs for itself. The next phase overwrites it, so that all of them take the memory of the largest
+/// alone. What outlives a phase is a field of [`super::FlightPlanner`].
+#[expect(
+    clippy::large_enum_variant,
+    reason = "they share their memory, which has to be as large as the largest"
+)]
+#[derive(Clone, Debug)]
+pub(super) enum Workspace {
+    /// Phases Faces, Linearise and Improve.
+    Program(Condensed),
+    /// Phase Map.
+    Scan(Intake),
+    /// Phase Lattice.
+    Lattice(Lattice),
+    /// Phase Tree.
+    Tree(Growth),
+}
+
+/// The scan on its way into the map.
+#[derive(Clone, Debug)]
+pub(super) struct Intake {
+    /// The scan, with ranges in own units.
+    pub(super) scan: LidarScan,
+    /// Number of beams that the map has taken in.
+    pub(super) beams: usize,
+    pub(super) lone: LoneHits,
+}
+
+/// A tree, and the grid that it grows in.
+#[derive(Clone, Debug)]
+pub(super) struct Growth {
+    pub(super) grid: OccupancyGrid,
+    pub(super) search: Search,
+    /// The path of the tree at hand.
+    pub(super) path: Path,
+}
+
+impl Workspace {
+    /// The memory before the first program. It is a constant of zeros: the compiler writes zeros in place, and builds
+    /// no such large value on the stack.
+    pub(super) const NEW: Self = Self::Program(Condensed::new());
+}
+
+impl Intake {
+    pub(super) const fn new(scan: LidarScan) -> Self {
+        Self {
+            scan,
+            beams: 0,
+            lone: LoneHits::none(),
+        }
+    }
+}
+
+impl Growth {
+    pub(super) const fn new() -> Self {
+        Self {
+            grid: OccupancyGrid::new(),
+            search: Search::new(),
+            path: Path::new(),
+        }
+    }
+}

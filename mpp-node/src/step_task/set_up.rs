@@ -1,0 +1,111 @@
+//! The set-up of a flight: a configuration, the regulator that is designed for it, and the planner's answer.
+
+use super::asker::Asker;
+use super::{Flight, StepTask};
+use crate::convert;
+use crate::mail::Order;
+use crate::parameters::Tuning;
+use hil_protocol::{Configure, ConfigureReply, ConfigureVerdict, DecodeError};
+use mpp_core::estimate::Watch;
+use mpp_core::flight::{FlightLoop, Regulated};
+
+impl StepTask {
+    // Not inlined, so that a new flight is not on the stack of each tick.
+    #[inline(never)]
+    pub(super) fn configure(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+        match self.prepare(&self.decoder.body()?) {
+            Ok((tuning, regulated)) => {
+                self.begin(&tuning, &regulated);
+                self.keep_values();
+                self.order_set_up();
+            }
+            Err(verdict) => self.reply(verdict, send),
+        }
+        Ok(())
+    }
+
+    /// Orders the set-up of the planner with the values of the flight. It replaces an order that still waits.
+    pub(super) fn order_set_up(&mut self) {
+        let Some(flight) = &self.flight else {
+            return;
+        };
+        self.set_ups = self.set_ups.wrapping_add(1);
+        self.order = Some(Order::SetUp {
+            number: self.set_ups,
+            settings: flight.tuning.settings,
+        });
+    }
+
+    /// Checks a configuration, and designs the regulator for it.
+    #[inline(never)]
+    fn prepare(&self, configure: &Configure) -> Result<(Tuning, Regulated), ConfigureVerdict> {
+        if self.flight.is_some() {
+            return Err(ConfigureVerdict::AlreadyConfigured);
+        }
+        if let Some(refusal) = self.refusal {
+            return Err(refusal);
+        }
+        let tuning = Tuning::new(configure)?;
+        let regulated = Regulated::new(&tuning.settings).map_err(convert::setup_verdict)?;
+        Ok((tuning, regulated))
+    }
+
+    /// Begins a flight, which waits for the planner to be set up.
+    // Not inlined, so that the new flight does not lie on the stack above the design of the regulator.
+    #[inline(never)]
+    fn begin(&mut self, tuning: &Tuning, regulated: &Regulated) {
+        let configure = &tuning.configure;
+        let between = configure
+            .replan_period_ticks
+            .saturating_add(configure.latency_ticks);
+        self.flight = Some(Flight {
+            tuning: *tuning,
+            asker: Asker::Configure,
+            ready: false,
+            control: FlightLoop::regulated(&tuning.settings, regulated),
+            first_tick: None,
+            last_tick: None,
+            cycle: None,
+            last_cycle: None,
+            last_scan: None,
+            plan_tick: None,
+            untold: None,
+            scan_tick: None,
+            restarts: 0,
+            old_ticks: None,
+            lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
+            lidar_good: None,
+        });
+    }
+
+    pub(super) fn set_up_done(
+        &mut self,
+        result: Result<(), ConfigureVerdict>,
+        send: &mut impl FnMut(&[u8]),
+    ) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        if flight.ready {
+            // The planner was restarted in flight, so no sender waits for a reply.
+            return;
+        }
+        if flight.asker != Asker::Configure {
+            return self.tuned(result, send);
+        }
+        match result {
+            Ok(()) => {
+                flight.ready = true;
+                self.reply(ConfigureVerdict::Accepted, send);
+            }
+            Err(verdict) => {
+                self.flight = None;
+                self.reply(verdict, send);
+            }
+        }
+    }
+
+    fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
+        self.emit(&ConfigureReply { verdict }, send);
+    }
+}
