@@ -49,7 +49,6 @@ impl Region {
         match phase {
             Phase::Flight(Flight::Map) => Self::Remember,
             Phase::Flight(Flight::Lattice) => Self::Lattice,
-            Phase::Flight(Flight::Tree) => Self::Tree,
             Phase::Flight(Flight::Faces) => Self::Corridor,
             Phase::Flight(Flight::Linearise) => Self::Linearise,
             Phase::Flight(Flight::Improve | Flight::Idle | Flight::Done) => Self::Improve,

@@ -91,9 +91,6 @@ pub mod candidates {
     /// Number of beams that one slice takes in. This slice then takes less than half of the time of the
     /// longest slice.
     pub const BEAMS_PER_SLICE: usize = 16;
-    /// Greatest number of paths from the tree. A path counts only if it passes an obstacle on another side
-    /// than the other candidates. Each path costs a program. Source: D8.
-    pub const TREE_PATHS: usize = 2;
     /// Cost of a program, in prices of the best roll-out so far, from which on its candidate is given up [-]. The
     /// solver then makes a third fewer steps past 40 obstacles. With 100 and 50 instead of 200, 1,065 and 1,015 of
     /// 1,200 flights past 160 obstacles succeeded, against 1,077 without a limit and 1,081. Source: D24.

@@ -16,7 +16,7 @@ use common::dense::dense;
 use common::planning::{level, plan, planner};
 use common::scattered::{FEASIBLE, SCATTERED};
 use common::world::scan;
-use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES, TREE_SAMPLES};
+use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::estimate::Conditions;
 use mpp_core::paths::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
@@ -25,14 +25,13 @@ use mpp_core::settings::{FlightSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{PathControl, PathState, VehicleState};
 
-/// The previous plan, the lattice's paths, and two paths of the tree.
-const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + 2;
+/// The previous plan and the lattice's paths.
+const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS;
 /// Each candidate once, then two further rounds for the best two.
 const PROGRAMS: usize = CANDIDATES + 2 * 2;
-/// One slice for the map, the stations, one tree, and for each program its faces, its set-up, its
+/// One slice for the map, the stations, and for each program its faces, its set-up, its
 /// solution at 8 steps a slice and the search for the next candidate.
-const MOST_SLICES: usize =
-    1 + STATIONS + TREE_SAMPLES / 10 + 1 + PROGRAMS * (MAX_ITERATIONS / 8 + 4);
+const MOST_SLICES: usize = 1 + STATIONS + PROGRAMS * (MAX_ITERATIONS / 8 + 4);
 
 fn rank(summary: &PlanSummary) -> (f64, f64) {
     (summary.violation.max(FEASIBLE), summary.cost)
@@ -143,7 +142,7 @@ fn slices_are_bounded_in_dense_fields() {
             while planner.advance() {}
             planner.finish();
             let summary = *planner.summary();
-            assert!(summary.complete && summary.tree_runs == 1);
+            assert!(summary.complete);
             assert!(summary.slices <= MOST_SLICES, "{summary:?}");
             assert!(summary.candidates <= PROGRAMS, "{summary:?}");
             most = most.max(summary.candidates);

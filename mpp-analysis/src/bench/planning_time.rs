@@ -187,7 +187,7 @@ fn part(phase: Phase) -> usize {
     match phase {
         Phase::Flight(phase) => match phase {
             flight::Phase::Map => 0,
-            flight::Phase::Lattice | flight::Phase::Tree => 1,
+            flight::Phase::Lattice => 1,
             flight::Phase::Faces => 2,
             flight::Phase::Linearise | flight::Phase::Improve => 3,
             flight::Phase::Idle | flight::Phase::Done => 4,

@@ -26,7 +26,7 @@ Words of the result:
   clearance    least distance to the edge of an obstacle
   replans      planning cycles whose plan was delivered
   candidates   refined trajectories, over all replans. --paths is the most paths that a cycle may take. Preset
-               flight finds at most 9 that differ, and refines the best of them again: so 25 paths may give
+               flight finds at most 7, and refines the best of them again: so 25 paths may give
                11 candidates a replan
   feasible     candidates that meet every limit
   rejections   inputs that the core refused, such as a damaged frame or an old scan; the log has the causes

@@ -1,8 +1,7 @@
-//! The roll-out of a candidate, its linearisation, and the comparison of candidates.
+//! The roll-out of a candidate and its linearisation.
 
 use super::limits::Limits;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::map::ClearanceField;
 use crate::qp::{Dynamics, Solution, StageState};
 use crate::trajectory::STEPS;
 use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
@@ -45,23 +44,6 @@ impl Candidate {
             *knot = state;
         }
     }
-}
-
-/// Whether two trajectories pass every obstacle on the same side.
-pub(super) fn same_signature(
-    field: &ClearanceField,
-    one: &[PathState; KNOTS],
-    other: &[PathState; KNOTS],
-) -> bool {
-    const STEP: f64 = 0.5;
-    const STEPS: usize = 64;
-    one.iter().zip(other).all(|(a, b)| {
-        let rise = b.z - a.z;
-        (0..STEPS)
-            .map(|step| STEP * step as f64)
-            .take_while(|passed| *passed <= rise.abs())
-            .all(|passed| !field.is_occupied(a.x, a.z + passed * rise.signum()))
-    })
 }
 
 /// The origin of the program's deviations: level flight at trim that starts at the aircraft.

@@ -3,10 +3,10 @@
 //! in full.
 //!
 //! ```text
-//!                                            +--------- next candidate ---------+
-//!                                            v                                  |
-//! begin --> Map --> Lattice --> Tree --> Faces --> Linearise --> Improve --------+--> Done
-//!           map     paths       paths    corridor  program       solved, flown out, judged
+//!                               +--------- next candidate ---------+
+//!                               v                                  |
+//! begin --> Map --> Lattice --> Faces --> Linearise --> Improve ---+--> Done
+//!           map     paths       corridor  program       solved, flown out, judged
 //! ```
 //!
 //! The planner improves every candidate once, and then the best few in further rounds. It judges the
@@ -17,9 +17,9 @@
 //! | `setup` | the set-up of the planner and the checks of its settings |
 //! | `limits` | the limits of the plans of a cycle |
 //! | `perceive` | Map, Lattice: from the scan to the lattice's paths |
-//! | `propose` | the candidates: previous plan, lattice, tree |
+//! | `propose` | the candidates: previous plan and lattice |
 //! | `refine` | Faces, Linearise, Improve |
-//! | `candidate` | roll-out, linearisation and comparison of candidates |
+//! | `candidate` | roll-out and linearisation of a candidate |
 //! | `judge` | the price of a roll-out |
 //! | `inspect` | what others may see of a cycle, and choose |
 //! | `workspace` | the memory that the phases use one after the other |
@@ -43,7 +43,6 @@ use crate::qp::{Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
-use crate::tuning::candidates::TREE_PATHS;
 use crate::units::Units;
 use crate::vehicle::{
     ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
@@ -51,12 +50,10 @@ use crate::vehicle::{
 use candidate::{Candidate, Frame};
 pub use judge::PriceParts;
 use limits::Limits;
-use rand_pcg::Pcg64Mcg;
 use workspace::{Intake, Workspace};
 
-/// Greatest number of candidates in a cycle: the previous plan, the paths of the lattice, and the paths
-/// of the tree.
-pub const MAX_CANDIDATES: usize = 1 + MAX_LATTICE_PATHS + TREE_PATHS;
+/// Greatest number of candidates in a cycle: the previous plan and the paths of the lattice.
+pub const MAX_CANDIDATES: usize = 1 + MAX_LATTICE_PATHS;
 
 /// Steps of integration over the latency of a plan when no earlier one is flown.
 const FLOWN_ON_STEPS: u8 = 4;
@@ -70,8 +67,6 @@ pub enum Phase {
     Map,
     /// Searches one station of the lattice.
     Lattice,
-    /// Grows the tree.
-    Tree,
     /// Sets the faces between a candidate and the obstacles around it.
     Faces,
     /// Sets up a candidate's program.
@@ -100,8 +95,8 @@ pub struct FlightPlanner {
     known: (Airframe, Trim),
     si_airframe: Airframe,
     actuators: ActuatorLimits,
-    /// Random numbers of the tree; `None` until the planner is set up.
-    random: Option<Pcg64Mcg>,
+    /// Whether the planner is set up.
+    ready: bool,
 
     // Values of the present cycle.
     phase: Phase,
@@ -153,7 +148,7 @@ impl FlightPlanner {
             known: (Airframe::REFERENCE, NO_TRIM),
             si_airframe: Airframe::REFERENCE,
             actuators: ActuatorLimits::NONE,
-            random: None,
+            ready: false,
             phase: Phase::Idle,
             conditions: Conditions::STILL,
             pose: Pose {
@@ -221,7 +216,7 @@ impl FlightPlanner {
         self.best_price = f64::INFINITY;
         self.summary = PlanSummary::NOTHING;
         // No plan starts from a state that is not finite; the map stays as it is.
-        let starts = self.random.is_some() && state.is_finite() && self.state.is_finite();
+        let starts = self.ready && state.is_finite() && self.state.is_finite();
         self.phase = if starts { Phase::Map } else { Phase::Done };
     }
 
@@ -301,7 +296,6 @@ impl FlightPlanner {
             Phase::Idle | Phase::Done => {}
             Phase::Map => self.remember(),
             Phase::Lattice => self.search_lattice(),
-            Phase::Tree => self.grow_tree(),
             Phase::Faces => self.separate(),
             Phase::Linearise => self.linearise(),
             Phase::Improve => self.improve(),

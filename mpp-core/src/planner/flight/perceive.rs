@@ -1,11 +1,7 @@
-//! The phases from the scan to the paths: the map with memory, its clearance field, the lattice, and the
-//! grid of the tree.
+//! The phases from the scan to the paths: the map with memory, its clearance field, and the lattice.
 
-use super::workspace::{Growth, Intake, Workspace};
+use super::workspace::{Intake, Workspace};
 use super::{FlightPlanner, Phase};
-use crate::Rules;
-use crate::config::{GRID_COLS, GRID_ROWS};
-use crate::map::{GridPoint, rounded_down};
 use crate::paths::{Lattice, LatticeTask};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
 
@@ -55,7 +51,7 @@ impl FlightPlanner {
         self.phase = Phase::Lattice;
     }
 
-    /// Searches one station of the lattice. After the last one a tree starts in the same map.
+    /// Searches one station of the lattice. After the last one it proposes its paths.
     pub(super) fn search_lattice(&mut self) {
         let Workspace::Lattice(lattice) = &mut self.workspace else {
             self.phase = Phase::Done;
@@ -63,11 +59,10 @@ impl FlightPlanner {
         };
         if !lattice.advance(&self.field) {
             self.take_lattice_paths();
-            self.plant();
         }
     }
 
-    /// Makes the paths of the lattice candidates.
+    /// Makes the paths of the lattice candidates, and frees its memory for the first program.
     #[inline(never)]
     fn take_lattice_paths(&mut self) {
         let mut paths = heapless::Vec::new();
@@ -79,28 +74,7 @@ impl FlightPlanner {
             let candidate = self.along(path);
             self.propose(candidate);
         }
-    }
-
-    /// Starts a tree, and writes the map with memory to the grid that it grows in.
-    #[inline(never)]
-    fn plant(&mut self) {
-        self.workspace = Workspace::Tree(Growth::new());
-        let (x, z) = (self.state.x, self.state.z);
-        let low = [x - GridPoint::AIRCRAFT.col, z - GridPoint::AIRCRAFT.row];
-        let window = [
-            [low[0], low[0] + GRID_COLS as f64],
-            [low[1], low[1] + GRID_ROWS as f64],
-        ];
-        let Workspace::Tree(Growth { grid, search, .. }) = &mut self.workspace else {
-            return;
-        };
-        search.restart(Rules::Corrected);
-        self.field.surface(window[0], window[1], |x0, z0| {
-            let row = rounded_down(z0 - z + GridPoint::AIRCRAFT.row);
-            let col = rounded_down(x0 - x + GridPoint::AIRCRAFT.col);
-            grid.mark(row, col);
-        });
-        self.summary.tree_runs += 1;
-        self.phase = Phase::Tree;
+        self.workspace = Workspace::NEW;
+        self.phase = Phase::Faces;
     }
 }

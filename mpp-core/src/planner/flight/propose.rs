@@ -1,15 +1,9 @@
-//! The candidates of a cycle before the first program: the previous plan, the paths of the lattice, and
-//! paths of the tree that pass some obstacle on another side.
+//! The candidates of a cycle before the first program: the previous plan and the paths of the lattice.
 
-use super::super::shared::{SAMPLES_PER_SLICE, unit_interval};
-use super::candidate::{Candidate, same_signature};
-use super::workspace::{Growth, Workspace};
-use super::{FlightPlanner, Phase};
-use crate::Rules;
+use super::FlightPlanner;
+use super::candidate::Candidate;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::map::GridPoint;
-use crate::paths::{Extension, LatticePath, resample};
-use crate::tuning::candidates::TREE_PATHS;
+use crate::paths::LatticePath;
 use crate::vehicle::{PathControl, PathState};
 
 impl FlightPlanner {
@@ -94,56 +88,5 @@ impl FlightPlanner {
             flight_path: course - self.wind.z / self.trim.state.airspeed,
             angle_of_attack: self.trim.state.angle_of_attack(),
         }
-    }
-
-    /// Draws some samples of the tree. When the tree is complete, it proposes paths of the tree.
-    #[inline(never)]
-    pub(super) fn grow_tree(&mut self) {
-        let (Some(random), Workspace::Tree(Growth { grid, search, .. })) =
-            (&mut self.random, &mut self.workspace)
-        else {
-            self.phase = Phase::Done;
-            return;
-        };
-        for _ in 0..SAMPLES_PER_SLICE {
-            if search.extend(grid, || unit_interval(random)) == Extension::Complete {
-                self.take_tree_paths();
-                return;
-            }
-        }
-    }
-
-    /// Proposes paths of the tree that differ from each candidate so far by the side on which they pass some
-    /// obstacle.
-    #[inline(never)]
-    fn take_tree_paths(&mut self) {
-        let mut from = 0;
-        let mut taken = 0;
-        while taken < TREE_PATHS
-            && let Workspace::Tree(Growth { search, path, .. }) = &mut self.workspace
-            && let Some(next) = search.next_path(from, path)
-        {
-            from = next;
-            let points = resample(path, Rules::Corrected);
-            let mut candidate = self.cruising();
-            let mut before = points[0];
-            for (knot, point) in candidate.knots.iter_mut().zip(&points).skip(1) {
-                let slope = libm::atan2(point.row - before.row, point.col - before.col);
-                *knot = self.steady(
-                    self.state.x + point.col - GridPoint::AIRCRAFT.col,
-                    self.state.z + point.row - GridPoint::AIRCRAFT.row,
-                    slope,
-                );
-                before = *point;
-            }
-            let known =
-                |other: &Candidate| same_signature(&self.field, &candidate.knots, &other.knots);
-            if !self.candidates.iter().any(known) {
-                taken += 1;
-                self.propose(candidate);
-            }
-        }
-        self.workspace = Workspace::NEW;
-        self.phase = Phase::Faces;
     }
 }

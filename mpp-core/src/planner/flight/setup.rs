@@ -7,8 +7,6 @@ use crate::config::{STAGE_PERIOD, STAGES};
 use crate::qp::ModelError;
 use crate::settings::{FlightSettings, Method, PlannerSettings, Setting, Settings};
 use crate::vehicle::VehicleState;
-use rand_core::SeedableRng;
-use rand_pcg::Pcg64Mcg;
 
 impl FlightPlanner {
     /// Sets the planner up; see [`crate::planner::Planner::set_up`].
@@ -19,7 +17,7 @@ impl FlightPlanner {
     #[inline(never)]
     pub fn set_up(&mut self, settings: &Settings, own: &FlightSettings) -> Result<(), SetupError> {
         // If a check below fails, the planner is not set up completely and must plan nothing.
-        self.random = None;
+        self.ready = false;
         self.phase = Phase::Idle;
         let planner = &settings.planner;
         let trim = check(settings)?;
@@ -40,7 +38,7 @@ impl FlightPlanner {
         self.try_program()?;
         // A flight computer hands over zeroed memory, so the code must not rely on the values of `new`.
         self.solver.problem.bounds.clear();
-        self.random = Some(Pcg64Mcg::seed_from_u64(planner.seed));
+        self.ready = true;
         self.map.clear();
         self.best.clear();
         Ok(())

@@ -1,7 +1,7 @@
 //! The memory that the phases of a cycle use one after the other.
 
-use crate::map::{LoneHits, OccupancyGrid};
-use crate::paths::{Lattice, Path, Search};
+use crate::map::LoneHits;
+use crate::paths::Lattice;
 use crate::qp::Condensed;
 use crate::sense::LidarScan;
 
@@ -19,8 +19,6 @@ pub(super) enum Workspace {
     Scan(Intake),
     /// Phase Lattice.
     Lattice(Lattice),
-    /// Phase Tree.
-    Tree(Growth),
 }
 
 /// The scan on its way into the map.
@@ -31,15 +29,6 @@ pub(super) struct Intake {
     /// Number of beams that the map has taken in.
     pub(super) beams: usize,
     pub(super) lone: LoneHits,
-}
-
-/// A tree, and the grid that it grows in.
-#[derive(Clone, Debug)]
-pub(super) struct Growth {
-    pub(super) grid: OccupancyGrid,
-    pub(super) search: Search,
-    /// The path of the tree at hand.
-    pub(super) path: Path,
 }
 
 impl Workspace {
@@ -54,16 +43,6 @@ impl Intake {
             scan,
             beams: 0,
             lone: LoneHits::none(),
-        }
-    }
-}
-
-impl Growth {
-    pub(super) const fn new() -> Self {
-        Self {
-            grid: OccupancyGrid::new(),
-            search: Search::new(),
-            path: Path::new(),
         }
     }
 }

@@ -1,12 +1,17 @@
 //! The phases of a cycle of the paper's method: trees, corridors, programs.
 
-use super::super::shared::{SAMPLES_PER_SLICE, STEPS_PER_SLICE, unit_interval};
+use super::super::shared::STEPS_PER_SLICE;
 use super::super::summary::FEASIBLE;
 use super::{PaperPlanner, Phase};
 use crate::config::TREE_RUNS;
 use crate::paths::{Extension, path_length, resample};
 use crate::qp::Status;
 use crate::vehicle::VehicleState;
+use rand_core::Rng;
+use rand_pcg::Pcg64Mcg;
+
+/// Number of samples of the tree in one slice.
+const SAMPLES_PER_SLICE: usize = 10;
 
 /// Number of paths from which the baseline takes the shortest.
 const BASELINE_PATHS: usize = 25;
@@ -122,4 +127,10 @@ impl PaperPlanner {
         }
         self.next_candidate();
     }
+}
+
+/// The 53 high bits of a random number, scaled to [0, 1).
+fn unit_interval(random: &mut Pcg64Mcg) -> f64 {
+    const STEP: f64 = 1.0 / (1_u64 << 53) as f64;
+    (random.next_u64() >> 11) as f64 * STEP
 }

@@ -274,12 +274,13 @@ impl Solver {
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
     #[inline(never)]
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
-        let mut normalised = [0.0; CONTROLS];
-        for active in &self.active {
-            shared.add_normal(&mut normalised, &active.pattern, -active.multiplier);
+        if self.stale {
+            let normalised = self.controls(shared, None);
+            let initial = &self.problem.initial;
+            shared.roll_out(initial, &self.feedforward, &normalised, solution);
+        } else {
+            solution.clone_from(&self.trajectory);
         }
-        let initial = &self.problem.initial;
-        shared.roll_out(initial, &self.feedforward, &normalised, solution);
         solution.cost = shared.cost(solution, &self.problem.target);
         let outputs = outputs(solution);
         let (soft, hard) = self.worst_violations(shared, &outputs);
@@ -311,6 +312,15 @@ impl Solver {
         } else {
             (0.0, soft.max(hard))
         }
+    }
+
+    /// The normalised controls of the present multipliers, `-Y' (C_A' lambda_A + c_p lambda_p)`.
+    fn controls(&self, shared: &Condensed, entering: Option<&Active>) -> ControlVector {
+        let mut normalised = [0.0; CONTROLS];
+        for row in self.active.iter().chain(entering) {
+            shared.add_normal(&mut normalised, &row.pattern, -row.multiplier);
+        }
+        normalised
     }
 
     fn is_soft(&self, row: usize) -> bool {

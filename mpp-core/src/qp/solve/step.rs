@@ -217,18 +217,13 @@ impl Solver {
         self.stale = true;
     }
 
-    /// Computes controls, trajectory and outputs of the present multipliers, if they have changed:
-    /// `v = -Y' (C_A' lambda_A + c_p lambda_p)`.
+    /// Computes controls, trajectory and outputs of the present multipliers, if they have changed.
     fn refresh(&mut self, shared: &Condensed, entering: Option<&Active>) {
-        if !self.stale {
-            return;
+        if self.stale {
+            self.normalised = self.controls(shared, entering);
+            self.follow(shared);
+            self.stale = false;
         }
-        self.normalised = [0.0; CONTROLS];
-        for row in self.active.iter().chain(entering) {
-            shared.add_normal(&mut self.normalised, &row.pattern, -row.multiplier);
-        }
-        self.follow(shared);
-        self.stale = false;
     }
 
     fn apply(
