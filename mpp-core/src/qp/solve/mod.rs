@@ -48,26 +48,14 @@ struct Active {
     yielded: bool,
 }
 
-/// The row that enters, and what the directions of its steps are made of.
-#[derive(Clone, Debug)]
+/// The row that enters.
+#[derive(Clone, Copy, Debug)]
 struct Entering {
     row: Active,
     /// Excess of the row over its bound, less the amount by which it yields.
     violation: f64,
     /// Squared norm of the row's response, `|Y' c_p|^2`.
     norm: f64,
-    /// Products of the row's response with those of the active rows, `C_A Y Y' c_p`.
-    products: [f64; CAPACITY],
-}
-
-impl Entering {
-    /// Moves the product with an active row behind those with the others, as the row itself moves or leaves.
-    fn move_last(&mut self, index: usize, active: usize) {
-        let from_index = self.products.get_mut(index..active);
-        if let Some(from_index) = from_index.filter(|products| !products.is_empty()) {
-            from_index.rotate_left(1);
-        }
-    }
 }
 
 /// Workspace of the solver.
@@ -127,6 +115,8 @@ pub struct Solver {
     /// Whether the program has attitude rows.
     attitude_rows: bool,
     entering: Option<Entering>,
+    /// Products of the entering row's response with those of the active rows, `C_A Y Y' c_p`.
+    products: [f64; CAPACITY],
     factor: Factor,
     dual: f64,
     /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because a
@@ -158,6 +148,7 @@ impl Solver {
             open: Bounds::none(),
             attitude_rows: false,
             entering: None,
+            products: [0.0; CAPACITY],
             factor: Factor::new(),
             dual: 0.0,
             absurd_rise: 0.0,

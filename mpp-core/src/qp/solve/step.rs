@@ -39,7 +39,7 @@ impl Solver {
                 Err(status) => return Some(status),
             },
         };
-        let mut direction = self.direction(&entering);
+        let mut direction = self.direction(&entering.row, entering.norm, self.products);
         let mut full = (entering.violation / direction.complement).max(0.0);
         let mut touches = false;
         let rise = 0.5 * entering.violation * full;
@@ -90,31 +90,30 @@ impl Solver {
         );
         let row = worst.ok_or(Status::Optimal)?;
         let pattern = RowPattern::of(row).ok_or(Status::NumericalFailure)?;
-        Ok(self.meet(
-            shared,
-            Active {
-                row,
-                pattern,
-                multiplier: 0.0,
-                yielded: false,
-            },
-        ))
+        let active = Active {
+            row,
+            pattern,
+            multiplier: 0.0,
+            yielded: false,
+        };
+        let mut products = [0.0; CAPACITY];
+        let norm = self.meet(shared, &active, &mut products);
+        self.products = products;
+        Ok(Entering {
+            violation: self.violation(&active),
+            row: active,
+            norm,
+        })
     }
 
-    /// Computes what the directions of a row are made of.
-    fn meet(&self, shared: &Condensed, row: Active) -> Entering {
+    /// Computes the products of a row's response with those of the active rows. Returns its squared norm.
+    fn meet(&self, shared: &Condensed, own: &Active, products: &mut [f64; CAPACITY]) -> f64 {
         let mut normal = [0.0; CONTROLS];
-        shared.add_normal(&mut normal, &row.pattern, 1.0);
-        let mut products = [0.0; CAPACITY];
+        shared.add_normal(&mut normal, &own.pattern, 1.0);
         for (product, active) in products.iter_mut().zip(&self.active) {
             *product = shared.change(&active.pattern, &normal);
         }
-        Entering {
-            violation: self.violation(&row),
-            row,
-            norm: dot(&normal, &normal),
-            products,
-        }
+        dot(&normal, &normal)
     }
 
     /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
@@ -130,21 +129,19 @@ impl Solver {
         None
     }
 
-    /// The direction of a step for a row.
-    fn direction(&self, entering: &Entering) -> Direction {
-        let mut products = entering.products;
+    /// The direction of a step for a row, from its squared norm and its products with the active rows.
+    fn direction(&self, own: &Active, norm: f64, mut products: [f64; CAPACITY]) -> Direction {
         self.factor.forward(&mut products);
         let mut rates = products;
         self.factor.backward(&mut rates);
-        let norm = entering.norm;
         let known = products.iter().take(self.active.len());
         let rest = norm - known.map(|product| product * product).sum::<f64>();
         Direction {
             products,
             rates,
             norm,
-            complement: self.complement(&entering.row, norm, rest),
-            slope: rest + self.elasticity(&entering.row),
+            complement: self.complement(own, norm, rest),
+            slope: rest + self.elasticity(own),
         }
     }
 
@@ -241,22 +238,31 @@ impl Solver {
             Event::EnteringYields => entering.row.yielded = true,
             Event::Leave(index) => {
                 self.deactivate(index);
-                entering.move_last(index, active);
+                self.move_last(index, active);
             }
             Event::Toggle(index) => {
                 if let Some(mut row) = self.deactivate(index) {
                     row.yielded = !row.yielded;
-                    let again = self.meet(shared, row);
-                    let failed = self.activate(again.row, &self.direction(&again));
+                    let mut products = [0.0; CAPACITY];
+                    let norm = self.meet(shared, &row, &mut products);
+                    let failed = self.activate(row, &self.direction(&row, norm, products));
                     if failed.is_some() {
                         return failed;
                     }
                 }
-                entering.move_last(index, active);
+                self.move_last(index, active);
             }
         }
         self.entering = Some(entering);
         None
+    }
+
+    /// Moves the product with an active row behind those with the others, as the row itself moves or leaves.
+    fn move_last(&mut self, index: usize, active: usize) {
+        let from_index = self.products.get_mut(index..active);
+        if let Some(from_index) = from_index.filter(|products| !products.is_empty()) {
+            from_index.rotate_left(1);
+        }
     }
 
     fn activate(&mut self, row: Active, direction: &Direction) -> Option<Status> {
