@@ -17,9 +17,9 @@ const ROWS: [(&str, &str, &str); 10] = [
     ("100 Hz step with its link, mean", "step", "mean"),
     ("100 Hz step with its link, worst", "step", "worst"),
     (
-        "slice of the planner, worst",
+        "slice of preset `flight`, worst",
         "slice_worst_flight",
-        "linearise",
+        "remember",
     ),
     (
         "cycle, `flight`, 20 obstacles, median",
