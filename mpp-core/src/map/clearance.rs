@@ -10,6 +10,12 @@ use core::ops::Range;
 const REACH: usize = 6;
 /// Greatest distance that the field gives \[m\].
 pub const FAR: f64 = CELL * REACH as f64;
+/// Number of pairs of rows and columns within reach.
+const WITHIN_REACH: usize = 35;
+/// Rows that the field needs at once: a power of two that holds the rows within reach of one row.
+const ROWS_AT_ONCE: usize = (2 * REACH + 1).next_power_of_two();
+/// The same for columns to one side.
+const COLS_AT_ONCE: usize = (REACH + 1).next_power_of_two();
 /// The field stores distances in units of `1 / PARTS` m.
 const PARTS: f64 = 64.0;
 
@@ -56,23 +62,14 @@ impl ClearanceField {
         }
         self.complete();
         self.open = 0;
+        let mut beside = [[0; COLS_AT_ONCE]; ROWS_AT_ONCE];
+        for row in 0..REACH {
+            self.write_beside(row, &mut beside[row]);
+        }
         for row in 0..ROWS {
-            let near = self.near(row);
-            let distances = &mut self.distance[row];
-            distances.fill(PART_OF_SQUARE[REACH * REACH]);
-            let mut known: u128 = 0;
-            for (cells, distance) in near.iter().zip(PART_OF_SQUARE) {
-                let new = cells & !known;
-                known |= new;
-                let words = [0, 32, 64, 96].map(|first| (new >> first) as u32);
-                let blocks = distances.as_chunks_mut::<32>().0;
-                for (mut bits, distances) in words.into_iter().zip(blocks) {
-                    while bits != 0 {
-                        distances[bits.trailing_zeros() as usize % 32] = distance;
-                        bits &= bits - 1;
-                    }
-                }
-            }
+            let last = row + REACH;
+            self.write_beside(last, &mut beside[last % ROWS_AT_ONCE]);
+            let known = write_distances(&beside, row, &mut self.distance[row]);
             if OPEN_ROWS.contains(&row) {
                 self.open += (OPEN_COLS & !known & !self.unknown[row]).count_ones();
             }
@@ -104,24 +101,16 @@ impl ClearanceField {
         }
     }
 
-    /// For each squared distance [cells^2], the cells of a row that have an occupied cell at that distance.
+    /// For each number of columns, writes the cells of a row that are so far to the left or right of an occupied cell.
     /// The function shifts whole rows at a time.
-    fn near(&self, row: usize) -> [u128; REACH * REACH + 1] {
-        let mut near = [0; REACH * REACH + 1];
-        for rise in 0..REACH + 1 {
-            let above = self.occupied_row(Some(row + rise));
-            let both = above | self.occupied_row(row.checked_sub(rise));
-            let (mut left, mut right) = (both, both);
-            for along in 0..REACH + 1 {
-                let Some(cells) = near.get_mut(rise * rise + along * along) else {
-                    break;
-                };
-                *cells |= left | right;
-                left <<= 1;
-                right >>= 1;
-            }
+    fn write_beside(&self, row: usize, beside: &mut [u128; COLS_AT_ONCE]) {
+        let own = self.occupied_row(Some(row));
+        let (mut left, mut right) = (own, own);
+        for cells in beside {
+            *cells = left | right;
+            left <<= 1;
+            right >>= 1;
         }
-        near
     }
 
     fn occupied_row(&self, row: Option<usize>) -> u128 {
@@ -266,17 +255,59 @@ pub(crate) fn split(position: f64, cells: usize) -> (usize, f64) {
     (index, inside - index as f64)
 }
 
-/// Distances [1 / PARTS m], indexed by the squared distance in cells.
-const PART_OF_SQUARE: [u8; REACH * REACH + 1] = {
-    let mut parts = [0; REACH * REACH + 1];
-    let mut squared = 0;
-    while squared < parts.len() {
-        // The integer root of (PARTS * CELL)^2 times the squared distance.
-        let scale = (PARTS * CELL) as usize;
-        parts[squared] = (squared * scale * scale).isqrt() as u8;
+/// Writes the distances of one row. `beside` has the cells beside the occupied ones for the rows within reach, at
+/// their numbers modulo [`ROWS_AT_ONCE`]. The result are the cells that have an occupied cell within reach.
+fn write_distances(
+    beside: &[[u128; COLS_AT_ONCE]; ROWS_AT_ONCE],
+    row: usize,
+    distances: &mut [u8; COLS],
+) -> u128 {
+    distances.fill(part_of_square(REACH * REACH));
+    let mut known: u128 = 0;
+    for &[rise, along, distance] in &NEAREST_FIRST {
+        let at = |row: usize| beside[row % ROWS_AT_ONCE][usize::from(along) % COLS_AT_ONCE];
+        let rise = usize::from(rise);
+        let new = (at(row + rise) | at(row + ROWS_AT_ONCE - rise)) & !known;
+        if new == 0 {
+            continue;
+        }
+        known |= new;
+        let words = [0, 32, 64, 96].map(|first| (new >> first) as u32);
+        let blocks = distances.as_chunks_mut::<32>().0;
+        for (mut bits, distances) in words.into_iter().zip(blocks) {
+            while bits != 0 {
+                distances[bits.trailing_zeros() as usize % 32] = distance;
+                bits &= bits - 1;
+            }
+        }
+    }
+    known
+}
+
+/// Rows and columns from a cell to another one within reach, and their distance \[1 / PARTS m\], nearest first.
+const NEAREST_FIRST: [[u8; 3]; WITHIN_REACH] = {
+    let mut all = [[0; 3]; WITHIN_REACH];
+    let (mut squared, mut count) = (0, 0);
+    while squared <= REACH * REACH {
+        let mut rise = 0;
+        while rise * rise <= squared {
+            let along = (squared - rise * rise).isqrt();
+            if along * along + rise * rise == squared {
+                all[count] = [rise as u8, along as u8, part_of_square(squared)];
+                count += 1;
+            }
+            rise += 1;
+        }
         squared += 1;
     }
-    parts
+    assert!(count == WITHIN_REACH);
+    all
 };
+
+/// Distance \[1 / PARTS m\] of a squared distance \[cells^2\]: the integer root.
+const fn part_of_square(squared: usize) -> u8 {
+    let scale = (PARTS * CELL) as usize;
+    (squared * scale * scale).isqrt() as u8
+}
 
 const _: () = assert!(FAR * PARTS < 256.0);

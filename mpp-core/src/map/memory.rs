@@ -5,7 +5,7 @@
 //! the back of an obstacle, so the map knows nothing of it; [`super::ClearanceField`] completes it.
 
 use super::Pose;
-use super::cell::{bit, rounded_down};
+use super::cell::{Place, at_least, bit, rounded_down, zeros};
 use crate::sense::LidarScan;
 use crate::tuning::memory::{
     BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,
@@ -167,18 +167,18 @@ impl MemoryMap {
         for (beam, range) in ranges.skip(beams.start) {
             let angle = pitch + scan.beam_angle(beam);
             let (up, ahead) = libm::sincos(angle);
-            let at = |range: f64| (x + range * ahead, z + range * up);
+            let beam = [(x, z), (ahead, up)];
             let range = f64::from(*range);
             if is_return(range, sight) {
-                self.pass(at, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED, lone);
-                let place = self.slot_at(self.locate(at(range)));
+                self.pass(beam, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED, lone);
+                let place = self.slot_at(self.locate((x + range * ahead, z + range * up)));
                 if let Some((row, slot)) = place
                     && let Some(cells) = self.evidence.get_mut(row)
                 {
                     cells[slot] = weighed(cells[slot], HIT);
                 }
             } else {
-                self.pass(at, UNANSWERED_SHARE * sight, PASSED_UNANSWERED, lone);
+                self.pass(beam, UNANSWERED_SHARE * sight, PASSED_UNANSWERED, lone);
             }
         }
     }
@@ -214,33 +214,39 @@ impl MemoryMap {
         seen >= BLIND_CELLS
     }
 
-    /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\].
+    /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\]. The beam has its start \[m\]
+    /// and its direction [-].
     // Both kinds of beams call it, and each would hold a copy.
     #[inline(never)]
     fn pass(
         &mut self,
-        at: impl Fn(f64) -> (f64, f64),
+        [(x, z), (ahead, up)]: [(f64, f64); 2],
         length: f64,
         evidence_against: i8,
         lone: &LoneHits,
     ) {
+        let steps = libm::ceil((length - FIRST_STEP) * (1.0 / STEP)) as u16;
+        let near_edge = f64::from(self.first_col);
+        let mut col = Place::of((x + FIRST_STEP * ahead) / CELL - near_edge);
+        let mut row = Place::of((z + FIRST_STEP * up - self.floor) / CELL);
+        let [next_col, next_row] = [ahead, up].map(|share| Place::of(STEP / CELL * share));
+        let first_slot = slot(self.first_col);
         let mut last = None;
-        for step in 0..MAX_STEPS {
-            let along = FIRST_STEP + STEP * f64::from(step);
-            if along >= length {
-                break;
-            }
-            let place = self.locate(at(along));
+        for _ in 0..steps.min(MAX_STEPS) {
+            let place = (row.cell(), col.cell());
+            (row, col) = (row.after(next_row), col.after(next_col));
             if last == Some(place) {
                 continue;
             }
             last = Some(place);
-            let Some((row, slot)) = self.slot_at(place) else {
-                continue;
-            };
+            let (row, col) = (place.0 as usize, place.1 as usize);
             let (Some(cells), Some(lone)) = (self.evidence.get_mut(row), lone.0.get(row)) else {
                 continue;
             };
+            if col >= COLS {
+                continue;
+            }
+            let slot = (first_slot + col) % COLS;
             // A beam of this scan that ended in a cell that stands alone says more than others that pass.
             if !bit(lone, slot) {
                 cells[slot] = weighed(cells[slot], -evidence_against);
@@ -314,12 +320,11 @@ impl MemoryMap {
     pub fn row(&self, row: usize) -> (u128, u128) {
         let (mut occupied, mut unknown) = (0, 0);
         if let Some(evidence) = self.evidence.get(row) {
-            // The loop builds blocks of 32 bits, because flight computers shift words of 32 bits.
             for cells in evidence.as_chunks::<32>().0.iter().rev() {
-                let (mut block, mut unknown_block) = (0_u32, 0_u32);
-                for (bit, evidence) in (0..).zip(cells) {
-                    block |= u32::from(*evidence >= OCCUPIED) << bit;
-                    unknown_block |= u32::from(*evidence == 0) << bit;
+                let (mut block, mut unknown_block) = (0, 0);
+                for four in cells.as_chunks::<4>().0.iter().rev() {
+                    block = block << 4 | at_least::<OCCUPIED>(*four);
+                    unknown_block = unknown_block << 4 | zeros(*four);
                 }
                 occupied = occupied << 32 | u128::from(block);
                 unknown = unknown << 32 | u128::from(unknown_block);

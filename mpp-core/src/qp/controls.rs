@@ -7,9 +7,16 @@ pub(super) const CONTROLS: usize = 2 * STAGES;
 
 pub(super) type ControlVector = [f64; CONTROLS];
 
-/// `sum += factor term`
+/// `sum += factor term`, up to the end of the shorter one. An image that is built for size keeps loops as they
+/// are, so this one takes four entries at a time.
 pub(super) fn add_scaled(sum: &mut [f64], term: &[f64], factor: f64) {
-    for (sum, term) in sum.iter_mut().zip(term) {
+    let (chunks, rest) = term.as_chunks::<4>();
+    for (sum, term) in sum.as_chunks_mut::<4>().0.iter_mut().zip(chunks) {
+        for (sum, term) in sum.iter_mut().zip(term) {
+            *sum += factor * term;
+        }
+    }
+    for (sum, term) in sum.iter_mut().skip(4 * chunks.len()).zip(rest) {
         *sum += factor * term;
     }
 }

@@ -1,6 +1,6 @@
 //! A Cholesky factor to which the solver appends rows, and from which it removes rows.
 
-use super::controls::{CONTROLS, dot};
+use super::controls::{CONTROLS, add_scaled, dot};
 use super::triangle::{Triangle, entries};
 
 /// Greatest number of active rows: the number of controls, and some more for rows that yield.
@@ -43,9 +43,7 @@ impl Factor {
                 && let Some((earlier, [value, ..])) = b.split_at_mut_checked(factors.len())
             {
                 *value /= diagonal;
-                for (earlier, factor) in earlier.iter_mut().zip(factors) {
-                    *earlier -= factor * *value;
-                }
+                add_scaled(earlier, factors, -*value);
             }
         }
     }
@@ -74,8 +72,12 @@ impl Factor {
             };
             let length = libm::sqrt(a * a + b * b);
             let (cos, sin) = (a / length, b / length);
-            for row in col + 1..self.len {
-                if let Some([left, right, ..]) = self.rows.row_mut(row).get_mut(col..) {
+            for row in self
+                .rows
+                .rows_from_mut(col + 1)
+                .take(self.len.saturating_sub(col + 1))
+            {
+                if let Some([left, right, ..]) = row.get_mut(col..) {
                     (*left, *right) = (cos * *left + sin * *right, cos * *right - sin * *left);
                 }
             }

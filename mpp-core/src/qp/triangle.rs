@@ -37,6 +37,16 @@ impl<const LEN: usize> Triangle<LEN> {
         })
     }
 
+    /// The same, to change them.
+    pub(super) fn rows_from_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
+        let mut rest = self.0.get_mut(entries(first)..).unwrap_or(&mut []);
+        (first + 1..).map_while(move |len| {
+            let (row, later) = core::mem::take(&mut rest).split_at_mut_checked(len)?;
+            rest = later;
+            Some(row)
+        })
+    }
+
     /// The rows before `end`, in reverse order.
     pub(super) fn rows_before(&self, end: usize) -> impl Iterator<Item = &[f64]> {
         let mut rest = self.0.get(..entries(end)).unwrap_or(&[]);

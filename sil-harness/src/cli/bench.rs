@@ -1,5 +1,7 @@
 //! `bench`: measures our parts and others in one run.
 
+mod authors;
+
 use super::answer::{FAILURE, Failure, USAGE, data, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::values::{preset, seed};
@@ -51,6 +53,10 @@ struct CycleArgs {
     /// Number of times that each cycle is planned; the fastest counts
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     runs: u32,
+    /// Plan with the authors' own code too, five flights from the same seed: the Python of the environment
+    /// that bench/authors/README.md sets up. The command then runs in the root of the repository
+    #[arg(long, value_name = "PYTHON")]
+    authors: Option<PathBuf>,
     /// Print the report as one JSON object
     #[arg(long)]
     json: bool,
@@ -100,10 +106,11 @@ fn run_cycle_bench(args: &CycleArgs) -> Result<u8, Failure> {
     let progress = ProgressBar::new(u64::from(args.flights));
     let report = run_cycle(&bench, || progress.inc(1));
     progress.finish_and_clear();
-    print(
-        &report.map_err(|error| Failure::new(FAILURE, error))?,
-        args.json,
-    )
+    let report = report.map_err(|error| Failure::new(FAILURE, error))?;
+    let Some(python) = &args.authors else {
+        return print(&report, args.json);
+    };
+    print(&authors::compare(python, report)?, args.json)
 }
 
 fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure> {

@@ -39,7 +39,7 @@ impl Solver {
                 Err(status) => return Some(status),
             },
         };
-        let mut direction = self.direction(&entering.row, entering.norm, self.products);
+        let mut direction = self.direction(&entering.row, entering.norm, &self.products);
         let mut full = (entering.violation / direction.complement).max(0.0);
         let mut touches = false;
         let rise = 0.5 * entering.violation * full;
@@ -96,24 +96,11 @@ impl Solver {
             multiplier: 0.0,
             yielded: false,
         };
-        let mut products = [0.0; CAPACITY];
-        let norm = self.meet(shared, &active, &mut products);
-        self.products = products;
         Ok(Entering {
             violation: self.violation(&active),
+            norm: meet(shared, &active, &self.active, &mut self.products),
             row: active,
-            norm,
         })
-    }
-
-    /// Computes the products of a row's response with those of the active rows. Returns its squared norm.
-    fn meet(&self, shared: &Condensed, own: &Active, products: &mut [f64; CAPACITY]) -> f64 {
-        let mut normal = [0.0; CONTROLS];
-        shared.add_normal(&mut normal, &own.pattern, 1.0);
-        for (product, active) in products.iter_mut().zip(&self.active) {
-            *product = shared.change(&active.pattern, &normal);
-        }
-        dot(&normal, &normal)
     }
 
     /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
@@ -130,19 +117,29 @@ impl Solver {
     }
 
     /// The direction of a step for a row, from its squared norm and its products with the active rows.
-    fn direction(&self, own: &Active, norm: f64, mut products: [f64; CAPACITY]) -> Direction {
-        self.factor.forward(&mut products);
-        let mut rates = products;
-        self.factor.backward(&mut rates);
-        let known = products.iter().take(self.active.len());
-        let rest = norm - known.map(|product| product * product).sum::<f64>();
-        Direction {
-            products,
-            rates,
+    fn direction(&self, own: &Active, norm: f64, products: &[f64; CAPACITY]) -> Direction {
+        let mut direction = Direction {
+            products: *products,
+            rates: [0.0; CAPACITY],
             norm,
-            complement: self.complement(own, norm, rest),
-            slope: rest + self.elasticity(own),
+            complement: 0.0,
+            slope: 0.0,
+        };
+        let Direction {
+            products, rates, ..
+        } = &mut direction;
+        self.factor.forward(products);
+        let known = products.iter().take(self.active.len());
+        let mut squares = 0.0;
+        for (rate, product) in rates.iter_mut().zip(known) {
+            *rate = *product;
+            squares += product * product;
         }
+        self.factor.backward(rates);
+        let rest = norm - squares;
+        direction.complement = self.complement(own, norm, rest);
+        direction.slope = rest + self.elasticity(own);
+        direction
     }
 
     /// The Schur complement of a row with the norm `norm` of which `rest` does not depend on the active rows.
@@ -244,8 +241,8 @@ impl Solver {
                 if let Some(mut row) = self.deactivate(index) {
                     row.yielded = !row.yielded;
                     let mut products = [0.0; CAPACITY];
-                    let norm = self.meet(shared, &row, &mut products);
-                    let failed = self.activate(row, &self.direction(&row, norm, products));
+                    let norm = meet(shared, &row, &self.active, &mut products);
+                    let failed = self.activate(row, &self.direction(&row, norm, &products));
                     if failed.is_some() {
                         return failed;
                     }
@@ -292,4 +289,19 @@ impl Solver {
         }
         Some(removed)
     }
+}
+
+/// Computes the products of a row's response with those of the active rows. Returns its squared norm.
+fn meet(
+    shared: &Condensed,
+    own: &Active,
+    active: &[Active],
+    products: &mut [f64; CAPACITY],
+) -> f64 {
+    let mut normal = [0.0; CONTROLS];
+    shared.add_normal(&mut normal, &own.pattern, 1.0);
+    for (product, active) in products.iter_mut().zip(active) {
+        *product = shared.change(&active.pattern, &normal);
+    }
+    dot(&normal, &normal)
 }
