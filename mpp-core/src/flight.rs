@@ -11,6 +11,7 @@ use crate::planner::{SetupError, Verdict, check};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
+use crate::tuning::sensors::LONGEST_DOUBT;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{AirState, Control, Trim, VehicleState, linearize};
 pub use design::Design;
@@ -63,7 +64,18 @@ pub struct FlightLoop {
     trajectory: Option<Trajectory>,
     /// Time \[s\] of the last step, and its command.
     last: Option<(f64, Control)>,
+    jump: Option<Jump>,
     health: Health,
+}
+
+/// A time between two steps that the loop does not believe. Either the clock jumped or steps were lost; the next
+/// position tells.
+#[derive(Clone, Copy, Debug)]
+struct Jump {
+    /// Time of the step after it \[s\].
+    time: f64,
+    /// Part of it that the estimate was not moved on by \[s\].
+    rest: f64,
 }
 
 impl FlightLoop {
@@ -89,6 +101,7 @@ impl FlightLoop {
             airspeed_hold: settings.airspeed_hold,
             trajectory: None,
             last: None,
+            jump: None,
             health: Health::default(),
         }
     }
@@ -98,8 +111,14 @@ impl FlightLoop {
     pub fn step(&mut self, time: f64, frame: &SensorFrame) -> StepOutput {
         let elapsed = match self.last {
             Some((before, control)) => {
-                self.estimator
-                    .predict(time - before, control, &mut self.health)
+                let period = time - before;
+                let air = frame.air.as_ref();
+                let believed = (self.estimator).predict(period, control, air, &mut self.health);
+                if period > believed {
+                    let rest = period - believed;
+                    self.jump = Some(Jump { time, rest });
+                }
+                believed
             }
             None => {
                 self.estimator.begin();
@@ -115,6 +134,7 @@ impl FlightLoop {
             let found = self.estimator.state();
             trajectory.shift((found.x - expected.x, found.z - expected.z));
         }
+        self.settle_jump(time, position, expected.x);
 
         let tracked = self
             .trajectory
@@ -234,6 +254,32 @@ impl FlightLoop {
             Health::count(&mut self.health.elevator_limited);
         }
         control
+    }
+
+    /// Whether the time and the place of the aircraft are in doubt, because the time jumped and there was no
+    /// position since. A scan then has no certain pose.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.jump.is_some()
+    }
+
+    /// Finds by the first position after a jump of the time how much of it was flown, and delays the trajectory by
+    /// the rest. `expected` is the place downrange \[m\] where the estimate was before the position.
+    fn settle_jump(&mut self, time: f64, position: Option<PositionVerdict>, expected: f64) {
+        let Some(jump) = self.jump else {
+            return;
+        };
+        if position == Some(PositionVerdict::Accepted) {
+            let state = self.estimator.state();
+            let (ahead, _) = self.conditions().wind.ground_velocity(&state.air);
+            let flown = (state.x - expected) / ahead.max(LEAST_ADVANCE);
+            if let Some(trajectory) = &mut self.trajectory {
+                trajectory.start += (jump.rest - flown).max(0.0);
+            }
+            self.jump = None;
+        } else if position == Some(PositionVerdict::Restarted) || time - jump.time > LONGEST_DOUBT {
+            self.jump = None;
+        }
     }
 
     /// The motion of the reference, turned towards the path of the reference.

@@ -209,6 +209,19 @@ pub mod sensors {
     /// Longest time between two steps that the estimate is moved on by \[s\]. After a longer time the state
     /// is another one; the sensors tell it. Source: D15.
     pub const LONGEST_PREDICTION: f64 = 0.5;
+    /// Longest time without steps after which the first position is believed at once \[s\]. After a longer time the
+    /// filter of the positions starts anew.
+    pub const LONGEST_GAP: f64 = 3.0;
+    /// Standard deviations of the sensors by which the motion differs after steps were lost, and does not differ
+    /// after the clock jumped [-]. Fewer take a fast turn of one tick for lost steps. Source: derived; 1.8
+    /// deg of pitch.
+    pub const CHANGED: f64 = 7.0;
+    /// Standard deviations of the motion after lost steps: share of the airspeed [-], pitch \[rad\], pitch rate
+    /// [rad/s] and flight path angle \[rad\]. Source: derived; the sensors must pass their gates.
+    pub const AFTER_GAP: [f64; 4] = [0.15, 0.2, 0.5, 0.2];
+    /// Longest time after a jump of the time for which scans wait for a position that tells where the aircraft is
+    /// \[s\]: three positions of a source of 10 Hz. Source: derived.
+    pub const LONGEST_DOUBT: f64 = 0.3;
 }
 
 /// The estimate of position and wind.

@@ -1,15 +1,17 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
 use super::{
-    Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator, MOST_AGE, Measurement,
-    Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict, Watch,
+    Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator, MOST_SCAN_AGE,
+    Measurement, Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
 use crate::map::Pose;
 use crate::sense::{AirData, Position, SensorFrame};
 use crate::settings::Settings;
-use crate::tuning::sensors::{LONGEST_PREDICTION, POSITION_PERIOD};
+use crate::tuning::sensors::{
+    AFTER_GAP, CHANGED, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
+};
 use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState};
 
 /// The trust in each sensor of the step.
@@ -137,7 +139,7 @@ impl Estimator {
     }
 
     /// The pose of the lidar at the tick that was `age` ticks ago, without the bias of the pitch. `None` if that
-    /// was before the first step or more than [`MOST_AGE`] ticks ago.
+    /// was before the first step or more than [`MOST_SCAN_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
         let bias = self
@@ -150,7 +152,7 @@ impl Estimator {
                 ..pose
             });
         }
-        if age > MOST_AGE {
+        if age > MOST_SCAN_AGE {
             return None;
         }
         let ((x, z), pitch) = self.navigation.pose_at(age)?;
@@ -186,25 +188,35 @@ impl Estimator {
         self.navigation.predict(self.air.present(), 0.0);
     }
 
-    /// Moves the estimates on by the time since the last step \[s\], in pieces of about a tick. A time that
-    /// goes back counts as none. Of a long time only the last part is believed: the clock has jumped, or the
-    /// aircraft was not controlled meanwhile.
-    /// Gives the time that it believes \[s\].
-    pub fn predict(&mut self, elapsed: f64, control: Control, health: &mut Health) -> f64 {
+    /// Moves the estimates on by the time since the last step \[s\], in pieces of about a tick, and gives the time that
+    /// it moved them on by. A time that goes back counts as none.
+    ///
+    /// A time that is too long is not believed. If the air data of this step agree with the motion of the last one, the
+    /// clock has jumped, and one tick has passed. Else the aircraft flew without control meanwhile, and the
+    /// estimates move on by [`LONGEST_PREDICTION`].
+    pub fn predict(
+        &mut self,
+        elapsed: f64,
+        control: Control,
+        air: Option<&AirData>,
+        health: &mut Health,
+    ) -> f64 {
         let believed = (0.0..=LONGEST_PREDICTION).contains(&elapsed);
+        let mut period = elapsed;
         if !believed {
             Health::count(&mut health.time_jumps);
-            let doubt = self.air.present().airspeed * LONGEST_PREDICTION;
-            self.navigation.doubt(doubt);
+            // A time that is not a number is in no range and not greater than any.
+            period = if !(elapsed > 0.0) {
+                0.0
+            } else if air.is_none_or(|air| self.has_changed(&air.measurement)) {
+                LONGEST_PREDICTION
+            } else {
+                TICK_PERIOD
+            };
+            let airspeed = self.air.present().airspeed;
+            self.navigation
+                .doubt(airspeed * elapsed.clamp(LONGEST_PREDICTION, LONGEST_GAP));
         }
-        // A time that is not a number is in no range and not greater than any.
-        let period = if believed {
-            elapsed
-        } else if elapsed > 0.0 {
-            LONGEST_PREDICTION
-        } else {
-            0.0
-        };
         let pieces = libm::round(period / TICK_PERIOD).max(1.0);
         for _ in 0..pieces as u32 {
             let piece = period / pieces;
@@ -214,7 +226,21 @@ impl Estimator {
             }
             self.navigation.predict(self.air.present(), piece);
         }
+        if !believed && period > TICK_PERIOD {
+            let [airspeed, pitch, pitch_rate, flight_path] = AFTER_GAP;
+            let airspeed = airspeed * self.air.present().airspeed;
+            self.air.doubt([airspeed, pitch, pitch_rate, flight_path]);
+        }
         period
+    }
+
+    /// Whether a measurement is far from the present motion.
+    fn has_changed(&self, measured: &Measurement) -> bool {
+        let now = self.air.present();
+        let tuning = self.air.tuning();
+        let beyond = |off: f64, variance: f64| !(off * off <= CHANGED * CHANGED * variance);
+        beyond(measured.airspeed - now.airspeed, tuning.airspeed_variance)
+            || beyond(measured.pitch - now.pitch, tuning.pitch_variance)
     }
 
     /// Corrects the estimates by what arrived `elapsed` \[s\] after the last step.

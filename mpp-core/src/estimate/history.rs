@@ -1,15 +1,18 @@
-//! The motion of the last 0.3 s, for measurements that come late.
+//! The motion of the last 1.2 s, for measurements and scans that come late.
 
 use crate::config::TICK_PERIOD;
 use crate::vehicle::{AirState, Wind};
 
 /// Number of ticks that the history holds, the present one included; a power of two.
-const TICKS: usize = 32;
+const TICKS: usize = 128;
 
 /// Greatest age of a measurement that the estimators use \[ticks\]: 0.3 s.
 pub const MOST_AGE: u32 = 30;
 
-const _: () = assert!((MOST_AGE as usize) + 1 < TICKS);
+/// Greatest age of a scan of which the pose is known \[ticks\]: a replan at 1 Hz and 0.2 s more.
+pub const MOST_SCAN_AGE: u32 = 120;
+
+const _: () = assert!(MOST_AGE <= MOST_SCAN_AGE && (MOST_SCAN_AGE as usize) + 1 < TICKS);
 
 /// The aircraft's way through the air at one tick, and its pitch.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +23,7 @@ struct Entry {
     pitch: f64,
 }
 
-/// The aircraft's way through the air and its pitch at each tick of the last 0.3 s.
+/// The aircraft's way through the air and its pitch at each tick of the last 1.2 s.
 #[derive(Clone, Debug)]
 pub struct History {
     entries: [Entry; TICKS],

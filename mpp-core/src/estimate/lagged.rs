@@ -120,6 +120,11 @@ impl LaggedEkf {
         result
     }
 
+    /// Doubts the motion; see [`Ekf::doubt`].
+    pub fn doubt(&mut self, sigmas: [f64; 4]) {
+        self.ekf.doubt(sigmas);
+    }
+
     /// Takes a measurement that is `age` ticks old. It uses airspeed and pitch only where `used` says so.
     pub fn take(&mut self, age: u32, measurement: &Measurement, used: [bool; 2]) -> Taken {
         if age > MOST_AGE {

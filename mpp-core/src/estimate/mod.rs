@@ -16,7 +16,7 @@ pub use changes::Changes;
 pub use conditions::Conditions;
 use core::fmt;
 pub use estimator::{Estimator, EstimatorDesign, Sensors};
-pub use history::{History, MOST_AGE};
+pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
 use nalgebra::{Matrix4, Vector4};
@@ -220,6 +220,14 @@ impl Ekf {
         self.estimate = predicted;
         self.covariance = covariance;
         Ok(())
+    }
+
+    /// Doubts the motion, because the aircraft was not controlled for some time: adds the squares of these standard
+    /// deviations \[m/s, rad, rad/s, rad\] to the covariance.
+    pub fn doubt(&mut self, sigmas: [f64; 4]) {
+        for (index, sigma) in sigmas.into_iter().enumerate() {
+            self.covariance[(index, index)] += sigma * sigma;
+        }
     }
 
     /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one

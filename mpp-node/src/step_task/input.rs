@@ -21,6 +21,10 @@ impl StepTask {
         let Some(flight) = &mut self.flight else {
             return self.reject(RejectionCause::NotConfigured, send);
         };
+        if flight.heard_scan.replace(wire.tick) == Some(wire.tick) {
+            // The core has it; the command that answered it was lost.
+            return;
+        }
         let (beams, range_max) = {
             let configure = &flight.tuning.configure;
             (configure.beams, configure.range_max)
@@ -86,6 +90,7 @@ impl StepTask {
         flight.cycle = None;
         flight.last_cycle = None;
         flight.last_scan = None;
+        flight.heard_scan = None;
         flight.plan_tick = flight.plan_tick.map(|_| tick);
         self.plan = None;
         true

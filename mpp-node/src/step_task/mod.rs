@@ -40,8 +40,10 @@ pub enum Pace {
 struct Cycle {
     /// The tick at which the cycle started.
     begun: u32,
-    /// The tick at which the scan was taken.
+    /// The tick at which the scan was taken, or that of the start if there was no scan.
     scan: u32,
+    /// Whether there was a scan. Without one the planner goes by its map alone.
+    sees: bool,
     /// The tick at which the plan is due.
     due: u32,
 }
@@ -68,6 +70,8 @@ struct Flight {
     untold: Option<PlanReport>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
+    /// The tick of the last scan that came. A sender repeats a scan until a command answers it.
+    heard_scan: Option<u32>,
     /// Jumps of the positions' origin that the planner knows of.
     restarts: u32,
     /// The tick that follows the last old one, and the number of old ticks in a row.

@@ -71,6 +71,7 @@ impl StepTask {
             plan_tick: None,
             untold: None,
             scan_tick: None,
+            heard_scan: None,
             restarts: 0,
             old_ticks: None,
             lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),

@@ -8,9 +8,14 @@ use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
 use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
 use mpp_core::planner::PlanSummary;
+use mpp_core::sense::LidarScan;
 
 /// Ticks from one report of the counters to the next.
 const HEALTH_PERIOD: u32 = 100;
+
+/// Delay of a scan beyond the period after which the planner goes on without it \[ticks\]: 0.25 s. Scans that are late by
+/// less are worth the wait.
+const SCAN_DELAY: u32 = 25;
 
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
@@ -47,7 +52,11 @@ impl StepTask {
         let Some(cycle) = flight.cycle.take() else {
             return;
         };
-        let scan_tick = cycle.scan;
+        let Cycle {
+            scan: scan_tick,
+            sees,
+            ..
+        } = cycle;
         let time = flight.time(tick);
         let adoption = flight.control.adopt(time, plan.verdict, &plan.trajectory);
         let outcome = convert::outcome(adoption);
@@ -67,7 +76,7 @@ impl StepTask {
             violation,
             ..
         } = plan.summary;
-        flight.lidar_good = Some(!blind);
+        flight.lidar_good = sees.then_some(!blind);
         flight.untold = Some(PlanReport {
             scan_tick,
             used_from_tick: tick,
@@ -81,7 +90,7 @@ impl StepTask {
             complete,
         });
         self.plan = None;
-        if blind {
+        if blind && sees {
             self.reject(RejectionCause::ScanBlind, send);
         }
     }
@@ -158,44 +167,65 @@ impl StepTask {
         }
     }
 
-    /// Starts a cycle from the scan of this tick, if one is due.
+    /// Starts a cycle from the scan that has come, if one is due. If no scan has come for too long, the planner goes on
+    /// with its map.
     fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
         let Some(flight) = &mut self.flight else {
             return;
         };
-        let Some(scan_tick) = flight.scan_tick.take().filter(|_| !self.planner_off) else {
+        if self.planner_off || flight.control.is_lost() {
+            return;
+        }
+        let Some(scan_tick) = flight.scan_tick.take() else {
+            if flight.misses_a_scan(tick) && flight.cycle.is_none() && self.order.is_none() {
+                self.begin_cycle(tick, None);
+            }
             return;
         };
-        let age = tick.wrapping_sub(scan_tick);
+        let known = flight
+            .control
+            .pose_at(tick.wrapping_sub(scan_tick))
+            .is_some();
         let again = flight
             .last_scan
             .is_some_and(|last| ticks(last, scan_tick) <= 0);
-        let Some(pose) = flight.control.pose_at(age).filter(|_| !again) else {
+        if !known || again {
             let cause = RejectionCause::TickOrder {
                 expected: tick,
                 found: scan_tick,
             };
             return self.reject(cause, send);
-        };
-        let period = flight.tuning.configure.replan_period_ticks;
-        if flight
-            .last_cycle
-            .is_some_and(|last| tick.wrapping_sub(last) < period)
-        {
+        }
+        if !flight.is_due(tick, scan_tick) {
             return;
         }
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
+        self.begin_cycle(tick, Some(scan_tick));
+    }
+
+    /// Orders a cycle from the scan of a tick, or without a scan.
+    // Not inlined, so that the order is not on the stack of each tick.
+    #[inline(never)]
+    fn begin_cycle(&mut self, tick: u32, scan_tick: Option<u32>) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
+        let age = scan_tick.map_or(0, |scan| tick.wrapping_sub(scan));
+        let Some(pose) = flight.control.pose_at(age) else {
+            return;
+        };
         let restarts = flight.control.health().positions_restarted;
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
             begun: tick,
-            scan: scan_tick,
+            scan: scan_tick.unwrap_or(tick),
+            sees: scan_tick.is_some(),
             due: tick.wrapping_add(flight.tuning.configure.latency_ticks),
         });
         flight.last_cycle = Some(tick);
-        flight.last_scan = Some(scan_tick);
+        flight.last_scan = scan_tick.or(flight.last_scan);
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
@@ -203,7 +233,7 @@ impl StepTask {
             pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
-            scan: self.scan.clone(),
+            scan: scan_tick.map_or(LidarScan::new(), |_| self.scan.clone()),
             planner: flight.tuning.settings.planner,
             latency_ticks: flight.tuning.configure.latency_ticks,
             slices_per_tick: flight.tuning.configure.slices_per_tick,
@@ -213,6 +243,26 @@ impl StepTask {
 }
 
 impl Flight {
+    /// Whether a cycle is due: a period after the last one, or from a scan that was taken a period after the last
+    /// one's.
+    fn is_due(&self, tick: u32, scan_tick: u32) -> bool {
+        let period = self.tuning.configure.replan_period_ticks;
+        let passed =
+            |last: Option<u32>, now: u32| last.is_none_or(|last| now.wrapping_sub(last) >= period);
+        passed(self.last_cycle, tick) || passed(self.last_scan, scan_tick)
+    }
+
+    /// Whether the planner has waited for a scan for too long.
+    fn misses_a_scan(&self, tick: u32) -> bool {
+        let most = self
+            .tuning
+            .configure
+            .replan_period_ticks
+            .saturating_add(SCAN_DELAY);
+        self.last_cycle
+            .is_some_and(|last| tick.wrapping_sub(last) >= most)
+    }
+
     /// Time of a tick since the first step \[s\].
     fn time(&self, tick: u32) -> f64 {
         let first = self.first_tick.unwrap_or(tick);

@@ -14,6 +14,8 @@ pub(super) struct Exchange {
     clock: ClockFault,
     /// The command that the aircraft has.
     command: ActuatorCommand,
+    /// A scan that no command has answered. It goes out again with the next frame.
+    unanswered: Option<LidarScan>,
 }
 
 impl Exchange {
@@ -29,6 +31,7 @@ impl Exchange {
                 elevator: trim.elevator,
                 mode: ControlMode::TrimHold,
             },
+            unanswered: None,
         })
     }
 
@@ -47,6 +50,10 @@ impl Exchange {
         frame: SensorFrame,
     ) -> Result<Answer, LinkError> {
         let now = frame.tick;
+        let scan = scan.or_else(|| self.unanswered.take());
+        if !(passage.to_core && passage.to_aircraft) {
+            self.unanswered.clone_from(&scan);
+        }
         let known = session.told.rejections.len();
         let mut answer = if passage.to_core {
             session.fly(
