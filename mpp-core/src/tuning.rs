@@ -244,6 +244,28 @@ pub mod navigation {
     pub const RESTART_TIME: f64 = 1.0;
 }
 
+/// Slow error of the airspeed, seen as wind and lift at once.
+pub mod airspeed_bias {
+    /// Time after which wind and lift are settled \[s\]. What they are then counts as right.
+    pub const SETTLED: f64 = 1.5;
+    /// Time over which their slow means follow \[s\]. With more of it steady wind counts as a change for longer, with less
+    /// a slow error hides.
+    pub const MEMORY: f64 = 20.0;
+    /// Error by the wind from which on the airspeed counts as wrong, as a share of it [-]: 1.4 m/s at 12 m/s. Source:
+    /// D26.
+    pub const FOUND_BY_WIND: f64 = 0.115;
+    /// The same by the lift [-]. The estimate of the lift averages over seconds, so it shows less of an error that grows.
+    pub const FOUND_BY_LIFT: f64 = 0.045;
+    /// Time for which both must say so \[s\]. Gusts do so for a moment.
+    pub const FOUND_FOR: f64 = 0.3;
+    /// Mean difference of the sensor from the estimate up to which they agree, as a share of the airspeed [-].
+    pub const AGREES: f64 = 0.06;
+    /// Time for which they must agree before the sensor is believed again \[s\].
+    pub const AGREES_FOR: f64 = 3.0;
+    /// Time over which this mean is taken \[s\].
+    pub const OFF_TIME: f64 = 1.0;
+}
+
 /// Bias of the pitch, seen as a steady vertical wind.
 pub mod bias {
     /// Time over which the wind is averaged \[s\]. More of it tells gusts better from a bias, and finds a bias

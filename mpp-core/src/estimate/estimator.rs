@@ -1,8 +1,9 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
 use super::{
-    Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator, MOST_SCAN_AGE,
-    Measurement, Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict, Watch,
+    AirspeedBias, Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator,
+    MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict,
+    Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -51,6 +52,7 @@ pub struct Estimator {
     pitch: Watch,
     position: Watch,
     bias: PitchBias,
+    airspeed_bias: AirspeedBias,
     /// Unit of the speeds in which the watch of the pitch's bias reckons [m/s].
     speed_unit: f64,
 }
@@ -74,6 +76,7 @@ impl Estimator {
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
             bias: PitchBias::new(),
+            airspeed_bias: AirspeedBias::new(airframe.level_lift(trim.state.airspeed)),
             speed_unit: settings.units.speed(),
         }
     }
@@ -173,7 +176,11 @@ impl Estimator {
     #[must_use]
     pub fn sensors(&self) -> Sensors {
         Sensors {
-            airspeed: self.airspeed.trust(),
+            airspeed: if self.airspeed_bias.found() {
+                Trust::Excluded
+            } else {
+                self.airspeed.trust()
+            },
             pitch: if self.bias.found() {
                 self.pitch.trust().doubted()
             } else {
@@ -270,7 +277,10 @@ impl Estimator {
             airspeed: self.airspeed_changes.take(air.measurement.airspeed),
             pitch: self.pitch_changes.take(air.measurement.pitch),
         };
-        let used = [self.airspeed.uses(), self.pitch.uses()];
+        let biased = self.airspeed_bias.found();
+        let used = [self.airspeed.uses() && !biased, self.pitch.uses()];
+        let estimate = self.air.present().airspeed;
+        (self.airspeed_bias).compare(air.measurement.airspeed, estimate, TICK_PERIOD);
         let Taken::Measured(mut innovation) = self.air.take(air.age, &fresh, used) else {
             self.airspeed.tick(None);
             self.pitch.tick(None);
@@ -305,6 +315,13 @@ impl Estimator {
                 lift.update(elapsed, climb, &air, self.given);
                 let wind = self.navigation.wind().z / self.speed_unit;
                 self.bias.update(wind, elapsed);
+                let (wind, offset) = (self.navigation.wind().x, lift.offset());
+                let found = (self.airspeed_bias).update(wind, offset, air.airspeed, elapsed);
+                if let Some(before) = found {
+                    self.air.shift_airspeed(wind - before.wind);
+                    self.navigation.set_wind_along(before.wind);
+                    lift.set_offset(before.lift);
+                }
             }
         }
         let airframe = self.conditions().airframe(&self.airframe);

@@ -125,6 +125,12 @@ impl LaggedEkf {
         self.ekf.doubt(sigmas);
     }
 
+    /// Moves the estimated airspeed by a known error [m/s].
+    pub fn shift_airspeed(&mut self, by: f64) {
+        self.ekf.shift_airspeed(by);
+        self.look_ahead();
+    }
+
     /// Takes a measurement that is `age` ticks old. It uses airspeed and pitch only where `used` says so.
     pub fn take(&mut self, age: u32, measurement: &Measurement, used: [bool; 2]) -> Taken {
         if age > MOST_AGE {

@@ -63,6 +63,12 @@ impl LiftEstimator {
         self.average += share * (more / per_lift - self.average);
     }
 
+    /// Goes back to an offset of before, and forgets the last climb rate.
+    pub fn set_offset(&mut self, offset: f64) {
+        self.average = offset;
+        self.interrupt();
+    }
+
     /// Forgets the last climb rate. The next one may be another by more than the acceleration.
     pub fn interrupt(&mut self) {
         self.last = None;

@@ -1,5 +1,6 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
+mod airspeed_bias;
 mod bias;
 mod changes;
 mod conditions;
@@ -11,6 +12,7 @@ mod navigation;
 mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias::PitchBias;
 pub use changes::Changes;
 pub use conditions::Conditions;
@@ -228,6 +230,11 @@ impl Ekf {
         for (index, sigma) in sigmas.into_iter().enumerate() {
             self.covariance[(index, index)] += sigma * sigma;
         }
+    }
+
+    /// Moves the estimated airspeed by a known error [m/s].
+    pub fn shift_airspeed(&mut self, by: f64) {
+        self.estimate.airspeed += by;
     }
 
     /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one

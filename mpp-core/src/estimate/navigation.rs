@@ -162,6 +162,11 @@ impl Navigation {
         self.covariance.position += distance * distance;
     }
 
+    /// Replaces the estimate of the wind along the way [m/s].
+    pub fn set_wind_along(&mut self, wind: f64) {
+        self.wind.x = wind;
+    }
+
     /// Takes in the motion through the air as it is after the sensors of this tick.
     pub fn correct_motion(&mut self, air: &AirState) {
         self.history.correct(air);

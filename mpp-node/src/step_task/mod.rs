@@ -40,10 +40,8 @@ pub enum Pace {
 struct Cycle {
     /// The tick at which the cycle started.
     begun: u32,
-    /// The tick at which the scan was taken, or that of the start if there was no scan.
+    /// The tick at which the scan was taken.
     scan: u32,
-    /// Whether there was a scan. Without one the planner goes by its map alone.
-    sees: bool,
     /// The tick at which the plan is due.
     due: u32,
 }

@@ -8,14 +8,9 @@ use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
 use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
 use mpp_core::planner::PlanSummary;
-use mpp_core::sense::LidarScan;
 
 /// Ticks from one report of the counters to the next.
 const HEALTH_PERIOD: u32 = 100;
-
-/// Delay of a scan beyond the period after which the planner goes on without it \[ticks\]: 0.25 s. Scans that are late by
-/// less are worth the wait.
-const SCAN_DELAY: u32 = 25;
 
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
@@ -52,11 +47,7 @@ impl StepTask {
         let Some(cycle) = flight.cycle.take() else {
             return;
         };
-        let Cycle {
-            scan: scan_tick,
-            sees,
-            ..
-        } = cycle;
+        let scan_tick = cycle.scan;
         let time = flight.time(tick);
         let adoption = flight.control.adopt(time, plan.verdict, &plan.trajectory);
         let outcome = convert::outcome(adoption);
@@ -76,7 +67,7 @@ impl StepTask {
             violation,
             ..
         } = plan.summary;
-        flight.lidar_good = sees.then_some(!blind);
+        flight.lidar_good = Some(!blind);
         flight.untold = Some(PlanReport {
             scan_tick,
             used_from_tick: tick,
@@ -90,7 +81,7 @@ impl StepTask {
             complete,
         });
         self.plan = None;
-        if blind && sees {
+        if blind {
             self.reject(RejectionCause::ScanBlind, send);
         }
     }
@@ -167,8 +158,8 @@ impl StepTask {
         }
     }
 
-    /// Starts a cycle from the scan that has come, if one is due. If no scan has come for too long, the planner goes on
-    /// with its map.
+    /// Starts a cycle from the scan that has come, if one is due. A scan waits while the place of the aircraft is in
+    /// doubt.
     fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
         let Some(flight) = &mut self.flight else {
             return;
@@ -177,55 +168,34 @@ impl StepTask {
             return;
         }
         let Some(scan_tick) = flight.scan_tick.take() else {
-            if flight.misses_a_scan(tick) && flight.cycle.is_none() && self.order.is_none() {
-                self.begin_cycle(tick, None);
-            }
             return;
         };
-        let known = flight
-            .control
-            .pose_at(tick.wrapping_sub(scan_tick))
-            .is_some();
+        let age = tick.wrapping_sub(scan_tick);
         let again = flight
             .last_scan
             .is_some_and(|last| ticks(last, scan_tick) <= 0);
-        if !known || again {
+        let Some(pose) = flight.control.pose_at(age).filter(|_| !again) else {
             let cause = RejectionCause::TickOrder {
                 expected: tick,
                 found: scan_tick,
             };
             return self.reject(cause, send);
-        }
+        };
         if !flight.is_due(tick, scan_tick) {
             return;
         }
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
-        self.begin_cycle(tick, Some(scan_tick));
-    }
-
-    /// Orders a cycle from the scan of a tick, or without a scan.
-    // Not inlined, so that the order is not on the stack of each tick.
-    #[inline(never)]
-    fn begin_cycle(&mut self, tick: u32, scan_tick: Option<u32>) {
-        let Some(flight) = &mut self.flight else {
-            return;
-        };
-        let age = scan_tick.map_or(0, |scan| tick.wrapping_sub(scan));
-        let Some(pose) = flight.control.pose_at(age) else {
-            return;
-        };
         let restarts = flight.control.health().positions_restarted;
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
             begun: tick,
-            scan: scan_tick.unwrap_or(tick),
-            sees: scan_tick.is_some(),
+            scan: scan_tick,
             due: tick.wrapping_add(flight.tuning.configure.latency_ticks),
         });
         flight.last_cycle = Some(tick);
-        flight.last_scan = scan_tick.or(flight.last_scan);
+        flight.last_scan = Some(scan_tick);
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
@@ -233,7 +203,7 @@ impl StepTask {
             pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
-            scan: scan_tick.map_or(LidarScan::new(), |_| self.scan.clone()),
+            scan: self.scan.clone(),
             planner: flight.tuning.settings.planner,
             latency_ticks: flight.tuning.configure.latency_ticks,
             slices_per_tick: flight.tuning.configure.slices_per_tick,
@@ -250,17 +220,6 @@ impl Flight {
         let passed =
             |last: Option<u32>, now: u32| last.is_none_or(|last| now.wrapping_sub(last) >= period);
         passed(self.last_cycle, tick) || passed(self.last_scan, scan_tick)
-    }
-
-    /// Whether the planner has waited for a scan for too long.
-    fn misses_a_scan(&self, tick: u32) -> bool {
-        let most = self
-            .tuning
-            .configure
-            .replan_period_ticks
-            .saturating_add(SCAN_DELAY);
-        self.last_cycle
-            .is_some_and(|last| tick.wrapping_sub(last) >= most)
     }
 
     /// Time of a tick since the first step \[s\].
