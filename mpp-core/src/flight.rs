@@ -51,6 +51,9 @@ pub struct StepOutput {
     pub innovation: Innovation,
     /// The filter's verdict on the position, if there was one.
     pub position: Option<PositionVerdict>,
+    /// Whether the estimates have moved to another origin or turned by another bias of the pitch. A plan that was begun
+    /// before does not fit them.
+    pub moved: bool,
 }
 
 /// The state and the parts of the 100 Hz loop.
@@ -135,6 +138,10 @@ impl FlightLoop {
             trajectory.shift((found.x - expected.x, found.z - expected.z));
         }
         self.settle_jump(time, position, expected.x);
+        let turned = self.estimator.correct_pitch();
+        if let (Some(by), Some(trajectory)) = (turned, &mut self.trajectory) {
+            trajectory.turn(by);
+        }
 
         let tracked = self
             .trajectory
@@ -159,6 +166,7 @@ impl FlightLoop {
             mode,
             innovation,
             position,
+            moved: turned.is_some() || position == Some(PositionVerdict::Restarted),
         }
     }
 

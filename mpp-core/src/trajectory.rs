@@ -87,6 +87,19 @@ impl Trajectory {
         }
     }
 
+    /// Turns the motion of the whole trajectory by a known error of the pitch with which it was made \[rad\]. The way over
+    /// ground stays.
+    pub fn turn(&mut self, by: f64) {
+        let airspeed = self.knots[0].state.air.airspeed;
+        for knot in &mut self.knots {
+            knot.state.air.pitch += by;
+            knot.state.air.flight_path += by;
+        }
+        if let Between::Flown(_, wind) = &mut self.between {
+            wind.z -= airspeed * by;
+        }
+    }
+
     /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages, which last
     /// `stage_period` \[s\] each.
     pub fn fly_out(

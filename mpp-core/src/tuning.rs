@@ -266,20 +266,25 @@ pub mod airspeed_bias {
     pub const OFF_TIME: f64 = 1.0;
 }
 
-/// Bias of the pitch, seen as a steady vertical wind.
+/// Bias of the pitch, seen as a steady vertical wind and a push along the way.
 pub mod bias {
-    /// Time over which the wind is averaged \[s\]. More of it tells gusts better from a bias, and finds a bias
+    /// Time over which the tilt is averaged \[s\]. More of it tells gusts better from a bias, and finds a bias
     /// later.
     pub const MEMORY: f64 = 3.0;
-    /// Time after which a bias can be found \[s\].
-    pub const SEEN: f64 = 1.5;
-    /// Least mean wind of a bias [m/s]: 2.4 degrees at 12 m/s. An error of the airframe looks like a smaller
-    /// one.
-    pub const LEAST_WIND: f64 = 0.5;
-    /// Standard deviation of the estimated wind in still air [m/s].
-    pub const STILL_WIND: f64 = 0.1;
-    /// Standard deviations by which the mean wind of a bias exceeds zero [-]. Fewer take gusts for a bias.
-    pub const STEADY: f64 = 5.0;
+    /// Time after which the first estimate of the wind is settled \[s\].
+    pub const SETTLED: f64 = 0.5;
+    /// Time after that after which a bias can be found \[s\].
+    pub const SEEN: f64 = 1.0;
+    /// Least bias \[rad\]: 2.4 degrees. An error of the airframe looks like a smaller one.
+    pub const LEAST: f64 = 0.042;
+    /// Least ratio of the tilts by wind and by airspeed, the lesser to the greater [-]. Source: D26.
+    pub const AGREE: f64 = 0.6;
+    /// Least change of the bias by which the estimates turn \[rad\]: 1.1 deg. With less they turn often.
+    pub const LEAST_TURN: f64 = 0.02;
+    /// Standard deviation of the tilt by the estimated wind in still air \[rad\].
+    pub const STILL: f64 = 0.0083;
+    /// Standard deviations of the tilt by the wind that a bias exceeds [-]. Fewer take gusts for a bias. Source: D26.
+    pub const STEADY: f64 = 3.0;
 }
 
 /// The estimate of the lift.

@@ -10,10 +10,11 @@ use crate::health::Health;
 use crate::map::Pose;
 use crate::sense::{AirData, Position, SensorFrame};
 use crate::settings::Settings;
+use crate::tuning::bias::LEAST_TURN;
 use crate::tuning::sensors::{
     AFTER_GAP, CHANGED, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
-use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState};
+use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, GRAVITY, Trim, VehicleState};
 
 /// The trust in each sensor of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,9 +53,11 @@ pub struct Estimator {
     pitch: Watch,
     position: Watch,
     bias: PitchBias,
+    /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
+    pitch_error: f64,
     airspeed_bias: AirspeedBias,
-    /// Unit of the speeds in which the watch of the pitch's bias reckons [m/s].
-    speed_unit: f64,
+    /// Amount by which the estimated airspeed is behind the measured one of this tick [m/s].
+    behind: Option<f64>,
 }
 
 impl Estimator {
@@ -76,8 +79,9 @@ impl Estimator {
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
             bias: PitchBias::new(),
+            pitch_error: 0.0,
+            behind: None,
             airspeed_bias: AirspeedBias::new(airframe.level_lift(trim.state.airspeed)),
-            speed_unit: settings.units.speed(),
         }
     }
 
@@ -141,29 +145,30 @@ impl Estimator {
         }
     }
 
-    /// The pose of the lidar at the tick that was `age` ticks ago, without the bias of the pitch. `None` if that
-    /// was before the first step or more than [`MOST_SCAN_AGE`] ticks ago.
+    /// The pose of the lidar at the tick that was `age` ticks ago. `None` if that was before the first step or more than [`MOST_SCAN_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
-        let bias = self
-            .bias
-            .angle(self.air.present().airspeed / self.speed_unit);
         if age == 0 {
-            let pose = Pose::of(&self.state());
-            return Some(Pose {
-                pitch: pose.pitch - bias,
-                ..pose
-            });
+            return Some(Pose::of(&self.state()));
         }
         if age > MOST_SCAN_AGE {
             return None;
         }
         let ((x, z), pitch) = self.navigation.pose_at(age)?;
-        Some(Pose {
-            x,
-            z,
-            pitch: pitch - bias,
-        })
+        Some(Pose { x, z, pitch })
+    }
+
+    /// Corrects the pitch by the bias that the watch has found, if it is another one than before. Gives the angle by which
+    /// the motion turns \[rad\].
+    pub fn correct_pitch(&mut self) -> Option<f64> {
+        let by = self.pitch_error - self.bias.angle();
+        if libm::fabs(by) < LEAST_TURN {
+            return None;
+        }
+        self.pitch_error -= by;
+        self.air.turn(by);
+        self.navigation.turn(by, self.air.present());
+        Some(by)
     }
 
     /// The controls that the actuators gave up to the last step, by the model of the actuators.
@@ -247,7 +252,10 @@ impl Estimator {
         let tuning = self.air.tuning();
         let beyond = |off: f64, variance: f64| !(off * off <= CHANGED * CHANGED * variance);
         beyond(measured.airspeed - now.airspeed, tuning.airspeed_variance)
-            || beyond(measured.pitch - now.pitch, tuning.pitch_variance)
+            || beyond(
+                measured.pitch - self.pitch_error - now.pitch,
+                tuning.pitch_variance,
+            )
     }
 
     /// Corrects the estimates by what arrived `elapsed` \[s\] after the last step.
@@ -275,7 +283,7 @@ impl Estimator {
         };
         let fresh = Measurement {
             airspeed: self.airspeed_changes.take(air.measurement.airspeed),
-            pitch: self.pitch_changes.take(air.measurement.pitch),
+            pitch: self.pitch_changes.take(air.measurement.pitch) - self.pitch_error,
         };
         let biased = self.airspeed_bias.found();
         let used = [self.airspeed.uses() && !biased, self.pitch.uses()];
@@ -286,6 +294,9 @@ impl Estimator {
             self.pitch.tick(None);
             return Innovation::both(Verdict::Late);
         };
+        if innovation.airspeed == Verdict::Accepted {
+            self.behind = Some(fresh.airspeed - self.air.present().airspeed);
+        }
         if self.airspeed_changes.frozen() {
             innovation.airspeed = Verdict::Frozen;
         }
@@ -313,8 +324,12 @@ impl Estimator {
                 lift.interrupt();
             } else {
                 lift.update(elapsed, climb, &air, self.given);
-                let wind = self.navigation.wind().z / self.speed_unit;
-                self.bias.update(wind, elapsed);
+                if let Some(behind) = self.behind.take() {
+                    // The tilts as they would seem if nothing corrected the pitch.
+                    let by_wind = self.pitch_error - self.navigation.wind().z / air.airspeed;
+                    let by_airspeed = self.pitch_error + behind * self.air.follows() / GRAVITY;
+                    self.bias.update(by_wind, by_airspeed, elapsed);
+                }
                 let (wind, offset) = (self.navigation.wind().x, lift.offset());
                 let found = (self.airspeed_bias).update(wind, offset, air.airspeed, elapsed);
                 if let Some(before) = found {

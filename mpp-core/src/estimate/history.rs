@@ -79,6 +79,13 @@ impl History {
         }
     }
 
+    /// Turns the pitch of all entries by a known error \[rad\].
+    pub fn turn(&mut self, by: f64) {
+        for entry in &mut self.entries {
+            entry.pitch += by;
+        }
+    }
+
     /// Way through the air since the tick that was `age` ticks ago, `(x, z)` \[m\]. `None` if the history
     /// does not reach that far.
     #[must_use]

@@ -7,6 +7,7 @@
 
 use super::history::MOST_AGE;
 use super::{Diverged, Ekf, EkfTuning, Innovation, Measurement};
+use crate::config::TICK_PERIOD;
 use crate::tuning::sensors::LATE_MEASUREMENTS;
 use crate::vehicle::{AirState, Airframe, Control, air_rate};
 
@@ -123,6 +124,20 @@ impl LaggedEkf {
     /// Doubts the motion; see [`Ekf::doubt`].
     pub fn doubt(&mut self, sigmas: [f64; 4]) {
         self.ekf.doubt(sigmas);
+    }
+
+    /// Rate at which the estimated airspeed follows the measured one in steady flight [1/s]: a constant push by `a`
+    /// leaves it behind by `a` over this.
+    #[must_use]
+    pub fn follows(&self) -> f64 {
+        let tuning = self.ekf.tuning();
+        libm::sqrt(tuning.process_noise[0] / tuning.airspeed_variance) / TICK_PERIOD
+    }
+
+    /// Turns the estimated motion; see [`Ekf::turn`].
+    pub fn turn(&mut self, by: f64) {
+        self.ekf.turn(by);
+        self.look_ahead();
     }
 
     /// Moves the estimated airspeed by a known error [m/s].

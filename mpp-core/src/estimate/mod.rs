@@ -237,6 +237,12 @@ impl Ekf {
         self.estimate.airspeed += by;
     }
 
+    /// Turns the estimated motion by a known error of the pitch \[rad\]. The angle of attack stays.
+    pub fn turn(&mut self, by: f64) {
+        self.estimate.pitch += by;
+        self.estimate.flight_path += by;
+    }
+
     /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one
     /// value after the other. The result equals the joint update and needs no matrix inverse.
     pub fn update(&mut self, measurement: &Measurement) -> Innovation {

@@ -162,6 +162,23 @@ impl Navigation {
         self.covariance.position += distance * distance;
     }
 
+    /// Takes over a motion through the air that was turned by a known error of the pitch \[rad\]. The velocity over
+    /// ground stays, so the wind changes by the difference.
+    pub fn turn(&mut self, by: f64, turned: &AirState) {
+        let before = AirState {
+            flight_path: turned.flight_path - by,
+            ..*turned
+        };
+        let (now, then) = (
+            Wind::STILL.ground_velocity(turned),
+            Wind::STILL.ground_velocity(&before),
+        );
+        self.wind.x += then.0 - now.0;
+        self.wind.z += then.1 - now.1;
+        self.history.turn(by);
+        self.history.correct(turned);
+    }
+
     /// Replaces the estimate of the wind along the way [m/s].
     pub fn set_wind_along(&mut self, wind: f64) {
         self.wind.x = wind;

@@ -70,8 +70,8 @@ struct Flight {
     scan_tick: Option<u32>,
     /// The tick of the last scan that came. A sender repeats a scan until a command answers it.
     heard_scan: Option<u32>,
-    /// Jumps of the positions' origin that the planner knows of.
-    restarts: u32,
+    /// Whether the map of the planner no longer fits the estimates.
+    forget: bool,
     /// The tick that follows the last old one, and the number of old ticks in a row.
     old_ticks: Option<(u32, u32)>,
     /// The trust in the lidar, and whether a scan that was refused or planned from since the last tick was

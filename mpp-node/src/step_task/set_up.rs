@@ -72,7 +72,7 @@ impl StepTask {
             untold: None,
             scan_tick: None,
             heard_scan: None,
-            restarts: 0,
+            forget: false,
             old_ticks: None,
             lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,

@@ -115,9 +115,10 @@ impl StepTask {
         flight.last_tick = Some(frame.tick);
         let time = flight.time(frame.tick);
         let output = flight.control.step(time, &convert::sensor_frame(frame));
-        if output.position == Some(PositionVerdict::Restarted) {
-            // The plan under way counts from an origin that is no more.
+        if output.moved {
+            // The plan under way counts from estimates that are no more.
             flight.cycle = None;
+            flight.forget = true;
             self.plan = None;
         }
         flight.lidar.tick(flight.lidar_good.take());
@@ -187,7 +188,6 @@ impl StepTask {
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
-        let restarts = flight.control.health().positions_restarted;
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
             begun: tick,
@@ -199,7 +199,7 @@ impl StepTask {
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
-            forget: restarts != flight.restarts,
+            forget: flight.forget,
             pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
@@ -208,7 +208,7 @@ impl StepTask {
             latency_ticks: flight.tuning.configure.latency_ticks,
             slices_per_tick: flight.tuning.configure.slices_per_tick,
         });
-        flight.restarts = restarts;
+        flight.forget = false;
     }
 }
 
