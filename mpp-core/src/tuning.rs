@@ -278,7 +278,7 @@ pub mod bias {
     /// Least bias \[rad\]: 2.4 degrees. An error of the airframe looks like a smaller one.
     pub const LEAST: f64 = 0.042;
     /// Least ratio of the tilts by wind and by airspeed, the lesser to the greater [-]. Source: D26.
-    pub const AGREE: f64 = 0.6;
+    pub const AGREE: f64 = 0.7;
     /// Least change of the bias by which the estimates turn \[rad\]: 1.1 deg. With less they turn often.
     pub const LEAST_TURN: f64 = 0.02;
     /// Standard deviation of the tilt by the estimated wind in still air \[rad\].

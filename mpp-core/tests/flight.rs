@@ -212,6 +212,50 @@ fn a_clock_that_jumps_is_counted_and_survived() {
     }
 }
 
+/// A clock that jumps during a turn leaves the estimate and the plan as they were: one tick has passed. If steps were
+/// lost instead, the sensors show another motion, and the plan goes on at the time of the clock.
+#[test]
+fn a_jump_of_the_clock_is_told_from_lost_steps() {
+    for (lost, jump) in [(false, 0.8), (false, 100.0), (true, 0.8)] {
+        let mut flight = flight_loop();
+        let mut state = flight.state();
+        flight.adopt(0.0, Verdict::Feasible, &trajectory(0.0));
+        let mut time = 0.0;
+        for tick in 0..100 {
+            time = f64::from(tick) * TICK_PERIOD;
+            state.x += state.air.airspeed * TICK_PERIOD;
+            flight.step(time, &lively(&state, tick));
+        }
+        let start = flight.trajectory().unwrap().start;
+        let before = *flight.estimate();
+        let flown = if lost { jump } else { TICK_PERIOD };
+        state.x += state.air.airspeed * flown;
+        if lost {
+            state.air.pitch += 0.2;
+            state.air.flight_path += 0.2;
+        }
+        time += jump;
+        // The first position comes three ticks later.
+        for tick in 100..103 {
+            let mut blind = lively(&state, tick);
+            blind.position = None;
+            flight.step(time, &blind);
+            assert!(flight.is_lost());
+            time += TICK_PERIOD;
+            state.x += state.air.airspeed * TICK_PERIOD;
+        }
+        flight.step(time, &lively(&state, 103));
+        assert!(!flight.is_lost());
+        assert!((flight.state().x - state.x).abs() < 0.1);
+        let delay = flight.trajectory().unwrap().start - start;
+        let expected = jump - flown;
+        assert!((delay - expected).abs() < 0.03, "{delay} of {expected} s");
+        if !lost {
+            assert!((flight.estimate().pitch - before.pitch).abs() < 0.01);
+        }
+    }
+}
+
 /// A source that holds its position between two fixes delivers nothing new: neither wind nor lift come of it,
 /// and the position moves on with the aircraft.
 #[test]

@@ -19,7 +19,7 @@ pub struct PitchBias {
     variance: f64,
     /// Mean of the tilt by the airspeed \[rad\].
     by_airspeed: f64,
-    /// Greatest standard deviation of the tilt by the wind so far, slowly forgotten \[rad\].
+    /// Greatest variance of the tilt by the wind so far, slowly forgotten [rad^2].
     lively: f64,
     found: bool,
 }
@@ -34,7 +34,7 @@ impl PitchBias {
             mean: 0.0,
             variance: 0.0,
             by_airspeed: 0.0,
-            lively: STILL,
+            lively: STILL * STILL,
             found: false,
         }
     }
@@ -54,8 +54,8 @@ impl PitchBias {
         self.mean += share * off;
         self.variance += share * (off * off * (1.0 - share) - self.variance);
         self.by_airspeed += share * (by_airspeed - self.by_airspeed);
-        let now = libm::sqrt(self.variance.max(0.0));
-        self.lively = now.max(self.lively * (1.0 - period / (10.0 * MEMORY)));
+        let forgotten = period * (2.0 / (10.0 * MEMORY));
+        self.lively = self.variance.max(self.lively * (1.0 - forgotten));
         self.found = if self.found {
             // A bias that was found stays found until its mean is small.
             libm::fabs(self.mean) > 0.5 * LEAST
@@ -69,7 +69,7 @@ impl PitchBias {
         let [by_wind, by_airspeed] = [self.mean, self.by_airspeed].map(libm::fabs);
         let (less, more) = (by_wind.min(by_airspeed), by_wind.max(by_airspeed));
         let alike = self.mean * self.by_airspeed > 0.0 && less > AGREE * more;
-        alike && less > LEAST && by_wind > STEADY * self.lively
+        alike && less > LEAST && by_wind * by_wind > STEADY * STEADY * self.lively
     }
 
     /// Whether the pitch is biased.

@@ -62,6 +62,7 @@ pub struct Estimator {
 
 impl Estimator {
     /// Estimators that start from level trim at the origin.
+    #[inline(always)]
     #[must_use]
     pub fn new(settings: &Settings, trim: &Trim) -> Self {
         let airframe = settings.airframe;

@@ -35,6 +35,7 @@ pub struct History {
 
 impl History {
     /// A history without an entry.
+    #[inline(always)]
     #[must_use]
     pub const fn new() -> Self {
         Self {

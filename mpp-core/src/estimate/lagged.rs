@@ -48,10 +48,13 @@ pub struct LaggedEkf {
     /// Measurements in a row that were older than the filter.
     late: u8,
     present: AirState,
+    /// The value of [`Self::follows`].
+    follows: f64,
 }
 
 impl LaggedEkf {
     /// A filter that starts from an estimate.
+    #[inline(always)]
     #[must_use]
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {
         Self {
@@ -69,6 +72,7 @@ impl LaggedEkf {
             waits: 0,
             late: 0,
             present: estimate,
+            follows: follows(&tuning),
         }
     }
 
@@ -87,6 +91,7 @@ impl LaggedEkf {
     /// Sets the filter's tuning.
     pub fn set_tuning(&mut self, tuning: EkfTuning) {
         self.ekf.set_tuning(tuning);
+        self.follows = follows(&tuning);
     }
 
     /// Ticks by which the filter is behind.
@@ -130,8 +135,7 @@ impl LaggedEkf {
     /// leaves it behind by `a` over this.
     #[must_use]
     pub fn follows(&self) -> f64 {
-        let tuning = self.ekf.tuning();
-        libm::sqrt(tuning.process_noise[0] / tuning.airspeed_variance) / TICK_PERIOD
+        self.follows
     }
 
     /// Turns the estimated motion; see [`Ekf::turn`].
@@ -203,4 +207,9 @@ impl LaggedEkf {
             period: 0.0,
         })
     }
+}
+
+/// The gain on the airspeed of a steady filter, over a tick [1/s].
+fn follows(tuning: &EkfTuning) -> f64 {
+    libm::sqrt(tuning.process_noise[0] / tuning.airspeed_variance) / TICK_PERIOD
 }

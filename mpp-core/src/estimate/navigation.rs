@@ -74,6 +74,8 @@ pub struct Navigation {
 
 impl Navigation {
     /// A filter that starts at downrange 0 and an altitude \[m\] in still air.
+    // Inlined, as all parts of a loop are, so that it is written where the loop will be.
+    #[inline(always)]
     #[must_use]
     pub const fn new(wind_change: Option<f64>, altitude: f64) -> Self {
         Self {

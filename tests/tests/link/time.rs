@@ -5,6 +5,7 @@ use crate::short;
 use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame, SensorState};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
+use mpp_sim::log::FlightLog;
 use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
@@ -137,6 +138,40 @@ fn frames_that_come_twice_are_refused_once_each() {
         let again = answers(&mut pipe, &level_flight(tick));
         assert!(matches!(again[..], [Message::Rejection(_)]), "{again:?}");
     }
+}
+
+/// A sender repeats a scan until a command answers it. The core takes it once, as old as it is, and says nothing of its
+/// copies.
+#[test]
+fn a_scan_that_comes_again_and_again_is_taken_once() {
+    let usual = fly(&short(2), &mut PipeLink::new(), |_| {}).unwrap();
+    let mut held = None;
+    let mut link = crate::Spoilt {
+        pipe: PipeLink::new(),
+        spoil: move |pipe: &mut PipeLink, message: &Message| match message {
+            // The scan of tick 100 comes with tick 180 for the first time.
+            Message::LidarScan(scan) if scan.tick == 100 => {
+                held = Some(message.clone());
+                true
+            }
+            Message::SensorFrame(frame) if (180..190).contains(&frame.tick) => {
+                held.as_ref().is_some_and(|scan| pipe.send(scan).is_ok())
+                    && pipe.send(message).is_ok()
+            }
+            _ => false,
+        },
+    };
+    let late = fly(&short(2), &mut link, |_| {}).unwrap();
+    assert!(late.rejections.is_empty(), "{:?}", late.rejections);
+    let plans = |log: &FlightLog| {
+        let plans = log.plans.iter();
+        plans
+            .map(|plan| (plan.tick, plan.used_from_tick))
+            .collect::<Vec<_>>()
+    };
+    let mut expected = plans(&usual);
+    expected[1].1 = expected[1].1.map(|tick| tick + 80);
+    assert_eq!(plans(&late), expected);
 }
 
 /// When the origin of the positions jumps, the plan under way is dropped: it counts from the old origin.
