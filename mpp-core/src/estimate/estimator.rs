@@ -12,7 +12,7 @@ use crate::sense::{AirData, Position, SensorFrame};
 use crate::settings::Settings;
 use crate::tuning::bias::LEAST_TURN;
 use crate::tuning::sensors::{
-    AFTER_GAP, CHANGED, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
+    CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
 use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, GRAVITY, Trim, VehicleState};
 
@@ -219,12 +219,10 @@ impl Estimator {
         if !believed {
             Health::count(&mut health.time_jumps);
             // A time that is not a number is in no range and not greater than any.
-            period = if !(elapsed > 0.0) {
-                0.0
-            } else if air.is_none_or(|air| self.has_changed(&air.measurement)) {
-                LONGEST_PREDICTION
-            } else {
-                TICK_PERIOD
+            period = match air {
+                _ if elapsed.is_nan() || elapsed <= 0.0 => 0.0,
+                Some(air) if self.agrees(&air.measurement) => TICK_PERIOD,
+                _ => LONGEST_PREDICTION,
             };
             let airspeed = self.air.present().airspeed;
             self.navigation
@@ -240,20 +238,19 @@ impl Estimator {
             self.navigation.predict(self.air.present(), piece);
         }
         if !believed && period > TICK_PERIOD {
-            let [airspeed, pitch, pitch_rate, flight_path] = AFTER_GAP;
-            let airspeed = airspeed * self.air.present().airspeed;
-            self.air.doubt([airspeed, pitch, pitch_rate, flight_path]);
+            let airspeed = GAP_AIRSPEED * self.air.present().airspeed;
+            self.air.doubt([airspeed, GAP_ANGLE, GAP_RATE, GAP_ANGLE]);
         }
         period
     }
 
-    /// Whether a measurement is far from the present motion.
-    fn has_changed(&self, measured: &Measurement) -> bool {
+    /// Whether a measurement is that of the present motion.
+    fn agrees(&self, measured: &Measurement) -> bool {
         let now = self.air.present();
         let tuning = self.air.tuning();
-        let beyond = |off: f64, variance: f64| !(off * off <= CHANGED * CHANGED * variance);
-        beyond(measured.airspeed - now.airspeed, tuning.airspeed_variance)
-            || beyond(
+        let within = |off: f64, variance: f64| off * off <= CHANGED * CHANGED * variance;
+        within(measured.airspeed - now.airspeed, tuning.airspeed_variance)
+            && within(
                 measured.pitch - self.pitch_error - now.pitch,
                 tuning.pitch_variance,
             )
