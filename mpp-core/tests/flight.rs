@@ -189,6 +189,11 @@ fn time_that_is_none_is_counted_and_survived() {
     flight.step(0.03, &frame(&state));
     assert_eq!(flight.health().time_jumps, 2);
     assert_eq!(flight.health().predictions_diverged, 0);
+    // Positions are still taken at once.
+    let mut ahead = frame(&state);
+    ahead.position.as_mut().unwrap().x += 1.0;
+    let used = flight.step(0.04, &ahead).position;
+    assert_eq!(used, Some(PositionVerdict::Accepted));
 }
 
 /// A clock that jumps ahead by any time, or back, leaves an estimate that the sensors correct within a second.

@@ -146,7 +146,8 @@ impl Estimator {
         }
     }
 
-    /// The pose of the lidar at the tick that was `age` ticks ago. `None` if that was before the first step or more than [`MOST_SCAN_AGE`] ticks ago.
+    /// The pose of the lidar at the tick that was `age` ticks ago. `None` if that was before the first step or more
+    /// than [`MOST_SCAN_AGE`] ticks ago.
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
         if age == 0 {
@@ -224,9 +225,13 @@ impl Estimator {
                 Some(air) if self.agrees(&air.measurement) => TICK_PERIOD,
                 _ => LONGEST_PREDICTION,
             };
-            let airspeed = self.air.present().airspeed;
-            self.navigation
-                .doubt(airspeed * elapsed.clamp(LONGEST_PREDICTION, LONGEST_GAP));
+            // Not `clamp`, which gives no number for a time that is none.
+            let gap = if elapsed > LONGEST_PREDICTION {
+                elapsed.min(LONGEST_GAP)
+            } else {
+                LONGEST_PREDICTION
+            };
+            self.navigation.doubt(self.air.present().airspeed * gap);
         }
         let pieces = libm::round(period / TICK_PERIOD).max(1.0);
         for _ in 0..pieces as u32 {

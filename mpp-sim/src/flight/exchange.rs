@@ -50,7 +50,8 @@ impl Exchange {
         frame: SensorFrame,
     ) -> Result<Answer, LinkError> {
         let now = frame.tick;
-        let scan = scan.or_else(|| self.unanswered.take());
+        let unanswered = self.unanswered.take();
+        let scan = scan.or(unanswered);
         if !(passage.to_core && passage.to_aircraft) {
             self.unanswered.clone_from(&scan);
         }
