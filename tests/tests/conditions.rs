@@ -93,16 +93,16 @@ fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
     }
 }
 
-/// Faults of the scenario files that the core notices or bridges: 24 flights of each, of which one may fail. Without what
-/// decision 26 tells, 2, 9, 24, 12 and 1 of them failed.
+/// Faults of the scenario files that the core notices or bridges, 24 flights of each: name, replanning rate, and
+/// least number of successes. Without what decision 26 tells, 2, 9, 24, 12 and 1 of them failed.
 #[test]
 fn faults_that_are_noticed_are_flown_through() {
-    for (name, replan_hz) in [
-        ("pitch-bias", 4.0),
-        ("airspeed-ramp", 4.0),
-        ("scan-stale", 1.0),
-        ("link-loss-50", 1.0),
-        ("clock-jump-10s", 4.0),
+    for (name, replan_hz, least) in [
+        ("pitch-bias", 4.0, 24),
+        ("airspeed-ramp", 4.0, 23),
+        ("scan-stale", 1.0, 24),
+        ("link-loss-50", 1.0, 24),
+        ("clock-jump-10s", 4.0, 24),
     ] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scenarios/faults");
         let text = std::fs::read_to_string(folder.join(name).with_extension("toml")).unwrap();
@@ -114,7 +114,7 @@ fn faults_that_are_noticed_are_flown_through() {
             log.summary.strict
         });
         let strict = strict.count();
-        assert!(strict >= 23, "{name}: {strict} of 24");
+        assert!(strict >= least, "{name}: {strict} of 24");
     }
 }
 

@@ -28,13 +28,23 @@ pub(crate) fn budget(document: &DocumentMut, table: &str, name: &str) -> Result<
         .with_context(|| format!("docs/budgets.toml has no firmware.{table}.{name}"))
 }
 
+/// The greatest budget of a table of the firmware.
+pub(crate) fn worst(document: &DocumentMut, table: &str) -> Result<u64> {
+    document
+        .get("firmware")
+        .and_then(|firmware| firmware.get(table)?.as_table())
+        .and_then(|table| {
+            table
+                .iter()
+                .filter_map(|(_, budget)| budget.as_integer())
+                .max()
+        })
+        .and_then(|budget| u64::try_from(budget).ok())
+        .with_context(|| format!("docs/budgets.toml has no firmware.{table}"))
+}
+
 /// The greatest budget of a slice \[instructions\].
 pub(crate) fn longest_slice(document: &DocumentMut) -> Result<u64> {
-    ["slice_worst_flight", "slice_worst_reference"]
-        .iter()
-        .filter_map(|table| document.get("firmware")?.get(table)?.as_table())
-        .flat_map(|table| table.iter())
-        .filter_map(|(_, budget)| u64::try_from(budget.as_integer()?).ok())
-        .max()
-        .context("docs/budgets.toml has no budgets of slices")
+    let flight = worst(document, "slice_worst_flight")?;
+    Ok(flight.max(worst(document, "slice_worst_reference")?))
 }

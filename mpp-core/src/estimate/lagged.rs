@@ -37,7 +37,6 @@ pub enum Taken {
 #[derive(Clone, Debug)]
 pub struct LaggedEkf {
     ekf: Ekf,
-    airframe: Airframe,
     flown: [Flown; TICKS],
     /// Number of periods so far.
     count: u32,
@@ -59,7 +58,6 @@ impl LaggedEkf {
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {
         Self {
             ekf: Ekf::new(airframe, tuning, estimate),
-            airframe,
             flown: [Flown {
                 control: Control {
                     thrust: 0.0,
@@ -102,7 +100,6 @@ impl LaggedEkf {
 
     /// Sets the airframe for the predictions from now on.
     pub fn set_airframe(&mut self, airframe: &Airframe) {
-        self.airframe = *airframe;
         self.ekf.set_airframe(airframe);
     }
 
@@ -186,7 +183,7 @@ impl LaggedEkf {
         let mut state = *self.ekf.estimate();
         for before in (1..=self.lag.min(MOST_AGE)).rev() {
             let Flown { control, period } = self.flown_before(before);
-            let rate = air_rate(&self.airframe, &state, control).to_vector();
+            let rate = air_rate(self.ekf.airframe(), &state, control).to_vector();
             let next = AirState::from_vector(&(state.to_vector() + rate * period));
             if !next.is_finite() {
                 break;

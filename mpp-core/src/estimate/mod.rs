@@ -188,6 +188,12 @@ impl Ekf {
         &self.estimate
     }
 
+    /// The airframe of the predictions.
+    #[must_use]
+    pub fn airframe(&self) -> &Airframe {
+        &self.airframe
+    }
+
     /// Sets the airframe for the predictions from now on.
     pub fn set_airframe(&mut self, airframe: &Airframe) {
         self.airframe = *airframe;

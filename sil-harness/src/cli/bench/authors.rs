@@ -81,18 +81,11 @@ impl fmt::Display for Comparison {
             ("as published", &self.authors),
             ("search compiled", &self.authors_compiled),
         ];
-        for (
-            name,
-            Timed {
-                cycles,
-                median_us,
-                p99_us,
-            },
-        ) in rows
-        {
+        for (name, times) in rows {
             writeln!(
                 f,
-                "the authors' code, {name}: {cycles} cycles, median {median_us:.0} us, 99th percentile {p99_us:.0} us"
+                "the authors' code, {name}: {} cycles, median {:.0} us, 99th percentile {:.0} us",
+                times.cycles, times.median_us, times.p99_us
             )?;
         }
         write!(

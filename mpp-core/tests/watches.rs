@@ -1,0 +1,178 @@
+//! Tests the watches of the sensors: biases of pitch and airspeed, and sensors that freeze or fall silent.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod common {
+    pub(crate) mod gaussian;
+    pub(crate) mod sensors;
+}
+
+use common::gaussian::gaussian;
+use common::sensors::frame;
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::estimate::{AirspeedBias, PitchBias, Trust, Watch};
+use mpp_core::flight::FlightLoop;
+use mpp_core::settings::Settings;
+use mpp_core::vehicle::{AirState, VehicleState};
+use rand_pcg::Pcg64Mcg;
+use rand_pcg::rand_core::SeedableRng;
+
+/// A pitch that reads too much tilts the estimated motion: the wind and the airspeed show the same tilt. Winds that
+/// change as much as they last are gusts, and what only one of the two shows is no bias.
+#[test]
+fn a_tilt_that_wind_and_airspeed_show_is_a_bias_of_the_pitch() {
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    for bias in [-0.09, -0.06, 0.06, 0.09] {
+        let mut watch = PitchBias::new();
+        for _ in 0..300 {
+            let noise = 0.004 * gaussian(&mut random);
+            watch.update(bias + noise, 1.1 * bias - 2.0 * noise, TICK_PERIOD);
+        }
+        assert!(watch.found() && (watch.angle() - bias).abs() < 0.005);
+        // The bias ends.
+        for _ in 0..2500 {
+            let noise = 0.004 * gaussian(&mut random);
+            watch.update(noise, noise, TICK_PERIOD);
+        }
+        assert!(!watch.found() && watch.angle().abs() < 1e-12);
+        watch.update(f64::NAN, bias, TICK_PERIOD);
+        watch.update(bias, f64::NAN, TICK_PERIOD);
+        watch.update(1.0, 1.0, -1.0);
+        assert!(!watch.found());
+
+        // A steady wind alone, and a wrong drag alone.
+        let [mut wind, mut drag] = [PitchBias::new(); 2];
+        for _ in 0..1000 {
+            wind.update(bias, 0.3 * bias, TICK_PERIOD);
+            drag.update(0.3 * bias, bias, TICK_PERIOD);
+            assert!(!wind.found() && !drag.found());
+        }
+    }
+    // Gusts of 1 m/s with a correlation time of 4 s along and across, 20 s each.
+    let (mut ticks, mut taken) = (0, 0);
+    for _ in 0..200 {
+        let mut watch = PitchBias::new();
+        let mut gust = [0.0; 2].map(|_: f64| gaussian(&mut random) / 12.0);
+        let kept = libm::exp(-TICK_PERIOD / 4.0);
+        for _ in 0..2000 {
+            for part in &mut gust {
+                *part = kept * *part + (1.0 - kept * kept).sqrt() * gaussian(&mut random) / 12.0;
+            }
+            watch.update(gust[0], gust[1], TICK_PERIOD);
+            ticks += 1;
+            taken += u32::from(watch.found());
+        }
+    }
+    let share = f64::from(taken) / f64::from(ticks);
+    assert!(share < 0.03, "gusts count as a bias in {share} of the time");
+}
+
+/// An airspeed that reads too much by a growing error shows as less wind along the way and as less lift. The watch gives the
+/// estimates of before, and believes the sensor again after it has agreed for some time.
+#[test]
+fn a_growing_error_of_the_airspeed_is_found_by_wind_and_lift_together() {
+    let level_lift = 1.4;
+    for sign in [-1.0, 1.0] {
+        let shown = |wind: f64, lift: f64| {
+            let mut watch = AirspeedBias::new(level_lift);
+            (0..2000_u32).find_map(|tick| {
+                // Half a metre a second more in each second, from 3 s on.
+                let error = sign * 0.005 * f64::from(tick.saturating_sub(300));
+                let offset = -2.0 * level_lift * error / 12.0;
+                let before =
+                    watch.update(2.0 - wind * error, 0.1 + lift * offset, 12.0, TICK_PERIOD);
+                before.map(|before| (error, before, watch))
+            })
+        };
+        // The estimate of the lift shows half of it, because it averages.
+        let (error, before, mut watch) = shown(1.0, 0.5).unwrap();
+        assert!((1.3..2.2).contains(&(sign * error)), "{error}");
+        assert!((before.wind - 2.0).abs() < 0.3 && (before.lift - 0.1).abs() < 0.03);
+        assert!(shown(1.0, 0.0).is_none() && shown(0.0, 1.0).is_none());
+        assert!(shown(1.0, -0.5).is_none());
+
+        let agrees_after = |watch: &mut AirspeedBias, measured: f64, ticks: u32| {
+            (0..ticks).find(|_| {
+                watch.compare(measured, 12.0, TICK_PERIOD);
+                !watch.found()
+            })
+        };
+        assert_eq!(agrees_after(&mut watch, 12.0 + error, 2000), None);
+        let agreed = agrees_after(&mut watch, 12.1, 2000).unwrap();
+        assert!((300..600).contains(&agreed), "{agreed}");
+    }
+}
+
+/// A sensor that freezes is left out within half a second, and is used again only after it has delivered good
+/// values for half a second.
+#[test]
+fn a_frozen_sensor_is_excluded_and_recovers_by_rule() {
+    let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+    let level = flight.state().air;
+    let mut seen = Vec::new();
+    for tick in 0..400 {
+        let time = f64::from(tick) * TICK_PERIOD;
+        let last_digits = 1e-9 * f64::from(tick % 2);
+        let frozen = (100..200).contains(&tick);
+        let air = AirState {
+            airspeed: level.airspeed + if frozen { 0.25 } else { last_digits },
+            pitch: level.pitch + last_digits,
+            ..level
+        };
+        flight.step(
+            time,
+            &frame(&VehicleState {
+                x: level.airspeed * time,
+                z: 50.0,
+                air,
+            }),
+        );
+        assert_eq!(flight.sensors().pitch, Trust::Healthy);
+        if seen
+            .last()
+            .is_none_or(|(_, trust)| *trust != flight.sensors().airspeed)
+        {
+            seen.push((tick, flight.sensors().airspeed));
+        }
+    }
+    let [
+        (_, Trust::Healthy),
+        (suspected, Trust::Suspected),
+        (excluded, Trust::Excluded),
+        (recovering, Trust::Recovering),
+        (healthy, Trust::Healthy),
+    ] = seen[..]
+    else {
+        panic!("{seen:?}");
+    };
+    assert!(suspected < 115 && excluded < 150, "{seen:?}");
+    assert!(
+        recovering == 200 && (245..260).contains(&healthy),
+        "{seen:?}"
+    );
+}
+
+/// A sensor that falls silent while it recovers is excluded again, however long it is silent.
+#[test]
+fn a_sensor_must_deliver_good_values_all_through_its_recovery() {
+    let mut watch = Watch::new(10);
+    for _ in 0..60 {
+        watch.tick(None);
+    }
+    assert_eq!(watch.trust(), Trust::Excluded);
+    watch.tick(Some(true));
+    assert_eq!(watch.trust(), Trust::Recovering);
+    for _ in 0..30 {
+        watch.tick(None);
+    }
+    assert_eq!(watch.trust(), Trust::Excluded);
+    watch.tick(Some(true));
+    assert_eq!(watch.trust(), Trust::Recovering);
+    // Good values at the sensor's own period.
+    let mut ticks = 0;
+    while watch.trust() == Trust::Recovering && ticks < 200 {
+        ticks += 1;
+        watch.tick((ticks % 10 == 0).then_some(true));
+    }
+    assert_eq!(watch.trust(), Trust::Healthy);
+    assert_eq!(ticks, 50);
+}
