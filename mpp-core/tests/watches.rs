@@ -1,5 +1,4 @@
 //! Tests the watches of the sensors: biases of pitch and airspeed, and sensors that freeze or fall silent.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod common {
     pub(crate) mod gaussian;
