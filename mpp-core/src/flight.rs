@@ -160,6 +160,7 @@ impl FlightLoop {
         wanted.thrust += self.airspeed_hold * slower;
         let control = self.limit(wanted);
         self.last = Some((time, control));
+        self.estimator.expect_elevator(reference.feedforward.elevator);
         StepOutput {
             control,
             reference,
@@ -248,17 +249,21 @@ impl FlightLoop {
     fn limit(&mut self, wanted: Control) -> Control {
         let trim = self.trim.control;
         let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
-        let asked = if sound { wanted } else { trim };
+        let asked = if sound {
+            self.estimator.command_for(wanted)
+        } else {
+            trim
+        };
         let given = self.estimator.given();
         let control = (self.estimator.limits()).within(asked, trim, given, TICK_PERIOD);
         if !sound {
             Health::count(&mut self.health.commands_not_finite);
             return control;
         }
-        if libm::fabs(control.thrust - wanted.thrust) > 0.0 {
+        if libm::fabs(control.thrust - asked.thrust) > 0.0 {
             Health::count(&mut self.health.thrust_limited);
         }
-        if libm::fabs(control.elevator - wanted.elevator) > 0.0 {
+        if libm::fabs(control.elevator - asked.elevator) > 0.0 {
             Health::count(&mut self.health.elevator_limited);
         }
         control

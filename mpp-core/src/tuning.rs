@@ -292,6 +292,38 @@ pub mod bias {
     pub const STEADY: f64 = 3.0;
 }
 
+/// Effect of the elevator, seen by the turns that commands miss.
+pub mod elevator {
+    /// Time by which the angle of attack lags behind the elevator \[s\]: that of the reference aircraft's short period.
+    /// Source: derived.
+    pub const LAG: f64 = 0.03;
+    /// Time over which a turn fades from the comparison \[s\]. With 0.5 errors of the lift stay in it for longer.
+    pub const FADE: f64 = 0.25;
+    /// Time over which turns are compared \[s\]. More of it tells gusts better from a weak elevator, and finds it later.
+    pub const MEMORY: f64 = 1.0;
+    /// Least covariance of the responses to command and plan from which on they are compared [rad^2]: turns by 0.8 deg.
+    pub const LEAST_RESPONSE: f64 = 2e-4;
+    /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 a motor without thrust looks so.
+    /// Source: D27.
+    pub const WEAK: f64 = 0.55;
+    /// The share from which on it does not answer [-]. Such an elevator is told, and not corrected. Source: D27.
+    pub const SILENT: f64 = 0.87;
+    /// Standard deviations that a missing share exceeds [-].
+    pub const SIGMAS: f64 = 4.0;
+    /// Missing share below which an elevator counts as proven, if its standard deviation is below [`PROVEN_ERROR`] [-].
+    pub const PROVEN_MISSING: f64 = 0.3;
+    /// See [`PROVEN_MISSING`].
+    pub const PROVEN_ERROR: f64 = 0.1;
+    /// Time for which a proven elevator must look weak \[s\]. With less of it an elevator that sticks for a second looks
+    /// weak, and is corrected when it is free again. Source: D27.
+    pub const PROVEN_FOR: f64 = 0.8;
+    /// The same for an elevator that is not proven \[s\]. With 0.2 four flights of 100 with a quarter of the effect fail,
+    /// with 0.05 one. Source: D27.
+    pub const NEW_FOR: f64 = 0.1;
+    /// Least effect that is corrected [-]. With less of it the correction is greater than 7.
+    pub const LEAST_EFFECT: f64 = 0.15;
+}
+
 /// The estimate of the lift.
 pub mod lift {
     /// Time of observation after which the observed lift and the known airframe have equal weight \[s\]. Over

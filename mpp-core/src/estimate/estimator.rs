@@ -1,7 +1,7 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
 use super::{
-    AirspeedBias, Changes, Conditions, EkfTuning, Innovation, LaggedEkf, LiftEstimator,
+    AirspeedBias, Changes, Conditions, EkfTuning, ElevatorEffect, Innovation, LaggedEkf, LiftEstimator,
     MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict,
     Watch,
 };
@@ -25,6 +25,8 @@ pub struct Sensors {
     pub pitch: Trust,
     /// Positions.
     pub position: Trust,
+    /// The elevator, which is no sensor but is watched like one.
+    pub elevator: Trust,
 }
 
 /// The values of the estimators that no step changes.
@@ -56,6 +58,9 @@ pub struct Estimator {
     /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
     pitch_error: f64,
     airspeed_bias: AirspeedBias,
+    elevator: ElevatorEffect,
+    /// Elevator command of the plan since the last step.
+    planned: f64,
     /// Amount by which the estimated airspeed is behind the measured one of this tick [m/s].
     behind: Option<f64>,
 }
@@ -81,6 +86,8 @@ impl Estimator {
             position: Watch::new(POSITION_PERIOD),
             bias: PitchBias::new(),
             pitch_error: 0.0,
+            elevator: ElevatorEffect::new(&airframe, trim),
+            planned: trim.control.elevator,
             behind: None,
             airspeed_bias: AirspeedBias::new(airframe.level_lift(trim.state.airspeed)),
         }
@@ -179,6 +186,17 @@ impl Estimator {
         self.given
     }
 
+    /// The command that does what a control of the known aircraft does.
+    #[must_use]
+    pub fn command_for(&self, wanted: Control) -> Control {
+        self.elevator.command_for(wanted)
+    }
+
+    /// Notes the elevator command of the plan until the next step.
+    pub fn expect_elevator(&mut self, planned: f64) {
+        self.planned = planned;
+    }
+
     /// The trust in each sensor.
     #[must_use]
     pub fn sensors(&self) -> Sensors {
@@ -194,6 +212,7 @@ impl Estimator {
                 self.pitch.trust()
             },
             position: self.position.trust(),
+            elevator: self.elevator.trust(),
         }
     }
 
@@ -237,7 +256,8 @@ impl Estimator {
         for _ in 0..pieces as u32 {
             let piece = period / pieces;
             self.given = self.limits.given(control, self.given, piece);
-            if self.air.predict(self.given, piece).is_err() {
+            let effective = self.elevator.effective(self.given);
+            if self.air.predict(effective, piece).is_err() {
                 Health::count(&mut health.predictions_diverged);
             }
             self.navigation.predict(self.air.present(), piece);
@@ -269,6 +289,7 @@ impl Estimator {
         health: &mut Health,
     ) -> (Innovation, Option<PositionVerdict>) {
         let innovation = self.measure(frame.air.as_ref());
+        self.watch_elevator(elapsed, frame.air.as_ref(), innovation);
         count_verdict(innovation.airspeed, health);
         count_verdict(innovation.pitch, health);
         let position = self.locate(elapsed, frame.position.as_ref());
@@ -311,6 +332,23 @@ impl Estimator {
         innovation
     }
 
+    /// Compares the turn with that of the commands, if the air data can be trusted.
+    fn watch_elevator(&mut self, elapsed: f64, air: Option<&AirData>, innovation: Innovation) {
+        let good = matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
+        let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION) else {
+            return;
+        };
+        let lift = self.conditions().lift;
+        self.elevator.update(
+            air.measurement.pitch - self.pitch_error,
+            self.air.present(),
+            lift,
+            self.elevator.effective(self.given),
+            self.planned,
+            elapsed,
+        );
+    }
+
     /// Takes in the position, if there is one, and then estimates the lift.
     fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
         let air = *self.air.present();
@@ -321,12 +359,13 @@ impl Estimator {
             Some(PositionVerdict::Held) | None => None,
             Some(_) => Some(false),
         });
+        let effective = self.elevator.effective(self.given);
         let (_, climb) = self.navigation.wind().ground_velocity(&air);
         if let Some(lift) = &mut self.lift {
             if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
                 lift.interrupt();
             } else {
-                lift.update(elapsed, climb, &air, self.given);
+                lift.update(elapsed, climb, &air, effective);
                 if let Some(behind) = self.behind.take() {
                     // The tilts as they would seem if nothing corrected the pitch.
                     let by_wind = self.pitch_error - self.navigation.wind().z / air.airspeed;

@@ -1,0 +1,216 @@
+//! Effect of the elevator, seen by the turns that the plan's own commands miss.
+//!
+//! With an elevator of `k` times the known effect the aircraft turns `k` times as much as a command should turn it, so the
+//! missing part of the pitch is `k - 1` times the response to the command. A plain regression on the command would take
+//! gusts for a weak elevator, because the regulator answers gusts. The plan's own command does not know them. It is the
+//! instrument of this regression (Söderström and Stoica, "System Identification", chapter 8).
+
+use super::Trust;
+use crate::tuning::elevator::{
+    FADE, LAG, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, NEW_FOR, PROVEN_ERROR, PROVEN_FOR,
+    PROVEN_MISSING, SIGMAS, SILENT, WEAK,
+};
+use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim};
+
+/// Estimator of the elevator's effect. It compares with an airframe in balance at each elevator command.
+#[derive(Clone, Copy, Debug)]
+pub struct ElevatorEffect {
+    airframe: Airframe,
+    /// Elevator command of level trim, and the angle of attack \[rad\] there.
+    trim: f64,
+    trim_angle: f64,
+    /// Angle of attack that a unit of command balances \[rad\].
+    per_unit: f64,
+    /// Pitch that the known elevator would give \[rad\].
+    expected: Option<f64>,
+    given: Response,
+    planned: Response,
+    regression: Regression,
+    /// Time for which the effect was another one \[s\].
+    shown: f64,
+    /// Whether the elevator has answered as it should since the effect was last set.
+    proven: bool,
+    silent: bool,
+    /// Share of the known effect [-].
+    effect: f64,
+}
+
+impl ElevatorEffect {
+    /// An elevator with the known effect.
+    #[must_use]
+    pub fn new(known: &Airframe, trim: &Trim) -> Self {
+        let airframe = known.balanced();
+        Self {
+            trim: trim.control.elevator,
+            trim_angle: airframe.angle_of_attack_for(trim.control.elevator),
+            per_unit: -airframe.moment_elevator / airframe.moment_alpha,
+            airframe,
+            expected: None,
+            given: Response::default(),
+            planned: Response::default(),
+            regression: Regression::default(),
+            shown: 0.0,
+            proven: false,
+            silent: false,
+            effect: 1.0,
+        }
+    }
+
+    /// Share of the known effect [-].
+    #[must_use]
+    pub fn effect(&self) -> f64 {
+        self.effect
+    }
+
+    /// The trust in the elevator: suspected if its effect is corrected, excluded while it does not answer.
+    #[must_use]
+    pub fn trust(&self) -> Trust {
+        match self.silent {
+            true => Trust::Excluded,
+            false if self.effect < 1.0 => Trust::Suspected,
+            false => Trust::Healthy,
+        }
+    }
+
+    /// The controls of the known aircraft that do what these commands do.
+    #[must_use]
+    pub fn effective(&self, command: Control) -> Control {
+        if self.effect < 1.0 {
+            let elevator = self.trim + self.effect * (command.elevator - self.trim);
+            Control { elevator, ..command }
+        } else {
+            command
+        }
+    }
+
+    /// The commands that do what these controls of the known aircraft do.
+    #[must_use]
+    pub fn command_for(&self, effective: Control) -> Control {
+        if self.effect < 1.0 {
+            let elevator = self.trim + (effective.elevator - self.trim) / self.effect;
+            Control { elevator, ..effective }
+        } else {
+            effective
+        }
+    }
+
+    /// Takes in the measured pitch \[rad\] after a further `period` \[s\], the motion, the offset of the lift coefficient,
+    /// the effective controls since then and the elevator command of the plan.
+    pub fn update(
+        &mut self,
+        pitch: f64,
+        air: &AirState,
+        lift_offset: f64,
+        effective: Control,
+        planned: f64,
+        period: f64,
+    ) {
+        let a = &self.airframe;
+        let angle = self.per_unit * (effective.elevator - self.trim);
+        let per_lift = 0.5 * a.air_density * a.wing_area / a.mass * air.airspeed;
+        let lift = a.lift_zero + lift_offset + a.lift_alpha * (self.trim_angle + angle);
+        let push = effective.thrust * (self.trim_angle + angle) / a.mass;
+        // The cosine of the flight path angle, to 2 % at 45 degrees.
+        let weight = GRAVITY * (1.0 - 0.5 * (air.flight_path * air.flight_path));
+        let path_rate = per_lift * lift + (push - weight) / air.airspeed;
+        let turn = per_lift * a.lift_alpha;
+        if !(path_rate.is_finite() && pitch.is_finite() && planned.is_finite()) {
+            return;
+        }
+        let turned = self.given.advance(angle, turn, period);
+        let (planned_angle, before) = (self.per_unit * (planned - self.trim), self.expected);
+        self.planned.advance(planned_angle, turn, period);
+        let before = before.unwrap_or(pitch);
+        let expected = before + turned + period * (path_rate + (pitch - before) / FADE);
+        self.expected = Some(expected);
+        let (given, planned) = (self.given.pitch, self.planned.pitch);
+        self.regression.take(pitch - expected, given, planned, period);
+        self.judge(period);
+    }
+
+    /// Sets the effect to what the regression has shown for long enough.
+    fn judge(&mut self, period: f64) {
+        let Some((missing, error)) = self.regression.slope() else {
+            (self.shown, self.silent) = (0.0, false);
+            return;
+        };
+        self.proven |= libm::fabs(missing) < PROVEN_MISSING && error < PROVEN_ERROR;
+        let sure = libm::fabs(missing) > SIGMAS * error;
+        self.silent = sure && missing < -SILENT;
+        let less = missing < -WEAK && !self.silent;
+        let more = missing > WEAK && self.effect < 1.0;
+        self.shown = if sure && (less || more) {
+            self.shown + period
+        } else {
+            0.0
+        };
+        if self.shown > if self.proven { PROVEN_FOR } else { NEW_FOR } {
+            self.effect = (self.effect * (1.0 + missing)).clamp(LEAST_EFFECT, 1.0);
+            self.regression = Regression::default();
+            (self.shown, self.proven) = (0.0, false);
+        }
+    }
+}
+
+/// Response of the pitch to an angle of attack, as it would be without all else.
+#[derive(Clone, Copy, Debug, Default)]
+struct Response {
+    /// Angle of attack \[rad\].
+    angle: f64,
+    /// Pitch \[rad\]. It fades, so that only turns count.
+    pitch: f64,
+}
+
+impl Response {
+    /// Moves on by `period` \[s\] to an angle of attack \[rad\] that turns the path by `turn` times itself per second. Gives
+    /// the change of the angle of attack.
+    fn advance(&mut self, angle: f64, turn: f64, period: f64) -> f64 {
+        let change = period / (LAG + period) * (angle - self.angle);
+        self.angle += change;
+        self.pitch += change + period * (turn * self.angle - self.pitch / FADE);
+        change
+    }
+}
+
+/// Regression of the missing pitch on the response to the command, with the response to the plan as instrument.
+#[derive(Clone, Copy, Debug, Default)]
+struct Regression {
+    /// Time over which the means were taken \[s\].
+    seen: f64,
+    /// Means of missing pitch, response to the command and response to the plan \[rad\].
+    means: [f64; 3],
+    /// Covariances of the response to the plan with missing pitch, response to the command and itself [rad^2].
+    covariances: [f64; 3],
+    /// Mean square of what the regression leaves [rad^2].
+    rest: f64,
+}
+
+impl Regression {
+    fn take(&mut self, missing: f64, given: f64, planned: f64, period: f64) {
+        self.seen = (self.seen + period).min(MEMORY);
+        let share = (period / self.seen).min(1.0);
+        let mut off = [missing, given, planned];
+        for (mean, value) in self.means.iter_mut().zip(&mut off) {
+            *value -= *mean;
+            *mean += share * *value;
+        }
+        let [missing, given, planned] = off;
+        for (covariance, value) in self.covariances.iter_mut().zip(off) {
+            *covariance += share * ((1.0 - share) * planned * value - *covariance);
+        }
+        let slope = self.slope().map_or(0.0, |(slope, _)| slope.clamp(-1.0, 1.0));
+        let rest = missing - slope * given;
+        self.rest += share * (rest * rest - self.rest);
+    }
+
+    /// Missing share of the response [-], and its standard deviation. `None` if there was no response to speak of.
+    fn slope(&self) -> Option<(f64, f64)> {
+        let [missing, given, power] = self.covariances;
+        if given < LEAST_RESPONSE {
+            return None;
+        }
+        // What is left changes within the time of fading, so as many values are independent as that time is contained.
+        let error = libm::sqrt(self.rest * power * (FADE / self.seen)) / given;
+        Some((missing / given, error))
+    }
+}
