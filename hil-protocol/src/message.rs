@@ -79,10 +79,6 @@ bodies! {
 }
 
 /// A message of any kind.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no heap to put the scan on"
-)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     /// Both directions: the first message, which identifies the sender.

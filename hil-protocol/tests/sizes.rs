@@ -133,7 +133,7 @@ fn of_the_reports() {
     let trajectory = PlanTrajectory {
         scan_tick: u32::MAX,
         period: value,
-        knots: [[value; 3]; MAX_KNOTS].into_iter().collect(),
+        knots: [[value; 5]; MAX_KNOTS].into_iter().collect(),
     };
     assert_eq!(payload(&trajectory), PlanTrajectory::MAX_SIZE);
     let health = HealthReport {

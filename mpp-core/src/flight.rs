@@ -160,7 +160,8 @@ impl FlightLoop {
         wanted.thrust += self.airspeed_hold * slower;
         let control = self.limit(wanted);
         self.last = Some((time, control));
-        self.estimator.expect_elevator(reference.feedforward.elevator);
+        self.estimator
+            .expect_elevator(reference.feedforward.elevator);
         StepOutput {
             control,
             reference,
@@ -225,6 +226,12 @@ impl FlightLoop {
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         self.estimator.conditions()
+    }
+
+    /// The commands that do what these controls of the known aircraft do.
+    #[must_use]
+    pub fn command_for(&self, wanted: Control) -> Control {
+        self.estimator.command_for(wanted)
     }
 
     /// The trust in each sensor.

@@ -303,6 +303,9 @@ pub mod elevator {
     pub const MEMORY: f64 = 1.0;
     /// Least covariance of the responses to command and plan from which on they are compared [rad^2]: turns by 0.8 deg.
     pub const LEAST_RESPONSE: f64 = 2e-4;
+    /// Greatest difference of the pitch from the expected one \[rad\]: 0.1 s of an elevator that stalls the wing. What is
+    /// beyond is no turn. Source: derived.
+    pub const MOST_MISSING: f64 = 0.5;
     /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 a motor without thrust looks so.
     /// Source: D27.
     pub const WEAK: f64 = 0.55;

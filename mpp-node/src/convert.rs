@@ -12,13 +12,13 @@ use hil_protocol::{
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::control::RiccatiError;
 use mpp_core::estimate::{Conditions, Measurement, Sensors, Trust};
-use mpp_core::flight::{Adoption, Mode, StepOutput};
+use mpp_core::flight::{Adoption, FlightLoop, Mode, StepOutput};
 use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
 use mpp_core::settings::{Aircraft, Setting, Settings};
-use mpp_core::trajectory::{Reference, Trajectory};
-use mpp_core::vehicle::{TrimError, VehicleState};
+use mpp_core::trajectory::Reference;
+use mpp_core::vehicle::{Control, TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
@@ -224,16 +224,18 @@ pub(crate) fn outcome(adoption: Adoption) -> PlanOutcome {
     }
 }
 
-pub(crate) fn trajectory(scan_tick: u32, trajectory: &Trajectory) -> PlanTrajectory {
+pub(crate) fn trajectory(scan_tick: u32, flown: &FlightLoop) -> Option<PlanTrajectory> {
+    let trajectory = flown.trajectory()?;
     let knot = |reference: &Reference| {
-        let state = &reference.state;
-        [state.x, state.z, state.air.flight_path].map(|value| value as f32)
+        let VehicleState { x, z, air } = reference.state;
+        let Control { thrust, elevator } = flown.command_for(reference.feedforward);
+        [x, z, air.flight_path, thrust, elevator].map(|value| value as f32)
     };
-    PlanTrajectory {
+    Some(PlanTrajectory {
         scan_tick,
         period: trajectory.stage_period as f32,
         knots: trajectory.knots.iter().map(knot).collect(),
-    }
+    })
 }
 
 const _: () = assert!(hil_protocol::MAX_KNOTS == KNOTS);
@@ -279,6 +281,7 @@ pub(crate) fn sensor_states(sensors: Sensors, lidar: Trust) -> SensorStates {
         pitch: state(sensors.pitch),
         position: state(sensors.position),
         lidar: state(lidar),
+        elevator: state(sensors.elevator),
     }
 }
 

@@ -4,6 +4,7 @@
 mod error;
 mod exchange;
 mod judge;
+mod receiver;
 mod sensing;
 mod session;
 mod steering;

@@ -22,8 +22,8 @@ pub struct Witness {
     place: Point,
     /// Inputs refused so far.
     rejections: usize,
-    /// Number of sensors that are excluded.
-    excluded: usize,
+    /// Number of sensors that are excluded or whose fault is made up for.
+    told: usize,
     flagged: Option<f64>,
 }
 
@@ -44,19 +44,21 @@ impl Witness {
         let since = self.ticks.checked_sub(self.onset);
         self.ticks += 1;
         let states = moment.sensors.named();
+        // A weak elevator is used on, with greater commands.
+        let weak = moment.sensors.elevator == SensorState::Suspected;
         let excluded = states
             .iter()
             .filter(|(_, state)| *state == SensorState::Excluded);
-        let excluded = excluded.count();
-        let said = moment.rejections.len() > self.rejections || excluded > self.excluded;
+        let told = excluded.count() + usize::from(weak);
+        let said = moment.rejections.len() > self.rejections || told > self.told;
         if let Some(since) = since.filter(|_| said) {
             self.flagged.get_or_insert(Scenario::time(since));
         }
-        (self.rejections, self.excluded) = (moment.rejections.len(), excluded);
+        (self.rejections, self.told) = (moment.rejections.len(), told);
     }
 
     /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an
-    /// input, or it excluded a sensor. `None` if it said nothing.
+    /// input, excluded a sensor, or makes up for a weak elevator. `None` if it said nothing.
     #[must_use]
     pub fn flagged(&self) -> Option<f64> {
         self.flagged

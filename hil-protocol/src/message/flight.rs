@@ -165,20 +165,24 @@ pub struct SensorStates {
     pub position: SensorState,
     /// Scans of the lidar.
     pub lidar: SensorState,
+    /// The elevator, which is no sensor but is watched like one: suspected if it is weak and the core makes up for it,
+    /// excluded while it does not answer.
+    pub elevator: SensorState,
 }
 
 impl SensorStates {
     /// Size of the longest form \[bytes\].
-    pub const MAX_SIZE: usize = 4 * size::BYTE;
+    pub const MAX_SIZE: usize = 5 * size::BYTE;
 
     /// Each sensor's name and state.
     #[must_use]
-    pub const fn named(&self) -> [(&'static str, SensorState); 4] {
+    pub const fn named(&self) -> [(&'static str, SensorState); 5] {
         [
             ("airspeed", self.airspeed),
             ("pitch", self.pitch),
             ("position", self.position),
             ("lidar", self.lidar),
+            ("elevator", self.elevator),
         ]
     }
 }

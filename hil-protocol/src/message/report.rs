@@ -58,8 +58,10 @@ pub struct PlanTrajectory {
     pub scan_tick: u32,
     /// Time from a knot to the next \[s\].
     pub period: f32,
-    /// Downrange distance \[m\], height \[m\] and flight path angle \[rad\] at each knot.
-    pub knots: Vec<[f32; 3], MAX_KNOTS>,
+    /// Downrange distance \[m\], height \[m\] and flight path angle \[rad\] at each knot, and the commands from there: thrust
+    /// \[N\], which holds until the next knot, and elevator, which moves to that of the next knot. An aircraft that hears
+    /// nothing more can fly the rest of the plan by them.
+    pub knots: Vec<[f32; 5], MAX_KNOTS>,
 }
 
 /// The most knots in a [`PlanTrajectory`].
@@ -67,7 +69,7 @@ pub const MAX_KNOTS: usize = 19;
 
 impl PlanTrajectory {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 3 * size::F32;
+    pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 5 * size::F32;
 }
 
 /// Core to harness: an input that the core did not use, and the cause.

@@ -18,6 +18,7 @@ fn step_report() {
             pitch: SensorState::Suspected,
             position: SensorState::Excluded,
             lidar: SensorState::Recovering,
+            elevator: SensorState::Suspected,
         },
     };
     check(&[(
@@ -196,7 +197,7 @@ fn plan_trajectory() {
     let message = PlanTrajectory {
         scan_tick: 200,
         period: 0.25,
-        knots: [[1.5, -2.5, 0.1]; 2].into_iter().collect(),
+        knots: [[1.5, -2.5, 0.1, 8.0, 3.75]; 2].into_iter().collect(),
     };
     check(&[(
         Message::PlanTrajectory(message),

@@ -135,7 +135,7 @@ fn parameter_reply() -> impl Strategy<Value = ParameterReply> {
 }
 
 fn plan_trajectory() -> impl Strategy<Value = PlanTrajectory> {
-    let knots = vec(proptest::array::uniform3(f32::ANY), 0..=MAX_KNOTS);
+    let knots = vec(proptest::array::uniform5(f32::ANY), 0..=MAX_KNOTS);
     (any::<u32>(), f32::ANY, knots).prop_map(|(scan_tick, period, knots)| PlanTrajectory {
         scan_tick,
         period,
@@ -240,14 +240,16 @@ fn sensor_states() -> impl Strategy<Value = SensorStates> {
             SensorState::Recovering,
         ])
     };
-    [state(), state(), state(), state()].prop_map(|[airspeed, pitch, position, lidar]| {
-        SensorStates {
+    let all = [state(), state(), state(), state(), state()];
+    all.prop_map(
+        |[airspeed, pitch, position, lidar, elevator]| SensorStates {
             airspeed,
             pitch,
             position,
             lidar,
-        }
-    })
+            elevator,
+        },
+    )
 }
 
 fn health_report() -> impl Strategy<Value = HealthReport> {

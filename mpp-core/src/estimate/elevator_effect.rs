@@ -7,8 +7,8 @@
 
 use super::Trust;
 use crate::tuning::elevator::{
-    FADE, LAG, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, NEW_FOR, PROVEN_ERROR, PROVEN_FOR,
-    PROVEN_MISSING, SIGMAS, SILENT, WEAK,
+    FADE, LAG, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, MOST_MISSING, NEW_FOR, PROVEN_ERROR,
+    PROVEN_FOR, PROVEN_MISSING, SIGMAS, SILENT, WEAK,
 };
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim};
 
@@ -77,7 +77,10 @@ impl ElevatorEffect {
     pub fn effective(&self, command: Control) -> Control {
         if self.effect < 1.0 {
             let elevator = self.trim + self.effect * (command.elevator - self.trim);
-            Control { elevator, ..command }
+            Control {
+                elevator,
+                ..command
+            }
         } else {
             command
         }
@@ -88,7 +91,10 @@ impl ElevatorEffect {
     pub fn command_for(&self, effective: Control) -> Control {
         if self.effect < 1.0 {
             let elevator = self.trim + (effective.elevator - self.trim) / self.effect;
-            Control { elevator, ..effective }
+            Control {
+                elevator,
+                ..effective
+            }
         } else {
             effective
         }
@@ -122,9 +128,15 @@ impl ElevatorEffect {
         self.planned.advance(planned_angle, turn, period);
         let before = before.unwrap_or(pitch);
         let expected = before + turned + period * (path_rate + (pitch - before) / FADE);
-        self.expected = Some(expected);
+        // No turn is faster than the bound. Beyond it the comparison begins again.
+        let is_turn = libm::fabs(pitch - expected) < MOST_MISSING;
+        self.expected = is_turn.then_some(expected);
+        if !is_turn {
+            return;
+        }
         let (given, planned) = (self.given.pitch, self.planned.pitch);
-        self.regression.take(pitch - expected, given, planned, period);
+        self.regression
+            .take(pitch - expected, given, planned, period);
         self.judge(period);
     }
 
@@ -198,7 +210,9 @@ impl Regression {
         for (covariance, value) in self.covariances.iter_mut().zip(off) {
             *covariance += share * ((1.0 - share) * planned * value - *covariance);
         }
-        let slope = self.slope().map_or(0.0, |(slope, _)| slope.clamp(-1.0, 1.0));
+        let slope = self
+            .slope()
+            .map_or(0.0, |(slope, _)| slope.clamp(-1.0, 1.0));
         let rest = missing - slope * given;
         self.rest += share * (rest * rest - self.rest);
     }

@@ -1,9 +1,10 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
+use super::verdicts::{count_position, count_verdict};
 use super::{
-    AirspeedBias, Changes, Conditions, EkfTuning, ElevatorEffect, Innovation, LaggedEkf, LiftEstimator,
-    MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken, Trust, Verdict,
-    Watch,
+    AirspeedBias, Changes, Conditions, EkfTuning, ElevatorEffect, Innovation, LaggedEkf,
+    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken,
+    Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -334,8 +335,10 @@ impl Estimator {
 
     /// Compares the turn with that of the commands, if the air data can be trusted.
     fn watch_elevator(&mut self, elapsed: f64, air: Option<&AirData>, innovation: Innovation) {
-        let good = matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
-        let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION) else {
+        let good =
+            matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
+        let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION)
+        else {
             return;
         };
         let lift = self.conditions().lift;
@@ -385,28 +388,4 @@ impl Estimator {
         self.air.set_airframe(&airframe);
         verdict
     }
-}
-
-fn count_verdict(verdict: Verdict, health: &mut Health) {
-    let counter = match verdict {
-        Verdict::Accepted | Verdict::Missing => return,
-        Verdict::Gated => &mut health.measurements_gated,
-        Verdict::Frozen => &mut health.measurements_frozen,
-        Verdict::NotFinite => &mut health.measurements_not_finite,
-        Verdict::Late => &mut health.measurements_late,
-        Verdict::Distrusted => &mut health.measurements_distrusted,
-    };
-    Health::count(counter);
-}
-
-fn count_position(verdict: Option<PositionVerdict>, health: &mut Health) {
-    let counter = match verdict {
-        None | Some(PositionVerdict::Accepted) => return,
-        Some(PositionVerdict::NotFinite) => &mut health.positions_not_finite,
-        Some(PositionVerdict::Held) => &mut health.positions_held,
-        Some(PositionVerdict::Late) => &mut health.positions_late,
-        Some(PositionVerdict::Gated) => &mut health.positions_gated,
-        Some(PositionVerdict::Restarted) => &mut health.positions_restarted,
-    };
-    Health::count(counter);
 }

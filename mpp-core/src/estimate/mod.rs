@@ -10,6 +10,7 @@ mod history;
 mod lagged;
 mod lift;
 mod navigation;
+mod verdicts;
 mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
@@ -17,8 +18,8 @@ pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias::PitchBias;
 pub use changes::Changes;
 pub use conditions::Conditions;
-pub use elevator_effect::ElevatorEffect;
 use core::fmt;
+pub use elevator_effect::ElevatorEffect;
 pub use estimator::{Estimator, EstimatorDesign, Sensors};
 pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};

@@ -97,12 +97,9 @@ impl StepTask {
             report.outcome,
             PlanOutcome::Adopted | PlanOutcome::LeastViolating
         );
-        let flown = self
-            .flight
-            .as_ref()
-            .and_then(|flight| flight.control.trajectory());
-        if let Some(trajectory) = flown.filter(|_| is_new) {
-            let trajectory = convert::trajectory(report.scan_tick, trajectory);
+        let flight = self.flight.as_ref().filter(|_| is_new);
+        let told = flight.and_then(|flight| convert::trajectory(report.scan_tick, &flight.control));
+        if let Some(trajectory) = told {
             self.emit(&trajectory, send);
         }
     }

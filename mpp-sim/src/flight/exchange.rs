@@ -1,19 +1,19 @@
 //! The exchange of one tick over a link that may lose it, under a tick counter that may be wrong.
 
+use super::receiver::Receiver;
 use super::session::{Answer, Session};
 use crate::entries::RejectionEntry;
 use crate::faults::{ClockFault, Line, Passage};
 use crate::link::LinkError;
 use crate::scenario::Scenario;
-use hil_protocol::{ActuatorCommand, ControlMode, LidarScan, SensorFrame};
+use hil_protocol::{LidarScan, SensorFrame};
 use mpp_core::vehicle::TrimError;
 
 /// The link of one flight, with its faults.
 pub(super) struct Exchange {
     line: Line,
     clock: ClockFault,
-    /// The command that the aircraft has.
-    command: ActuatorCommand,
+    receiver: Receiver,
     /// A scan that no command has answered. It goes out again with the next frame.
     unanswered: Option<LidarScan>,
 }
@@ -21,16 +21,10 @@ pub(super) struct Exchange {
 impl Exchange {
     /// The link of a scenario. Before the first command the aircraft holds trim.
     pub(super) fn new(scenario: &Scenario) -> Result<Self, TrimError> {
-        let trim = scenario.trim()?.control;
         Ok(Self {
             line: Line::new(scenario.seed, scenario.faults.link),
             clock: scenario.faults.clock,
-            command: ActuatorCommand {
-                tick: 0,
-                thrust: trim.thrust,
-                elevator: trim.elevator,
-                mode: ControlMode::TrimHold,
-            },
+            receiver: Receiver::new(scenario)?,
             unanswered: None,
         })
     }
@@ -41,7 +35,7 @@ impl Exchange {
     }
 
     /// Sends what comes to the core, and gives its answer. Without an answer, and if the command is lost, the
-    /// aircraft keeps its last command. Reports are for the log alone, so they are never lost.
+    /// receiver in the aircraft decides. For the log the reports are never lost.
     pub(super) fn tick(
         &mut self,
         session: &mut Session<'_>,
@@ -66,14 +60,15 @@ impl Exchange {
         };
         if let Some(answer) = &mut answer {
             self.restore(answer, now);
-            if passage.to_aircraft {
-                self.command = answer.command;
-            }
+        }
+        match answer.as_ref().filter(|_| passage.to_aircraft) {
+            Some(answer) => self.receiver.hear(answer),
+            None => self.receiver.miss(now),
         }
         for entry in session.told.rejections.iter_mut().skip(known) {
             self.restore_entry(entry, now);
         }
-        let command = self.command;
+        let command = self.receiver.command();
         Ok(match answer {
             Some(answer) => Answer { command, ..answer },
             None => Answer {

@@ -369,7 +369,7 @@ impl Vehicle {
             .zip(&mut message.z)
             .zip(&mut message.gamma);
         for (((x, z), gamma), knot) in places.zip(&trajectory.knots) {
-            [*x, *z, *gamma] = *knot;
+            [*x, *z, *gamma, ..] = *knot;
         }
         self.send_event(&message);
         self.last.trajectory = Some(message);
@@ -383,13 +383,13 @@ pub(super) fn north(x: f64) -> i32 {
 
 /// The bits of the sensors that the core uses, and of what depends on them.
 fn healthy(sensors: &SensorStates) -> u32 {
-    let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
+    let bits = [AIRSPEED, PITCH, POSITION, LIDAR, MOTORS];
     let states = sensors.named();
     let used = states
         .iter()
         .zip(bits)
         .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
-    let sound = used.fold(MOTORS, |all, (_, bit)| all | bit);
+    let sound = used.fold(0, |all, (_, bit)| all | bit);
     let ready = if sound == SENSORS { PREARM } else { 0 };
     sound | ready | GEOFENCE
 }

@@ -87,6 +87,7 @@ impl MppCore {
             airspeed_trust: code(trust.airspeed),
             pitch_trust: code(trust.pitch),
             position_trust: code(trust.position),
+            elevator_trust: code(trust.elevator),
             estimate: MppState::from(&control.state()),
             wind_x: conditions.wind.x,
             wind_z: conditions.wind.z,
@@ -156,9 +157,13 @@ impl MppCore {
         };
         let summary = self.planner.summary();
         let mut knots = [MppState::default(); MPP_KNOTS];
+        let (mut thrust, mut elevator) = ([0.0; MPP_KNOTS], [0.0; MPP_KNOTS]);
         if outcome < 2 {
-            for (knot, reference) in knots.iter_mut().zip(&best.knots) {
+            let places = knots.iter_mut().zip(&mut thrust).zip(&mut elevator);
+            for (((knot, thrust), elevator), reference) in places.zip(&best.knots) {
                 *knot = MppState::from(reference);
+                let command = flight.control.command_for(reference.feedforward);
+                (*thrust, *elevator) = (command.thrust, command.elevator);
             }
         }
         Ok(MppPlan {
@@ -172,6 +177,8 @@ impl MppCore {
             violation: summary.violation,
             period: best.stage_period,
             knots,
+            thrust,
+            elevator,
         })
     }
 

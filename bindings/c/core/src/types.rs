@@ -172,6 +172,8 @@ pub struct MppOutput {
     pub pitch_trust: u8,
     /// Trust in positions.
     pub position_trust: u8,
+    /// Trust in the elevator: 1 while the core makes up for its weakness, 2 while it does not answer.
+    pub elevator_trust: u8,
     /// The estimate.
     pub estimate: MppState,
     /// Estimated wind downrange [m/s].
@@ -209,6 +211,10 @@ pub struct MppPlan {
     pub period: f64,
     /// The places, if the outcome is 0 or 1.
     pub knots: [MppState; MPP_KNOTS],
+    /// Thrust from each place to the next [N].
+    pub thrust: [f64; MPP_KNOTS],
+    /// Elevator command at each place.
+    pub elevator: [f64; MPP_KNOTS],
 }
 
 const _: () = assert!(MPP_BEAMS == mpp_core::config::MAX_BEAMS);

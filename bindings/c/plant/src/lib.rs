@@ -157,6 +157,8 @@ impl MppAnswer {
                 violation: f64::INFINITY,
                 period: 0.0,
                 knots: [MppState::default(); mpp_c::MPP_KNOTS],
+                thrust: [0.0; mpp_c::MPP_KNOTS],
+                elevator: [0.0; mpp_c::MPP_KNOTS],
             },
             plan_tick: 0,
             counters: [0; MPP_COUNTERS],
@@ -208,11 +210,15 @@ fn plan_report(tick: u32, answer: &MppAnswer) -> PlanReport {
 
 fn trajectory(answer: &MppAnswer) -> PlanTrajectory {
     let knots = answer.plan.knots.iter();
+    let commands = answer.plan.thrust.iter().zip(&answer.plan.elevator);
     PlanTrajectory {
         scan_tick: answer.plan_tick,
         period: answer.plan.period as f32,
         knots: knots
-            .map(|knot| [knot.x, knot.z, knot.flight_path].map(|value| value as f32))
+            .zip(commands)
+            .map(|(knot, (thrust, elevator))| {
+                [knot.x, knot.z, knot.flight_path, *thrust, *elevator].map(|value| value as f32)
+            })
             .collect(),
     }
 }
@@ -253,6 +259,7 @@ fn step_report(tick: u32, output: &MppOutput) -> StepReport {
             pitch: trust(output.pitch_trust),
             position: trust(output.position_trust),
             lidar: SensorState::Healthy,
+            elevator: trust(output.elevator_trust),
         },
     }
 }
