@@ -294,9 +294,6 @@ pub mod bias {
 
 /// Effect of the elevator, seen by the turns that commands miss.
 pub mod elevator {
-    /// Time by which the angle of attack lags behind the elevator \[s\]: that of the reference aircraft's short period.
-    /// Source: derived.
-    pub const LAG: f64 = 0.03;
     /// Time over which a turn fades from the comparison \[s\]. With 0.5 errors of the lift stay in it for longer.
     pub const FADE: f64 = 0.25;
     /// Time over which turns are compared \[s\]. More of it tells gusts better from a weak elevator, and finds it later.

@@ -7,8 +7,8 @@
 
 use super::Trust;
 use crate::tuning::elevator::{
-    FADE, LAG, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, MOST_MISSING, NEW_FOR, PROVEN_ERROR,
-    PROVEN_FOR, PROVEN_MISSING, SIGMAS, SILENT, WEAK,
+    FADE, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, MOST_MISSING, NEW_FOR, PROVEN_ERROR, PROVEN_FOR,
+    PROVEN_MISSING, SIGMAS, SILENT, WEAK,
 };
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim};
 
@@ -21,6 +21,8 @@ pub struct ElevatorEffect {
     trim_angle: f64,
     /// Angle of attack that a unit of command balances \[rad\].
     per_unit: f64,
+    /// Time by which it follows the command \[s\]. The damping of the pitch delays it.
+    lag: f64,
     /// Pitch that the known elevator would give \[rad\].
     expected: Option<f64>,
     given: Response,
@@ -44,6 +46,7 @@ impl ElevatorEffect {
             trim: trim.control.elevator,
             trim_angle: airframe.angle_of_attack_for(trim.control.elevator),
             per_unit: -airframe.moment_elevator / airframe.moment_alpha,
+            lag: (airframe.moment_alpha_rate + airframe.moment_pitch_rate) / airframe.moment_alpha,
             airframe,
             expected: None,
             given: Response::default(),
@@ -111,21 +114,29 @@ impl ElevatorEffect {
         planned: f64,
         period: f64,
     ) {
+        let inputs = [
+            pitch,
+            lift_offset,
+            effective.thrust,
+            effective.elevator,
+            planned,
+        ];
+        if !(air.is_finite() && inputs.iter().all(|input| input.is_finite())) {
+            return;
+        }
         let a = &self.airframe;
-        let angle = self.per_unit * (effective.elevator - self.trim);
         let per_lift = 0.5 * a.air_density * a.wing_area / a.mass * air.airspeed;
-        let lift = a.lift_zero + lift_offset + a.lift_alpha * (self.trim_angle + angle);
-        let push = effective.thrust * (self.trim_angle + angle) / a.mass;
+        let turn = per_lift * a.lift_alpha;
+        let given = self.per_unit * (effective.elevator - self.trim);
+        let turned = self.given.advance(given, self.lag, turn, period);
+        let angle = self.trim_angle + self.given.angle;
+        let lift = a.lift_zero + lift_offset + a.lift_alpha * angle;
+        let push = effective.thrust * angle / a.mass;
         // The cosine of the flight path angle, to 2 % at 45 degrees.
         let weight = GRAVITY * (1.0 - 0.5 * (air.flight_path * air.flight_path));
         let path_rate = per_lift * lift + (push - weight) / air.airspeed;
-        let turn = per_lift * a.lift_alpha;
-        if !(path_rate.is_finite() && pitch.is_finite() && planned.is_finite()) {
-            return;
-        }
-        let turned = self.given.advance(angle, turn, period);
         let (planned_angle, before) = (self.per_unit * (planned - self.trim), self.expected);
-        self.planned.advance(planned_angle, turn, period);
+        self.planned.advance(planned_angle, self.lag, turn, period);
         let before = before.unwrap_or(pitch);
         let expected = before + turned + period * (path_rate + (pitch - before) / FADE);
         // No turn is faster than the bound. Beyond it the comparison begins again.
@@ -136,7 +147,7 @@ impl ElevatorEffect {
         }
         let (given, planned) = (self.given.pitch, self.planned.pitch);
         self.regression
-            .take(pitch - expected, given, planned, period);
+            .take([pitch - expected, given, planned], period);
         self.judge(period);
     }
 
@@ -157,7 +168,9 @@ impl ElevatorEffect {
             0.0
         };
         if self.shown > if self.proven { PROVEN_FOR } else { NEW_FOR } {
-            self.effect = (self.effect * (1.0 + missing)).clamp(LEAST_EFFECT, 1.0);
+            let effect = (self.effect * (1.0 + missing)).max(LEAST_EFFECT);
+            let is_known = effect > 1.0 - PROVEN_MISSING;
+            self.effect = if is_known { 1.0 } else { effect };
             self.regression = Regression::default();
             (self.shown, self.proven) = (0.0, false);
         }
@@ -174,10 +187,10 @@ struct Response {
 }
 
 impl Response {
-    /// Moves on by `period` \[s\] to an angle of attack \[rad\] that turns the path by `turn` times itself per second. Gives
-    /// the change of the angle of attack.
-    fn advance(&mut self, angle: f64, turn: f64, period: f64) -> f64 {
-        let change = period / (LAG + period) * (angle - self.angle);
+    /// Moves on by `period` \[s\] to an angle of attack \[rad\] that comes with a `lag` \[s\] and turns the path by `turn`
+    /// times itself per second. Gives the change of the angle of attack.
+    fn advance(&mut self, angle: f64, lag: f64, turn: f64, period: f64) -> f64 {
+        let change = period / (lag + period) * (angle - self.angle);
         self.angle += change;
         self.pitch += change + period * (turn * self.angle - self.pitch / FADE);
         change
@@ -191,40 +204,40 @@ struct Regression {
     seen: f64,
     /// Means of missing pitch, response to the command and response to the plan \[rad\].
     means: [f64; 3],
-    /// Covariances of the response to the plan with missing pitch, response to the command and itself [rad^2].
-    covariances: [f64; 3],
-    /// Mean square of what the regression leaves [rad^2].
-    rest: f64,
+    /// Their covariances [rad^2].
+    covariances: [[f64; 3]; 3],
 }
 
 impl Regression {
-    fn take(&mut self, missing: f64, given: f64, planned: f64, period: f64) {
+    fn take(&mut self, values: [f64; 3], period: f64) {
         self.seen = (self.seen + period).min(MEMORY);
         let share = (period / self.seen).min(1.0);
-        let mut off = [missing, given, planned];
+        let mut off = values;
         for (mean, value) in self.means.iter_mut().zip(&mut off) {
             *value -= *mean;
             *mean += share * *value;
         }
-        let [missing, given, planned] = off;
-        for (covariance, value) in self.covariances.iter_mut().zip(off) {
-            *covariance += share * ((1.0 - share) * planned * value - *covariance);
+        for (row, left) in self.covariances.iter_mut().zip(off) {
+            for (covariance, right) in row.iter_mut().zip(off) {
+                *covariance += share * ((1.0 - share) * left * right - *covariance);
+            }
         }
-        let slope = self
-            .slope()
-            .map_or(0.0, |(slope, _)| slope.clamp(-1.0, 1.0));
-        let rest = missing - slope * given;
-        self.rest += share * (rest * rest - self.rest);
     }
 
     /// Missing share of the response [-], and its standard deviation. `None` if there was no response to speak of.
     fn slope(&self) -> Option<(f64, f64)> {
-        let [missing, given, power] = self.covariances;
-        if given < LEAST_RESPONSE {
+        let [
+            [missing, both, _],
+            [_, given, _],
+            [by_missing, by_given, planned],
+        ] = self.covariances;
+        if by_given < LEAST_RESPONSE {
             return None;
         }
+        let slope = by_missing / by_given;
+        let rest = missing - slope * (2.0 * both - slope * given);
         // What is left changes within the time of fading, so as many values are independent as that time is contained.
-        let error = libm::sqrt(self.rest * power * (FADE / self.seen)) / given;
-        Some((missing / given, error))
+        let variance = rest.max(0.0) * planned * (FADE / self.seen);
+        Some((slope, libm::sqrt(variance) / by_given))
     }
 }
