@@ -28,7 +28,7 @@ struct Flight {
 impl Flight {
     fn new(gusts: f64, seed: u64) -> Self {
         let airframe = Airframe::REFERENCE;
-        let trim = Trim::at_speed(&airframe, 12.0, 0.0).unwrap();
+        let trim = Trim::of_authors(&airframe);
         Self {
             watch: ElevatorEffect::new(&airframe, &trim),
             actual: trim.state,
@@ -51,7 +51,7 @@ impl Flight {
     fn tick(&mut self, effect: f64, turns: f64) -> Trust {
         self.time += TICK_PERIOD;
         let trim = self.trim.control;
-        let elevator = trim.elevator + turns * (4.0 * self.time).sin();
+        let elevator = trim.elevator + turns * libm::sin(4.0 * self.time);
         let planned = Control { elevator, ..trim };
         // The regulator answers every difference of the pitch, whatever caused it.
         let answer = 8.0 * (self.actual.pitch - self.known.pitch);
@@ -66,7 +66,7 @@ impl Flight {
             ..trim
         };
         let gust = self.gust;
-        let kept = (-TICK_PERIOD / 2.0).exp();
+        let kept = libm::exp(-TICK_PERIOD / 2.0);
         self.gust =
             kept * gust + self.gusts * (1.0 - kept * kept).sqrt() * gaussian(&mut self.random);
         let shift = (gust - self.gust) / self.actual.airspeed;

@@ -94,7 +94,7 @@ fn the_estimate_follows_an_aircraft_that_it_does_not_quite_know() {
 }
 
 /// Faults of the scenario files that the core notices or bridges, 24 flights of each: name, replanning rate, and
-/// least number of successes. Without what decision 26 tells, 2, 9, 24, 12 and 1 of them failed.
+/// least number of successes. Without what decisions 26 and 27 tell, 2, 9, 24, 12, 1, 18 and 12 of them failed.
 #[test]
 fn faults_that_are_noticed_are_flown_through() {
     for (name, replan_hz, least) in [
@@ -103,6 +103,8 @@ fn faults_that_are_noticed_are_flown_through() {
         ("scan-stale", 1.0, 24),
         ("link-loss-50", 1.0, 24),
         ("clock-jump-10s", 4.0, 24),
+        ("elevator-quarter", 4.0, 23),
+        ("link-silent-3s", 4.0, 20),
     ] {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scenarios/faults");
         let text = std::fs::read_to_string(folder.join(name).with_extension("toml")).unwrap();

@@ -205,6 +205,8 @@ typedef struct mpp_output {
   uint8_t pitch_trust;
   // Trust in positions.
   uint8_t position_trust;
+  // Trust in the elevator: 1 while the core makes up for its weakness, 2 while it does not answer.
+  uint8_t elevator_trust;
   // The estimate.
   struct mpp_state estimate;
   // Estimated wind downrange [m/s].
@@ -254,6 +256,10 @@ typedef struct mpp_plan {
   double period;
   // The places, if the outcome is 0 or 1.
   struct mpp_state knots[MPP_KNOTS];
+  // Thrust from each place to the next [N].
+  double thrust[MPP_KNOTS];
+  // Elevator command at each place.
+  double elevator[MPP_KNOTS];
 } mpp_plan;
 
 #ifdef __cplusplus

@@ -107,3 +107,127 @@ impl Plan {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hil_protocol::{PlanOutcome, PlanReport, SensorState, SensorStates, StepReport};
+
+    const SCAN: u32 = 100;
+    const TRACKING: ActuatorCommand = ActuatorCommand {
+        tick: SCAN,
+        thrust: 7.0,
+        elevator: 2.0,
+        mode: ControlMode::Tracking,
+    };
+
+    fn receiver() -> Receiver {
+        let scenario = Scenario::new(Preset::Flight, 1);
+        Receiver::new(&scenario).expect("the default aircraft has a trim")
+    }
+
+    /// The answer of a tick in which the plan of the scan at `flown` is flown.
+    fn answer(tick: u32, flown: u32) -> Answer {
+        let state = SensorState::Healthy;
+        Answer {
+            command: TRACKING,
+            step: Some(StepReport {
+                tick,
+                estimate: [0.0; 4],
+                position: [0.0; 2],
+                wind: [0.0; 2],
+                lift: 0.0,
+                reference: [0.0; 6],
+                plan_age_ticks: tick - flown,
+                sensors: SensorStates {
+                    airspeed: state,
+                    pitch: state,
+                    position: state,
+                    lidar: state,
+                    elevator: state,
+                },
+            }),
+            plan: None,
+            trajectory: None,
+            health: None,
+        }
+    }
+
+    /// The same with a plan of three knots, 0.5 s apart, that is flown from the next tick on.
+    fn with_plan(tick: u32) -> Answer {
+        let knots = [
+            [0.0, 50.0, 0.0, 8.0, 3.0],
+            [6.0, 50.0, 0.0, 9.0, 4.0],
+            [12.0, 50.0, 0.0, 0.0, 2.0],
+        ];
+        Answer {
+            plan: Some(PlanReport {
+                scan_tick: tick,
+                used_from_tick: tick + 1,
+                outcome: PlanOutcome::Adopted,
+                candidates: 1,
+                feasible: 1,
+                tree_runs: 0,
+                slices: 1,
+                cost: 0.0,
+                violation: 0.0,
+                complete: true,
+            }),
+            trajectory: Some(PlanTrajectory {
+                scan_tick: tick,
+                period: 0.5,
+                knots: knots.into_iter().collect(),
+            }),
+            ..answer(tick, tick)
+        }
+    }
+
+    /// Elevator and thrust at each of the ticks after the last one heard.
+    fn silence(receiver: &mut Receiver, ticks: u32) -> Vec<(f64, f64)> {
+        let ticks = 1..=ticks;
+        let commands = ticks.map(|tick| {
+            receiver.miss(SCAN + tick);
+            (receiver.command().elevator, receiver.command().thrust)
+        });
+        commands.collect()
+    }
+
+    #[test]
+    fn a_long_silence_is_flown_by_the_plan_and_then_by_trim() {
+        let mut receiver = receiver();
+        receiver.hear(&with_plan(SCAN));
+        let flown = silence(&mut receiver, 110);
+        let patient = PATIENCE as usize - 1;
+        assert!(flown[..patient].iter().all(|flown| *flown == (2.0, 7.0)));
+        // The plan starts a tick after its scan.
+        assert_eq!(flown[25], (3.5, 8.0));
+        assert_eq!(flown[75], (3.0, 9.0));
+        let trim = (receiver.trim.elevator, receiver.trim.thrust);
+        assert_eq!(flown[109], trim);
+        receiver.hear(&answer(SCAN + 111, SCAN + 111));
+        assert_eq!(receiver.command(), TRACKING);
+    }
+
+    #[test]
+    fn without_the_plan_that_is_flown_the_last_command_is_kept() {
+        let kept = |receiver: &mut Receiver| {
+            let flown = silence(receiver, 60);
+            flown.iter().all(|flown| *flown == (2.0, 7.0))
+        };
+        // It heard no plan.
+        let mut deaf = receiver();
+        deaf.hear(&answer(SCAN, SCAN));
+        assert!(kept(&mut deaf));
+        // A newer plan was lost.
+        let mut outdated = receiver();
+        outdated.hear(&with_plan(SCAN - 50));
+        outdated.hear(&answer(SCAN, SCAN - 25));
+        assert!(kept(&mut outdated));
+        // The core holds trim.
+        let mut trimmed = receiver();
+        let mut answer = with_plan(SCAN);
+        answer.command.mode = ControlMode::TrimHold;
+        trimmed.hear(&answer);
+        assert!(kept(&mut trimmed));
+    }
+}
