@@ -201,6 +201,12 @@ pub mod sensors {
     /// Ticks with good values after which an excluded sensor is used again [-]: 0.5 s. A fault that blinks
     /// faster keeps the sensor excluded.
     pub const RECOVERED_AFTER: u16 = 50;
+    /// Values of the pitch that the filter refuses in a row, on a steady course, before it believes them [-]: 30 ms. An elevator that
+    /// sticks turns the aircraft otherwise than the filter expects. Source: D27.
+    pub const BELIEVED_AFTER: u8 = 3;
+    /// Greatest change of the pitch in a tick on a steady course \[rad\]: 5 rad/s, and six standard deviations of its noise.
+    /// Source: derived.
+    pub const MOST_TURN: f64 = 0.08;
     /// Greatest time between two positions of a healthy source \[ticks\]: 1 Hz is the slowest source.
     pub const POSITION_PERIOD: u16 = 100;
     /// Number of measurements in a row that must be late before the filter falls behind to their age [-]. With
@@ -303,13 +309,13 @@ pub mod elevator {
     /// Greatest difference of the pitch from the expected one \[rad\]: 0.1 s of an elevator that stalls the wing. What is
     /// beyond is no turn. Source: derived.
     pub const MOST_MISSING: f64 = 0.5;
-    /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 a motor without thrust looks so.
-    /// Source: D27.
+    /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 gusts look so more often. Source: D27.
     pub const WEAK: f64 = 0.55;
     /// The share from which on it does not answer [-]. Such an elevator is told, and not corrected. Source: D27.
-    pub const SILENT: f64 = 0.87;
-    /// Standard deviations that a missing share exceeds [-].
-    pub const SIGMAS: f64 = 4.0;
+    pub const SILENT: f64 = 0.8;
+    /// Standard deviations that a missing share exceeds [-]. With 4 gusts look like a weak elevator in eight of 400 flights,
+    /// with 8 a weak one is found late. Source: D27.
+    pub const SIGMAS: f64 = 6.0;
     /// Missing share below which an elevator counts as proven, if its standard deviation is below [`PROVEN_ERROR`] [-].
     pub const PROVEN_MISSING: f64 = 0.3;
     /// See [`PROVEN_MISSING`].
@@ -317,8 +323,8 @@ pub mod elevator {
     /// Time for which a proven elevator must look weak \[s\]. With less of it an elevator that sticks for a second looks
     /// weak, and is corrected when it is free again. Source: D27.
     pub const PROVEN_FOR: f64 = 0.8;
-    /// The same for an elevator that is not proven \[s\]. With 0.2 four flights of 100 with a quarter of the effect fail,
-    /// with 0.05 one. Source: D27.
+    /// The same for an elevator that is not proven \[s\]. With 0.3 one flight of 100 with a quarter of the effect fails.
+    /// Source: D27.
     pub const NEW_FOR: f64 = 0.1;
     /// Least effect that is corrected [-]. With less of it the correction is greater than 7.
     pub const LEAST_EFFECT: f64 = 0.15;

@@ -175,3 +175,38 @@ fn a_sensor_must_deliver_good_values_all_through_its_recovery() {
     assert_eq!(watch.trust(), Trust::Healthy);
     assert_eq!(ticks, 50);
 }
+
+/// The elevator sticks while the core believes that it moves. The filter refuses the pitch at first, then follows it. A
+/// sensor that jumps to and fro is not followed.
+#[test]
+fn a_pitch_on_a_steady_course_is_believed_against_the_model() {
+    for fails in [false, true] {
+        let mut flight = FlightLoop::new(&Settings::flight()).unwrap();
+        let level = flight.state().air;
+        let (mut truth, mut worst, mut excluded) = (level.pitch, 0.0_f64, false);
+        for tick in 0..300 {
+            let time = f64::from(tick) * TICK_PERIOD;
+            // From 1 s on the aircraft turns up by 20 degrees in a second, and stays there.
+            if (100..200).contains(&tick) && !fails {
+                truth += 0.0035;
+            }
+            let jump = match fails && tick >= 100 {
+                true => 0.3 - 0.6 * f64::from(tick % 2),
+                false => 0.0,
+            };
+            let air = AirState {
+                airspeed: level.airspeed + 1e-9 * f64::from(tick % 2),
+                pitch: truth + jump + 1e-9 * f64::from(tick % 2),
+                ..level
+            };
+            let (x, z) = (level.airspeed * time, 50.0);
+            flight.step(time, &frame(&VehicleState { x, z, air }));
+            excluded |= flight.sensors().pitch == Trust::Excluded;
+            if tick > 110 {
+                worst = worst.max((flight.state().air.pitch - truth).abs());
+            }
+        }
+        assert!(worst < 0.2, "{worst} rad");
+        assert_eq!(excluded, fails);
+    }
+}

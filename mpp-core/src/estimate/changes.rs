@@ -1,6 +1,6 @@
-//! Values that a sensor repeats.
+//! Values that a sensor repeats, and values that the filter refuses.
 
-use crate::tuning::sensors::FROZEN_TICKS;
+use crate::tuning::sensors::{BELIEVED_AFTER, FROZEN_TICKS, MOST_TURN};
 
 /// Watches one measured value for repetitions.
 #[derive(Clone, Copy, Debug)]
@@ -45,5 +45,27 @@ impl Changes {
 impl Default for Changes {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Watches values that the filter refuses. An aircraft that turns otherwise than its model shows a steady course of them; a
+/// sensor that fails does not.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Course {
+    last: f64,
+    refused: u8,
+}
+
+impl Course {
+    /// Takes the pitch of a tick \[rad\] and whether the filter refused it. Gives true once it refused [`BELIEVED_AFTER`] values in a row
+    /// that make a steady course: the filter is wrong then.
+    pub fn take(&mut self, pitch: f64, refused: bool) -> bool {
+        let is_steady = libm::fabs(pitch - self.last) < MOST_TURN;
+        self.last = pitch;
+        self.refused = match refused && is_steady {
+            true => self.refused.saturating_add(1),
+            false => 0,
+        };
+        self.refused >= BELIEVED_AFTER
     }
 }

@@ -2,7 +2,7 @@
 
 use super::verdicts::{count_position, count_verdict};
 use super::{
-    AirspeedBias, Changes, Conditions, EkfTuning, ElevatorEffect, Innovation, LaggedEkf,
+    AirspeedBias, Changes, Conditions, Course, EkfTuning, ElevatorEffect, Innovation, LaggedEkf,
     LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken,
     Trust, Verdict, Watch,
 };
@@ -52,6 +52,7 @@ pub struct Estimator {
     given: Control,
     airspeed_changes: Changes,
     pitch_changes: Changes,
+    course: Course,
     airspeed: Watch,
     pitch: Watch,
     position: Watch,
@@ -82,6 +83,7 @@ impl Estimator {
             given: trim.control,
             airspeed_changes: Changes::new(),
             pitch_changes: Changes::new(),
+            course: Course::default(),
             airspeed: Watch::new(1),
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
@@ -327,6 +329,10 @@ impl Estimator {
         }
         if self.pitch_changes.frozen() {
             innovation.pitch = Verdict::Frozen;
+        }
+        let refused = innovation.pitch == Verdict::Gated;
+        if self.course.take(fresh.pitch, refused) {
+            self.air.doubt([0.0, GAP_ANGLE, GAP_RATE, 0.0]);
         }
         self.airspeed.tick(Some(innovation.airspeed.is_good()));
         self.pitch.tick(Some(innovation.pitch.is_good()));

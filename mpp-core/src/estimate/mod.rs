@@ -16,7 +16,7 @@ mod watch;
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias::PitchBias;
-pub use changes::Changes;
+pub use changes::{Changes, Course};
 pub use conditions::Conditions;
 use core::fmt;
 pub use elevator_effect::ElevatorEffect;

@@ -6,7 +6,7 @@ use super::tlog::EPOCH_US;
 use super::vehicle::{Severity, Vehicle};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
-use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory, SensorState, SensorStates};
+use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory};
 use mpp_sim::moment::Moment;
 use mpp_sim::orders::Mode;
 
@@ -21,19 +21,6 @@ const MODE_FLAGS: u8 = CUSTOM_MODE | 16;
 const AUTO: u8 = 4;
 /// MAV_MODE_FLAG_SAFETY_ARMED.
 const ARMED: u8 = 128;
-/// MAV_SYS_STATUS_SENSOR: airspeed is differential pressure, pitch is the attitude reference, the position is
-/// that of satellite navigation, the lidar is a laser position.
-const AIRSPEED: u32 = 0x10;
-const POSITION: u32 = 0x20;
-const LIDAR: u32 = 0x100;
-const MOTORS: u32 = 0x8000;
-/// The attitude reference, and what it is made of: gyroscope, accelerometer, magnetometer.
-const PITCH: u32 = 0x20_0000 | 7;
-const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
-/// A fence that does not exist is not broken. Some stations look at this bit alone.
-const GEOFENCE: u32 = 0x10_0000;
-/// The vehicle would fly if it were armed.
-const PREARM: u32 = 0x1000_0000;
 /// MAV_PROTOCOL_CAPABILITY: missions in integers, COMMAND_INT, termination, MAVLink 2.
 const CAPABILITIES: u64 = 4 | 8 | 2048 | 8192;
 /// MAV_PROTOCOL_CAPABILITY: whole parameters as the bytes of an integer, or all of them as plain floats.
@@ -192,40 +179,6 @@ impl Vehicle {
         });
     }
 
-    /// Tells the stations of each sensor that the core trusts otherwise than before.
-    pub(super) fn report_sensors(&mut self, now: &SensorStates) {
-        let before = self.sensors.named();
-        self.sensors = *now;
-        for ((sensor, before), (_, now)) in before.into_iter().zip(now.named()) {
-            let (severity, what) = match now {
-                SensorState::Excluded if before != now => (Severity::Critical, "failed"),
-                SensorState::Healthy if before == SensorState::Recovering => {
-                    (Severity::Notice, "is back")
-                }
-                _ => continue,
-            };
-            self.say(severity, &format!("Sensor {sensor} {what}"));
-        }
-    }
-
-    fn send_system_status(&mut self) {
-        let (_, _, rejections) = self.motion();
-        let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
-        self.send(&SYS_STATUS_DATA {
-            onboard_control_sensors_present: SENSORS | PREARM,
-            onboard_control_sensors_enabled: SENSORS | PREARM,
-            onboard_control_sensors_health: healthy(&self.sensors),
-            // There is no battery.
-            voltage_battery: u16::MAX,
-            current_battery: -1,
-            battery_remaining: -1,
-            errors_comm: count(self.damaged_frames() as usize),
-            errors_count1: count(rejections),
-            errors_count2: count(self.security.refused as usize),
-            ..SYS_STATUS_DATA::DEFAULT
-        });
-    }
-
     /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
     /// height; heading is north, roll and yaw are zero.
     fn send_motion(&mut self, id: u32) {
@@ -379,17 +332,4 @@ impl Vehicle {
 /// Latitude of a place downrange \[1e-7 deg\].
 pub(super) fn north(x: f64) -> i32 {
     ((HOME.0 + x / DEGREE) * 1e7).round() as i32
-}
-
-/// The bits of the sensors that the core uses, and of what depends on them.
-fn healthy(sensors: &SensorStates) -> u32 {
-    let bits = [AIRSPEED, PITCH, POSITION, LIDAR, MOTORS];
-    let states = sensors.named();
-    let used = states
-        .iter()
-        .zip(bits)
-        .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
-    let sound = used.fold(0, |all, (_, bit)| all | bit);
-    let ready = if sound == SENSORS { PREARM } else { 0 };
-    sound | ready | GEOFENCE
 }

@@ -20,6 +20,7 @@ mod commands;
 mod demands;
 mod files;
 mod guests;
+mod health;
 pub mod heard;
 mod inquiries;
 mod metadata;

@@ -3,11 +3,12 @@
 use crate::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
-use mpp_sim::scenario::Scenario;
+use mpp_sim::scenario::{Scenario, ScenarioFile};
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
 
 const GEOFENCE: u32 = 0x10_0000;
 const PREARM: u32 = 0x1000_0000;
+const MOTORS: u32 = 0x8000;
 const GYRO_ACCEL_MAG: u32 = 7;
 const ACCEPTED: u8 = 0;
 const DENIED: u8 = 2;
@@ -54,6 +55,31 @@ fn a_flying_vehicle_is_in_the_air_healthy_and_has_a_fix() {
         _ => None,
     });
     assert_eq!(battery[0].1, (u16::MAX, -1));
+}
+
+/// Stations hear of a weak elevator, and see by the motors' bit that one does not answer.
+#[test]
+fn faults_of_the_elevator_are_told() {
+    let fly = |fault: &str| {
+        let text =
+            format!("seed = 10000\nobstacles = 40\nreplan_hz = 4.0\n[faults.elevator]\n{fault}");
+        let file = ScenarioFile::parse("elevator", &text).unwrap();
+        let mut radio = Radio::new(&CONFIG);
+        radio.fly(&file.build().unwrap());
+        radio
+    };
+    let told = |radio: &Radio, what: &str| radio.texts().iter().any(|(_, text)| text == what);
+    let weak = fly("scale = 0.25");
+    assert!(told(&weak, "Elevator is weak, commands grow"));
+    assert!(!told(&weak, "Sensor elevator failed"));
+    let stuck = fly("from = 9.0\nuntil = 12.0\nfrozen = true");
+    assert!(told(&stuck, "Elevator does not answer"));
+    let motors = stuck.all(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & MOTORS),
+        _ => None,
+    });
+    assert!(motors[..9].iter().all(|(_, bit)| *bit == MOTORS));
+    assert!(motors.iter().any(|(_, bit)| *bit == 0));
 }
 
 #[test]

@@ -1,0 +1,81 @@
+//! The health of the vehicle as stations see it: bits of `SYS_STATUS`, and a text for each change.
+
+use super::vehicle::{Severity, Vehicle};
+use hil_protocol::mavlink::messages::SYS_STATUS_DATA;
+use hil_protocol::{SensorState, SensorStates};
+
+/// MAV_SYS_STATUS_SENSOR: airspeed is differential pressure, pitch is the attitude reference, the position is
+/// that of satellite navigation, the lidar is a laser position.
+const AIRSPEED: u32 = 0x10;
+const POSITION: u32 = 0x20;
+const LIDAR: u32 = 0x100;
+const MOTORS: u32 = 0x8000;
+/// The attitude reference, and what it is made of: gyroscope, accelerometer, magnetometer.
+const PITCH: u32 = 0x20_0000 | 7;
+const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
+/// Number of sensors in [`SensorStates::named`]. The elevator comes behind them.
+const WATCHED: usize = 4;
+/// A fence that does not exist is not broken. Some stations look at this bit alone.
+const GEOFENCE: u32 = 0x10_0000;
+/// The vehicle would fly if it were armed.
+const PREARM: u32 = 0x1000_0000;
+
+impl Vehicle {
+    /// Tells the stations of each sensor that the core trusts otherwise than before, and of the elevator.
+    pub(super) fn report_sensors(&mut self, now: &SensorStates) {
+        let (before, elevator) = (self.sensors.named(), self.sensors.elevator);
+        self.sensors = *now;
+        if elevator != now.elevator {
+            let (severity, text) = match now.elevator {
+                SensorState::Excluded => (Severity::Critical, "Elevator does not answer"),
+                SensorState::Suspected => (Severity::Warning, "Elevator is weak, commands grow"),
+                SensorState::Healthy | SensorState::Recovering => {
+                    (Severity::Notice, "Elevator works again")
+                }
+            };
+            self.say(severity, text);
+        }
+        let sensors = before.into_iter().zip(now.named()).take(WATCHED);
+        for ((sensor, before), (_, now)) in sensors {
+            let (severity, what) = match now {
+                SensorState::Excluded if before != now => (Severity::Critical, "failed"),
+                SensorState::Healthy if before == SensorState::Recovering => {
+                    (Severity::Notice, "is back")
+                }
+                _ => continue,
+            };
+            self.say(severity, &format!("Sensor {sensor} {what}"));
+        }
+    }
+
+    pub(super) fn send_system_status(&mut self) {
+        let (_, _, rejections) = self.motion();
+        let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
+        self.send(&SYS_STATUS_DATA {
+            onboard_control_sensors_present: SENSORS | PREARM,
+            onboard_control_sensors_enabled: SENSORS | PREARM,
+            onboard_control_sensors_health: healthy(&self.sensors),
+            // There is no battery.
+            voltage_battery: u16::MAX,
+            current_battery: -1,
+            battery_remaining: -1,
+            errors_comm: count(self.damaged_frames() as usize),
+            errors_count1: count(rejections),
+            errors_count2: count(self.security.refused as usize),
+            ..SYS_STATUS_DATA::DEFAULT
+        });
+    }
+}
+
+/// The bits of the sensors that the core uses, and of what depends on them.
+fn healthy(sensors: &SensorStates) -> u32 {
+    let bits = [AIRSPEED, PITCH, POSITION, LIDAR, MOTORS];
+    let states = sensors.named();
+    let used = states
+        .iter()
+        .zip(bits)
+        .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
+    let sound = used.fold(0, |all, (_, bit)| all | bit);
+    let ready = if sound == SENSORS { PREARM } else { 0 };
+    sound | ready | GEOFENCE
+}
