@@ -48,6 +48,7 @@ pub fn encode<'a>(
         Message::ParameterReply(body) => encode_body(body, buffer),
         Message::PlanTrajectory(body) => encode_body(body, buffer),
         Message::HealthReport(body) => encode_body(body, buffer),
+        Message::PlanControls(body) => encode_body(body, buffer),
     }
 }
 

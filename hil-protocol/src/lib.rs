@@ -43,6 +43,7 @@
 //!    | -------- SensorFrame -------------------> |   |
 //!    | <------------------ [PlanReport] -------- |   |  each tick, 100 Hz;
 //!    | <-------------- [PlanTrajectory] -------- |   |  [..] only when there is one
+//!    | <---------------- [PlanControls] -------- |   |
 //!    | <------------------- [Rejection] -------- |   |
 //!    | <-------------------- StepReport -------- |   |
 //!    | <---------------- [HealthReport] -------- |   |
@@ -71,7 +72,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.2.0, open | messages 10 to 13; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors and the elevator; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
+//! | 2 | 0.2.0, open | messages 10 to 14; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors and the elevator; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
 //!
 //! # Use
 //!
@@ -108,8 +109,8 @@ pub use message::flight::{
     SensorFrame, SensorState, SensorStates, StepReport,
 };
 pub use message::report::{
-    CoreFault, CoreTask, HealthReport, MAX_KNOTS, PlanOutcome, PlanReport, PlanTrajectory,
-    Rejection, RejectionCause,
+    CoreFault, CoreTask, HealthReport, MAX_KNOTS, PlanControls, PlanOutcome, PlanReport,
+    PlanTrajectory, Rejection, RejectionCause,
 };
 pub use message::session::{
     Configure, ConfigureReply, Hello, ParameterReply, Preset, Role, SetParameter,

@@ -10,7 +10,7 @@ pub(crate) mod verdict;
 
 use crate::error::DecodeError;
 use flight::{ActuatorCommand, LidarScan, SensorFrame, StepReport};
-use report::{HealthReport, PlanReport, PlanTrajectory, Rejection};
+use report::{HealthReport, PlanControls, PlanReport, PlanTrajectory, Rejection};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
@@ -43,8 +43,10 @@ pub mod id {
     pub const PLAN_TRAJECTORY: u8 = 12;
     /// [`HealthReport`](crate::HealthReport).
     pub const HEALTH_REPORT: u8 = 13;
+    /// [`PlanControls`](crate::PlanControls).
+    pub const PLAN_CONTROLS: u8 = 14;
     /// The greatest of these numbers. All from [`HELLO`] on are used.
-    pub const LAST: u8 = HEALTH_REPORT;
+    pub const LAST: u8 = PLAN_CONTROLS;
 }
 
 /// The struct of a message, which a frame carries.
@@ -76,9 +78,14 @@ bodies! {
     ParameterReply => PARAMETER_REPLY,
     PlanTrajectory => PLAN_TRAJECTORY,
     HealthReport => HEALTH_REPORT,
+    PlanControls => PLAN_CONTROLS,
 }
 
 /// A message of any kind.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the scan on"
+)]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Message {
     /// Both directions: the first message, which identifies the sender.
@@ -107,6 +114,8 @@ pub enum Message {
     PlanTrajectory(PlanTrajectory),
     /// Core to harness: the counters of the flight.
     HealthReport(HealthReport),
+    /// Core to harness: the commands along the trajectory that is flown.
+    PlanControls(PlanControls),
 }
 
 impl Message {
@@ -127,6 +136,7 @@ impl Message {
             Self::ParameterReply(_) => id::PARAMETER_REPLY,
             Self::PlanTrajectory(_) => id::PLAN_TRAJECTORY,
             Self::HealthReport(_) => id::HEALTH_REPORT,
+            Self::PlanControls(_) => id::PLAN_CONTROLS,
         }
     }
 
@@ -146,6 +156,7 @@ impl Message {
             id::PARAMETER_REPLY => Self::ParameterReply(read(payload)?),
             id::PLAN_TRAJECTORY => Self::PlanTrajectory(read(payload)?),
             id::HEALTH_REPORT => Self::HealthReport(read(payload)?),
+            id::PLAN_CONTROLS => Self::PlanControls(read(payload)?),
             _ => return Err(DecodeError::UnknownId { id }),
         })
     }
@@ -176,4 +187,5 @@ const _: () = {
     assert!(ParameterReply::MAX_SIZE <= MAX_PAYLOAD);
     assert!(PlanTrajectory::MAX_SIZE <= MAX_PAYLOAD);
     assert!(HealthReport::MAX_SIZE <= MAX_PAYLOAD);
+    assert!(PlanControls::MAX_SIZE <= MAX_PAYLOAD);
 };

@@ -53,6 +53,7 @@ proptest! {
             Message::ParameterReply(body) => postcard::to_slice(body, &mut payload),
             Message::PlanTrajectory(body) => postcard::to_slice(body, &mut payload),
             Message::HealthReport(body) => postcard::to_slice(body, &mut payload),
+            Message::PlanControls(body) => postcard::to_slice(body, &mut payload),
         }
         .unwrap();
         prop_assert_eq!(frame(&message), oracle::frame(b"MP", PROTOCOL_VERSION, message.id(), payload));
@@ -190,8 +191,8 @@ fn each_fault_has_its_name() {
             Version { peer: 0 },
         ),
         (
-            oracle::frame(b"MP", PROTOCOL_VERSION, 14, &reply),
-            UnknownId { id: 14 },
+            oracle::frame(b"MP", PROTOCOL_VERSION, 15, &reply),
+            UnknownId { id: 15 },
         ),
         (
             oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &[99]),

@@ -133,9 +133,14 @@ fn of_the_reports() {
     let trajectory = PlanTrajectory {
         scan_tick: u32::MAX,
         period: value,
-        knots: [[value; 5]; MAX_KNOTS].into_iter().collect(),
+        knots: [[value; 3]; MAX_KNOTS].into_iter().collect(),
     };
     assert_eq!(payload(&trajectory), PlanTrajectory::MAX_SIZE);
+    let controls = PlanControls {
+        scan_tick: u32::MAX,
+        knots: [[value; 2]; MAX_KNOTS].into_iter().collect(),
+    };
+    assert_eq!(payload(&controls), PlanControls::MAX_SIZE);
     let health = HealthReport {
         tick: u32::MAX,
         counters: [u32::MAX; HealthReport::NAMES.len()],

@@ -5,8 +5,8 @@ mod aircraft;
 use crate::duration;
 use aircraft::{actuators, aircraft};
 use hil_protocol::{
-    Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanOutcome, PlanTrajectory,
-    Preset, RejectionCause, SensorFrame as WireFrame, SensorState, SensorStates,
+    Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanControls, PlanOutcome,
+    PlanTrajectory, Preset, RejectionCause, SensorFrame as WireFrame, SensorState, SensorStates,
     Setting as WireSetting, StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
@@ -17,7 +17,7 @@ use mpp_core::planner::SetupError;
 use mpp_core::qp::{CondenseError, ModelError};
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
 use mpp_core::settings::{Aircraft, Setting, Settings};
-use mpp_core::trajectory::Reference;
+use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::vehicle::{Control, TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
@@ -224,18 +224,26 @@ pub(crate) fn outcome(adoption: Adoption) -> PlanOutcome {
     }
 }
 
-pub(crate) fn trajectory(scan_tick: u32, flown: &FlightLoop) -> Option<PlanTrajectory> {
-    let trajectory = flown.trajectory()?;
+pub(crate) fn trajectory(scan_tick: u32, trajectory: &Trajectory) -> PlanTrajectory {
     let knot = |reference: &Reference| {
-        let VehicleState { x, z, air } = reference.state;
-        let Control { thrust, elevator } = flown.command_for(reference.feedforward);
-        [x, z, air.flight_path, thrust, elevator].map(|value| value as f32)
+        let state = &reference.state;
+        [state.x, state.z, state.air.flight_path].map(|value| value as f32)
     };
-    Some(PlanTrajectory {
+    PlanTrajectory {
         scan_tick,
         period: trajectory.stage_period as f32,
         knots: trajectory.knots.iter().map(knot).collect(),
-    })
+    }
+}
+
+/// The commands along the trajectory that is flown.
+pub(crate) fn controls(scan_tick: u32, flown: &FlightLoop) -> Option<PlanControls> {
+    let knot = |reference: &Reference| {
+        let Control { thrust, elevator } = flown.command_for(reference.feedforward);
+        [thrust, elevator].map(|value| value as f32)
+    };
+    let knots = flown.trajectory()?.knots.iter().map(knot).collect();
+    Some(PlanControls { scan_tick, knots })
 }
 
 const _: () = assert!(hil_protocol::MAX_KNOTS == KNOTS);

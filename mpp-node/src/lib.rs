@@ -10,6 +10,7 @@
 //! ```text
 //! LidarScan k      kept until the sensor frame of the same tick
 //! SensorFrame k    1. a plan that tick k - 1 has taken over is told -> PlanReport, PlanTrajectory
+//!                     the commands of the plan that tick k - 1 has told -> PlanControls
 //!                  2. a cycle whose latency has passed is finished and taken over
 //!                  3. estimate, reference, control          -> StepReport, ActuatorCommand
 //!                  4. a scan, if it is time to replan, starts a cycle

@@ -142,7 +142,7 @@ impl Inquest {
                 feasible: report.feasible > 0,
                 period: f64::from(trajectory.period),
                 path: knots
-                    .map(|[x, z, ..]| (f64::from(*x), f64::from(*z)))
+                    .map(|[x, z, _]| (f64::from(*x), f64::from(*z)))
                     .collect(),
             });
         }

@@ -58,10 +58,8 @@ pub struct PlanTrajectory {
     pub scan_tick: u32,
     /// Time from a knot to the next \[s\].
     pub period: f32,
-    /// Downrange distance \[m\], height \[m\] and flight path angle \[rad\] at each knot, and the commands from there: thrust
-    /// \[N\], which holds until the next knot, and elevator, which moves to that of the next knot. An aircraft that hears
-    /// nothing more can fly the rest of the plan by them.
-    pub knots: Vec<[f32; 5], MAX_KNOTS>,
+    /// Downrange distance \[m\], height \[m\] and flight path angle \[rad\] at each knot.
+    pub knots: Vec<[f32; 3], MAX_KNOTS>,
 }
 
 /// The most knots in a [`PlanTrajectory`].
@@ -69,7 +67,22 @@ pub const MAX_KNOTS: usize = 19;
 
 impl PlanTrajectory {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 5 * size::F32;
+    pub const MAX_SIZE: usize = size::U32 + size::F32 + size::BYTE + MAX_KNOTS * 3 * size::F32;
+}
+
+/// Core to harness: the commands along a [`PlanTrajectory`], the tick after it. An aircraft that hears nothing more can fly the
+/// rest of the plan by them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PlanControls {
+    /// The tick of the scan from which the trajectory was planned.
+    pub scan_tick: u32,
+    /// Thrust \[N\] from each knot to the next, and elevator at each knot, which moves straight to that of the next.
+    pub knots: Vec<[f32; 2], MAX_KNOTS>,
+}
+
+impl PlanControls {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = size::U32 + size::BYTE + MAX_KNOTS * 2 * size::F32;
 }
 
 /// Core to harness: an input that the core did not use, and the cause.

@@ -197,11 +197,23 @@ fn plan_trajectory() {
     let message = PlanTrajectory {
         scan_tick: 200,
         period: 0.25,
-        knots: [[1.5, -2.5, 0.1, 8.0, 3.75]; 2].into_iter().collect(),
+        knots: [[1.5, -2.5, 0.1]; 2].into_iter().collect(),
     };
     check(&[(
         Message::PlanTrajectory(message),
-        "074d50020cc8010104803e020103c03f010720c0cdcccc3d01010241010370400103c03f010720c0cdcccc3d0101024101077040aca3927300",
+        "074d50020cc8010104803e020103c03f010720c0cdcccc3d0103c03f010b20c0cdcccc3d718664ce00",
+    )]);
+}
+
+#[test]
+fn plan_controls() {
+    let message = PlanControls {
+        scan_tick: 200,
+        knots: [[8.0, 3.75]; 2].into_iter().collect(),
+    };
+    check(&[(
+        Message::PlanControls(message),
+        "084d50020ec80102010102410103704001010241010770407c9e1fe300",
     )]);
 }
 

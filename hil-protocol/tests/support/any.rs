@@ -25,6 +25,7 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
         )),
         parameter_reply().prop_map(Message::ParameterReply),
         plan_trajectory().prop_map(Message::PlanTrajectory),
+        plan_controls().prop_map(Message::PlanControls),
         health_report().prop_map(Message::HealthReport),
     ]
 }
@@ -134,8 +135,16 @@ fn parameter_reply() -> impl Strategy<Value = ParameterReply> {
     (any::<u8>(), verdicts).prop_map(|(parameter, verdict)| ParameterReply { parameter, verdict })
 }
 
+fn plan_controls() -> impl Strategy<Value = PlanControls> {
+    let knots = vec(proptest::array::uniform2(f32::ANY), 0..=MAX_KNOTS);
+    (any::<u32>(), knots).prop_map(|(scan_tick, knots)| PlanControls {
+        scan_tick,
+        knots: knots.into_iter().collect(),
+    })
+}
+
 fn plan_trajectory() -> impl Strategy<Value = PlanTrajectory> {
-    let knots = vec(proptest::array::uniform5(f32::ANY), 0..=MAX_KNOTS);
+    let knots = vec(proptest::array::uniform3(f32::ANY), 0..=MAX_KNOTS);
     (any::<u32>(), f32::ANY, knots).prop_map(|(scan_tick, period, knots)| PlanTrajectory {
         scan_tick,
         period,

@@ -66,6 +66,8 @@ struct Flight {
     plan_tick: Option<u32>,
     /// The report of a plan that the last tick has taken over.
     untold: Option<PlanReport>,
+    /// Scan of the plan that was told, and whose commands are not told yet.
+    unsteered: Option<u32>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
     /// The tick of the last scan that came. A sender repeats a scan until a command answers it.

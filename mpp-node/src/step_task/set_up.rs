@@ -70,6 +70,7 @@ impl StepTask {
             last_scan: None,
             plan_tick: None,
             untold: None,
+            unsteered: None,
             scan_tick: None,
             heard_scan: None,
             forget: false,

@@ -86,19 +86,31 @@ impl StepTask {
         }
     }
 
-    /// Tells the plan that the tick before has taken over. The tick that takes over has enough to do.
+    /// Tells the plan that the tick before has taken over, and a tick later its commands. The tick that takes over has enough
+    /// to do.
     #[inline(never)]
     fn tell_plan(&mut self, send: &mut impl FnMut(&[u8])) {
-        let Some(report) = self.flight.as_mut().and_then(|flight| flight.untold.take()) else {
+        let Some(flight) = &mut self.flight else {
             return;
         };
-        self.emit(&report, send);
+        let steered = flight.unsteered.take();
+        if let Some(scan_tick) = steered.filter(|tick| flight.plan_tick == Some(*tick)) {
+            if let Some(controls) = convert::controls(scan_tick, &flight.control) {
+                self.emit(&controls, send);
+            }
+            return;
+        }
+        let Some(report) = flight.untold.take() else {
+            return;
+        };
         let is_new = matches!(
             report.outcome,
             PlanOutcome::Adopted | PlanOutcome::LeastViolating
         );
-        let flight = self.flight.as_ref().filter(|_| is_new);
-        let told = flight.and_then(|flight| convert::trajectory(report.scan_tick, &flight.control));
+        let new = flight.control.trajectory().filter(|_| is_new);
+        let told = new.map(|trajectory| convert::trajectory(report.scan_tick, trajectory));
+        flight.unsteered = told.as_ref().map(|trajectory| trajectory.scan_tick);
+        self.emit(&report, send);
         if let Some(trajectory) = told {
             self.emit(&trajectory, send);
         }

@@ -76,6 +76,7 @@ impl Exchange {
                 step: None,
                 plan: None,
                 trajectory: None,
+                controls: None,
                 health: None,
             },
         })
@@ -117,6 +118,9 @@ impl Exchange {
         }
         if let Some(trajectory) = &mut answer.trajectory {
             flown(&mut trajectory.scan_tick);
+        }
+        if let Some(controls) = &mut answer.controls {
+            flown(&mut controls.scan_tick);
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::session::Answer;
 use crate::scenario::{Preset, Scenario};
-use hil_protocol::{ActuatorCommand, ControlMode, PlanTrajectory};
+use hil_protocol::{ActuatorCommand, ControlMode, PlanControls};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::TrimError;
 
@@ -25,7 +25,12 @@ pub(super) struct Receiver {
 struct Plan {
     /// Tick at which it starts.
     start: u32,
-    trajectory: PlanTrajectory,
+    /// Tick of its scan.
+    scan: u32,
+    /// Time from a knot to the next \[s\].
+    period: f64,
+    /// Its commands, once they have come.
+    controls: Option<PlanControls>,
     /// Whether the last command was one of this plan. A newer plan may have been lost.
     is_flown: bool,
 }
@@ -60,13 +65,18 @@ impl Receiver {
                 } else {
                     report.used_from_tick
                 },
-                trajectory: trajectory.clone(),
+                scan: report.scan_tick,
+                period: f64::from(trajectory.period),
+                controls: None,
                 is_flown: true,
             });
         }
+        if let (Some(plan), Some(controls)) = (&mut self.plan, &answer.controls) {
+            plan.controls = Some(controls.clone()).filter(|_| controls.scan_tick == plan.scan);
+        }
         if let (Some(plan), Some(step)) = (&mut self.plan, &answer.step) {
             let flown = step.tick.wrapping_sub(step.plan_age_ticks);
-            plan.is_flown = flown == plan.trajectory.scan_tick;
+            plan.is_flown = flown == plan.scan;
         }
     }
 
@@ -78,24 +88,26 @@ impl Receiver {
     /// A tick without a command.
     pub(super) fn miss(&mut self, now: u32) {
         self.silent = self.silent.saturating_add(1);
-        let Some(plan) = self.plan.as_ref().filter(|plan| plan.is_flown) else {
+        let flown = self.plan.as_ref().filter(|plan| plan.is_flown);
+        let Some((plan, controls)) = flown.and_then(|plan| Some((plan, plan.controls.as_ref()?)))
+        else {
             return;
         };
         let tracking = self.command.mode == ControlMode::Tracking;
         if tracking && self.silent >= PATIENCE {
-            self.command = plan.command(now).unwrap_or(self.trim);
+            self.command = plan.command(controls, now).unwrap_or(self.trim);
         }
     }
 }
 
 impl Plan {
     /// The command of the plan at a tick; `None` at its end.
-    fn command(&self, now: u32) -> Option<ActuatorCommand> {
+    fn command(&self, controls: &PlanControls, now: u32) -> Option<ActuatorCommand> {
         let time = f64::from(now.checked_sub(self.start)?) * TICK_PERIOD;
-        let stages = time / f64::from(self.trajectory.period);
+        let stages = time / self.period;
         let stage = stages as usize;
-        let knots = self.trajectory.knots.get(stage..stage.checked_add(2)?)?;
-        let [[.., thrust, from], [.., to]] = knots else {
+        let knots = controls.knots.get(stage..stage.checked_add(2)?)?;
+        let [[thrust, from], [_, to]] = knots else {
             return None;
         };
         let share = stages - stages.floor();
@@ -111,7 +123,9 @@ impl Plan {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hil_protocol::{PlanOutcome, PlanReport, SensorState, SensorStates, StepReport};
+    use hil_protocol::{
+        PlanOutcome, PlanReport, PlanTrajectory, SensorState, SensorStates, StepReport,
+    };
 
     const SCAN: u32 = 100;
     const TRACKING: ActuatorCommand = ActuatorCommand {
@@ -149,17 +163,17 @@ mod tests {
             }),
             plan: None,
             trajectory: None,
+            controls: None,
             health: None,
         }
     }
 
     /// The same with a plan of three knots, 0.5 s apart, that is flown from the next tick on.
     fn with_plan(tick: u32) -> Answer {
-        let knots = [
-            [0.0, 50.0, 0.0, 8.0, 3.0],
-            [6.0, 50.0, 0.0, 9.0, 4.0],
-            [12.0, 50.0, 0.0, 0.0, 2.0],
-        ];
+        let controls = PlanControls {
+            scan_tick: tick,
+            knots: [[8.0, 3.0], [9.0, 4.0], [0.0, 2.0]].into_iter().collect(),
+        };
         Answer {
             plan: Some(PlanReport {
                 scan_tick: tick,
@@ -176,8 +190,9 @@ mod tests {
             trajectory: Some(PlanTrajectory {
                 scan_tick: tick,
                 period: 0.5,
-                knots: knots.into_iter().collect(),
+                knots: [[0.0; 3]; 3].into_iter().collect(),
             }),
+            controls: Some(controls),
             ..answer(tick, tick)
         }
     }
@@ -218,6 +233,13 @@ mod tests {
         let mut deaf = receiver();
         deaf.hear(&answer(SCAN, SCAN));
         assert!(kept(&mut deaf));
+        // It did not hear its commands.
+        let mut half = receiver();
+        half.hear(&Answer {
+            controls: None,
+            ..with_plan(SCAN)
+        });
+        assert!(kept(&mut half));
         // A newer plan was lost.
         let mut outdated = receiver();
         outdated.hear(&with_plan(SCAN - 50));

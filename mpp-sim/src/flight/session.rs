@@ -8,7 +8,7 @@ use crate::link::{Link, LinkError};
 use crate::scenario::{Scenario, TICK_US};
 use hil_protocol::{
     ActuatorCommand, Configure, ConfigureReply, ConfigureVerdict, HealthReport, Hello, LidarScan,
-    Message, ParameterReply, ParameterVerdict, PlanReport, PlanTrajectory, Rejection,
+    Message, ParameterReply, ParameterVerdict, PlanControls, PlanReport, PlanTrajectory, Rejection,
     RejectionCause, Role, SensorFrame, SetParameter, StepReport,
 };
 use mpp_core::config::STAGES;
@@ -24,6 +24,7 @@ pub(super) struct Answer {
     pub(super) step: Option<StepReport>,
     pub(super) plan: Option<PlanReport>,
     pub(super) trajectory: Option<PlanTrajectory>,
+    pub(super) controls: Option<PlanControls>,
     pub(super) health: Option<HealthReport>,
 }
 
@@ -33,6 +34,7 @@ struct Draft {
     step: Option<StepReport>,
     plan: Option<PlanReport>,
     trajectory: Option<PlanTrajectory>,
+    controls: Option<PlanControls>,
     health: Option<HealthReport>,
 }
 
@@ -127,6 +129,7 @@ impl Session<'_> {
                         step,
                         plan,
                         trajectory,
+                        controls,
                         health,
                     } = std::mem::take(draft);
                     return Part::Last(Some(Answer {
@@ -134,6 +137,7 @@ impl Session<'_> {
                         step,
                         plan,
                         trajectory,
+                        controls,
                         health,
                     }));
                 }
@@ -144,6 +148,7 @@ impl Session<'_> {
                 Message::PlanReport(report) => draft.plan = Some(*report),
                 Message::HealthReport(report) => draft.health = Some(*report),
                 Message::PlanTrajectory(knots) => draft.trajectory = Some(knots.clone()),
+                Message::PlanControls(controls) => draft.controls = Some(controls.clone()),
                 _ => return Part::None,
             }
             Part::More

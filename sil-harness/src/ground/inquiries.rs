@@ -322,7 +322,7 @@ impl Vehicle {
             .zip(&mut message.z)
             .zip(&mut message.gamma);
         for (((x, z), gamma), knot) in places.zip(&trajectory.knots) {
-            [*x, *z, *gamma, ..] = *knot;
+            [*x, *z, *gamma] = *knot;
         }
         self.send_event(&message);
         self.last.trajectory = Some(message);

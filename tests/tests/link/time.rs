@@ -50,6 +50,7 @@ impl Link for Shifted {
                 shift(&mut report.used_from_tick);
             }
             Message::PlanTrajectory(trajectory) => shift(&mut trajectory.scan_tick),
+            Message::PlanControls(controls) => shift(&mut controls.scan_tick),
             Message::HealthReport(report) => shift(&mut report.tick),
             Message::Rejection(rejection) => shift(&mut rejection.tick),
             _ => {}

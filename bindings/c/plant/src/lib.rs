@@ -6,8 +6,8 @@
 use core::ffi::{c_char, c_void};
 use hil_protocol::{
     ActuatorCommand, ConfigureReply, ConfigureVerdict, ControlMode, HealthReport, Hello, LidarScan,
-    Message, PlanOutcome, PlanReport, PlanTrajectory, Role, SensorFrame, SensorState, SensorStates,
-    StepReport,
+    Message, PlanControls, PlanOutcome, PlanReport, PlanTrajectory, Role, SensorFrame, SensorState,
+    SensorStates, StepReport,
 };
 pub use mpp_c;
 use mpp_c::{MPP_COUNTERS, MppOutput, MppPlan, MppScan, MppSensors, MppState, MppStatus};
@@ -82,6 +82,8 @@ impl Callback {
             if flown {
                 let trajectory = trajectory(answer);
                 self.answers.push_back(Message::PlanTrajectory(trajectory));
+                let controls = controls(answer);
+                self.answers.push_back(Message::PlanControls(controls));
             }
         }
         let output = &answer.output;
@@ -210,15 +212,21 @@ fn plan_report(tick: u32, answer: &MppAnswer) -> PlanReport {
 
 fn trajectory(answer: &MppAnswer) -> PlanTrajectory {
     let knots = answer.plan.knots.iter();
-    let commands = answer.plan.thrust.iter().zip(&answer.plan.elevator);
     PlanTrajectory {
         scan_tick: answer.plan_tick,
         period: answer.plan.period as f32,
         knots: knots
-            .zip(commands)
-            .map(|(knot, (thrust, elevator))| {
-                [knot.x, knot.z, knot.flight_path, *thrust, *elevator].map(|value| value as f32)
-            })
+            .map(|knot| [knot.x, knot.z, knot.flight_path].map(|value| value as f32))
+            .collect(),
+    }
+}
+
+fn controls(answer: &MppAnswer) -> PlanControls {
+    let commands = answer.plan.thrust.iter().zip(&answer.plan.elevator);
+    PlanControls {
+        scan_tick: answer.plan_tick,
+        knots: commands
+            .map(|(thrust, elevator)| [*thrust as f32, *elevator as f32])
             .collect(),
     }
 }
