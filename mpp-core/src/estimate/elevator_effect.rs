@@ -15,7 +15,13 @@ use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim};
 /// Estimator of the elevator's effect. It compares with an airframe in balance at each elevator command.
 #[derive(Clone, Copy, Debug)]
 pub struct ElevatorEffect {
-    airframe: Airframe,
+    /// Lift coefficient at no angle of attack [-], and its slope [1/rad].
+    lift_zero: f64,
+    lift_alpha: f64,
+    /// Turn of the path by a unit of lift coefficient at an airspeed of 1 m/s [rad/s].
+    per_lift: f64,
+    /// Mass \[kg\].
+    mass: f64,
     /// Elevator command of level trim, and the angle of attack \[rad\] there.
     trim: f64,
     trim_angle: f64,
@@ -42,12 +48,16 @@ impl ElevatorEffect {
     #[must_use]
     pub fn new(known: &Airframe, trim: &Trim) -> Self {
         let airframe = known.balanced();
+        let damping = airframe.moment_alpha_rate + airframe.moment_pitch_rate;
         Self {
             trim: trim.control.elevator,
             trim_angle: airframe.angle_of_attack_for(trim.control.elevator),
             per_unit: -airframe.moment_elevator / airframe.moment_alpha,
-            lag: (airframe.moment_alpha_rate + airframe.moment_pitch_rate) / airframe.moment_alpha,
-            airframe,
+            lag: (damping / airframe.moment_alpha).max(0.0),
+            lift_zero: airframe.lift_zero,
+            lift_alpha: airframe.lift_alpha,
+            per_lift: 0.5 * airframe.air_density * airframe.wing_area / airframe.mass,
+            mass: airframe.mass,
             expected: None,
             given: Response::default(),
             planned: Response::default(),
@@ -124,14 +134,13 @@ impl ElevatorEffect {
         if !(air.is_finite() && inputs.iter().all(|input| input.is_finite())) {
             return;
         }
-        let a = &self.airframe;
-        let per_lift = 0.5 * a.air_density * a.wing_area / a.mass * air.airspeed;
-        let turn = per_lift * a.lift_alpha;
+        let per_lift = self.per_lift * air.airspeed;
+        let turn = per_lift * self.lift_alpha;
         let given = self.per_unit * (effective.elevator - self.trim);
         let turned = self.given.advance(given, self.lag, turn, period);
         let angle = self.trim_angle + self.given.angle;
-        let lift = a.lift_zero + lift_offset + a.lift_alpha * angle;
-        let push = effective.thrust * angle / a.mass;
+        let lift = self.lift_zero + lift_offset + self.lift_alpha * angle;
+        let push = effective.thrust * angle / self.mass;
         // The cosine of the flight path angle, to 2 % at 45 degrees.
         let weight = GRAVITY * (1.0 - 0.5 * (air.flight_path * air.flight_path));
         let path_rate = per_lift * lift + (push - weight) / air.airspeed;
