@@ -55,19 +55,19 @@ fn a_fault_changes_nothing_before_it_begins_and_is_in_the_header() {
 }
 
 #[test]
-fn a_silent_link_leaves_the_aircraft_its_last_command_and_comes_back() {
+fn over_a_silent_link_the_aircraft_flies_the_plan_that_it_heard() {
     let log = log("[faults.link]\nfrom = 2.0\nuntil = 3.0\nsilent = true");
     let elevator = &log.ticks.elevator;
-    assert!(
-        elevator[200..300]
-            .iter()
-            .all(|command| *command == elevator[199])
-    );
-    assert!(
-        elevator[300..]
-            .iter()
-            .any(|command| *command != elevator[199])
-    );
+    // It keeps the last command for some ticks. Then it flies the plan, whose elevator moves in straight lines.
+    let kept = elevator[200..]
+        .iter()
+        .take_while(|command| **command == elevator[199])
+        .count();
+    assert_eq!(kept, 7);
+    let turns = elevator[207..300]
+        .windows(3)
+        .filter(|of| (of[2] - 2.0 * of[1] + of[0]).abs() > 1e-9);
+    assert!((1..=4).contains(&turns.count()));
     assert_eq!(log.ticks.t.len(), 400);
     let order = log
         .rejections

@@ -10,7 +10,7 @@ use super::full_form::{Form, FullForm};
 use super::percentile::percentile;
 use crate::instance::Instance;
 use clarabel::solver::{IPSolver, SolverStatus};
-use mpp_core::qp::{CondenseError, Condensed, Problem, Solution, Solver, Status};
+use mpp_core::qp::{Condensed, Solution, Solver, Status};
 use serde::Serialize;
 use std::fmt;
 use std::time::Instant;
@@ -215,33 +215,11 @@ fn ask_condense(instance: &Instance) -> Result<(Box<Condensed>, f64), QpBenchErr
     let mut best = f64::INFINITY;
     for _ in 0..RUNS.0 {
         let begin = Instant::now();
-        let again = counted_condense(instance, &mut condensed);
+        let again = instance.condense_to(&mut condensed);
         best = best.min(begin.elapsed().as_secs_f64());
         again.map_err(|_| QpBenchError::NotPositiveDefinite(instance.name.clone()))?;
     }
     Ok((condensed, best * 1e6))
-}
-
-/// Does the work that a cycle does once. It is a function of its own for instruction counts
-/// (`.ci/budget`).
-#[inline(never)]
-fn counted_condense(instance: &Instance, shared: &mut Condensed) -> Result<(), CondenseError> {
-    instance.condense_to(shared)
-}
-
-/// Does the work of one candidate. It is a function of its own for instruction counts
-/// (`.ci/budget`).
-#[inline(never)]
-fn counted_candidate(
-    solver: &mut Solver,
-    shared: &Condensed,
-    problem: &Problem,
-    solution: &mut Solution,
-) -> Status {
-    match solver.solve(shared, problem) {
-        Status::Optimal => solver.solution(shared, solution),
-        status => status,
-    }
 }
 
 fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> Answer {
@@ -252,7 +230,10 @@ fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> Answer {
     let mut status = Status::NumericalFailure;
     for _ in 0..RUNS.0 {
         let begin = Instant::now();
-        status = counted_candidate(&mut solver, shared, &problem, &mut solution);
+        status = solver.solve(shared, &problem);
+        if status == Status::Optimal {
+            status = solver.solution(shared, &mut solution);
+        }
         best = best.min(begin.elapsed().as_secs_f64());
     }
     let (cost, row_error) = full.evaluate(&solution);

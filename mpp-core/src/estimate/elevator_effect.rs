@@ -176,7 +176,8 @@ impl ElevatorEffect {
         } else {
             0.0
         };
-        if self.shown > if self.proven { PROVEN_FOR } else { NEW_FOR } {
+        let enough = if self.proven { PROVEN_FOR } else { NEW_FOR };
+        if self.shown > enough {
             let effect = (self.effect * (1.0 + missing)).max(LEAST_EFFECT);
             let is_known = effect > 1.0 - PROVEN_MISSING;
             self.effect = if is_known { 1.0 } else { effect };

@@ -124,7 +124,7 @@ fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure>
 
 fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
     if args.export.is_none() && cfg!(not(feature = "clarabel")) {
-        let why = "bench qp: this program was built without Clarabel: build it without `--no-default-features`, \
+        let why = "bench qp: this program was built without Clarabel: build it with `--features clarabel`, \
                    or write the programs to a file with --export";
         return Err(Failure::new(USAGE, why));
     }

@@ -107,5 +107,5 @@ fn a_benchmark_beside_clarabel_names_the_feature_that_it_needs() {
     let output = harness().args(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     let said = text(&output.stderr);
-    assert!(said.contains("without `--no-default-features`"), "{said}");
+    assert!(said.contains("with `--features clarabel`"), "{said}");
 }

@@ -72,13 +72,13 @@ fn faults_of_the_elevator_are_told() {
     let weak = fly("scale = 0.25");
     assert!(told(&weak, "Elevator is weak, commands grow"));
     assert!(!told(&weak, "Sensor elevator failed"));
-    let stuck = fly("from = 9.0\nuntil = 12.0\nfrozen = true");
+    let stuck = fly("from = 8.0\nuntil = 11.0\nfrozen = true");
     assert!(told(&stuck, "Elevator does not answer"));
     let motors = stuck.all(|message| match message {
         MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & MOTORS),
         _ => None,
     });
-    assert!(motors[..9].iter().all(|(_, bit)| *bit == MOTORS));
+    assert!(motors[..8].iter().all(|(_, bit)| *bit == MOTORS));
     assert!(motors.iter().any(|(_, bit)| *bit == 0));
 }
 
