@@ -302,7 +302,8 @@ pub mod bias {
 pub mod elevator {
     /// Time over which a turn fades from the comparison \[s\]. With 0.5 errors of the lift stay in it for longer.
     pub const FADE: f64 = 0.25;
-    /// Time over which turns are compared \[s\]. More of it tells gusts better from a weak elevator, and finds it later.
+    /// Time over which turns are compared \[s\]. With 2 gusts look like a weak elevator twice as often as with 1; with less a flight shows
+    /// fewer turns. Source: D27.
     pub const MEMORY: f64 = 1.0;
     /// Least covariance of the responses to command and plan from which on they are compared [rad^2]: turns by 0.8 deg.
     pub const LEAST_RESPONSE: f64 = 2e-4;

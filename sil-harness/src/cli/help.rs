@@ -81,7 +81,7 @@ Examples:
 
 pub(super) const BENCH: &str = "\
 Examples:
-  sil-harness bench qp --generate 1000
+  sil-harness bench qp --generate 1000     # in a build with --features clarabel
   sil-harness bench cycle --json";
 
 pub(super) const EXPORT: &str = "\
