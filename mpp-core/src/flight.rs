@@ -231,7 +231,7 @@ impl FlightLoop {
     /// The commands that do what these controls of the known aircraft do.
     #[must_use]
     pub fn command_for(&self, wanted: Control) -> Control {
-        self.estimator.command_for(wanted)
+        self.estimator.actuators().command_for(wanted)
     }
 
     /// The trust in each sensor.
@@ -257,12 +257,12 @@ impl FlightLoop {
         let trim = self.trim.control;
         let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
         let asked = if sound {
-            self.estimator.command_for(wanted)
+            self.estimator.actuators().command_for(wanted)
         } else {
             trim
         };
-        let given = self.estimator.given();
-        let control = (self.estimator.limits()).within(asked, trim, given, TICK_PERIOD);
+        let actuators = self.estimator.actuators();
+        let control = (actuators.limits()).within(asked, trim, actuators.given(), TICK_PERIOD);
         if !sound {
             Health::count(&mut self.health.commands_not_finite);
             return control;

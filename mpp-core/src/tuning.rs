@@ -364,3 +364,31 @@ pub mod stability {
     /// planner corrects, and a height that nothing holds stand still. Source: derived.
     pub const MOST_GROWTH: f64 = 1.001;
 }
+
+/// The watch of the motor. Source of all: D28.
+pub mod motor {
+    /// Time over which a gain of speed fades from the comparison \[s\]. With less a lost motor is found later past obstacles.
+    pub const FADE: f64 = 1.0;
+    /// Rate at which the dead reckoned position follows the estimated one [1/s]. With 5 the noise of positions looks like a
+    /// lost motor; with less a lost motor is found later.
+    pub const FOLLOWS: f64 = 3.0;
+    /// Share of the expected gain that is missing by airspeed and wind when the motor is lost [-]. Less of it takes gusts for a
+    /// lost motor, more of it finds one later.
+    pub const BY_AIRSPEED: f64 = 0.5;
+    /// The same by the positions [-]. It is less because they say it later.
+    pub const BY_POSITION: f64 = 0.25;
+    /// Multiple of the usual gain by airspeed that a lost thrust exceeds [-]. With 4 a gust looks like a lost motor in one of
+    /// 40 flights.
+    pub const SIGMAS: f64 = 5.0;
+    /// Time over which the usual gain is averaged \[s\]. With 3 a lost motor counts as usual while it is being found.
+    pub const USUAL: f64 = 6.0;
+    /// First value of the usual gain [m/s]: less than in still air, 0.1.
+    pub const QUIET: f64 = 0.05;
+    /// Time for which both signs must say so \[s\]. With 0.1 gusts and noisy positions look like a lost motor.
+    pub const SHOWN_FOR: f64 = 0.15;
+    /// Time after which the estimates are settled \[s\].
+    pub const SETTLED: f64 = 2.0;
+    /// Least thrust with which the comparison reckons, as a share of that of level flight [-]. Less lets noise look great in a
+    /// dive without thrust.
+    pub const LEAST_GIVEN: f64 = 0.3;
+}

@@ -290,6 +290,7 @@ pub(crate) fn sensor_states(sensors: Sensors, lidar: Trust) -> SensorStates {
         position: state(sensors.position),
         lidar: state(lidar),
         elevator: state(sensors.elevator),
+        motor: state(sensors.motor),
     }
 }
 

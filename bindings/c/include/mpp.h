@@ -207,6 +207,8 @@ typedef struct mpp_output {
   uint8_t position_trust;
   // Trust in the elevator: 1 while the core makes up for its weakness, 2 while it does not answer.
   uint8_t elevator_trust;
+  // Trust in the motor: 2 while it gives no thrust.
+  uint8_t motor_trust;
   // The estimate.
   struct mpp_state estimate;
   // Estimated wind downrange [m/s].

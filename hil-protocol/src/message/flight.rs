@@ -168,21 +168,24 @@ pub struct SensorStates {
     /// The elevator, which is no sensor but is watched like one: suspected if it is weak and the core makes up for it,
     /// excluded while it does not answer.
     pub elevator: SensorState,
+    /// The motor, likewise: excluded while it gives no thrust.
+    pub motor: SensorState,
 }
 
 impl SensorStates {
     /// Size of the longest form \[bytes\].
-    pub const MAX_SIZE: usize = 5 * size::BYTE;
+    pub const MAX_SIZE: usize = 6 * size::BYTE;
 
     /// Each sensor's name and state.
     #[must_use]
-    pub const fn named(&self) -> [(&'static str, SensorState); 5] {
+    pub const fn named(&self) -> [(&'static str, SensorState); 6] {
         [
             ("airspeed", self.airspeed),
             ("pitch", self.pitch),
             ("position", self.position),
             ("lidar", self.lidar),
             ("elevator", self.elevator),
+            ("motor", self.motor),
         ]
     }
 }

@@ -212,6 +212,7 @@ fn actuator_command() -> impl Strategy<Value = ActuatorCommand> {
             tick,
             thrust,
             elevator,
+            motor,
             mode,
         }
     })
@@ -249,9 +250,9 @@ fn sensor_states() -> impl Strategy<Value = SensorStates> {
             SensorState::Recovering,
         ])
     };
-    let all = [state(), state(), state(), state(), state()];
+    let all = [state(), state(), state(), state(), state(), state()];
     all.prop_map(
-        |[airspeed, pitch, position, lidar, elevator]| SensorStates {
+        |[airspeed, pitch, position, lidar, elevator, motor]| SensorStates {
             airspeed,
             pitch,
             position,

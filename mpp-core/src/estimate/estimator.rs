@@ -2,9 +2,9 @@
 
 use super::verdicts::{count_position, count_verdict};
 use super::{
-    AirspeedBias, Changes, Conditions, Course, EkfTuning, ElevatorEffect, Innovation, LaggedEkf,
-    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Taken,
-    Trust, Verdict, Watch,
+    Actuators, AirspeedBias, Changes, Conditions, Course, EkfTuning, Innovation, LaggedEkf,
+    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Progress,
+    Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -28,6 +28,8 @@ pub struct Sensors {
     pub position: Trust,
     /// The elevator, which is no sensor but is watched like one.
     pub elevator: Trust,
+    /// The motor, likewise.
+    pub motor: Trust,
 }
 
 /// The values of the estimators that no step changes.
@@ -43,13 +45,11 @@ pub struct EstimatorDesign {
 #[derive(Clone, Debug)]
 pub struct Estimator {
     airframe: Airframe,
-    limits: ActuatorLimits,
+    actuators: Actuators,
     air: LaggedEkf,
     navigation: Navigation,
     /// Estimator of the lift. Without it the lift is that of the known airframe.
     lift: Option<LiftEstimator>,
-    /// The controls that the actuators gave up to the last step, by the model of the actuators.
-    given: Control,
     airspeed_changes: Changes,
     pitch_changes: Changes,
     course: Course,
@@ -60,9 +60,8 @@ pub struct Estimator {
     /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
     pitch_error: f64,
     airspeed_bias: AirspeedBias,
-    elevator: ElevatorEffect,
-    /// Elevator command of the plan since the last step.
-    planned: f64,
+    /// Part of the airspeed by which its sensor has just corrected it [m/s].
+    corrected: f64,
     /// Amount by which the estimated airspeed is behind the measured one of this tick [m/s].
     behind: Option<f64>,
 }
@@ -76,11 +75,10 @@ impl Estimator {
         let lift = LiftEstimator::new(&airframe.balanced(), trim.state.airspeed);
         Self {
             airframe,
-            limits: settings.actuators,
+            actuators: Actuators::new(settings, trim),
             air: LaggedEkf::new(airframe, settings.estimator, trim.state),
             navigation: Navigation::new(settings.wind_change, settings.planner.altitude),
             lift: settings.wind_change.is_some().then_some(lift),
-            given: trim.control,
             airspeed_changes: Changes::new(),
             pitch_changes: Changes::new(),
             course: Course::default(),
@@ -89,8 +87,7 @@ impl Estimator {
             position: Watch::new(POSITION_PERIOD),
             bias: PitchBias::new(),
             pitch_error: 0.0,
-            elevator: ElevatorEffect::new(&airframe, trim),
-            planned: trim.control.elevator,
+            corrected: 0.0,
             behind: None,
             airspeed_bias: AirspeedBias::new(airframe.level_lift(trim.state.airspeed)),
         }
@@ -101,7 +98,7 @@ impl Estimator {
     pub fn design(&self) -> EstimatorDesign {
         EstimatorDesign {
             airframe: self.airframe,
-            limits: self.limits,
+            limits: *self.actuators.limits(),
             filter: *self.air.tuning(),
             wind_change: self.navigation.wind_change(),
         }
@@ -111,7 +108,7 @@ impl Estimator {
     #[must_use]
     pub fn has(&self, design: &EstimatorDesign) -> bool {
         self.airframe == design.airframe
-            && self.limits == design.limits
+            && *self.actuators.limits() == design.limits
             && *self.air.tuning() == design.filter
             && self.navigation.wind_change() == design.wind_change
     }
@@ -119,15 +116,15 @@ impl Estimator {
     /// Puts values back that have changed in memory by themselves.
     pub fn restore(&mut self, design: &EstimatorDesign) {
         self.airframe = design.airframe;
-        self.limits = design.limits;
+        self.actuators.set_limits(design.limits);
         self.air.set_tuning(design.filter);
         self.navigation.set_wind_change(design.wind_change);
     }
 
-    /// The limits of the actuators.
+    /// The actuators by their model.
     #[must_use]
-    pub fn limits(&self) -> &ActuatorLimits {
-        &self.limits
+    pub fn actuators(&self) -> &Actuators {
+        &self.actuators
     }
 
     /// The estimated motion through the air.
@@ -183,21 +180,9 @@ impl Estimator {
         Some(by)
     }
 
-    /// The controls that the actuators gave up to the last step, by the model of the actuators.
-    #[must_use]
-    pub fn given(&self) -> Control {
-        self.given
-    }
-
-    /// The command that does what a control of the known aircraft does.
-    #[must_use]
-    pub fn command_for(&self, wanted: Control) -> Control {
-        self.elevator.command_for(wanted)
-    }
-
     /// Notes the elevator command of the plan until the next step.
     pub fn expect_elevator(&mut self, planned: f64) {
-        self.planned = planned;
+        self.actuators.expect_elevator(planned);
     }
 
     /// The trust in each sensor.
@@ -215,7 +200,8 @@ impl Estimator {
                 self.pitch.trust()
             },
             position: self.position.trust(),
-            elevator: self.elevator.trust(),
+            elevator: self.actuators.elevator().trust(),
+            motor: self.actuators.motor().trust(),
         }
     }
 
@@ -258,9 +244,8 @@ impl Estimator {
         let pieces = libm::round(period / TICK_PERIOD).max(1.0);
         for _ in 0..pieces as u32 {
             let piece = period / pieces;
-            self.given = self.limits.given(control, self.given, piece);
-            let effective = self.elevator.effective(self.given);
-            if self.air.predict(effective, piece).is_err() {
+            self.actuators.follow(control, piece);
+            if self.air.predict(self.actuators.effective(), piece).is_err() {
                 Health::count(&mut health.predictions_diverged);
             }
             self.navigation.predict(self.air.present(), piece);
@@ -321,6 +306,7 @@ impl Estimator {
             self.pitch.tick(None);
             return Innovation::both(Verdict::Late);
         };
+        self.corrected = self.air.present().airspeed - estimate;
         if innovation.airspeed == Verdict::Accepted {
             self.behind = Some(fresh.airspeed - self.air.present().airspeed);
         }
@@ -347,15 +333,11 @@ impl Estimator {
         else {
             return;
         };
-        let lift = self.conditions().lift;
-        self.elevator.update(
+        let (pitch, lift) = (
             air.measurement.pitch - self.pitch_error,
-            self.air.present(),
-            lift,
-            self.elevator.effective(self.given),
-            self.planned,
-            elapsed,
+            self.conditions().lift,
         );
+        (self.actuators).see_turn(pitch, self.air.present(), lift, elapsed);
     }
 
     /// Takes in the position, if there is one, and then estimates the lift.
@@ -368,7 +350,8 @@ impl Estimator {
             Some(PositionVerdict::Held) | None => None,
             Some(_) => Some(false),
         });
-        let effective = self.elevator.effective(self.given);
+        self.watch_motor(elapsed, verdict);
+        let effective = self.actuators.effective();
         let (_, climb) = self.navigation.wind().ground_velocity(&air);
         if let Some(lift) = &mut self.lift {
             if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
@@ -393,5 +376,20 @@ impl Estimator {
         let airframe = self.conditions().airframe(&self.airframe);
         self.air.set_airframe(&airframe);
         verdict
+    }
+
+    /// Compares the speed with the thrust, if the wind is known.
+    fn watch_motor(&mut self, elapsed: f64, position: Option<PositionVerdict>) {
+        let air = self.air.present();
+        let along = libm::cos(air.flight_path);
+        let progress = Progress {
+            x: self.navigation.position().0,
+            air: air.airspeed * along,
+            corrected: core::mem::take(&mut self.corrected) * along,
+            wind: self.navigation.wind().x,
+        };
+        let restarted = position == Some(PositionVerdict::Restarted);
+        let sound = self.navigation.is_settled() && !restarted;
+        (self.actuators).see_speed(sound.then_some(&progress), elapsed);
     }
 }

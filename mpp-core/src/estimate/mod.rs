@@ -1,5 +1,6 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
+mod actuators;
 mod airspeed_bias;
 mod bias;
 mod changes;
@@ -9,11 +10,13 @@ mod estimator;
 mod history;
 mod lagged;
 mod lift;
+mod motor_watch;
 mod navigation;
 mod verdicts;
 mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias::PitchBias;
 pub use changes::{Changes, Course};
@@ -24,6 +27,7 @@ pub use estimator::{Estimator, EstimatorDesign, Sensors};
 pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
+pub use motor_watch::{MotorWatch, Progress};
 use nalgebra::{Matrix4, Vector4};
 pub use navigation::{Navigation, PositionVerdict};
 pub use watch::{Trust, Watch};

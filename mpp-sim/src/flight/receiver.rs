@@ -159,6 +159,7 @@ mod tests {
                     position: state,
                     lidar: state,
                     elevator: state,
+                    motor: state,
                 },
             }),
             plan: None,

@@ -13,7 +13,7 @@ const MOTORS: u32 = 0x8000;
 /// The attitude reference, and what it is made of: gyroscope, accelerometer, magnetometer.
 const PITCH: u32 = 0x20_0000 | 7;
 const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
-/// Number of sensors in [`SensorStates::named`]. The elevator comes behind them.
+/// Number of sensors in [`SensorStates::named`]. The actuators come behind them.
 const WATCHED: usize = 4;
 /// A fence that does not exist is not broken. Some stations look at this bit alone.
 const GEOFENCE: u32 = 0x10_0000;
@@ -21,11 +21,10 @@ const GEOFENCE: u32 = 0x10_0000;
 const PREARM: u32 = 0x1000_0000;
 
 impl Vehicle {
-    /// Tells the stations of each sensor that the core trusts otherwise than before, and of the elevator.
+    /// Tells the stations of each sensor that the core trusts otherwise than before, and of each actuator.
     pub(super) fn report_sensors(&mut self, now: &SensorStates) {
-        let (before, elevator) = (self.sensors.named(), self.sensors.elevator);
-        self.sensors = *now;
-        if elevator != now.elevator {
+        let last = core::mem::replace(&mut self.sensors, *now);
+        if last.elevator != now.elevator {
             let (severity, text) = match now.elevator {
                 SensorState::Excluded => (Severity::Critical, "Elevator does not answer"),
                 SensorState::Suspected => (Severity::Warning, "Elevator is weak, commands grow"),
@@ -35,7 +34,14 @@ impl Vehicle {
             };
             self.say(severity, text);
         }
-        let sensors = before.into_iter().zip(now.named()).take(WATCHED);
+        if last.motor != now.motor {
+            let (severity, text) = match now.motor {
+                SensorState::Excluded => (Severity::Critical, "Motor gives no thrust"),
+                _ => (Severity::Notice, "Motor works again"),
+            };
+            self.say(severity, text);
+        }
+        let sensors = last.named().into_iter().zip(now.named()).take(WATCHED);
         for ((sensor, before), (_, now)) in sensors {
             let (severity, what) = match now {
                 SensorState::Excluded if before != now => (Severity::Critical, "failed"),
@@ -69,13 +75,15 @@ impl Vehicle {
 
 /// The bits of the sensors that the core uses, and of what depends on them.
 fn healthy(sensors: &SensorStates) -> u32 {
-    let bits = [AIRSPEED, PITCH, POSITION, LIDAR, MOTORS];
+    let uses = |state| matches!(state, SensorState::Healthy | SensorState::Suspected);
+    let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
     let states = sensors.named();
     let used = states
         .iter()
         .zip(bits)
-        .filter(|((_, state), _)| matches!(state, SensorState::Healthy | SensorState::Suspected));
-    let sound = used.fold(0, |all, (_, bit)| all | bit);
+        .filter(|((_, state), _)| uses(*state));
+    let driven = uses(sensors.elevator) && uses(sensors.motor);
+    let sound = used.fold(if driven { MOTORS } else { 0 }, |all, (_, bit)| all | bit);
     let ready = if sound == SENSORS { PREARM } else { 0 };
     sound | ready | GEOFENCE
 }

@@ -57,29 +57,34 @@ fn a_flying_vehicle_is_in_the_air_healthy_and_has_a_fix() {
     assert_eq!(battery[0].1, (u16::MAX, -1));
 }
 
-/// Stations hear of a weak elevator, and see by the motors' bit that one does not answer.
+/// Stations hear of a weak elevator and of a motor that stops, and see by the motors' bit that an actuator does not answer.
 #[test]
-fn faults_of_the_elevator_are_told() {
+fn faults_of_the_actuators_are_told() {
     let fly = |fault: &str| {
-        let text =
-            format!("seed = 10000\nobstacles = 40\nreplan_hz = 4.0\n[faults.elevator]\n{fault}");
-        let file = ScenarioFile::parse("elevator", &text).unwrap();
+        let text = format!("seed = 10000\nobstacles = 40\nreplan_hz = 4.0\n[faults.{fault}");
+        let file = ScenarioFile::parse("actuator", &text).unwrap();
         let mut radio = Radio::new(&CONFIG);
         radio.fly(&file.build().unwrap());
         radio
     };
     let told = |radio: &Radio, what: &str| radio.texts().iter().any(|(_, text)| text == what);
-    let weak = fly("scale = 0.25");
+    let weak = fly("elevator]\nscale = 0.25");
     assert!(told(&weak, "Elevator is weak, commands grow"));
-    let stuck = fly("from = 8.0\nuntil = 11.0\nfrozen = true");
+    let stuck = fly("elevator]\nfrom = 8.0\nuntil = 11.0\nfrozen = true");
     assert!(told(&stuck, "Elevator does not answer"));
     assert!(!told(&stuck, "Sensor elevator failed"));
-    let motors = stuck.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & MOTORS),
-        _ => None,
-    });
-    assert!(motors[..8].iter().all(|(_, bit)| *bit == MOTORS));
-    assert!(motors.iter().any(|(_, bit)| *bit == 0));
+    let stopped = fly("thrust]\nfrom = 8.0\nuntil = 11.0\nscale = 0.0");
+    assert!(told(&stopped, "Motor gives no thrust"));
+    assert!(told(&stopped, "Motor works again"));
+    assert!(!told(&stopped, "Sensor airspeed failed"));
+    for radio in [stuck, stopped] {
+        let motors = radio.all(|message| match message {
+            MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & MOTORS),
+            _ => None,
+        });
+        assert!(motors[..8].iter().all(|(_, bit)| *bit == MOTORS));
+        assert!(motors.iter().any(|(_, bit)| *bit == 0));
+    }
 }
 
 #[test]

@@ -88,6 +88,7 @@ impl MppCore {
             pitch_trust: code(trust.pitch),
             position_trust: code(trust.position),
             elevator_trust: code(trust.elevator),
+            motor_trust: code(trust.motor),
             estimate: MppState::from(&control.state()),
             wind_x: conditions.wind.x,
             wind_z: conditions.wind.z,

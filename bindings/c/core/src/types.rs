@@ -174,6 +174,8 @@ pub struct MppOutput {
     pub position_trust: u8,
     /// Trust in the elevator: 1 while the core makes up for its weakness, 2 while it does not answer.
     pub elevator_trust: u8,
+    /// Trust in the motor: 2 while it gives no thrust.
+    pub motor_trust: u8,
     /// The estimate.
     pub estimate: MppState,
     /// Estimated wind downrange [m/s].

@@ -268,6 +268,7 @@ fn step_report(tick: u32, output: &MppOutput) -> StepReport {
             position: trust(output.position_trust),
             lidar: SensorState::Healthy,
             elevator: trust(output.elevator_trust),
+            motor: trust(output.motor_trust),
         },
     }
 }

@@ -1,0 +1,103 @@
+//! What the actuators give, and what effect it has on the aircraft.
+
+use super::{ElevatorEffect, MotorWatch, Progress};
+use crate::settings::Settings;
+use crate::vehicle::{ActuatorLimits, AirState, Control, Trim};
+
+/// The actuators by their model, and the watches of their effect.
+#[derive(Clone, Debug)]
+pub struct Actuators {
+    limits: ActuatorLimits,
+    /// The controls that the actuators gave up to the last step, by the model of the actuators.
+    given: Control,
+    elevator: ElevatorEffect,
+    /// Elevator command of the plan since the last step.
+    planned: f64,
+    motor: MotorWatch,
+}
+
+impl Actuators {
+    /// Actuators at level trim, with their known effects.
+    #[must_use]
+    pub fn new(settings: &Settings, trim: &Trim) -> Self {
+        Self {
+            limits: settings.actuators,
+            given: trim.control,
+            elevator: ElevatorEffect::new(&settings.airframe, trim),
+            planned: trim.control.elevator,
+            motor: MotorWatch::new(settings.airframe.mass, trim.control.thrust),
+        }
+    }
+
+    /// The limits of the actuators.
+    #[must_use]
+    pub fn limits(&self) -> &ActuatorLimits {
+        &self.limits
+    }
+
+    /// Puts limits back that have changed in memory by themselves.
+    pub fn set_limits(&mut self, limits: ActuatorLimits) {
+        self.limits = limits;
+    }
+
+    /// The controls that the actuators gave up to the last step.
+    #[must_use]
+    pub fn given(&self) -> Control {
+        self.given
+    }
+
+    /// The controls of the known aircraft that do what these actuators do.
+    #[must_use]
+    pub fn effective(&self) -> Control {
+        let effective = self.elevator.effective(self.given);
+        if self.motor.lost() {
+            return Control {
+                thrust: 0.0,
+                ..effective
+            };
+        }
+        effective
+    }
+
+    /// The command that does what a control of the known aircraft does.
+    #[must_use]
+    pub fn command_for(&self, wanted: Control) -> Control {
+        self.elevator.command_for(wanted)
+    }
+
+    /// The watch of the elevator.
+    #[must_use]
+    pub fn elevator(&self) -> &ElevatorEffect {
+        &self.elevator
+    }
+
+    /// The watch of the motor.
+    #[must_use]
+    pub fn motor(&self) -> &MotorWatch {
+        &self.motor
+    }
+
+    /// Notes the elevator command of the plan until the next step.
+    pub fn expect_elevator(&mut self, planned: f64) {
+        self.planned = planned;
+    }
+
+    /// Moves the actuators on towards a command by `period` \[s\].
+    pub fn follow(&mut self, command: Control, period: f64) {
+        self.given = self.limits.given(command, self.given, period);
+    }
+
+    /// Compares the measured pitch \[rad\] with the commands; see [`ElevatorEffect::update`].
+    pub fn see_turn(&mut self, pitch: f64, air: &AirState, lift_offset: f64, period: f64) {
+        let effective = self.effective();
+        (self.elevator).update(pitch, air, lift_offset, effective, self.planned, period);
+    }
+
+    /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have moved to another origin.
+    pub fn see_speed(&mut self, progress: Option<&Progress>, period: f64) {
+        match progress {
+            Some(progress) => self.motor.update(progress, self.given.thrust, period),
+            None => self.motor.interrupt(),
+        }
+    }
+}

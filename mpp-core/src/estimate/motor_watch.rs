@@ -1,0 +1,137 @@
+//! Watch of the motor, by the speed that the sensors find and the thrust does not explain.
+//!
+//! Without thrust the aircraft does not gain the speed that its model expects of the command. Two signs must say so. The
+//! airspeed sensor and the estimated wind together say it soon, but a gust moves the one before the other. The positions do
+//! not know gusts, but they say it late. The first sign must also exceed what it says on a usual day.
+
+use super::Trust;
+use crate::tuning::motor::{
+    BY_AIRSPEED, BY_POSITION, FADE, FOLLOWS, LEAST_GIVEN, QUIET, SETTLED, SHOWN_FOR, SIGMAS, USUAL,
+};
+
+/// What the estimates of a tick say about the speed along the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Position downrange \[m\].
+    pub x: f64,
+    /// Velocity through the air along the way [m/s].
+    pub air: f64,
+    /// Part of it by which the airspeed sensor has just corrected it [m/s].
+    pub corrected: f64,
+    /// Wind along the way [m/s].
+    pub wind: f64,
+}
+
+/// Watch of the motor, which has its full effect or none.
+#[derive(Clone, Copy, Debug)]
+pub struct MotorWatch {
+    /// Mass \[kg\].
+    mass: f64,
+    /// Least gain of speed with which the comparison reckons [m/s].
+    least: f64,
+    last: Option<Progress>,
+    /// Position \[m\] and velocity over ground [m/s] by the model and the positions alone.
+    reckoned: (f64, f64),
+    /// Gain of speed that the command should give [m/s]. It fades.
+    given: f64,
+    /// Gains beyond that of the model, by airspeed and wind and by the positions [m/s]. They fade.
+    by_airspeed: f64,
+    by_position: f64,
+    /// Usual mean square of the gain by airspeed [(m/s)^2].
+    usual: f64,
+    /// Time of the watch \[s\].
+    seen: f64,
+    /// Time for which both signs have said that the motor stopped, or works again \[s\].
+    shown: f64,
+    lost: bool,
+}
+
+impl MotorWatch {
+    /// A motor that works, of an aircraft with this mass \[kg\] and this thrust in level flight \[N\].
+    #[must_use]
+    pub const fn new(mass: f64, level: f64) -> Self {
+        Self {
+            mass,
+            least: LEAST_GIVEN * level / mass * FADE,
+            last: None,
+            reckoned: (0.0, 0.0),
+            given: 0.0,
+            by_airspeed: 0.0,
+            by_position: 0.0,
+            usual: QUIET * QUIET,
+            seen: 0.0,
+            shown: 0.0,
+            lost: false,
+        }
+    }
+
+    /// Whether the motor gives no thrust.
+    #[must_use]
+    pub fn lost(&self) -> bool {
+        self.lost
+    }
+
+    /// The trust in the motor: excluded while it gives no thrust.
+    #[must_use]
+    pub fn trust(&self) -> Trust {
+        match self.lost {
+            true => Trust::Excluded,
+            false => Trust::Healthy,
+        }
+    }
+
+    /// Begins anew at the next tick, because the estimates have moved to another origin.
+    pub fn interrupt(&mut self) {
+        (self.last, self.shown) = (None, 0.0);
+    }
+
+    /// Takes in the estimates of a tick, a `period` \[s\] after the last one, in which the motor was to give a thrust
+    /// \[N\].
+    pub fn update(&mut self, now: &Progress, thrust: f64, period: f64) {
+        let inputs = [now.x, now.air, now.corrected, now.wind, thrust, period];
+        if !(inputs.iter().all(|input| input.is_finite()) && period > 0.0) {
+            return;
+        }
+        let Some(last) = self.last.replace(*now) else {
+            self.reckoned = (now.x, now.air + now.wind);
+            return;
+        };
+        let follows = FOLLOWS * period;
+        let speed = self.reckoned.1 + now.air - last.air - now.corrected;
+        let x = self.reckoned.0 + speed * period;
+        let ahead = now.x - x;
+        let pull = FOLLOWS * follows * ahead;
+        self.reckoned = (x + 2.0 * follows * ahead, speed + pull);
+
+        let kept = (1.0 - period / FADE).max(0.0);
+        self.given = kept * self.given + thrust / self.mass * period;
+        self.by_position = kept * self.by_position + pull;
+        let found = now.corrected + now.wind - last.wind;
+        self.by_airspeed = kept * self.by_airspeed + found;
+        self.seen += period;
+        self.judge(period);
+    }
+
+    /// Changes the verdict if both signs have contradicted it for long enough.
+    fn judge(&mut self, period: f64) {
+        // A lost motor lacks the gain that the command should give; one that works again gives what the model lacks.
+        let expected = self.given.max(self.least);
+        let signed = if self.lost { expected } else { -expected };
+        let airspeed = self.by_airspeed / signed;
+        let position = self.by_position / signed;
+        let square = self.by_airspeed * self.by_airspeed;
+        let suspicious = airspeed > 0.5 * BY_AIRSPEED && position > 0.5 * BY_POSITION;
+        if !(self.lost || suspicious) {
+            self.usual += (square - self.usual) * (period / USUAL).min(1.0);
+        }
+        let says = airspeed > BY_AIRSPEED
+            && position > BY_POSITION
+            && square > SIGMAS * SIGMAS * self.usual
+            && self.seen > SETTLED;
+        self.shown = if says { self.shown + period } else { 0.0 };
+        if self.shown > SHOWN_FOR {
+            self.lost = !self.lost;
+            (self.by_airspeed, self.by_position, self.shown) = (0.0, 0.0, 0.0);
+        }
+    }
+}
