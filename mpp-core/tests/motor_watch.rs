@@ -30,11 +30,11 @@ struct Flight {
 
 impl Flight {
     /// `mass` is the aircraft's, as a share of that which the core knows.
-    fn new(mass: f64, gusts: f64, seed: u64) -> Self {
+    fn new(flight: FlightLoop, mass: f64, gusts: f64, seed: u64) -> Self {
         let known = Airframe::REFERENCE;
         let trim = Trim::of_authors(&known);
         Self {
-            flight: FlightLoop::new(&Settings::flight()).unwrap(),
+            flight,
             airframe: Airframe {
                 mass: mass * known.mass,
                 ..known
@@ -115,8 +115,9 @@ fn first(told: &[Trust], wanted: Trust) -> Option<f64> {
 
 #[test]
 fn a_motor_that_stops_is_found_and_one_that_works_again_too() {
+    let core = FlightLoop::new(&Settings::flight()).unwrap();
     for seed in 0..20 {
-        let mut flight = Flight::new(1.0, 0.0, seed);
+        let mut flight = Flight::new(core.clone(), 1.0, 0.0, seed);
         assert_eq!(
             first(&flight.fly(8.0, 1.0), Trust::Excluded),
             None,
@@ -132,8 +133,9 @@ fn a_motor_that_stops_is_found_and_one_that_works_again_too() {
 /// Without thrust the estimated airspeed follows the true one, the airspeed sensor stays trusted, and the aircraft glides.
 #[test]
 fn without_thrust_the_aircraft_glides_for_ten_seconds() {
+    let core = FlightLoop::new(&Settings::flight()).unwrap();
     for seed in 0..10 {
-        let mut flight = Flight::new(1.0, 0.0, seed);
+        let mut flight = Flight::new(core.clone(), 1.0, 0.0, seed);
         flight.fly(8.0, 1.0);
         flight.fly(2.0, 0.0);
         for _ in 0..1000 {
@@ -148,6 +150,7 @@ fn without_thrust_the_aircraft_glides_for_ten_seconds() {
 
 #[test]
 fn gusts_another_mass_and_a_weak_motor_are_no_stopped_motor() {
+    let core = FlightLoop::new(&Settings::flight()).unwrap();
     for seed in 0..40 {
         for (mass, gusts, share) in [
             (1.0, 1.6, 1.0),
@@ -155,7 +158,7 @@ fn gusts_another_mass_and_a_weak_motor_are_no_stopped_motor() {
             (1.1, 1.0, 1.0),
             (1.0, 0.0, 0.8),
         ] {
-            let mut flight = Flight::new(mass, gusts, seed);
+            let mut flight = Flight::new(core.clone(), mass, gusts, seed);
             let told = first(&flight.fly(20.0, share), Trust::Excluded);
             assert_eq!(
                 told, None,
@@ -167,7 +170,7 @@ fn gusts_another_mass_and_a_weak_motor_are_no_stopped_motor() {
 
 #[test]
 fn what_is_not_a_number_is_no_speed() {
-    let mut watch = MotorWatch::new(3.2, 4.4);
+    let mut watch = MotorWatch::new(3.2, 4.4, 12.0);
     let level = Progress {
         x: 0.0,
         air: 12.0,

@@ -212,7 +212,6 @@ fn actuator_command() -> impl Strategy<Value = ActuatorCommand> {
             tick,
             thrust,
             elevator,
-            motor,
             mode,
         }
     })
@@ -258,6 +257,7 @@ fn sensor_states() -> impl Strategy<Value = SensorStates> {
             position,
             lidar,
             elevator,
+            motor,
         },
     )
 }

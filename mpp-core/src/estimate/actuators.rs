@@ -25,7 +25,11 @@ impl Actuators {
             given: trim.control,
             elevator: ElevatorEffect::new(&settings.airframe, trim),
             planned: trim.control.elevator,
-            motor: MotorWatch::new(settings.airframe.mass, trim.control.thrust),
+            motor: MotorWatch::new(
+                settings.airframe.mass,
+                trim.control.thrust,
+                trim.state.airspeed,
+            ),
         }
     }
 

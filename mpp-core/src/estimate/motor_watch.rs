@@ -8,6 +8,7 @@ use super::Trust;
 use crate::tuning::motor::{
     BY_AIRSPEED, BY_POSITION, FADE, FOLLOWS, LEAST_GIVEN, QUIET, SETTLED, SHOWN_FOR, SIGMAS, USUAL,
 };
+use crate::units::REFERENCE_CRUISE;
 
 /// What the estimates of a tick say about the speed along the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,8 @@ pub struct Progress {
 /// Watch of the motor, which has its full effect or none.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorWatch {
+    /// Unit of the times of this watch \[s\]: a faster aircraft gains and loses speed more slowly.
+    unit: f64,
     /// Mass \[kg\].
     mass: f64,
     /// Least gain of speed with which the comparison reckons [m/s].
@@ -39,26 +42,27 @@ pub struct MotorWatch {
     by_position: f64,
     /// Usual mean square of the gain by airspeed [(m/s)^2].
     usual: f64,
-    /// Time of the watch \[s\].
+    /// Time of the watch, and time for which both signs have said that the motor stopped or works again, in own units.
     seen: f64,
-    /// Time for which both signs have said that the motor stopped, or works again \[s\].
     shown: f64,
     lost: bool,
 }
 
 impl MotorWatch {
-    /// A motor that works, of an aircraft with this mass \[kg\] and this thrust in level flight \[N\].
+    /// A motor that works, of an aircraft with this mass \[kg\], with this thrust \[N\] and airspeed [m/s] in level flight.
     #[must_use]
-    pub const fn new(mass: f64, level: f64) -> Self {
+    pub fn new(mass: f64, level: f64, cruise: f64) -> Self {
+        let unit = cruise / REFERENCE_CRUISE;
         Self {
+            unit,
             mass,
-            least: LEAST_GIVEN * level / mass * FADE,
+            least: LEAST_GIVEN * level / mass * FADE * unit,
             last: None,
             reckoned: (0.0, 0.0),
             given: 0.0,
             by_airspeed: 0.0,
             by_position: 0.0,
-            usual: QUIET * QUIET,
+            usual: QUIET * QUIET * unit * unit,
             seen: 0.0,
             shown: 0.0,
             lost: false,
@@ -96,23 +100,25 @@ impl MotorWatch {
             self.reckoned = (now.x, now.air + now.wind);
             return;
         };
-        let follows = FOLLOWS * period;
+        let rate = FOLLOWS / self.unit;
+        let follows = rate * period;
         let speed = self.reckoned.1 + now.air - last.air - now.corrected;
         let x = self.reckoned.0 + speed * period;
         let ahead = now.x - x;
-        let pull = FOLLOWS * follows * ahead;
+        let pull = rate * follows * ahead;
         self.reckoned = (x + 2.0 * follows * ahead, speed + pull);
 
-        let kept = (1.0 - period / FADE).max(0.0);
+        let own = period / self.unit;
+        let kept = (1.0 - own / FADE).max(0.0);
         self.given = kept * self.given + thrust / self.mass * period;
         self.by_position = kept * self.by_position + pull;
         let found = now.corrected + now.wind - last.wind;
         self.by_airspeed = kept * self.by_airspeed + found;
-        self.seen += period;
-        self.judge(period);
+        self.seen += own;
+        self.judge(own);
     }
 
-    /// Changes the verdict if both signs have contradicted it for long enough.
+    /// Changes the verdict if both signs have contradicted it for long enough. The period is in own units.
     fn judge(&mut self, period: f64) {
         // A lost motor lacks the gain that the command should give; one that works again gives what the model lacks.
         let expected = self.given.max(self.least);
