@@ -366,12 +366,11 @@ pub mod stability {
 }
 
 /// The watch of the motor. Times and the usual gain are those of the reference aircraft; they grow with the cruising airspeed.
-/// Source of all: D28.
 pub mod motor {
-    /// Time over which a gain of speed fades from the comparison \[s\]. With less a lost motor is found later past obstacles.
+    /// Time over which a gain of speed fades from the comparison \[s\]. With less the noise of the airspeed weighs more. Source: D28.
     pub const FADE: f64 = 1.0;
-    /// Rate at which the dead reckoned position follows the estimated one [1/s]. With 5 the noise of positions looks like a
-    /// lost motor; with less a lost motor is found later.
+    /// Rate at which the dead reckoned position follows the estimated one [1/s]. With more the noise of positions looks like
+    /// a lost motor; with less a lost motor is found later.
     pub const FOLLOWS: f64 = 3.0;
     /// Share of the expected gain that is missing by airspeed and wind when the motor is lost [-]. Less of it takes gusts for a
     /// lost motor, more of it finds one later.
@@ -379,17 +378,24 @@ pub mod motor {
     /// The same by the positions [-]. It is less because they say it later.
     pub const BY_POSITION: f64 = 0.25;
     /// Multiple of the usual gain by airspeed that a lost thrust exceeds [-]. With 4 a gust looks like a lost motor in one of
-    /// 40 flights.
+    /// 40 flights. Source: D28.
     pub const SIGMAS: f64 = 5.0;
-    /// Time over which the usual gain is averaged \[s\]. With 3 a lost motor counts as usual while it is being found.
+    /// Time over which the usual gain is averaged \[s\]. Over less a lost motor counts as usual while it is being found.
     pub const USUAL: f64 = 6.0;
     /// First value of the usual gain [m/s]: less than in still air, 0.1.
     pub const QUIET: f64 = 0.05;
-    /// Time for which both signs must say so \[s\]. With 0.1 gusts and noisy positions look like a lost motor.
+    /// Time for which both signs must say that the motor stopped or works again \[s\]. With 0.1 a gust looks like a lost motor in one of 40 flights.
+    /// Source: D28.
     pub const SHOWN_FOR: f64 = 0.15;
     /// Time after which the estimates are settled \[s\]. With 2 the first estimates of the wind look like a lost motor in 3 of 200
     /// flights with all conditions together.
     pub const SETTLED: f64 = 4.0;
+    /// Greatest distance of the estimated position from the dead reckoned one \[m\]. It is twice that of a motor lost at full
+    /// thrust; what is beyond is a jump of the position.
+    pub const MOST_AHEAD: f64 = 1.0;
+    /// Offset of the lift coefficient up to which the motor is judged, as a share of that of level flight [-]. An airspeed that
+    /// reads 1 m/s too little shows more, and makes the drag look greater than it is known.
+    pub const MOST_LIFT: f64 = 0.18;
     /// Least thrust with which the comparison reckons, as a share of that of level flight [-]. Less lets noise look great in a
     /// dive without thrust.
     pub const LEAST_GIVEN: f64 = 0.3;

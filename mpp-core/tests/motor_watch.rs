@@ -178,7 +178,7 @@ fn what_is_not_a_number_is_no_speed() {
         wind: 0.0,
     };
     for tick in 0..1000_u32 {
-        let x = 0.12 * f64::from(tick);
+        let x = 12.0 * TICK_PERIOD * f64::from(tick);
         watch.update(&Progress { x, ..level }, 4.4, TICK_PERIOD);
         watch.update(
             &Progress {
@@ -193,4 +193,56 @@ fn what_is_not_a_number_is_no_speed() {
     }
     assert!(!watch.lost());
     assert_eq!(watch.trust(), Trust::Healthy);
+    // The watch still sees a motor that stops.
+    let (mut x, mut air, slower) = (119.88, 12.0, -4.4 / 3.2 * TICK_PERIOD);
+    let told = (0..200).find(|_| {
+        air += slower;
+        x += TICK_PERIOD * air;
+        let progress = Progress {
+            x,
+            air,
+            corrected: slower,
+            wind: 0.0,
+        };
+        watch.update(&progress, 4.4, TICK_PERIOD);
+        watch.lost()
+    });
+    assert!(told.is_some());
+}
+
+/// A gap between two ticks, and estimates that jump and say so, are no lost speed. A motor without a thrust to give cannot be lost.
+#[test]
+fn gaps_and_jumps_of_the_estimates_are_no_lost_motor() {
+    let mut watch = MotorWatch::new(3.2, 4.4, 12.0);
+    let mut idle = MotorWatch::new(3.2, 0.0, 12.0);
+    let (mut x, mut air, mut wind) = (0.0, 12.0, 0.0);
+    for tick in 0..3000_u32 {
+        let period = if tick % 100 == 99 { 0.5 } else { TICK_PERIOD };
+        if tick % 500 == 499 {
+            watch.interrupt();
+            (air, wind) = (air + 3.0, wind - 3.0);
+        }
+        x += (air + wind) * period;
+        if tick % 700 == 650 {
+            // The first position after lost steps.
+            x -= 12.0;
+        }
+        let corrected = if tick % 200 == 0 { -0.3 } else { 0.0 };
+        air += corrected;
+        wind -= corrected;
+        let progress = Progress {
+            x,
+            air,
+            corrected,
+            wind,
+        };
+        watch.update(&progress, 4.4, period);
+        assert!(!watch.lost(), "tick {tick}");
+        let falling = Progress {
+            wind: wind - 0.01 * f64::from(tick),
+            ..progress
+        };
+        idle.update(&falling, 0.0, period);
+        assert!(!idle.lost(), "tick {tick}");
+    }
 }

@@ -130,7 +130,7 @@ pub const SENSORS: Schema = Schema {
     name: "sensors",
     columns: &[
         column("tick", Kind::Whole, "tick", "", "tick of the change"),
-        column("sensor", Kind::Text, "", "", "airspeed, pitch, position, lidar or elevator"),
+        column("sensor", Kind::Text, "", "", "airspeed, pitch, position, lidar, elevator or motor"),
         column("state", Kind::Text, "", "", "healthy, suspected, excluded or recovering, from this tick on"),
     ],
 };

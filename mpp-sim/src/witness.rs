@@ -58,7 +58,7 @@ impl Witness {
     }
 
     /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an
-    /// input, excluded a sensor, or makes up for a weak elevator. `None` if it said nothing.
+    /// input, excluded a sensor or the motor, or makes up for a weak elevator. `None` if it said nothing.
     #[must_use]
     pub fn flagged(&self) -> Option<f64> {
         self.flagged

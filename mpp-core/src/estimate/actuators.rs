@@ -97,7 +97,8 @@ impl Actuators {
         (self.elevator).update(pitch, air, lift_offset, effective, self.planned, period);
     }
 
-    /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have moved to another origin.
+    /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have
+    /// jumped or cannot be judged.
     pub fn see_speed(&mut self, progress: Option<&Progress>, period: f64) {
         match progress {
             Some(progress) => self.motor.update(progress, self.given.thrust, period),

@@ -8,6 +8,7 @@
 use crate::tuning::airspeed_bias::{
     AGREES, AGREES_FOR, FOUND_BY_LIFT, FOUND_BY_WIND, FOUND_FOR, MEMORY, OFF_TIME, SETTLED,
 };
+use crate::tuning::motor::MOST_LIFT;
 
 /// Watches the estimated wind along the way and lift for an error of the airspeed.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +98,13 @@ impl AirspeedBias {
         if self.agrees >= AGREES_FOR {
             *self = Self::new(self.level_lift);
         }
+    }
+
+    /// Whether the airspeed is right, so that the model knows the drag. An airspeed that was wrong from the start shows in the
+    /// offset of the lift coefficient alone.
+    #[must_use]
+    pub fn is_right(&self, lift: f64) -> bool {
+        !self.found && libm::fabs(lift) < MOST_LIFT * self.level_lift
     }
 
     /// Whether the airspeed is wrong.

@@ -60,7 +60,7 @@ pub struct Estimator {
     /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
     pitch_error: f64,
     airspeed_bias: AirspeedBias,
-    /// Part of the airspeed by which its sensor has just corrected it [m/s].
+    /// Part of the airspeed by which the sensors have corrected it since the motor's watch saw it [m/s].
     corrected: f64,
     /// Amount by which the estimated airspeed is behind the measured one of this tick [m/s].
     behind: Option<f64>,
@@ -177,6 +177,7 @@ impl Estimator {
         self.pitch_error -= by;
         self.air.turn(by);
         self.navigation.turn(by, self.air.present());
+        self.actuators.see_speed(None, 0.0);
         Some(by)
     }
 
@@ -306,7 +307,7 @@ impl Estimator {
             self.pitch.tick(None);
             return Innovation::both(Verdict::Late);
         };
-        self.corrected = self.air.present().airspeed - estimate;
+        self.corrected += self.air.present().airspeed - estimate;
         if innovation.airspeed == Verdict::Accepted {
             self.behind = Some(fresh.airspeed - self.air.present().airspeed);
         }
@@ -370,6 +371,7 @@ impl Estimator {
                     self.air.shift_airspeed(wind - before.wind);
                     self.navigation.set_wind_along(before.wind);
                     lift.set_offset(before.lift);
+                    self.actuators.see_speed(None, 0.0);
                 }
             }
         }
@@ -378,19 +380,21 @@ impl Estimator {
         verdict
     }
 
-    /// Compares the speed with the thrust, if the wind is known.
+    /// Compares the speed with the thrust, if the wind is known and the airspeed is measured.
     fn watch_motor(&mut self, elapsed: f64, position: Option<PositionVerdict>) {
         let air = self.air.present();
-        // The cosine of the flight path angle, to 2 % at 45 degrees.
-        let along = 1.0 - 0.5 * (air.flight_path * air.flight_path);
+        let along = 1.0 - 0.5 * (air.flight_path * air.flight_path); // The cosine, to 2 % at 45 degrees.
         let progress = Progress {
             x: self.navigation.position().0,
             air: air.airspeed * along,
-            corrected: core::mem::take(&mut self.corrected) * along,
+            corrected: self.corrected * along,
             wind: self.navigation.wind().x,
         };
-        let restarted = position == Some(PositionVerdict::Restarted);
-        let sound = self.navigation.is_settled() && !restarted;
-        (self.actuators).see_speed(sound.then_some(&progress), elapsed);
+        let right = self.airspeed.uses() && self.airspeed_bias.is_right(self.conditions().lift);
+        let settled = self.navigation.is_settled() && position != Some(PositionVerdict::Restarted);
+        if elapsed > 0.0 {
+            self.corrected = 0.0;
+            (self.actuators).see_speed((right && settled).then_some(&progress), elapsed);
+        }
     }
 }

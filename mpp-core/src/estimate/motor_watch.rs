@@ -6,7 +6,8 @@
 
 use super::Trust;
 use crate::tuning::motor::{
-    BY_AIRSPEED, BY_POSITION, FADE, FOLLOWS, LEAST_GIVEN, QUIET, SETTLED, SHOWN_FOR, SIGMAS, USUAL,
+    BY_AIRSPEED, BY_POSITION, FADE, FOLLOWS, LEAST_GIVEN, MOST_AHEAD, QUIET, SETTLED, SHOWN_FOR,
+    SIGMAS, USUAL,
 };
 use crate::units::REFERENCE_CRUISE;
 
@@ -17,7 +18,7 @@ pub struct Progress {
     pub x: f64,
     /// Velocity through the air along the way [m/s].
     pub air: f64,
-    /// Part of it by which the airspeed sensor has just corrected it [m/s].
+    /// Part of it by which the sensors have corrected it since the last tick [m/s].
     pub corrected: f64,
     /// Wind along the way [m/s].
     pub wind: f64,
@@ -84,9 +85,11 @@ impl MotorWatch {
         }
     }
 
-    /// Begins anew at the next tick, because the estimates have moved to another origin.
+    /// Begins anew at the next tick, because the estimates have jumped or cannot be judged. The verdict stays meanwhile.
     pub fn interrupt(&mut self) {
-        (self.last, self.shown) = (None, 0.0);
+        self.last = None;
+        (self.given, self.by_airspeed, self.by_position) = (0.0, 0.0, 0.0);
+        (self.seen, self.shown) = (0.0, 0.0);
     }
 
     /// Takes in the estimates of a tick, a `period` \[s\] after the last one, in which the motor was to give a thrust
@@ -101,10 +104,15 @@ impl MotorWatch {
             return;
         };
         let rate = FOLLOWS / self.unit;
-        let follows = rate * period;
+        // After a gap the position is caught up with at once, and no further.
+        let follows = (rate * period).min(0.5);
         let speed = self.reckoned.1 + now.air - last.air - now.corrected;
         let x = self.reckoned.0 + speed * period;
         let ahead = now.x - x;
+        // After lost steps the first position corrects the place, not the speed.
+        if libm::fabs(ahead) > MOST_AHEAD * self.unit * self.unit {
+            return self.interrupt();
+        }
         let pull = rate * follows * ahead;
         self.reckoned = (x + 2.0 * follows * ahead, speed + pull);
 
@@ -130,7 +138,8 @@ impl MotorWatch {
         if !(self.lost || suspicious) {
             self.usual += (square - self.usual) * (period / USUAL).min(1.0);
         }
-        let says = airspeed > BY_AIRSPEED
+        let says = expected > 0.0
+            && airspeed > BY_AIRSPEED
             && position > BY_POSITION
             && square > SIGMAS * SIGMAS * self.usual
             && self.seen > SETTLED;

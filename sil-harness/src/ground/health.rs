@@ -34,7 +34,8 @@ impl Vehicle {
             };
             self.say(severity, text);
         }
-        if last.motor != now.motor {
+        // The core does not know that a station has taken the thrust away.
+        if last.motor != now.motor && self.armed {
             let (severity, text) = match now.motor {
                 SensorState::Excluded => (Severity::Critical, "Motor gives no thrust"),
                 _ => (Severity::Notice, "Motor works again"),
@@ -60,7 +61,7 @@ impl Vehicle {
         self.send(&SYS_STATUS_DATA {
             onboard_control_sensors_present: SENSORS | PREARM,
             onboard_control_sensors_enabled: SENSORS | PREARM,
-            onboard_control_sensors_health: healthy(&self.sensors),
+            onboard_control_sensors_health: healthy(&self.sensors, self.armed),
             // There is no battery.
             voltage_battery: u16::MAX,
             current_battery: -1,
@@ -74,7 +75,7 @@ impl Vehicle {
 }
 
 /// The bits of the sensors that the core uses, and of what depends on them.
-fn healthy(sensors: &SensorStates) -> u32 {
+fn healthy(sensors: &SensorStates, armed: bool) -> u32 {
     let uses = |state| matches!(state, SensorState::Healthy | SensorState::Suspected);
     let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
     let states = sensors.named();
@@ -82,7 +83,7 @@ fn healthy(sensors: &SensorStates) -> u32 {
         .iter()
         .zip(bits)
         .filter(|((_, state), _)| uses(*state));
-    let driven = uses(sensors.elevator) && uses(sensors.motor);
+    let driven = uses(sensors.elevator) && (uses(sensors.motor) || !armed);
     let sound = used.fold(if driven { MOTORS } else { 0 }, |all, (_, bit)| all | bit);
     let ready = if sound == SENSORS { PREARM } else { 0 };
     sound | ready | GEOFENCE
