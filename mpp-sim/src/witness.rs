@@ -6,7 +6,8 @@ use crate::log::FlightLog;
 use crate::moment::Moment;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
-use hil_protocol::SensorState;
+use hil_protocol::{SensorState, SensorStates};
+use std::collections::BTreeSet;
 
 /// Time from which on an obstacle counts as known \[s\]: the aircraft can avoid it with time to spare.
 pub const KNOWN: f64 = 1.0;
@@ -22,8 +23,10 @@ pub struct Witness {
     place: Point,
     /// Inputs refused so far.
     rejections: usize,
-    /// Number of sensors that are excluded or whose fault is made up for.
-    told: usize,
+    /// Names of the sensors and actuators that the core has told as failed.
+    told: BTreeSet<&'static str>,
+    /// Number of those that it tells now.
+    tells: usize,
     flagged: Option<f64>,
 }
 
@@ -43,18 +46,20 @@ impl Witness {
         self.place = (moment.tick.state.x, moment.tick.state.z);
         let since = self.ticks.checked_sub(self.onset);
         self.ticks += 1;
-        let states = moment.sensors.named();
-        // A weak elevator is used on, with greater commands.
-        let weak = moment.sensors.elevator == SensorState::Suspected;
-        let excluded = states
-            .iter()
-            .filter(|(_, state)| *state == SensorState::Excluded);
-        let told = excluded.count() + usize::from(weak);
-        let said = moment.rejections.len() > self.rejections || told > self.told;
+        let tells = failed(&moment.sensors);
+        let said = moment.rejections.len() > self.rejections || tells.len() > self.tells;
         if let Some(since) = since.filter(|_| said) {
             self.flagged.get_or_insert(Scenario::time(since));
         }
-        (self.rejections, self.told) = (moment.rejections.len(), told);
+        (self.rejections, self.tells) = (moment.rejections.len(), tells.len());
+        self.told.extend(tells);
+    }
+
+    /// Names of the sensors that the core excluded at some tick, of the motor if it was told to give no thrust, and of
+    /// the elevator if it was told as weak or without an answer.
+    #[must_use]
+    pub fn told(&self) -> &BTreeSet<&'static str> {
+        &self.told
     }
 
     /// Time from the onset of the faults until the core first said that something is wrong \[s\]: it refused an
@@ -77,4 +82,13 @@ impl Witness {
             .seen_before(&field, self.place, log.summary.t_end);
         seen.is_some_and(|time| time > KNOWN)
     }
+}
+
+/// Names of what the core tells as failed. A weak elevator is used on, with greater commands.
+fn failed(states: &SensorStates) -> Vec<&'static str> {
+    let weak = states.elevator == SensorState::Suspected;
+    let named = states.named().into_iter();
+    let failed = named
+        .filter(|(name, state)| *state == SensorState::Excluded || (weak && *name == "elevator"));
+    failed.map(|(name, _)| name).collect()
 }

@@ -228,10 +228,14 @@ fn table(section: &str) -> BTreeMap<String, f64> {
 
 #[test]
 fn the_table_of_tuned_numbers_is_that_of_the_code() {
-    let source = read(&root().join("mpp-core/src/tuning.rs"));
-    let numbers = constants(&source);
-    // Each constant of the file has a value that this test can read.
-    assert_eq!(numbers.len(), source.matches("pub const ").count());
+    let mut numbers = BTreeMap::new();
+    for file in ["tuning.rs", "tuning/watches.rs"] {
+        let source = read(&root().join("mpp-core/src").join(file));
+        let found = constants(&source);
+        // Each constant of the file has a value that this test can read.
+        assert_eq!(found.len(), source.matches("pub const ").count(), "{file}");
+        numbers.extend(found);
+    }
     assert_eq!(table("## Tuned numbers"), numbers);
 }
 

@@ -5,10 +5,11 @@ use super::grid::Cell;
 use super::report::quantile;
 use super::stats::paired;
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 /// What a campaign of faults keeps of one flight.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Flown {
     /// Whether the flight is a success by the strict rule.
     pub strict: bool,
@@ -16,7 +17,12 @@ pub struct Flown {
     pub known_collision: bool,
     /// Time from the onset of the fault until the core said so \[s\].
     pub flagged: Option<f64>,
+    /// Names of the sensors and actuators that the core told as failed.
+    pub told: BTreeSet<&'static str>,
 }
+
+/// Number of flights in which the core told a sensor or actuator as failed, by its name.
+pub type Told = BTreeMap<&'static str, u32>;
 
 /// The result of a campaign of faults, the same for any number of threads.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -60,6 +66,10 @@ pub struct FaultRow {
     pub flagged: u32,
     /// Median over these flights of the time from the onset to that tick \[s\]; null without such flights.
     pub flagged_s: Option<f64>,
+    /// What the core told as failed in the flights with the fault.
+    pub told: Told,
+    /// What it told in the flights without the fault.
+    pub told_clean: Told,
 }
 
 impl FaultReport {
@@ -117,7 +127,29 @@ impl FaultRow {
             known_collisions: faulty.iter().filter(|flown| flown.known_collision).count() as u32,
             flagged: flags().count() as u32,
             flagged_s: quantile(flags(), 0.5),
+            told: told(faulty),
+            told_clean: told(clean),
         }
+    }
+}
+
+fn told(flown: &[&Flown]) -> Told {
+    let mut counts = Told::new();
+    for name in flown.iter().flat_map(|flown| &flown.told) {
+        *counts.entry(name).or_default() += 1;
+    }
+    counts
+}
+
+/// Names and counts as `motor 3, pitch 1`; `-` if there are none.
+fn listed(told: &Told) -> String {
+    let names: Vec<String> = told
+        .iter()
+        .map(|(name, count)| format!("{name} {count}"))
+        .collect();
+    match names.is_empty() {
+        true => "-".to_owned(),
+        false => names.join(", "),
     }
 }
 
@@ -125,7 +157,7 @@ impl fmt::Display for FaultReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>5} {:>7} {:>9}",
+            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>5} {:>7} {:>9}  told / without fault",
             "fault",
             "obstacles",
             "Hz",
@@ -150,7 +182,7 @@ impl fmt::Display for FaultReport {
             };
             writeln!(
                 f,
-                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>5} {:>7} {:>9}",
+                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>5} {:>7} {:>9}  {} / {}",
                 row.name,
                 row.obstacles,
                 row.replan_hz,
@@ -163,6 +195,8 @@ impl fmt::Display for FaultReport {
                 row.known_collisions,
                 row.flagged,
                 number(row.flagged_s, 2),
+                listed(&row.told),
+                listed(&row.told_clean),
             )?;
         }
         Ok(())

@@ -17,7 +17,7 @@ mod table;
 mod taxonomy;
 
 pub use causes::CauseReport;
-pub use fault_report::{FaultReport, FaultRow, Flown};
+pub use fault_report::{FaultReport, FaultRow, Flown, Told};
 pub use faults::{FaultCampaign, FaultJob, NamedFault};
 pub use grid::{Campaign, Cell, Lists, NamedField, NoShard, Shard};
 pub use merge::{Disagreement, merge};

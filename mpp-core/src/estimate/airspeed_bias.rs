@@ -6,9 +6,9 @@
 //! both but not together. So an error is the lesser of the two, if both say so for some time.
 
 use crate::tuning::airspeed_bias::{
-    AGREES, AGREES_FOR, FOUND_BY_LIFT, FOUND_BY_WIND, FOUND_FOR, MEMORY, OFF_TIME, SETTLED,
+    AGREES, AGREES_FOR, FOUND_BY_LIFT, FOUND_BY_LIFT_AT_START, FOUND_BY_WIND, FOUND_FOR, MEMORY,
+    MOST_LIFT, OFF_TIME, SETTLED,
 };
-use crate::tuning::motor::MOST_LIFT;
 
 /// Watches the estimated wind along the way and lift for an error of the airspeed.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,7 @@ pub struct AirspeedBias {
 }
 
 /// The estimates as they were before the error, as far as the watch knows.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Before {
     /// Wind along the way [m/s].
     pub wind: f64,
@@ -66,23 +66,31 @@ impl AirspeedBias {
             (self.wind, self.lift) = (wind, lift);
             return None;
         }
-        let by_wind = (self.wind - wind) / airspeed;
-        let by_lift = (self.lift - lift) / (2.0 * self.level_lift);
-        let too_much = by_wind > FOUND_BY_WIND && by_lift > FOUND_BY_LIFT;
-        let too_little = by_wind < -FOUND_BY_WIND && by_lift < -FOUND_BY_LIFT;
-        let agree = too_much || too_little;
+        let mean = Before {
+            wind: self.wind,
+            lift: self.lift,
+        };
+        // No airframe is known so badly, so the airspeed was wrong from the start.
+        let calm = Before::default();
+        let from_start = self.agree(calm, wind, lift, airspeed, FOUND_BY_LIFT_AT_START);
+        let agree = from_start || self.agree(mean, wind, lift, airspeed, FOUND_BY_LIFT);
         self.beyond = if agree { self.beyond + period } else { 0.0 };
         if self.beyond >= FOUND_FOR {
             (self.found, self.off, self.agrees) = (true, 2.0 * AGREES, 0.0);
-            return Some(Before {
-                wind: self.wind,
-                lift: self.lift,
-            });
+            return Some(if from_start { calm } else { mean });
         }
         let share = period / MEMORY;
         self.wind += share * (wind - self.wind);
         self.lift += share * (lift - self.lift);
         None
+    }
+
+    /// Whether wind and lift have both moved from these estimates as an error of the airspeed moves them. `by_lift` is
+    /// the least such error by the lift, as a share of the airspeed [-].
+    fn agree(&self, before: Before, wind: f64, lift: f64, airspeed: f64, by_lift: f64) -> bool {
+        let wind = (before.wind - wind) / airspeed / FOUND_BY_WIND;
+        let lift = (before.lift - lift) / (2.0 * self.level_lift) / by_lift;
+        (wind > 1.0 && lift > 1.0) || (wind < -1.0 && lift < -1.0)
     }
 
     /// Compares the sensor with the estimate [m/s] after a further `period` \[s\], while it is not believed. The sensor is

@@ -365,7 +365,7 @@ impl Estimator {
                     let by_airspeed = self.pitch_error + behind * self.air.follows() / GRAVITY;
                     self.bias.update(by_wind, by_airspeed, elapsed);
                 }
-                let (wind, offset) = (self.navigation.wind().x, lift.offset());
+                let (wind, offset) = (self.navigation.wind().x, lift.observed());
                 let found = (self.airspeed_bias).update(wind, offset, air.airspeed, elapsed);
                 if let Some(before) = found {
                     self.air.shift_airspeed(wind - before.wind);

@@ -46,6 +46,12 @@ impl LiftEstimator {
         self.average.max(-self.most).min(self.most)
     }
 
+    /// The averaged offset, however implausible [-].
+    #[must_use]
+    pub fn observed(&self) -> f64 {
+        self.average
+    }
+
     /// Takes in the climb rate over ground [m/s] after a further `period` \[s\], the motion through the air,
     /// and the controls that the actuators gave until then.
     pub fn update(&mut self, period: f64, climb: f64, air: &AirState, given: Control) {

@@ -71,6 +71,7 @@ pub fn run_faults(
             strict: log.summary.strict,
             known_collision: witness.known_collision(&log),
             flagged: witness.flagged(),
+            told: witness.told().clone(),
         };
         Ok((job, flown))
     };
