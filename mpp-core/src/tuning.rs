@@ -9,7 +9,7 @@
 
 mod watches;
 
-pub use watches::{airspeed_bias, bias, elevator, motor, sensors};
+pub use watches::{airspeed_bias, elevator, motor, pitch_bias, sensors};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. Lattice and
 /// judgement put a price on the lack of this clearance. More room costs longer ways; with 1.6 m fewer

@@ -8,7 +8,7 @@ mod common {
 use common::gaussian::gaussian;
 use common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{AirspeedBias, PitchBias, Trust, Watch};
+use mpp_core::estimate::{AirspeedBias, Before, Biases, PitchBias, Trust, Watch};
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, VehicleState};
@@ -78,14 +78,14 @@ fn a_growing_error_of_the_airspeed_is_found_by_wind_and_lift_together() {
                 let error = sign * 0.005 * f64::from(tick.saturating_sub(300));
                 let offset = -2.0 * level_lift * error / 12.0;
                 let before =
-                    watch.update(2.0 - wind * error, 0.1 + lift * offset, 12.0, TICK_PERIOD);
+                    watch.update(1.0 - wind * error, 0.1 + lift * offset, 12.0, TICK_PERIOD);
                 before.map(|before| (error, before, watch))
             })
         };
         // The estimate of the lift shows half of it, because it averages.
         let (error, before, mut watch) = shown(1.0, 0.5).unwrap();
         assert!((1.3..2.2).contains(&(sign * error)), "{error}");
-        assert!((before.wind - 2.0).abs() < 0.3 && (before.lift - 0.1).abs() < 0.03);
+        assert!((before.wind - 1.0).abs() < 0.3 && (before.lift - 0.1).abs() < 0.03);
         assert!(shown(1.0, 0.0).is_none() && shown(0.0, 1.0).is_none());
         assert!(shown(1.0, -0.5).is_none());
 
@@ -98,6 +98,41 @@ fn a_growing_error_of_the_airspeed_is_found_by_wind_and_lift_together() {
         assert_eq!(agrees_after(&mut watch, 12.0 + error, 2000), None);
         let agreed = agrees_after(&mut watch, 12.1, 2000).unwrap();
         assert!((300..600).contains(&agreed), "{agreed}");
+    }
+}
+
+/// An airspeed that was wrong from the first tick on never changes wind and lift. They are then further from calm air and the
+/// known airframe than both can be, and the pitch, which seems tilted by it, is not blamed.
+#[test]
+fn an_airspeed_that_is_wrong_from_the_start_is_found_and_the_pitch_is_not_blamed() {
+    let level_lift = 1.4;
+    let found = |wind: f64, lift: f64| {
+        let mut biases = Biases::new(level_lift);
+        let before = (0..500).find_map(|_| {
+            biases.see_tilt(0.09, 0.1, TICK_PERIOD);
+            biases.see_wind(wind, lift * level_lift, 12.0, TICK_PERIOD)
+        });
+        (before, biases)
+    };
+    for sign in [-1.0, 1.0] {
+        let (before, mut biases) = found(2.0 * sign, 0.4 * sign);
+        let calm = Before {
+            wind: 0.0,
+            lift: 0.0,
+        };
+        assert_eq!(before, Some(calm));
+        assert!(biases.airspeed().found() && !biases.pitch().found());
+        for _ in 0..500 {
+            biases.see_tilt(0.09, 0.1, TICK_PERIOD);
+        }
+        assert!(!biases.pitch().found());
+
+        // Wind alone, an airframe that lifts more alone, both less than that, and what no error of the airspeed shows.
+        for (wind, lift) in [(4.0, 0.0), (0.0, 0.6), (2.0, 0.2), (1.0, 0.4), (2.0, -0.4)] {
+            let (before, biases) = found(sign * wind, sign * lift);
+            assert_eq!(before, None, "{wind}, {lift}");
+            assert!(biases.pitch().found(), "{wind}, {lift}");
+        }
     }
 }
 

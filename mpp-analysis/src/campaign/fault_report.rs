@@ -58,6 +58,8 @@ pub struct FaultRow {
     pub lost_high: f64,
     /// The most points that the fault may cost; null if nothing is asked.
     pub asked: Option<f64>,
+    /// Number of strict successes of an oracle with the fault; null if no oracle flew.
+    pub oracle: Option<u32>,
     /// Number of flights with the fault that collided with an obstacle that a beam had met more than 1 s
     /// before.
     pub known_collisions: u32,
@@ -86,8 +88,12 @@ impl FaultReport {
             for cell in &variant.cells {
                 let (clean, faulty) = (of(None, cell), of(Some(number), cell));
                 let row = FaultRow::new(variant.fault.name, cell, &clean, &faulty);
+                let oracle = campaign.oracle_beside(cell);
+                let oracle = oracle.map(|cell| of(Some(number), &cell));
                 faults.push(FaultRow {
                     asked: variant.fault.asked,
+                    oracle: oracle
+                        .map(|flown| flown.iter().filter(|one| one.strict).count() as u32),
                     ..row
                 });
             }
@@ -124,6 +130,7 @@ impl FaultRow {
             lost_low: 100.0 * low,
             lost_high: 100.0 * high,
             asked: None,
+            oracle: None,
             known_collisions: faulty.iter().filter(|flown| flown.known_collision).count() as u32,
             flagged: flags().count() as u32,
             flagged_s: quantile(flags(), 0.5),
@@ -157,7 +164,7 @@ impl fmt::Display for FaultReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>5} {:>7} {:>9}  told / without fault",
+            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  told / without fault",
             "fault",
             "obstacles",
             "Hz",
@@ -168,6 +175,7 @@ impl fmt::Display for FaultReport {
             "only faulty",
             "lost points [95 %]",
             "asked",
+            "oracle",
             "known",
             "flagged",
             "after [s]",
@@ -182,7 +190,7 @@ impl fmt::Display for FaultReport {
             };
             writeln!(
                 f,
-                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>5} {:>7} {:>9}  {} / {}",
+                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  {} / {}",
                 row.name,
                 row.obstacles,
                 row.replan_hz,
@@ -192,6 +200,7 @@ impl fmt::Display for FaultReport {
                 row.only_clean,
                 row.only_faulty,
                 number(row.asked, 0),
+                number(row.oracle.map(f64::from), 0),
                 row.known_collisions,
                 row.flagged,
                 number(row.flagged_s, 2),

@@ -195,7 +195,8 @@ impl FaultCampaign {
         Ok(Self { clean, faults })
     }
 
-    /// Every flight: those without a fault first, each of them once.
+    /// Every flight: those without a fault first, each of them once. If the campaign has an oracle, it flies with
+    /// the faults.
     #[must_use]
     pub fn jobs(&self) -> Vec<FaultJob> {
         let mut clean: Vec<(Option<usize>, Cell)> = Vec::new();
@@ -206,6 +207,8 @@ impl FaultCampaign {
                     clean.push((None, cell.clone()));
                 }
                 faulty.push((Some(number), cell.clone()));
+                let oracle = self.oracle_beside(cell);
+                faulty.extend(oracle.map(|oracle| (Some(number), oracle)));
             }
         }
         let all = clean.into_iter().chain(faulty);
@@ -216,6 +219,11 @@ impl FaultCampaign {
         };
         all.flat_map(|(fault, cell)| self.seeds().map(move |seed| job(fault, &cell, seed)))
             .collect()
+    }
+
+    /// The cell of the oracle's flights with a fault beside those of a cell, if the campaign has an oracle.
+    pub(super) fn oracle_beside(&self, cell: &Cell) -> Option<Cell> {
+        self.clean.oracle_beside(cell)
     }
 
     /// The seeds of the pairs.

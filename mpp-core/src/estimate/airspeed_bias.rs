@@ -115,6 +115,12 @@ impl AirspeedBias {
         !self.found && libm::fabs(lift) < MOST_LIFT * self.level_lift
     }
 
+    /// Whether the airspeed is wrong or may be.
+    #[must_use]
+    pub fn suspected(&self) -> bool {
+        self.found || self.beyond > 0.0
+    }
+
     /// Whether the airspeed is wrong.
     #[must_use]
     pub fn found(&self) -> bool {

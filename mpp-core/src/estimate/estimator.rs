@@ -2,16 +2,16 @@
 
 use super::verdicts::{count_position, count_verdict};
 use super::{
-    Actuators, AirspeedBias, Changes, Conditions, Course, EkfTuning, Innovation, LaggedEkf,
-    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PitchBias, PositionVerdict, Progress,
-    Taken, Trust, Verdict, Watch,
+    Actuators, Biases, Changes, Conditions, Course, EkfTuning, Innovation, LaggedEkf,
+    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PositionVerdict, Progress, Taken, Trust,
+    Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
 use crate::map::Pose;
 use crate::sense::{AirData, Position, SensorFrame};
 use crate::settings::Settings;
-use crate::tuning::bias::LEAST_TURN;
+use crate::tuning::pitch_bias::LEAST_TURN;
 use crate::tuning::sensors::{
     CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
@@ -56,10 +56,9 @@ pub struct Estimator {
     airspeed: Watch,
     pitch: Watch,
     position: Watch,
-    bias: PitchBias,
+    biases: Biases,
     /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
     pitch_error: f64,
-    airspeed_bias: AirspeedBias,
     /// Part of the airspeed by which the sensors have corrected it since the motor's watch saw it [m/s].
     corrected: f64,
     /// Amount by which the estimated airspeed is behind the measured one of this tick [m/s].
@@ -85,11 +84,10 @@ impl Estimator {
             airspeed: Watch::new(1),
             pitch: Watch::new(1),
             position: Watch::new(POSITION_PERIOD),
-            bias: PitchBias::new(),
+            biases: Biases::new(airframe.level_lift(trim.state.airspeed)),
             pitch_error: 0.0,
             corrected: 0.0,
             behind: None,
-            airspeed_bias: AirspeedBias::new(airframe.level_lift(trim.state.airspeed)),
         }
     }
 
@@ -170,7 +168,7 @@ impl Estimator {
     /// Corrects the pitch by the bias that the watch has found, if it is another one than before. Gives the angle by which
     /// the motion turns \[rad\].
     pub fn correct_pitch(&mut self) -> Option<f64> {
-        let by = self.pitch_error - self.bias.angle();
+        let by = self.pitch_error - self.biases.pitch().angle();
         if libm::fabs(by) < LEAST_TURN {
             return None;
         }
@@ -190,12 +188,12 @@ impl Estimator {
     #[must_use]
     pub fn sensors(&self) -> Sensors {
         Sensors {
-            airspeed: if self.airspeed_bias.found() {
+            airspeed: if self.biases.airspeed().found() {
                 Trust::Excluded
             } else {
                 self.airspeed.trust()
             },
-            pitch: if self.bias.found() {
+            pitch: if self.biases.pitch().found() {
                 self.pitch.trust().doubted()
             } else {
                 self.pitch.trust()
@@ -298,10 +296,10 @@ impl Estimator {
             airspeed: self.airspeed_changes.take(air.measurement.airspeed),
             pitch: self.pitch_changes.take(air.measurement.pitch) - self.pitch_error,
         };
-        let biased = self.airspeed_bias.found();
+        let biased = self.biases.airspeed().found();
         let used = [self.airspeed.uses() && !biased, self.pitch.uses()];
         let estimate = self.air.present().airspeed;
-        (self.airspeed_bias).compare(air.measurement.airspeed, estimate, TICK_PERIOD);
+        (self.biases).compare_airspeed(air.measurement.airspeed, estimate, TICK_PERIOD);
         let Taken::Measured(mut innovation) = self.air.take(air.age, &fresh, used) else {
             self.airspeed.tick(None);
             self.pitch.tick(None);
@@ -363,11 +361,11 @@ impl Estimator {
                     // The tilts as they would seem if nothing corrected the pitch.
                     let by_wind = self.pitch_error - self.navigation.wind().z / air.airspeed;
                     let by_airspeed = self.pitch_error + behind * self.air.follows() / GRAVITY;
-                    self.bias.update(by_wind, by_airspeed, elapsed);
+                    self.biases.see_tilt(by_wind, by_airspeed, elapsed);
                 }
-                let (wind, offset) = (self.navigation.wind().x, lift.observed());
-                let found = (self.airspeed_bias).update(wind, offset, air.airspeed, elapsed);
-                if let Some(before) = found {
+                let (wind, observed) = (self.navigation.wind().x, lift.observed());
+                if let Some(before) = (self.biases).see_wind(wind, observed, air.airspeed, elapsed)
+                {
                     self.air.shift_airspeed(wind - before.wind);
                     self.navigation.set_wind_along(before.wind);
                     lift.set_offset(before.lift);
@@ -390,7 +388,7 @@ impl Estimator {
             corrected: self.corrected * along,
             wind: self.navigation.wind().x,
         };
-        let right = self.airspeed.uses() && self.airspeed_bias.is_right(self.conditions().lift);
+        let right = self.airspeed.uses() && self.biases.airspeed().is_right(self.conditions().lift);
         let settled = self.navigation.is_settled() && position != Some(PositionVerdict::Restarted);
         if elapsed > 0.0 {
             self.corrected = 0.0;

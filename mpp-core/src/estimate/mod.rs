@@ -2,7 +2,7 @@
 
 mod actuators;
 mod airspeed_bias;
-mod bias;
+mod biases;
 mod changes;
 mod conditions;
 mod elevator_effect;
@@ -12,13 +12,14 @@ mod lagged;
 mod lift;
 mod motor_watch;
 mod navigation;
+mod pitch_bias;
 mod verdicts;
 mod watch;
 
 use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
-pub use bias::PitchBias;
+pub use biases::Biases;
 pub use changes::{Changes, Course};
 pub use conditions::Conditions;
 use core::fmt;
@@ -30,6 +31,7 @@ pub use lift::LiftEstimator;
 pub use motor_watch::{MotorWatch, Progress};
 use nalgebra::{Matrix4, Vector4};
 pub use navigation::{Navigation, PositionVerdict};
+pub use pitch_bias::PitchBias;
 pub use watch::{Trust, Watch};
 
 /// Measured airspeed and pitch. Their errors are independent.

@@ -11,7 +11,7 @@ use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
 };
 use mpp_analysis::rows::Header;
-use mpp_sim::scenario::Preset;
+use mpp_sim::scenario::{Preset, ScenarioFile};
 use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -33,7 +33,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
-    /// flies
+    /// flies. With --faults it flies with the faults
     #[arg(long, help_heading = RUN)]
     oracle: bool,
     /// Also tell which of the fields can be passed at all, as `ceiling` does without a margin, and give success as a
@@ -48,7 +48,7 @@ pub(super) struct CampaignArgs {
         help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
-        conflicts_with_all = ["out", "report", "shard", "oracle", "ceiling", "timing", "taxonomy"]
+        conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
     /// Number of flights in each cell
@@ -179,9 +179,15 @@ pub(super) fn lists(args: &CampaignArgs) -> Result<Lists, Failure> {
     })
 }
 
-fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>), Failure> {
+/// The scenario of the command line.
+pub(super) fn scenario(args: &CampaignArgs) -> Result<ScenarioFile, Failure> {
     let mut scenario = args.scenario.file()?;
     replace(&mut scenario.oracle, args.oracle.then_some(true));
+    Ok(scenario)
+}
+
+fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>), Failure> {
+    let scenario = scenario(args)?;
     let campaign = Campaign::new(scenario, lists(args)?, args.trials, args.seed);
     let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
     let signals = Signals::heed()?;

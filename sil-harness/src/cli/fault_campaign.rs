@@ -1,7 +1,7 @@
 //! `campaign --faults`: pairs of flights without and with named faults.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
-use super::campaign::{CampaignArgs, failure, lists};
+use super::campaign::{CampaignArgs, failure, lists, scenario};
 use super::loudness::progress_bar;
 use super::signals::Signals;
 use crate::campaign::{CampaignError, run_faults};
@@ -16,7 +16,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         ));
     }
     let faults = NamedFault::of(&args.faults).map_err(|error| usage(&error))?;
-    let scenario = args.scenario.file()?;
+    let scenario = scenario(args)?;
     let campaign = FaultCampaign::new(&scenario, &lists(args)?, args.trials, args.seed, &faults)
         .map_err(|error| usage(&error))?;
     let signals = Signals::heed()?;

@@ -366,6 +366,10 @@ fn a_campaign_of_faults_reports_pairs_and_refuses_what_it_cannot_do() {
         (&rows[1]["obstacles"], &rows[1]["lost_points"]),
         (&5.into(), &0.0.into())
     );
+    assert_eq!(rows[0]["oracle"], Value::Null);
+    let output = campaign(&["rtk", "--obstacles", "5", "--oracle", "--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["faults"][0]["oracle"], 1);
     for (flags, hint) in [
         (
             ["rtx", "--json"].as_slice(),

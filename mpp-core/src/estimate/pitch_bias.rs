@@ -5,7 +5,7 @@
 //! measured one, because the weight seems to pull by `g b` more. A downdraught alone does not push, and a gust that pushes
 //! does not tilt by as much. So a tilt that both show alike, and that is beyond its fluctuations, is a bias.
 
-use crate::tuning::bias::{AGREE, LEAST, MEMORY, SEEN, SETTLED, STEADY, STILL};
+use crate::tuning::pitch_bias::{AGREE, LEAST, MEMORY, SEEN, SETTLED, STEADY, STILL};
 
 /// Watches the estimates of vertical wind and airspeed for a bias of the pitch.
 #[derive(Clone, Copy, Debug)]
