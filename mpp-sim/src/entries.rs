@@ -180,7 +180,7 @@ pub struct RejectionEntry {
 pub struct SensorEntry {
     /// The tick of the change.
     pub tick: u64,
-    /// Name of the sensor: `airspeed`, `pitch`, `position` or `lidar`; or `elevator`.
+    /// Name of the sensor: `airspeed`, `pitch`, `position` or `lidar`; or `elevator` or `motor`.
     pub sensor: String,
     /// Its state from this tick on: `healthy`, `suspected`, `excluded` or `recovering`.
     pub state: String,

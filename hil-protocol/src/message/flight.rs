@@ -176,15 +176,28 @@ impl SensorStates {
     /// Size of the longest form \[bytes\].
     pub const MAX_SIZE: usize = 6 * size::BYTE;
 
-    /// Each sensor's name and state.
+    /// Name and state of each sensor.
     #[must_use]
-    pub const fn named(&self) -> [(&'static str, SensorState); 6] {
+    pub const fn sensors(&self) -> [(&'static str, SensorState); 4] {
         [
             ("airspeed", self.airspeed),
             ("pitch", self.pitch),
             ("position", self.position),
             ("lidar", self.lidar),
-            ("elevator", self.elevator),
+        ]
+    }
+
+    /// Name and state of each sensor and then of each actuator.
+    #[must_use]
+    pub const fn named(&self) -> [(&'static str, SensorState); 6] {
+        let [airspeed, pitch, position, lidar] = self.sensors();
+        let elevator = ("elevator", self.elevator);
+        [
+            airspeed,
+            pitch,
+            position,
+            lidar,
+            elevator,
             ("motor", self.motor),
         ]
     }

@@ -250,6 +250,7 @@ impl Estimator {
             self.navigation.predict(self.air.present(), piece);
         }
         if !believed && period > TICK_PERIOD {
+            self.actuators.see_speed(None, 0.0);
             let airspeed = GAP_AIRSPEED * self.air.present().airspeed;
             self.air.doubt([airspeed, GAP_ANGLE, GAP_RATE, GAP_ANGLE]);
         }

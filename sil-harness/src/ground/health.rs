@@ -13,17 +13,29 @@ const MOTORS: u32 = 0x8000;
 /// The attitude reference, and what it is made of: gyroscope, accelerometer, magnetometer.
 const PITCH: u32 = 0x20_0000 | 7;
 const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
-/// Number of sensors in [`SensorStates::named`]. The actuators come behind them.
-const WATCHED: usize = 4;
 /// A fence that does not exist is not broken. Some stations look at this bit alone.
 const GEOFENCE: u32 = 0x10_0000;
 /// The vehicle would fly if it were armed.
 const PREARM: u32 = 0x1000_0000;
 
 impl Vehicle {
-    /// Tells the stations of each sensor that the core trusts otherwise than before, and of each actuator.
+    /// Tells the stations of each sensor and actuator that the core trusts otherwise than before.
     pub(super) fn report_sensors(&mut self, now: &SensorStates) {
         let last = core::mem::replace(&mut self.sensors, *now);
+        self.report_actuators(&last, now);
+        for ((sensor, before), (_, now)) in last.sensors().into_iter().zip(now.sensors()) {
+            let (severity, what) = match now {
+                SensorState::Excluded if before != now => (Severity::Critical, "failed"),
+                SensorState::Healthy if before == SensorState::Recovering => {
+                    (Severity::Notice, "is back")
+                }
+                _ => continue,
+            };
+            self.say(severity, &format!("Sensor {sensor} {what}"));
+        }
+    }
+
+    fn report_actuators(&mut self, last: &SensorStates, now: &SensorStates) {
         if last.elevator != now.elevator {
             let (severity, text) = match now.elevator {
                 SensorState::Excluded => (Severity::Critical, "Elevator does not answer"),
@@ -41,17 +53,6 @@ impl Vehicle {
                 _ => (Severity::Notice, "Motor works again"),
             };
             self.say(severity, text);
-        }
-        let sensors = last.named().into_iter().zip(now.named()).take(WATCHED);
-        for ((sensor, before), (_, now)) in sensors {
-            let (severity, what) = match now {
-                SensorState::Excluded if before != now => (Severity::Critical, "failed"),
-                SensorState::Healthy if before == SensorState::Recovering => {
-                    (Severity::Notice, "is back")
-                }
-                _ => continue,
-            };
-            self.say(severity, &format!("Sensor {sensor} {what}"));
         }
     }
 
@@ -78,11 +79,8 @@ impl Vehicle {
 fn healthy(sensors: &SensorStates, armed: bool) -> u32 {
     let uses = |state| matches!(state, SensorState::Healthy | SensorState::Suspected);
     let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
-    let states = sensors.named();
-    let used = states
-        .iter()
-        .zip(bits)
-        .filter(|((_, state), _)| uses(*state));
+    let states = sensors.sensors().into_iter().zip(bits);
+    let used = states.filter(|((_, state), _)| uses(*state));
     let driven = uses(sensors.elevator) && (uses(sensors.motor) || !armed);
     let sound = used.fold(if driven { MOTORS } else { 0 }, |all, (_, bit)| all | bit);
     let ready = if sound == SENSORS { PREARM } else { 0 };

@@ -185,6 +185,19 @@ fn without_its_motor_the_aircraft_sinks() {
     let last = log.ticks.z.len() - 1;
     assert!(log.ticks.z[last] < log.ticks.z[400] - 5.0 || log.ticks.airspeed[last] < 10.0);
     assert_eq!(radio.acks(), [(400, ACCEPTED)]);
+    // The core finds the thrust missing, but the stations know why, and nothing has failed.
+    assert!(log.sensors.iter().any(|change| change.sensor == "motor"));
+    assert!(
+        radio
+            .texts()
+            .iter()
+            .all(|(_, text)| !text.contains("Motor"))
+    );
+    let motors = radio.all(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & 0x8000),
+        _ => None,
+    });
+    assert!(motors.iter().all(|(_, bit)| *bit != 0));
 }
 
 #[test]
