@@ -69,18 +69,14 @@ pub fn encode_body<'a, T: Body>(
 
 /// Makes a frame of the payload in the buffer, behind the room for header and codes.
 fn seal(id: u8, payload: usize, buffer: &mut [u8; MAX_FRAME]) -> Option<&[u8]> {
-    let checked = buffer.get_mut(MAX_CODES..MAX_CODES + HEADER + payload)?;
     let [m, p] = MAGIC;
     let header = [m, p, PROTOCOL_VERSION, id];
-    checked.first_chunk_mut().map(|place| *place = header)?;
-    let checksum: [u8; CHECKSUM] = sum::of(checked);
-    let behind = buffer.get_mut(MAX_CODES + HEADER + payload..)?;
-    behind.first_chunk_mut().map(|place| *place = checksum)?;
+    *buffer.get_mut(MAX_CODES..)?.first_chunk_mut()? = header;
 
     let plain = HEADER + payload + CHECKSUM;
     let start = MAX_CODES.checked_sub(codes(plain))?;
     let frame = buffer.get_mut(start..)?;
-    let end = stuff(frame.get_mut(..codes(plain) + plain)?, codes(plain));
+    let end = stuff(frame.get_mut(..codes(plain) + plain)?, codes(plain))?;
     *frame.get_mut(end)? = DELIMITER;
     frame.get(..=end)
 }

@@ -35,8 +35,7 @@ pub(super) fn next(sum: u32, byte: u8) -> u32 {
     (sum >> 8) ^ TABLE[usize::from(low ^ byte)]
 }
 
-/// The checksum of these bytes.
-pub(super) fn of(bytes: &[u8]) -> [u8; 4] {
-    let sum = bytes.iter().fold(START, |sum, byte| next(sum, *byte));
+/// The checksum of the bytes after which the register is `sum`.
+pub(super) const fn checksum(sum: u32) -> [u8; 4] {
     (!sum).to_le_bytes()
 }

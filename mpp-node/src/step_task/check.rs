@@ -1,10 +1,14 @@
-//! The check of the values that only a configuration or a parameter changes. A bit of memory that flips by
-//! itself is noticed at the next tick, or in a spare copy at the next but one, and repaired by majority; it is
-//! never flown unnoticed.
+//! The check of the values that only a configuration or a parameter changes. A bit of memory that flips by itself is noticed
+//! before it is flown, and repaired by majority. The design, which each step uses, is checked at each tick. The tuning is checked
+//! when a scan may begin a cycle with it, when a parameter changes it, and every [`TUNING_PERIOD`] ticks. A flip in a spare
+//! copy is noticed at the check after the next.
 
 use super::StepTask;
 use super::spare::{Copies, Spare, compare, same};
 use hil_protocol::RejectionCause;
+
+/// Ticks from one check of the tuning to the next if no scan comes.
+const TUNING_PERIOD: u32 = 8;
 
 impl StepTask {
     /// Takes the present values as the right ones, after a change from the ground.
@@ -21,10 +25,20 @@ impl StepTask {
         });
     }
 
-    /// Checks the values of the flight and repairs them. Returns false if that is not possible: the core then
+    /// Checks the values that a tick may use and repairs them. Returns false if that is not possible: the core then
     /// starts over, as after a restart.
     pub(super) fn check_values(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) -> bool {
-        let copies = self.compare_values(tick);
+        let scan = (self.flight.as_ref()).is_some_and(|flight| flight.scan_tick.is_some());
+        self.check(tick, scan || tick.is_multiple_of(TUNING_PERIOD), send)
+    }
+
+    /// Checks all values at once; see [`Self::check_values`].
+    pub(super) fn check_all(&mut self, send: &mut impl FnMut(&[u8])) -> bool {
+        self.check(self.clock, true, send)
+    }
+
+    fn check(&mut self, tick: u32, tuning: bool, send: &mut impl FnMut(&[u8])) -> bool {
+        let copies = self.compare_values(tick, tuning);
         if copies != [Copies::Equal; 2] {
             self.reject(RejectionCause::ValuesRepaired, send);
         }
@@ -35,16 +49,17 @@ impl StepTask {
         whole
     }
 
-    /// Compares the values in use with one of the copies, in turn: two that agree are right. Only if they do
-    /// not agree, all three are compared.
-    fn compare_values(&mut self, tick: u32) -> [Copies; 2] {
+    /// Compares the design, and on demand the tuning, with one of the copies, in turn: two that agree are right. Only
+    /// if they do not agree, all three are compared.
+    fn compare_values(&mut self, tick: u32, tuning: bool) -> [Copies; 2] {
         let (flight, spare) = match (&self.flight, &self.spare) {
             (Some(flight), Some(spare)) => (flight, spare),
             (None, _) => return [Copies::Equal; 2],
             (Some(_), None) => return [Copies::Lost; 2],
         };
-        let turn = (tick % 2) as usize;
-        if same(&flight.tuning, &spare.tuning[turn]) && flight.control.has(&spare.design[turn]) {
+        let turns = [tick, tick / TUNING_PERIOD].map(|turn| (turn % 2) as usize);
+        let (design, other) = (&spare.design[turns[0]], &spare.tuning[turns[1]]);
+        if flight.control.has(design) && (!tuning || same(&flight.tuning, other)) {
             return [Copies::Equal; 2];
         }
         self.repair_values()
@@ -72,7 +87,7 @@ mod tests {
     use super::*;
     use hil_protocol::{
         ActuatorLimits, AirData, Aircraft, Body, Configure, Decoder, MAX_FRAME, Message, Preset,
-        SensorFrame, encode_body,
+        SensorFrame, SetParameter, encode_body,
     };
     use mpp_core::flight::FlightLoop;
 
@@ -111,8 +126,8 @@ mod tests {
             tick,
             air: Some(AirData {
                 tick,
-                airspeed: 12.0 + f64::from(tick) * 1e-3,
-                pitch: 0.156 + f64::from(tick) * 1e-4,
+                airspeed: 12.0 + f64::from(tick % 7) * 1e-3,
+                pitch: 0.156 + f64::from(tick % 7) * 1e-4,
             }),
             position: None,
         };
@@ -125,8 +140,7 @@ mod tests {
             {
                 match message {
                     Message::Rejection(found) => {
-                        assert_eq!(found.cause, RejectionCause::ValuesRepaired);
-                        told[0] = true;
+                        told[0] |= found.cause == RejectionCause::ValuesRepaired;
                     }
                     Message::ActuatorCommand(_) => told[1] = true,
                     _ => {}
@@ -152,16 +166,46 @@ mod tests {
                     let copies = [&mut flight.tuning, second, third];
                     flip(&mut copies[copy].settings.cross_track, bit);
                 }
-                // The copy in use is compared at each tick, and a spare copy at every other one.
-                let told = [1, 2, 3].map(|next| tick(&mut task, at + next));
-                at += 3;
-                assert!(told.iter().all(|[_, commanded]| *commanded));
-                let repairs = told.iter().filter(|[repaired, _]| *repaired).count();
-                assert_eq!(repairs, 1, "bit {bit}, copy {copy}");
-                let by = if copy == 0 { 1 } else { 2 };
-                assert!(told.iter().take(by).any(|[repaired, _]| *repaired));
+                // The copy in use is compared at each check, and a spare copy at every other one.
+                let checks = if copy == 0 { 1 } else { 2 };
+                let mut repairs = [0, 0];
+                for next in 1..=3 * TUNING_PERIOD {
+                    let [repaired, commanded] = tick(&mut task, at + next);
+                    assert!(commanded);
+                    let late = next > checks * TUNING_PERIOD;
+                    repairs[usize::from(late)] += u32::from(repaired);
+                }
+                at += 3 * TUNING_PERIOD;
+                assert_eq!(repairs, [1, 0], "bit {bit}, copy {copy}");
             }
         }
+        assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);
+    }
+
+    #[test]
+    fn a_flipped_setting_is_repaired_before_a_cycle_or_a_parameter_takes_it() {
+        let mut task = in_flight();
+        let before = task.flight.as_ref().map(|flight| flight.tuning);
+        let spoil = |task: &mut StepTask| {
+            if let Some(flight) = &mut task.flight {
+                flip(&mut flight.tuning.settings.cross_track, 3);
+            }
+        };
+        spoil(&mut task);
+        assert_eq!(tick(&mut task, 1), [false, true]);
+        assert!(task.flight.as_ref().map(|flight| flight.tuning) != before);
+        if let Some(flight) = &mut task.flight {
+            flight.scan_tick = Some(2);
+        }
+        assert_eq!(tick(&mut task, 2), [true, true]);
+        assert!(task.flight.as_ref().map(|flight| flight.tuning) == before);
+
+        spoil(&mut task);
+        let set = SetParameter {
+            parameter: 0,
+            value: f64::NAN,
+        };
+        tell(&mut task, &set, |_| {});
         assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);
     }
 
@@ -188,7 +232,8 @@ mod tests {
             flip(&mut flight.tuning.settings.cross_track, 3);
             flip(&mut spare.tuning[0].settings.cross_track, 4);
         }
-        assert_eq!(tick(&mut task, 1), [true, false]);
+        let told = [1, 2, 3, 4, 5, 6, 7, 8].map(|at| tick(&mut task, at));
+        assert_eq!(told[7], [true, false]);
         assert!(task.flight.is_none());
     }
 }

@@ -12,6 +12,9 @@ impl StepTask {
     // Not inlined, so that a new flight loop is not on the stack of each tick.
     #[inline(never)]
     pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
+        if !self.check_all(send) {
+            return;
+        }
         if let Err(verdict) = self.tune(set) {
             self.reply_to_parameter(set.parameter, verdict, send);
         } else if self.flight.as_ref().is_some_and(|flight| flight.ready) {
