@@ -4,7 +4,7 @@
 //! copy is noticed at the check after the next.
 
 use super::StepTask;
-use super::spare::{Copies, Spare, compare, same};
+use super::spare::{Copies, Spare, compare, in_turn, same};
 use hil_protocol::RejectionCause;
 
 /// Ticks from one check of the tuning to the next if no scan comes.
@@ -57,8 +57,8 @@ impl StepTask {
             (None, _) => return [Copies::Equal; 2],
             (Some(_), None) => return [Copies::Lost; 2],
         };
-        let turns = [tick, tick / TUNING_PERIOD].map(|turn| (turn % 2) as usize);
-        let (design, other) = (&spare.design[turns[0]], &spare.tuning[turns[1]]);
+        let design = in_turn(&spare.design, tick);
+        let other = in_turn(&spare.tuning, tick / TUNING_PERIOD);
         if flight.control.has(design) && (!tuning || same(&flight.tuning, other)) {
             return [Copies::Equal; 2];
         }

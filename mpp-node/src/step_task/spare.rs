@@ -21,6 +21,15 @@ pub(super) enum Copies {
     Lost,
 }
 
+/// One copy of two, the other one at the next turn.
+pub(super) fn in_turn<T>([second, third]: &[T; 2], turn: u32) -> &T {
+    if turn.is_multiple_of(2) {
+        second
+    } else {
+        third
+    }
+}
+
 /// Compares three copies and repairs one that differs. A flip of the sign of a zero does not count.
 pub(super) fn compare<T: Copy + PartialEq>(first: &mut T, others: &mut [T; 2]) -> Copies {
     let [second, third] = others;
