@@ -44,33 +44,46 @@ pub(super) fn stuff(bytes: &mut [u8], from: usize) -> Option<usize> {
     Some(code)
 }
 
-/// Does the work of [`stuff`] for plain bytes that no piece is too long for. Whatever a core sends is so short.
+/// Does the work of [`stuff`] for plain bytes that no piece is too long for: the place of each zero takes a code. Whatever a
+/// core sends is so short.
 fn stuff_short(mut bytes: &mut [u8]) -> Option<()> {
     let mut sum = sum::START;
     loop {
-        let (open, _) = bytes.split_last_chunk::<CHECKSUM>()?;
-        let (_, checked) = open.split_first()?;
-        let zero = checked.iter().position(|byte| {
-            sum = sum::next(sum, *byte);
-            *byte == 0
-        });
-        let Some(piece) = zero else { break };
-        write(bytes, 0, (piece + 1) as u8);
-        bytes = bytes.get_mut(piece + 1..)?;
+        let (code, rest) = bytes.split_first_mut()?;
+        let (checked, checksum) = rest.split_last_chunk_mut::<CHECKSUM>()?;
+        let Some(piece) = piece_of(checked, &mut sum) else {
+            *checksum = sum::checksum(sum);
+            *code = checked.len() as u8 + cut(checksum);
+            return Some(());
+        };
+        *code = (piece + 1) as u8;
+        bytes = rest.get_mut(piece..)?;
     }
-    *bytes.last_chunk_mut()? = sum::checksum(sum);
-    cut(bytes);
-    Some(())
 }
 
-/// Cuts plain bytes at their zeros: the place of each takes a code.
-fn cut(mut bytes: &mut [u8]) {
-    while let Some((code, behind)) = bytes.split_first_mut() {
-        let zero = behind.iter().position(|byte| *byte == 0);
-        let piece = zero.unwrap_or(behind.len());
-        *code = (piece + 1) as u8;
-        bytes = behind.get_mut(piece..).unwrap_or_default();
+/// Sums up the bytes to the first zero, and gives their number without it. `None` if there is no zero.
+fn piece_of(bytes: &[u8], sum: &mut u32) -> Option<usize> {
+    // Not `position`, which counts what the iterator knows.
+    let mut rest = bytes.iter();
+    loop {
+        let byte = rest.next()?;
+        *sum = sum::next(*sum, *byte);
+        if *byte == 0 {
+            return Some(bytes.len() - rest.len() - 1);
+        }
     }
+}
+
+/// Cuts the checksum at its zeros: the place of each takes a code. Gives the code in front of the checksum.
+fn cut(checksum: &mut [u8]) -> u8 {
+    let mut code = 1;
+    for byte in checksum.iter_mut().rev() {
+        if *byte == 0 {
+            *byte = core::mem::replace(&mut code, 0);
+        }
+        code += 1;
+    }
+    code
 }
 
 /// Writes the code of the open piece, and opens the next one.
