@@ -343,7 +343,7 @@ impl Estimator {
     /// Takes in the position, if there is one, and then estimates the lift.
     fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
         let air = *self.air.present();
-        self.navigation.correct_motion(&air);
+        let (_, rise) = self.navigation.correct_motion(&air);
         let verdict = fix.map(|fix| self.navigation.take(fix));
         self.position.tick(match verdict {
             Some(PositionVerdict::Accepted) => Some(true),
@@ -352,7 +352,7 @@ impl Estimator {
         });
         self.watch_motor(elapsed, verdict);
         let effective = self.actuators.effective();
-        let (_, climb) = self.navigation.wind().ground_velocity(&air);
+        let climb = rise + self.navigation.wind().z;
         if let Some(lift) = &mut self.lift {
             if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
                 lift.interrupt();

@@ -69,15 +69,18 @@ impl History {
         step
     }
 
-    /// Corrects the motion of the last entry, after the sensors of its tick were used.
-    pub fn correct(&mut self, air: &AirState) {
-        self.velocity = Some(Wind::STILL.ground_velocity(air));
+    /// Corrects the motion of the last entry, after the sensors of its tick were used. Gives the velocity through the
+    /// air, `(x, z)` [m/s].
+    pub fn correct(&mut self, air: &AirState) -> (f64, f64) {
+        let velocity = Wind::STILL.ground_velocity(air);
+        self.velocity = Some(velocity);
         let slot = self.count.wrapping_sub(1) as usize % TICKS;
         if self.count > 0
             && let Some(entry) = self.entries.get_mut(slot)
         {
             entry.pitch = air.pitch;
         }
+        velocity
     }
 
     /// Turns the pitch of all entries by a known error \[rad\].

@@ -16,7 +16,9 @@ mod pitch_bias;
 mod verdicts;
 mod watch;
 
-use crate::vehicle::{AirState, Airframe, Control, JacobianForm, air_rate, linearize};
+use crate::vehicle::{
+    AirState, Airframe, Control, Directions, JacobianForm, air_rate_along, linearize_along,
+};
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use biases::Biases;
@@ -220,15 +222,18 @@ impl Ekf {
     /// # Errors
     /// [`Diverged`] if the prediction is not finite.
     pub fn predict(&mut self, control: Control, period: f64) -> Result<(), Diverged> {
-        let linear = linearize(
+        let directions = Directions::of(&self.estimate);
+        let linear = linearize_along(
+            &directions,
             &self.airframe,
             &self.estimate,
             control,
             self.tuning.jacobian,
         );
         let transition = Matrix4::identity() + linear.a * period;
-        let rate = air_rate(&self.airframe, &self.estimate, control).to_vector();
-        let predicted = AirState::from_vector(&(self.estimate.to_vector() + rate * period));
+        let rate = air_rate_along(&directions, &self.airframe, &self.estimate, control);
+        let predicted =
+            AirState::from_vector(&(self.estimate.to_vector() + rate.to_vector() * period));
         let covariance = symmetric(&(transition * self.covariance * transition.transpose()))
             + Matrix4::from_diagonal(&Vector4::from(self.tuning.process_noise));
         if !predicted.is_finite() || !covariance.iter().all(|value| value.is_finite()) {

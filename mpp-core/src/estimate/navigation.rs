@@ -186,9 +186,9 @@ impl Navigation {
         self.wind.x = wind;
     }
 
-    /// Takes in the motion through the air as it is after the sensors of this tick.
-    pub fn correct_motion(&mut self, air: &AirState) {
-        self.history.correct(air);
+    /// Takes in the motion through the air as it is after the sensors of this tick. Gives its velocity, `(x, z)` [m/s].
+    pub fn correct_motion(&mut self, air: &AirState) -> (f64, f64) {
+        self.history.correct(air)
     }
 
     /// Takes in a position and, if it has one, its velocity.

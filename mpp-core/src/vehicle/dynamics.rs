@@ -84,10 +84,35 @@ pub struct Control {
 /// The result is not finite at zero airspeed, where the equations have no meaning.
 #[must_use]
 pub fn air_rate(airframe: &Airframe, state: &AirState, control: Control) -> AirState {
+    air_rate_along(&Directions::of(state), airframe, state, control)
+}
+
+/// Sine and cosine of the flight path angle and of the angle of attack.
+pub(crate) struct Directions {
+    pub(super) path: (f64, f64),
+    pub(super) alpha: (f64, f64),
+}
+
+impl Directions {
+    pub(crate) fn of(state: &AirState) -> Self {
+        Self {
+            path: libm::sincos(state.flight_path),
+            alpha: libm::sincos(state.angle_of_attack()),
+        }
+    }
+}
+
+/// Does the work of [`air_rate`] with the directions of the state.
+pub(crate) fn air_rate_along(
+    directions: &Directions,
+    airframe: &Airframe,
+    state: &AirState,
+    control: Control,
+) -> AirState {
     let a = airframe;
-    let (sin_path, cos_path) = libm::sincos(state.flight_path);
+    let (sin_path, cos_path) = directions.path;
+    let (sin_alpha, cos_alpha) = directions.alpha;
     let alpha = state.angle_of_attack();
-    let (sin_alpha, cos_alpha) = libm::sincos(alpha);
     let pressure_area = 0.5 * a.air_density * (state.airspeed * state.airspeed) * a.wing_area;
 
     let lift_coefficient = a.lift_zero + a.lift_alpha * alpha + a.lift_elevator * control.elevator;

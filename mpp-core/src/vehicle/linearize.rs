@@ -1,5 +1,6 @@
 //! Analytic Jacobians of the equations of motion.
 
+use super::dynamics::Directions;
 use super::{AirState, Airframe, Control, GRAVITY};
 use nalgebra::{Matrix4, Matrix4x2};
 
@@ -33,11 +34,22 @@ pub fn linearize(
     control: Control,
     form: JacobianForm,
 ) -> Linearization {
+    linearize_along(&Directions::of(state), airframe, state, control, form)
+}
+
+/// Does the work of [`linearize`] with the directions of the state.
+pub(crate) fn linearize_along(
+    directions: &Directions,
+    airframe: &Airframe,
+    state: &AirState,
+    control: Control,
+    form: JacobianForm,
+) -> Linearization {
     let a = airframe;
     let v = state.airspeed;
     let alpha = state.angle_of_attack();
-    let (sin_path, cos_path) = libm::sincos(state.flight_path);
-    let (sin_alpha, cos_alpha) = libm::sincos(alpha);
+    let (sin_path, cos_path) = directions.path;
+    let (sin_alpha, cos_alpha) = directions.alpha;
     let thrust = control.thrust;
     let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
     // The lift by the rate of the angle of attack adds to the momentum: its share of `m v` grows with `v`.

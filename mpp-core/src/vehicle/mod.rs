@@ -10,7 +10,9 @@ mod wind;
 
 pub use airframe::{Airframe, GRAVITY};
 pub use dynamics::{AirState, Control, VehicleState, air_rate, vehicle_rate};
+pub(crate) use dynamics::{Directions, air_rate_along};
 pub use limits::ActuatorLimits;
+pub(crate) use linearize::linearize_along;
 pub use linearize::{JacobianForm, Linearization, linearize};
 pub use point_mass::{PathControl, PathState};
 pub use trim::{Trim, TrimError};

@@ -80,8 +80,11 @@ impl PathState {
 
     fn runge_kutta(&self, airframe: &Airframe, control: &PathControl, h: f64) -> Self {
         let k1 = self.rate(airframe, control);
-        let k2 = self.moved(&k1, 0.5 * h).rate(airframe, control);
-        let k3 = self.moved(&k2, 0.5 * h).rate(airframe, control);
+        let second = self.moved(&k1, 0.5 * h);
+        // The third state has the same angle of attack.
+        let alpha = libm::sincos(second.angle_of_attack);
+        let k2 = second.rate_at(alpha, airframe, control);
+        let k3 = (self.moved(&k2, 0.5 * h)).rate_at(alpha, airframe, control);
         let k4 = self.moved(&k3, h).rate(airframe, control);
         let ends = self.moved(&k1, h / 6.0).moved(&k4, h / 6.0);
         ends.moved(&k2, h / 3.0).moved(&k3, h / 3.0)
@@ -90,9 +93,18 @@ impl PathState {
     /// Time derivative of the state.
     #[must_use]
     pub fn rate(&self, airframe: &Airframe, control: &PathControl) -> Self {
+        self.rate_at(libm::sincos(self.angle_of_attack), airframe, control)
+    }
+
+    /// Does the work of [`Self::rate`] with sine and cosine of the angle of attack.
+    fn rate_at(
+        &self,
+        (sin_alpha, cos_alpha): (f64, f64),
+        airframe: &Airframe,
+        control: &PathControl,
+    ) -> Self {
         let a = airframe;
         let (sin_path, cos_path) = libm::sincos(self.flight_path);
-        let (sin_alpha, cos_alpha) = libm::sincos(self.angle_of_attack);
         let v = self.airspeed;
         let pressure_area = 0.5 * a.air_density * (v * v) * a.wing_area;
         let lift = a.lift_zero + a.lift_alpha * self.angle_of_attack;
