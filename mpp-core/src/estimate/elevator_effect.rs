@@ -162,12 +162,13 @@ impl ElevatorEffect {
 
     /// Sets the effect to what the regression has shown for long enough.
     fn judge(&mut self, period: f64) {
-        let Some((missing, error)) = self.regression.slope() else {
+        let Some((missing, variance)) = self.regression.slope() else {
             (self.shown, self.silent) = (0.0, false);
             return;
         };
-        self.proven |= libm::fabs(missing) < PROVEN_MISSING && error < PROVEN_ERROR;
-        let sure = libm::fabs(missing) > SIGMAS * error;
+        self.proven |=
+            libm::fabs(missing) < PROVEN_MISSING && variance < PROVEN_ERROR * PROVEN_ERROR;
+        let sure = missing * missing > SIGMAS * SIGMAS * variance;
         self.silent = sure && missing < -SILENT;
         let less = missing < -WEAK && !self.silent;
         let more = missing > WEAK && self.effect < 1.0;
@@ -234,7 +235,7 @@ impl Regression {
         }
     }
 
-    /// Missing share of the response [-], and its standard deviation. `None` if there was no response to speak of.
+    /// Missing share of the response [-], and its variance. `None` if there was no response to speak of.
     fn slope(&self) -> Option<(f64, f64)> {
         let [
             [missing, both, _],
@@ -248,6 +249,6 @@ impl Regression {
         let rest = missing - slope * (2.0 * both - slope * given);
         // What is left changes within the time of fading, so as many values are independent as that time is contained.
         let variance = rest.max(0.0) * planned * (FADE / self.seen);
-        Some((slope, libm::sqrt(variance) / by_given))
+        Some((slope, variance / (by_given * by_given)))
     }
 }
