@@ -3,7 +3,8 @@
 //! The filter believes its airspeed sensor. A sensor that reads too much by `e` therefore makes the air move along with
 //! the aircraft by `e` less, and the wing give less lift than the dynamic pressure promises: the lift coefficient seems to
 //! change by `-2 e / V` of itself. Wind alone changes the one, an error of the airframe the other, and gusts change
-//! both but not together. So an error is the lesser of the two, if both say so for some time.
+//! both but not together. So an error is the lesser of the two, if both say so for some time. An error that is there from the
+//! start changes neither. Then both are further from calm air and from the known airframe than both can be.
 
 use crate::tuning::airspeed_bias::{
     AGREES, AGREES_FOR, FOUND_BY_LIFT, FOUND_BY_LIFT_AT_START, FOUND_BY_WIND, FOUND_FOR, MEMORY,
