@@ -9,12 +9,12 @@ use crate::message::{Body, MAX_PAYLOAD, Message};
 use crate::version::PROTOCOL_VERSION;
 pub use decoder::Decoder;
 use stuffing::{LONGEST_PIECE, codes, stuff};
+use sum::CHECKSUM;
 
 /// The first two bytes of a frame before COBS: "MP".
 pub const MAGIC: [u8; 2] = *b"MP";
 
 const HEADER: usize = 4;
-const CHECKSUM: usize = 4;
 const DELIMITER: u8 = 0;
 
 /// Size of the longest frame on the wire, its delimiter included \[bytes\].

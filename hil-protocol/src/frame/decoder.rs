@@ -1,6 +1,7 @@
 //! Messages in a stream of bytes.
 
-use super::{CHECKSUM, DELIMITER, HEADER, LONGEST_PIECE, MAGIC, MAX_FRAME, sum};
+use super::sum::{self, CHECKSUM};
+use super::{DELIMITER, HEADER, LONGEST_PIECE, MAGIC, MAX_FRAME};
 use crate::error::DecodeError;
 use crate::message::{Body, Message, read};
 use crate::version::PROTOCOL_VERSION;

@@ -3,7 +3,7 @@
 //! The plain bytes are cut into pieces at their zeros. Each piece stands behind a code, its length plus one. The same
 //! pass sums them up: in a step of the core it looks at each byte that is sent once.
 
-use super::{CHECKSUM, sum};
+use super::sum::{self, CHECKSUM};
 
 /// The longest piece \[bytes\]. It is cut after so many bytes, without a zero.
 pub(super) const LONGEST_PIECE: usize = 254;

@@ -6,6 +6,9 @@
 /// The polynomial, reflected.
 const POLYNOMIAL: u32 = 0xEDB8_8320;
 
+/// Size of the checksum \[bytes\].
+pub(super) const CHECKSUM: usize = 4;
+
 /// The register before the first byte.
 pub(super) const START: u32 = u32::MAX;
 /// The register after a whole message and its checksum.
@@ -36,6 +39,6 @@ pub(super) fn next(sum: u32, byte: u8) -> u32 {
 }
 
 /// The checksum of the bytes after which the register is `sum`.
-pub(super) const fn checksum(sum: u32) -> [u8; 4] {
+pub(super) const fn checksum(sum: u32) -> [u8; CHECKSUM] {
     (!sum).to_le_bytes()
 }
