@@ -51,26 +51,17 @@ fn stuff_short(mut bytes: &mut [u8]) -> Option<()> {
     loop {
         let (code, rest) = bytes.split_first_mut()?;
         let (checked, checksum) = rest.split_last_chunk_mut::<CHECKSUM>()?;
-        let Some(piece) = piece_of(checked, &mut sum) else {
+        let zero = checked.iter().position(|byte| {
+            sum = sum::next(sum, *byte);
+            *byte == 0
+        });
+        let Some(piece) = zero else {
             *checksum = sum::checksum(sum);
             *code = checked.len() as u8 + cut(checksum);
             return Some(());
         };
         *code = (piece + 1) as u8;
         bytes = rest.get_mut(piece..)?;
-    }
-}
-
-/// Sums up the bytes to the first zero, and gives their number without it. `None` if there is no zero.
-fn piece_of(bytes: &[u8], sum: &mut u32) -> Option<usize> {
-    // Not `position`, which counts what the iterator knows.
-    let mut rest = bytes.iter();
-    loop {
-        let byte = rest.next()?;
-        *sum = sum::next(*sum, *byte);
-        if *byte == 0 {
-            return Some(bytes.len() - rest.len() - 1);
-        }
     }
 }
 

@@ -70,7 +70,8 @@ pub mod pitch_bias {
 
 /// Slow error of the airspeed, seen as wind and lift at once.
 pub mod airspeed_bias {
-    /// Time after which wind and lift are settled \[s\]. What they are then counts as right.
+    /// Time after which wind and lift are settled \[s\]. What they are then counts as right, unless both are
+    /// impossible ([`FOUND_BY_LIFT_AT_START`]).
     pub const SETTLED: f64 = 1.5;
     /// Time over which their slow means follow \[s\]. With more of it steady wind counts as a change for longer,
     /// with less a slow error hides.
