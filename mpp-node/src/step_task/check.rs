@@ -8,7 +8,7 @@ use super::spare::{Copies, Spare, compare, in_turn, same};
 use hil_protocol::RejectionCause;
 
 /// Ticks from one check of the tuning to the next if no scan comes [-]: 80 ms. A check takes 605 instructions of a
-/// Cortex-M7; with fewer checks a flip is told later. Nothing uses the tuning between them. Source: D30.
+/// Cortex-M7; with fewer checks a flip is told later. No cycle takes the tuning between them. Source: D30.
 const TUNING_PERIOD: u32 = 8;
 
 impl StepTask {
