@@ -36,7 +36,7 @@ impl Tuning {
     #[must_use]
     pub fn value(&self, parameter: u8) -> Option<f64> {
         let parameter = PARAMETERS.get(usize::from(parameter))?;
-        get(parameter.name, self)
+        get(parameter.which, self)
     }
 
     /// These values with one parameter changed.
@@ -63,7 +63,7 @@ impl Tuning {
         let parameter = PARAMETERS
             .get(usize::from(number))
             .ok_or(ParameterVerdict::Unknown)?;
-        if get(parameter.name, self).is_none() {
+        if get(parameter.which, self).is_none() {
             return Err(ParameterVerdict::NotInPreset);
         }
         let [least, most] = parameter.range;
@@ -80,7 +80,7 @@ impl Tuning {
         }
         let tracked = self.settings.planner.paths == 0;
         let cruise = self.settings.cruise;
-        set(parameter.name, self, value);
+        set(parameter.which, self, value);
         let planner = &self.settings.planner;
         if planner.paths == 0 && planner.flight().is_some() {
             return Err(ParameterVerdict::SetUp(ConfigureVerdict::PathsZero));
@@ -108,6 +108,7 @@ impl Tuning {
 /// One parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameter {
+    which: Which,
     /// Name, of at most 16 characters as in MAVLink.
     pub name: &'static str,
     /// Unit of the value, or a description of its values.
@@ -133,14 +134,21 @@ pub fn number(name: &str) -> Option<u8> {
 }
 
 /// The table of parameters, with code to read and to write each of them. The code selects a parameter by
-/// its name and calls no function pointer, so that the bound of the stack is known.
+/// its [`Which`] and calls no function pointer, so that the bound of the stack is known.
 macro_rules! parameters {
     ($count:literal: $(
-        $name:literal, $unit:literal, $range:expr, $step:expr, $in_flight:expr,
+        $which:ident = $name:literal, $unit:literal, $range:expr, $step:expr, $in_flight:expr,
         |$of:ident| $get:expr, |$to:ident, $value:ident| $set:expr;
     )*) => {
+        /// Selects the code of a parameter.
+        #[derive(Clone, Copy, Debug)]
+        enum Which {
+            $($which),*
+        }
+
         /// All parameters. A preset has only some of them.
         pub const PARAMETERS: [Parameter; $count] = [$(Parameter {
+            which: Which::$which,
             name: $name,
             unit: $unit,
             range: $range,
@@ -148,23 +156,21 @@ macro_rules! parameters {
             in_flight: $in_flight,
         }),*];
 
-        fn get(name: &str, tuning: &Tuning) -> Option<f64> {
-            match name {
-                $($name => {
+        fn get(which: Which, tuning: &Tuning) -> Option<f64> {
+            match which {
+                $(Which::$which => {
                     let $of = tuning;
                     $get
                 })*
-                _ => None,
             }
         }
 
-        fn set(name: &str, tuning: &mut Tuning, value: f64) {
-            match name {
-                $($name => {
+        fn set(which: Which, tuning: &mut Tuning, value: f64) {
+            match which {
+                $(Which::$which => {
                     let ($to, $value) = (tuning, value);
                     $set;
                 })*
-                _ => {}
             }
         }
     };
@@ -226,20 +232,20 @@ fn positive(value: f64) -> Option<f64> {
 }
 
 parameters! { 41:
-    "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
+    MppPaths = "MPP_PATHS", "candidate paths", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), ANY_TIME,
         |tuning| Some(tuning.settings.planner.paths as f64),
         |tuning, value| tuning.settings.planner.paths = value as usize;
-    "MPP_REPLAN_S", "s", [0.1, 60.0], Some(TICK_PERIOD), ANY_TIME,
+    MppReplanS = "MPP_REPLAN_S", "s", [0.1, 60.0], Some(TICK_PERIOD), ANY_TIME,
         |tuning| seconds(tuning.configure.replan_period_ticks),
         |tuning, value| tuning.configure.replan_period_ticks = ticks(value);
-    "MPP_LATENCY_S", "s", [0.01, 60.0], Some(TICK_PERIOD), ANY_TIME,
+    MppLatencyS = "MPP_LATENCY_S", "s", [0.01, 60.0], Some(TICK_PERIOD), ANY_TIME,
         |tuning| seconds(tuning.configure.latency_ticks),
         |tuning, value| {
             tuning.configure.latency_ticks = ticks(value);
             let latency = crate::duration(tuning.configure.latency_ticks);
             set_flight(tuning, |own| own.latency = latency);
         };
-    "MPP_SLICES", "slices a tick; 0: all", [0.0, 1e6], Some(1.0), ANY_TIME,
+    MppSlices = "MPP_SLICES", "slices a tick; 0: all", [0.0, 1e6], Some(1.0), ANY_TIME,
         |tuning| match tuning.configure.slices_per_tick {
             u32::MAX => Some(0.0),
             slices => Some(f64::from(slices)),
@@ -250,109 +256,109 @@ parameters! { 41:
                 slices => slices,
             };
         };
-    "MPP_ALT_M", "m", [0.0, 1000.0], None, ANY_TIME,
+    MppAltM = "MPP_ALT_M", "m", [0.0, 1000.0], None, ANY_TIME,
         |tuning| Some(tuning.settings.planner.altitude),
         |tuning, value| tuning.settings.planner.altitude = value;
-    "MPP_PAD_NEAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+    MppPadNearM = "MPP_PAD_NEAR_M", "m", [0.0, 10.0], None, ANY_TIME,
         |tuning| padding(tuning, |padding| padding.near),
         |tuning, value| set_padding(tuning, |padding| padding.near = value);
-    "MPP_PAD_FAR_M", "m", [0.0, 10.0], None, ANY_TIME,
+    MppPadFarM = "MPP_PAD_FAR_M", "m", [0.0, 10.0], None, ANY_TIME,
         |tuning| padding(tuning, |padding| padding.far),
         |tuning, value| set_padding(tuning, |padding| padding.far = value);
-    "MPP_ALPHA_LIM", "rad", [0.02, 0.5], None, ANY_TIME,
+    MppAlphaLim = "MPP_ALPHA_LIM", "rad", [0.02, 0.5], None, ANY_TIME,
         |tuning| flight(tuning, |own| own.attitude.angle_of_attack),
         |tuning, value| set_flight(tuning, |own| own.attitude.angle_of_attack = value);
-    "MPP_GAMMA_LIM", "rad", [0.05, 0.78], None, ANY_TIME,
+    MppGammaLim = "MPP_GAMMA_LIM", "rad", [0.05, 0.78], None, ANY_TIME,
         |tuning| flight(tuning, |own| own.attitude.flight_path),
         |tuning, value| set_flight(tuning, |own| own.attitude.flight_path = value);
-    "MPP_PEN_LIN", "1/m", [1e-3, 1e8], None, ANY_TIME,
+    MppPenLin = "MPP_PEN_LIN", "1/m", [1e-3, 1e8], None, ANY_TIME,
         |tuning| flight(tuning, |own| own.penalty.linear),
         |tuning, value| set_flight(tuning, |own| own.penalty.linear = value);
-    "MPP_PEN_QUAD", "1/m^2", [1e-3, 1e8], None, ANY_TIME,
+    MppPenQuad = "MPP_PEN_QUAD", "1/m^2", [1e-3, 1e8], None, ANY_TIME,
         |tuning| flight(tuning, |own| own.penalty.quadratic),
         |tuning, value| set_flight(tuning, |own| own.penalty.quadratic = value);
-    "MPP_W_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+    MppWElevator = "MPP_W_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.planner.weights.control[0]),
         |tuning, value| tuning.settings.planner.weights.control[0] = value;
-    "MPP_W_THRUST", "1/N^2", [1e-3, 1e6], None, BEFORE,
+    MppWThrust = "MPP_W_THRUST", "1/N^2", [1e-3, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.planner.weights.control[1]),
         |tuning, value| tuning.settings.planner.weights.control[1] = value;
-    "MPP_W_TERMINAL", "1", [0.0, 1e6], None, BEFORE,
+    MppWTerminal = "MPP_W_TERMINAL", "1", [0.0, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.planner.weights.terminal),
         |tuning, value| tuning.settings.planner.weights.terminal = value;
-    "MPP_CRUISE_MS", "m/s", [8.0, 20.0], None, BEFORE,
+    MppCruiseMs = "MPP_CRUISE_MS", "m/s", [8.0, 20.0], None, BEFORE,
         |tuning| tuning.settings.cruise.airspeed(),
         |tuning, value| tuning.settings.cruise = Cruise::Airspeed(value);
-    "LQR_THRUST_N", "N", [0.0, 50.0], None, BEFORE,
+    LqrThrustN = "LQR_THRUST_N", "N", [0.0, 50.0], None, BEFORE,
         |tuning| tuning.settings.design_thrust,
         |tuning, value| tuning.settings.design_thrust = Some(value);
-    "LQR_Q_SPEED", "s^2/m^2", [0.0, 1e6], None, BEFORE,
+    LqrQSpeed = "LQR_Q_SPEED", "s^2/m^2", [0.0, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.regulator.state[0]),
         |tuning, value| tuning.settings.regulator.state[0] = value;
-    "LQR_Q_PITCH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+    LqrQPitch = "LQR_Q_PITCH", "1/rad^2", [0.0, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.regulator.state[1]),
         |tuning, value| tuning.settings.regulator.state[1] = value;
-    "LQR_Q_RATE", "s^2/rad^2", [0.0, 1e6], None, BEFORE,
+    LqrQRate = "LQR_Q_RATE", "s^2/rad^2", [0.0, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.regulator.state[2]),
         |tuning, value| tuning.settings.regulator.state[2] = value;
-    "LQR_Q_PATH", "1/rad^2", [0.0, 1e6], None, BEFORE,
+    LqrQPath = "LQR_Q_PATH", "1/rad^2", [0.0, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.regulator.state[3]),
         |tuning, value| tuning.settings.regulator.state[3] = value;
-    "LQR_R_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
+    LqrRElevator = "LQR_R_ELEVATOR", "1", [1e-3, 1e6], None, BEFORE,
         |tuning| Some(tuning.settings.regulator.elevator),
         |tuning, value| tuning.settings.regulator.elevator = value;
-    "EKF_Q_SPEED", "m^2/s^2", [0.0, 100.0], None, BEFORE,
+    EkfQSpeed = "EKF_Q_SPEED", "m^2/s^2", [0.0, 100.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[0]),
         |tuning, value| tuning.settings.estimator.process_noise[0] = value;
-    "EKF_Q_PITCH", "rad^2", [0.0, 10.0], None, BEFORE,
+    EkfQPitch = "EKF_Q_PITCH", "rad^2", [0.0, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[1]),
         |tuning, value| tuning.settings.estimator.process_noise[1] = value;
-    "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
+    EkfQRate = "EKF_Q_RATE", "rad^2/s^2", [0.0, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[2]),
         |tuning, value| tuning.settings.estimator.process_noise[2] = value;
-    "EKF_Q_PATH", "rad^2", [0.0, 0.1], None, BEFORE,
+    EkfQPath = "EKF_Q_PATH", "rad^2", [0.0, 0.1], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.process_noise[3]),
         |tuning, value| tuning.settings.estimator.process_noise[3] = value;
-    "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,
+    EkfRSpeed = "EKF_R_SPEED", "m^2/s^2", [1e-9, 100.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.airspeed_variance),
         |tuning, value| tuning.settings.estimator.airspeed_variance = value;
-    "EKF_R_PITCH", "rad^2", [1e-9, 10.0], None, BEFORE,
+    EkfRPitch = "EKF_R_PITCH", "rad^2", [1e-9, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.pitch_variance),
         |tuning, value| tuning.settings.estimator.pitch_variance = value;
-    "EKF_P_START", "-", [1e-9, 10.0], None, BEFORE,
+    EkfPStart = "EKF_P_START", "-", [1e-9, 10.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.initial_variance),
         |tuning, value| tuning.settings.estimator.initial_variance = value;
-    "EKF_GATE", "standard deviations", [1.0, 1000.0], None, BEFORE,
+    EkfGate = "EKF_GATE", "standard deviations", [1.0, 1000.0], None, BEFORE,
         |tuning| Some(tuning.settings.estimator.gate),
         |tuning, value| tuning.settings.estimator.gate = value;
-    "LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], None, BEFORE,
+    LqrCrossTrack = "LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], None, BEFORE,
         |tuning| Some(tuning.settings.cross_track),
         |tuning, value| tuning.settings.cross_track = value;
-    "MPP_ROUNDS", "rounds of linearisation", [1.0, 20.0], Some(1.0), BEFORE,
+    MppRounds = "MPP_ROUNDS", "rounds of linearisation", [1.0, 20.0], Some(1.0), BEFORE,
         |tuning| flight(tuning, |own| f64::from(own.rounds)),
         |tuning, value| set_flight(tuning, |own| own.rounds = value as u8);
-    "MPP_DEEPENED", "candidates", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), BEFORE,
+    MppDeepened = "MPP_DEEPENED", "candidates", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), BEFORE,
         |tuning| flight(tuning, |own| own.deepened as f64),
         |tuning, value| set_flight(tuning, |own| own.deepened = value as usize);
-    "MPP_MARGIN_M", "m", [0.1, 5.0], None, BEFORE,
+    MppMarginM = "MPP_MARGIN_M", "m", [0.1, 5.0], None, BEFORE,
         |tuning| flight(tuning, |own| own.margin),
         |tuning, value| set_flight(tuning, |own| own.margin = value);
-    "MPP_BAND_M", "m", [2.0, 100.0], None, BEFORE,
+    MppBandM = "MPP_BAND_M", "m", [2.0, 100.0], None, BEFORE,
         |tuning| flight(tuning, |own| own.band),
         |tuning, value| set_flight(tuning, |own| own.band = value);
-    "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
+    MppThrustN = "MPP_THRUST_N", "N", [1.0, 100.0], None, BEFORE,
         |tuning| flight(tuning, |own| own.thrust_max),
         |tuning, value| set_flight(tuning, |own| own.thrust_max = value);
-    "WIND_CHANGE", "m/s in 1 s", [0.01, 20.0], None, BEFORE,
+    WindChange = "WIND_CHANGE", "m/s in 1 s", [0.01, 20.0], None, BEFORE,
         |tuning| tuning.settings.wind_change,
         |tuning, value| tuning.settings.wind_change = Some(value);
-    "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
+    ActThrustN = "ACT_THRUST_N", "N; 0: no limit", [0.0, 1000.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.thrust_max),
         |tuning, value| tuning.settings.actuators.thrust_max = positive(value);
-    "ACT_THRUST_LAG_S", "s; 0: none", [0.0, 10.0], None, BEFORE,
+    ActThrustLagS = "ACT_THRUST_LAG_S", "s; 0: none", [0.0, 10.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.thrust_lag),
         |tuning, value| tuning.settings.actuators.thrust_lag = positive(value);
-    "ACT_ELEV_RANGE", "either side of trim; 0: no limit", [0.0, 100.0], None, BEFORE,
+    ActElevRange = "ACT_ELEV_RANGE", "either side of trim; 0: no limit", [0.0, 100.0], None, BEFORE,
         |tuning| {
             let limits = &tuning.settings.actuators;
             let sides = [limits.elevator_below, limits.elevator_above];
@@ -362,10 +368,10 @@ parameters! { 41:
             let limits = &mut tuning.settings.actuators;
             (limits.elevator_below, limits.elevator_above) = (positive(value), positive(value));
         };
-    "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
+    ActElevRate = "ACT_ELEV_RATE", "1/s; 0: no limit", [0.0, 1000.0], None, BEFORE,
         |tuning| limit(tuning, tuning.settings.actuators.elevator_rate),
         |tuning, value| tuning.settings.actuators.elevator_rate = positive(value);
-    "THR_SPEED_GAIN", "N s/m", [0.0, 100.0], None, BEFORE,
+    ThrSpeedGain = "THR_SPEED_GAIN", "N s/m", [0.0, 100.0], None, BEFORE,
         |tuning| Some(tuning.settings.airspeed_hold),
         |tuning, value| tuning.settings.airspeed_hold = value;
 }

@@ -62,44 +62,69 @@ pub fn solve_riccati(
     g: &Matrix4<f64>,
     q: &Matrix4<f64>,
 ) -> Result<Matrix4<f64>, RiccatiError> {
-    let entries = a.iter().chain(g).chain(q);
-    if !entries.copied().all(f64::is_finite) {
+    if ![a, g, q].into_iter().all(finite) {
         return Err(RiccatiError::NotFinite);
     }
+    let one = Matrix4::identity();
     // The Cayley transform with a shift of the size of A maps the stable half-plane into the unit circle.
-    let shift = a.norm().max(1.0);
-    let shifted = a - Matrix4::identity() * shift;
-    let shifted_inverse = inverse(&shifted)?;
-    let w = shifted.transpose() + product(&[q, &shifted_inverse, g]);
+    let shift = norm(a).max(1.0);
+    let shifted_inverse = inverse(&plus(a, -shift, &one))?;
+    let w = plus(
+        &product(&[q, &shifted_inverse, g]),
+        1.0,
+        &transposed(&plus(a, -shift, &one)),
+    );
     let w_inverse = inverse(&w)?;
-    let mut ak = Matrix4::identity() + w_inverse.transpose() * (2.0 * shift);
-    let mut gk = product(&[&shifted_inverse, g, &w_inverse]) * (2.0 * shift);
-    let mut hk = product(&[&w_inverse, q, &shifted_inverse]) * (2.0 * shift);
+    let mut ak = plus(&one, 2.0 * shift, &transposed(&w_inverse));
+    let doubled = plus(&Matrix4::zeros(), 2.0 * shift, &one);
+    let mut gk = product(&[&shifted_inverse, g, &w_inverse, &doubled]);
+    let mut hk = product(&[&w_inverse, q, &shifted_inverse, &doubled]);
 
     for _ in 0..MAX_DOUBLINGS {
-        let mix = inverse(&(Matrix4::identity() + product(&[&gk, &hk])))?;
-        let turned = ak.transpose();
+        let mix = inverse(&plus(&one, 1.0, &product(&[&gk, &hk])))?;
+        let turned = transposed(&ak);
         let step = product(&[&turned, &hk, &mix, &ak]);
-        gk += product(&[&ak, &mix, &gk, &turned]);
+        gk = plus(&gk, 1.0, &product(&[&ak, &mix, &gk, &turned]));
         ak = product(&[&ak, &mix, &ak]);
-        hk += step;
-        if !hk.iter().all(|value| value.is_finite()) {
+        hk = plus(&hk, 1.0, &step);
+        if !finite(&hk) {
             return Err(RiccatiError::NotConverged);
         }
-        if step.norm() <= 1e-15 * hk.norm() {
-            return checked(a, g, q, (hk + hk.transpose()) * 0.5);
+        if norm(&step) <= 1e-15 * norm(&hk) {
+            return checked(a, g, q, plus(&hk, 1.0, &transposed(&hk)) * 0.5);
         }
     }
     Err(RiccatiError::NotConverged)
 }
 
 /// The product of some matrices, from the left to the right.
-// Not inlined, because the image would hold twenty products.
+// This and the next ones are not inlined, because the image would hold twenty copies of each.
 #[inline(never)]
 fn product(factors: &[&Matrix4<f64>]) -> Matrix4<f64> {
     let mut factors = factors.iter().copied();
     let first = factors.next().copied().unwrap_or_default();
     factors.fold(first, |product, factor| product * factor)
+}
+
+/// `matrix + factor other`
+#[inline(never)]
+fn plus(matrix: &Matrix4<f64>, factor: f64, other: &Matrix4<f64>) -> Matrix4<f64> {
+    matrix + other * factor
+}
+
+#[inline(never)]
+fn transposed(matrix: &Matrix4<f64>) -> Matrix4<f64> {
+    matrix.transpose()
+}
+
+#[inline(never)]
+fn norm(matrix: &Matrix4<f64>) -> f64 {
+    matrix.norm()
+}
+
+#[inline(never)]
+fn finite(matrix: &Matrix4<f64>) -> bool {
+    matrix.iter().all(|value| value.is_finite())
 }
 
 fn inverse(matrix: &Matrix4<f64>) -> Result<Matrix4<f64>, RiccatiError> {
@@ -114,11 +139,12 @@ fn checked(
     q: &Matrix4<f64>,
     x: Matrix4<f64>,
 ) -> Result<Matrix4<f64>, RiccatiError> {
-    let (linear, square) = (product(&[&a.transpose(), &x]), product(&[&x, g, &x]));
-    let residual = linear + linear.transpose() - square + q;
-    let scale = linear.norm() + square.norm() + q.norm();
-    let lifted = x + Matrix4::identity() * (RESIDUAL * x.norm());
-    if residual.norm() <= RESIDUAL * scale && lifted.cholesky().is_some() {
+    let (linear, square) = (product(&[&transposed(a), &x]), product(&[&x, g, &x]));
+    let constant = plus(q, -1.0, &square);
+    let residual = plus(&plus(&linear, 1.0, &transposed(&linear)), 1.0, &constant);
+    let scale = norm(&linear) + norm(&square) + norm(q);
+    let lifted = plus(&x, RESIDUAL * norm(&x), &Matrix4::identity());
+    if norm(&residual) <= RESIDUAL * scale && lifted.cholesky().is_some() {
         Ok(x)
     } else {
         Err(RiccatiError::NotStabilising)

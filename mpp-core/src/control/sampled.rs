@@ -46,12 +46,12 @@ fn open(settings: &Settings, trim: &Trim) -> Joint {
 
 /// The exponential of a tick.
 fn sampled(open: &Joint) -> Joint {
-    let piece = open * (TICK_PERIOD / libm::exp2(f64::from(HALVINGS)));
+    let piece = over(open, libm::exp2(f64::from(HALVINGS)) / TICK_PERIOD);
     let mut term = Joint::identity();
     let mut sum = term;
     for order in 1..=TERMS {
-        term = product(&term, &piece) / f64::from(order);
-        sum += term;
+        term = over(&product(&term, &piece), f64::from(order));
+        sum = plus(&sum, &term);
     }
     for _ in 0..HALVINGS {
         sum = product(&sum, &sum);
@@ -76,7 +76,7 @@ fn closed(settings: &Settings, moves: &Joint, lqr: &Lqr, factor: f64) -> Joint {
 
 /// Whether no motion of the loop grows faster than by [`MOST_GROWTH`] a tick.
 fn decays(closed: &Joint) -> bool {
-    let mut power = closed / MOST_GROWTH;
+    let mut power = over(closed, MOST_GROWTH);
     for _ in 0..SQUARINGS {
         power = product(&power, &power);
         if power.norm() < 1e-6 {
@@ -88,8 +88,20 @@ fn decays(closed: &Joint) -> bool {
 }
 
 /// The product of two matrices.
-// Not inlined, because the image would hold four products.
+// This and the next two are not inlined, because the image would hold several copies of each.
 #[inline(never)]
 fn product(left: &Joint, right: &Joint) -> Joint {
     left * right
+}
+
+#[inline(never)]
+fn plus(left: &Joint, right: &Joint) -> Joint {
+    left + right
+}
+
+#[inline(never)]
+fn over(matrix: &Joint, divisor: f64) -> Joint {
+    let mut quotient = *matrix;
+    quotient.iter_mut().for_each(|value| *value /= divisor);
+    quotient
 }
