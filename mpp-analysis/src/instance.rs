@@ -6,7 +6,7 @@
 use mpp_core::config::{DIRECTIONS, KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::qp::{
-    Bounds, CondenseError, Condensed, Dynamics, Penalty, Problem, RowKind, StageModel, Weights,
+    Bounds, CondenseError, Condensed, Dynamics, Penalty, Problem, RowKind, Weights,
 };
 use nalgebra::{Matrix6, Matrix6x2, SMatrix};
 use serde::{Deserialize, Serialize};
@@ -136,9 +136,7 @@ impl Instance {
     /// [`CondenseError`] when the Hessian is not positive definite.
     pub fn condense_to(&self, shared: &mut Condensed) -> Result<(), CondenseError> {
         if self.a.len() == 1 {
-            let Dynamics { a, b, .. } = self.dynamics(0);
-            let initial = Matrix6::identity();
-            shared.condense(&StageModel { a, b, initial }, &self.weights())
+            shared.condense(&self.dynamics(0), &self.weights())
         } else {
             shared.condense_varying(&self.weights(), |stages| {
                 for (stage, place) in stages.iter_mut().enumerate() {

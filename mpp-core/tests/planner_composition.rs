@@ -44,21 +44,18 @@ const STARTS: [(f64, f64, f64); 6] = [
 ];
 
 /// The planner's model, set up independently of the planner.
-fn condensed(settings: &Settings, planner: &Planner) -> Box<Condensed> {
+fn model(settings: &Settings, planner: &Planner) -> StageModel {
     let (airframe, trim) = (&settings.airframe, planner.trim());
     let own = settings.planner.paper().unwrap();
     let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
-    let model = StageModel::new(trim, &linear, own.initial).unwrap();
-    let mut shared = Box::new(Condensed::new());
-    shared.condense(&model, &settings.planner.weights).unwrap();
-    shared
+    StageModel::new(trim, &linear, own.initial).unwrap()
 }
 
 /// The program of the planner's present candidate.
 fn program(
     settings: &Settings,
     planner: &Planner,
-    shared: &Condensed,
+    model: &StageModel,
     state: &VehicleState,
 ) -> Problem {
     let (trim, own) = (planner.trim(), settings.planner.paper().unwrap());
@@ -76,7 +73,7 @@ fn program(
     bounds.set_corridor(&corridor);
     bounds.set_thrust(trim.control.thrust);
     Problem {
-        initial: shared.initial_state(trim, &state.air),
+        initial: model.initial_state(trim, &state.air),
         target: [0.0, settings.planner.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
         bounds,
         penalty: None,
@@ -91,7 +88,10 @@ fn best_of_all(
     state: &VehicleState,
     discs: &[Disc],
 ) -> ((f64, f64), usize) {
-    let shared = condensed(settings, planner);
+    let model = model(settings, planner);
+    let mut shared = Box::new(Condensed::new());
+    let weights = &settings.planner.weights;
+    shared.condense(&model.dynamics(), weights).unwrap();
     let (mut solver, mut solution) = (Box::new(Solver::new()), Solution::new());
     let mut best = (f64::INFINITY, f64::INFINITY);
     let mut seen = 0;
@@ -101,7 +101,7 @@ fn best_of_all(
         working = planner.advance();
         if planner.summary().candidates > seen {
             seen += 1;
-            let problem = program(settings, planner, &shared, state);
+            let problem = program(settings, planner, &model, state);
             if solver.solve(&shared, &problem) == Status::Optimal
                 && solver.solution(&shared, &mut solution) == Status::Optimal
             {

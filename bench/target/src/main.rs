@@ -10,7 +10,7 @@ use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use mpp_core::corridor::Corridor;
 use mpp_core::qp::{
-    Bounds, Condensed, Penalty, Problem, Solution, Solver, StageModel, Status, Weights,
+    Bounds, Condensed, Dynamics, Penalty, Problem, Solution, Solver, Status, Weights,
 };
 use nalgebra::{Matrix6, Matrix6x2};
 
@@ -95,7 +95,7 @@ fn run() {
     let (mut optimal, mut infeasible) = (0, 0);
     for (index, numbers) in PROGRAMS.iter().enumerate() {
         let (model, weights, problem) = program(numbers);
-        let stages = [model.dynamics(); 18];
+        let stages = [model; 18];
         counts[0][index] = count(|| assert!(shared.condense(&model, &weights).is_ok()));
         counts[1][index] = count(|| assert!(varying.condense_varying(&weights, |model| *model = stages).is_ok()));
         let mut status = Status::NumericalFailure;
@@ -136,12 +136,12 @@ fn take<const N: usize>(rest: &mut &[Real]) -> [Real; N] {
     *head
 }
 
-fn program(mut rest: &[Real]) -> (StageModel, Weights, Problem) {
+fn program(mut rest: &[Real]) -> (Dynamics, Weights, Problem) {
     let rest = &mut rest;
-    let model = StageModel {
+    let model = Dynamics {
         a: Matrix6::from_row_slice(&take::<36>(rest)),
         b: Matrix6x2::from_row_slice(&take::<12>(rest)),
-        initial: Matrix6::identity(),
+        ..Dynamics::at_rest()
     };
     let control = take(rest);
     let [terminal] = take(rest);

@@ -56,7 +56,7 @@ fn collect(
                 );
                 let weights = &settings.planner.weights;
                 let stages = stages(&planner);
-                instances.push(Instance::of_program(name, &stages, weights, problem));
+                instances.push(Instance::of_program(name, &stages, weights, &problem));
             }
         }
     }

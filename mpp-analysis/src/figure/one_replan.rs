@@ -105,7 +105,7 @@ fn plan(
     let model = *planner.paper().ok_or(FigureError::NotPapers)?.model();
     let mut shared = Box::new(Condensed::new());
     shared
-        .condense(&model, &settings.planner.weights)
+        .condense(&model.dynamics(), &settings.planner.weights)
         .map_err(FigureError::Condense)?;
     // The planner's random numbers go on from cycle to cycle.
     for inputs in earlier {

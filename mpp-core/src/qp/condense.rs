@@ -6,33 +6,22 @@ mod feedback;
 use super::controls::{CONTROLS, ControlVector, add_scaled, dot};
 use super::response::{Pair, Response};
 use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
-use super::{Dynamics, Solution, StageModel, StageState, Weights};
+use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
-use crate::vehicle::{AirState, Trim};
 use core::fmt;
 use feedback::Feedback;
-use nalgebra::Vector6;
+use nalgebra::SVector;
 
 /// Value of `|y|^2` below which a row with the response `y` is constant up to rounding. In the paper's model the
 /// first position rows are constant, because a control changes the position only two stages later.
 const UNCHANGEABLE: f64 = 1e-20;
 
-/// Index in the state, and first place among the outputs, of the outputs that are states: x, z, pitch and
-/// flight path.
-const MOTION_OUTPUTS: [(usize, usize); 4] = [
-    (0, 0),
-    (1, 1),
-    (3, ATTITUDE_OUTPUT),
-    (5, ATTITUDE_OUTPUT + 1),
-];
-
 /// The part of the program that all candidates of a model share.
 #[derive(Clone, Debug)]
-pub struct Condensed {
-    model: StageModel,
-    dynamics: [Dynamics; STAGES],
+pub struct Condensed<const N: usize = STATES> {
+    dynamics: [Dynamics<N>; STAGES],
     pub(super) weights: Weights,
-    feedback: [Feedback; STAGES],
+    feedback: [Feedback<N>; STAGES],
     /// Response of the outputs to the normalised controls.
     response: Response,
     /// Price of each row: `1 / |y|^2` for the row's response `y`, and 0 if the controls cannot change the row. A
@@ -56,12 +45,20 @@ impl fmt::Display for CondenseError {
 
 impl core::error::Error for CondenseError {}
 
-impl Condensed {
+impl<const N: usize> Condensed<N> {
+    /// Index in the state, and first place among the outputs, of the outputs that are states: x, z, pitch and
+    /// flight path.
+    const MOTION_OUTPUTS: [(usize, usize); 4] = [
+        (0, 0),
+        (1, 1),
+        (PITCH, ATTITUDE_OUTPUT),
+        (N - 1, ATTITUDE_OUTPUT + 1),
+    ];
+
     /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            model: StageModel::at_rest(),
             dynamics: [Dynamics::at_rest(); STAGES],
             weights: Weights {
                 control: [0.0; 2],
@@ -77,9 +74,12 @@ impl Condensed {
     ///
     /// # Errors
     /// [`CondenseError`] if the cost has no single optimum.
-    pub fn condense(&mut self, model: &StageModel, weights: &Weights) -> Result<(), CondenseError> {
-        self.model = *model;
-        self.dynamics.fill(model.dynamics());
+    pub fn condense(
+        &mut self,
+        model: &Dynamics<N>,
+        weights: &Weights,
+    ) -> Result<(), CondenseError> {
+        self.dynamics.fill(*model);
         self.condense_stages(weights)
     }
 
@@ -91,7 +91,7 @@ impl Condensed {
     pub fn condense_varying(
         &mut self,
         weights: &Weights,
-        linearise: impl FnOnce(&mut [Dynamics; STAGES]),
+        linearise: impl FnOnce(&mut [Dynamics<N>; STAGES]),
     ) -> Result<(), CondenseError> {
         linearise(&mut self.dynamics);
         self.condense_stages(weights)
@@ -110,7 +110,7 @@ impl Condensed {
     // Not inlined, so that its columns do not lie on the stack beneath the design of the feedback.
     #[inline(never)]
     fn write_response(&mut self) {
-        let mut columns = [Vector6::zeros(); CONTROLS];
+        let mut columns = [SVector::zeros(); CONTROLS];
         let stages = self.dynamics.iter().zip(&self.feedback).enumerate();
         for (stage, (dynamics, feedback)) in stages {
             let so_far = 2 * stage;
@@ -131,7 +131,7 @@ impl Condensed {
                 let first = dynamics.b * feedback.scale;
                 *own = [first.column(0).into_owned(), first.column(1).into_owned()];
             }
-            for (state, output) in MOTION_OUTPUTS {
+            for (state, output) in Self::MOTION_OUTPUTS {
                 let row = self.response.row_mut(output + so_far);
                 for (entry, column) in row.iter_mut().zip(&columns) {
                     *entry = column[state];
@@ -158,25 +158,12 @@ impl Condensed {
 
     /// The condensed dynamics of every stage.
     #[must_use]
-    pub fn stages(&self) -> &[Dynamics; STAGES] {
+    pub fn stages(&self) -> &[Dynamics<N>; STAGES] {
         &self.dynamics
     }
 
-    /// The condensed model. It is valid only if the model is the same in every stage.
-    #[must_use]
-    pub fn model(&self) -> &StageModel {
-        &self.model
-    }
-
-    /// The plan's first state for an estimated motion: the deviation from trim, at the origin.
-    #[must_use]
-    pub fn initial_state(&self, trim: &Trim, estimate: &AirState) -> StageState {
-        let d = estimate.to_vector() - trim.state.to_vector();
-        (self.model.initial * Vector6::new(0.0, 0.0, d.x, d.y, d.z, d.w)).into()
-    }
-
     /// Computes the feedforward of every stage for a target.
-    pub(super) fn feedforward(&self, target: &StageState) -> ControlVector {
+    pub(super) fn feedforward(&self, target: &StageState<N>) -> ControlVector {
         feedback::feedforward(&self.dynamics, &self.weights, &self.feedback, target)
     }
 
@@ -205,14 +192,14 @@ impl Condensed {
     /// Computes states and controls from the normalised controls.
     pub(super) fn roll_out(
         &self,
-        initial: &StageState,
+        initial: &StageState<N>,
         feedforward: &ControlVector,
         normalised: &ControlVector,
-        solution: &mut Solution,
+        solution: &mut Solution<N>,
     ) {
         let [first, later @ ..] = &mut solution.states;
         *first = *initial;
-        let mut state: &StageState = first;
+        let mut state: &StageState<N> = first;
         let feedforward = feedforward.as_chunks::<2>().0.iter();
         let pushes = feedforward.zip(normalised.as_chunks::<2>().0);
         let stages = self.dynamics.iter().zip(&self.feedback).zip(pushes);
@@ -226,7 +213,7 @@ impl Condensed {
     }
 
     /// Cost of a trajectory without penalties.
-    pub(super) fn cost(&self, solution: &Solution, target: &StageState) -> f64 {
+    pub(super) fn cost(&self, solution: &Solution<N>, target: &StageState<N>) -> f64 {
         let [elevator, thrust] = self.weights.control;
         let efforts = solution
             .controls
@@ -240,14 +227,14 @@ impl Condensed {
     }
 }
 
-impl Default for Condensed {
+impl<const N: usize> Default for Condensed<N> {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// The outputs of a trajectory.
-pub(super) fn outputs(solution: &Solution) -> [f64; OUTPUTS] {
+pub(super) fn outputs<const N: usize>(solution: &Solution<N>) -> [f64; OUTPUTS] {
     let mut outputs = [0.0; OUTPUTS];
     let (motion, rest) = outputs.split_at_mut(THRUST_OUTPUT);
     let (thrusts, attitudes) = rest.split_at_mut(STAGES);
@@ -255,10 +242,9 @@ pub(super) fn outputs(solution: &Solution) -> [f64; OUTPUTS] {
     let places = places.zip(attitudes.as_chunks_mut::<2>().0);
     let stages = solution.controls.iter().zip(solution.states.iter().skip(1));
     for (((motion, thrust), attitude), (control, state)) in places.zip(stages) {
-        let [x, z, _, pitch, _, flight_path] = *state;
-        *motion = [x, z];
+        *motion = [state[0], state[1]];
         *thrust = control[1];
-        *attitude = [pitch, flight_path];
+        *attitude = [state[PITCH], state[N - 1]];
     }
     outputs
 }

@@ -10,7 +10,8 @@
 //!
 //! The program has two parts. [`Condensed`] depends on the model alone and serves every candidate of that
 //! model. [`Solver`] finds the optimum of one candidate. States and controls are deviations from level
-//! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`.
+//! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`. The programs of the flight
+//! planner have no pitch rate: their state has five numbers, `(x, z, v, theta, gamma)`.
 //!
 //! The method is a dual active set (Goldfarb, Idnani: "A numerically stable dual method for
 //! solving strictly convex quadratic programs", 1983). It works on *normalised controls* `v` and *outputs*.
@@ -32,8 +33,12 @@ pub use model::{Dynamics, Initial, ModelError, StageModel};
 pub use rows::{Bounds, ROWS, RowKind};
 pub use solve::{MAX_ITERATIONS, Solver};
 
-/// State of a program: the deviation `(x, z, v, theta, theta', gamma)` from level trim.
-pub type StageState = [f64; 6];
+/// Number of states of the paper's programs, `(x, z, v, theta, theta', gamma)`.
+pub const STATES: usize = 6;
+/// State of a program, the deviation from level trim: [`STATES`] numbers, or `(x, z, v, theta, gamma)`.
+pub type StageState<const N: usize = STATES> = [f64; N];
+/// Place of the pitch in a state. The flight path stands last.
+const PITCH: usize = 3;
 /// Control of a program: the deviation `(elevator, thrust)` from level trim.
 pub type StageControl = [f64; 2];
 
@@ -66,11 +71,11 @@ pub struct Penalty {
 
 /// The program of one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Problem {
+pub struct Problem<const N: usize = STATES> {
     /// First state.
-    pub initial: StageState,
+    pub initial: StageState<N>,
     /// Target of the last state.
-    pub target: StageState,
+    pub target: StageState<N>,
     /// Right-hand sides of all rows; infinite for a row that the program does not have.
     pub bounds: Bounds,
     /// Price of violating corridor and attitude rows. Without a price these rows are hard. Thrust rows are
@@ -97,9 +102,9 @@ pub enum Status {
 
 /// The refined trajectory of one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution {
+pub struct Solution<const N: usize = STATES> {
     /// States at the stage boundaries.
-    pub states: [StageState; KNOTS],
+    pub states: [StageState<N>; KNOTS],
     /// Controls of the stages.
     pub controls: [StageControl; STAGES],
     /// Cost without penalties.
@@ -108,12 +113,12 @@ pub struct Solution {
     pub violation: f64,
 }
 
-impl Solution {
+impl<const N: usize> Solution<N> {
     /// A solution of zeros, to be filled.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            states: [[0.0; 6]; KNOTS],
+            states: [[0.0; N]; KNOTS],
             controls: [[0.0; 2]; STAGES],
             cost: 0.0,
             violation: 0.0,
@@ -121,7 +126,7 @@ impl Solution {
     }
 }
 
-impl Default for Solution {
+impl<const N: usize> Default for Solution<N> {
     fn default() -> Self {
         Self::new()
     }

@@ -1,12 +1,12 @@
 //! The discrete model of the planner: forward Euler at the stage period, with the rotation in steady
 //! state (paper, section III-D).
 
-use super::{StageControl, StageState};
+use super::{PITCH, STATES, StageControl, StageState};
 use crate::config::STAGE_PERIOD;
 use crate::inverse::inverse;
-use crate::vehicle::{Linearization, Trim};
+use crate::vehicle::{AirState, Linearization, Trim};
 use core::fmt;
-use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
+use nalgebra::{ArrayStorage, Matrix6, Matrix6x2, SMatrix, SVector, Vector2, Vector6};
 
 /// The rule that gives the plan's first state from the estimate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,22 +43,16 @@ impl fmt::Display for ModelError {
 
 impl core::error::Error for ModelError {}
 
-const PITCH: usize = 3;
-const PITCH_RATE: usize = 4;
-const FLIGHT_PATH: usize = 5;
+const PITCH_RATE: usize = PITCH + 1;
+const FLIGHT_PATH: usize = STATES - 1;
 
 impl StageModel {
     /// A model of zeros, to be filled.
-    #[must_use]
-    pub const fn at_rest() -> Self {
-        let zero = [[0.0; 6]; 6];
-        Self {
-            a: Matrix6::from_array_storage(nalgebra::ArrayStorage(zero)),
-            b: Matrix6x2::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]; 2])),
-            initial: Matrix6::from_array_storage(nalgebra::ArrayStorage(zero)),
-        }
+    #[cfg(feature = "paper")]
+    pub(crate) const fn at_rest() -> Self {
+        let Dynamics { a, b, .. } = Dynamics::at_rest();
+        Self { a, b, initial: a }
     }
-
     /// Discretises the linearised aircraft about level trim. Pitch and pitch rate are too fast for the stage
     /// period, so they are in steady state (the paper): `(I - A) x_{k+1} = B u_k` holds for both. This makes
     /// the pitch rate zero.
@@ -100,36 +94,43 @@ impl StageModel {
     pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
         self.dynamics().step(state, control)
     }
+
+    /// The plan's first state for an estimated motion: the deviation from trim, at the origin.
+    #[must_use]
+    pub fn initial_state(&self, trim: &Trim, estimate: &AirState) -> StageState {
+        let d = estimate.to_vector() - trim.state.to_vector();
+        (self.initial * Vector6::new(0.0, 0.0, d.x, d.y, d.z, d.w)).into()
+    }
 }
 
 /// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dynamics {
-    /// State matrix, 6 x 6.
-    pub a: Matrix6<f64>,
-    /// Control matrix, 6 x 2.
-    pub b: Matrix6x2<f64>,
+pub struct Dynamics<const N: usize = STATES> {
+    /// State matrix, N x N.
+    pub a: SMatrix<f64, N, N>,
+    /// Control matrix, N x 2.
+    pub b: SMatrix<f64, N, 2>,
     /// Next state from the state zero without control.
-    pub offset: Vector6<f64>,
+    pub offset: SVector<f64, N>,
 }
 
-impl Dynamics {
+impl<const N: usize> Dynamics<N> {
     /// Dynamics of zeros, to be filled.
     #[must_use]
     pub const fn at_rest() -> Self {
         Self {
-            a: StageModel::at_rest().a,
-            b: StageModel::at_rest().b,
-            offset: Vector6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]])),
+            a: SMatrix::from_array_storage(ArrayStorage([[0.0; N]; N])),
+            b: SMatrix::from_array_storage(ArrayStorage([[0.0; N]; 2])),
+            offset: SVector::from_array_storage(ArrayStorage([[0.0; N]])),
         }
     }
 
     /// The state after the stage.
     #[must_use]
-    pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
+    pub fn step(&self, state: &StageState<N>, control: &StageControl) -> StageState<N> {
         let [elevator, thrust] = *control;
         let control = self.b * Vector2::new(elevator, thrust);
-        (self.a * Vector6::from(*state) + control + self.offset).into()
+        (self.a * SVector::from(*state) + control + self.offset).into()
     }
 }
 

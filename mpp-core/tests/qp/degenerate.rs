@@ -310,7 +310,10 @@ fn stages_that_cannot_be_steered_leave_only_thrust_rows_a_say() {
     let mut draw = Draw::new(58);
     let mut setup = Setup::all().into_iter().next().unwrap();
     setup.model.b = Dynamics::at_rest().b;
-    setup.shared.condense(&setup.model, &setup.weights).unwrap();
+    setup
+        .shared
+        .condense(&setup.model.dynamics(), &setup.weights)
+        .unwrap();
     let still = [[0.0; 2]; STAGES];
     for _ in 0..20 {
         let mut problem = bare(&setup, &mut draw);

@@ -26,7 +26,7 @@ impl Setup {
         let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
         let model = StageModel::new(&trim, &linear, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
-        shared.condense(&model, &weights).unwrap();
+        shared.condense(&model.dynamics(), &weights).unwrap();
         Self {
             model,
             weights,

@@ -46,7 +46,7 @@ fn scaled(setup: &Setup, problem: &Problem, factor: f64) -> (Box<Condensed>, Pro
         terminal: factor * setup.weights.terminal,
     };
     let mut shared = Box::new(Condensed::new());
-    shared.condense(&setup.model, &weights).unwrap();
+    shared.condense(&setup.model.dynamics(), &weights).unwrap();
     let penalty = problem.penalty.map(|penalty| Penalty {
         linear: factor * penalty.linear,
         quadratic: factor * penalty.quadratic,
@@ -134,7 +134,7 @@ fn mirrored(setup: &Setup, problem: &Problem) -> (Box<Condensed>, Problem) {
         }
     }
     let mut shared = Box::new(Condensed::new());
-    shared.condense(&model, &setup.weights).unwrap();
+    shared.condense(&model.dynamics(), &setup.weights).unwrap();
     let mut bounds = Bounds::none();
     for row in 0..ROWS {
         bounds.0[mirrored_row(row)] = problem.bounds.0[row];

@@ -76,7 +76,8 @@ fn a_workspace_forgets_what_it_condensed_before() {
         condense(&mut used, &stages, setup).unwrap();
         let fresh = condensed(setup, &stages);
         assert_eq!(trace(&used, &problem), trace(&fresh, &problem));
-        used.condense(&setup.model, &setup.weights).unwrap();
+        used.condense(&setup.model.dynamics(), &setup.weights)
+            .unwrap();
         assert_eq!(trace(&used, &problem), trace(&setup.shared, &problem));
     }
 }

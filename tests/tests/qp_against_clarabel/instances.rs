@@ -43,7 +43,7 @@ impl Preset {
         let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
         let model = StageModel::new(&trim, &linear, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
-        shared.condense(&model, &weights).unwrap();
+        shared.condense(&model.dynamics(), &weights).unwrap();
         Self {
             own,
             weights,
@@ -190,7 +190,7 @@ pub(crate) fn next_instances(draw: &mut Draw, preset: &Preset) -> Vec<Instance> 
         let cruise = preset.trim.state.airspeed;
         corridor.trace(&grid, &points, cruise, &own.padding, own.rules);
         instances.push(Instance {
-            initial: preset.shared.initial_state(&preset.trim, &estimate),
+            initial: preset.model.initial_state(&preset.trim, &estimate),
             target: [0.0, height_missing, 0.0, 0.0, 0.0, 0.0],
             corridor,
             attitude: preset.attitude.map(|limits| {

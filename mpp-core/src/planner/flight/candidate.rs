@@ -5,10 +5,15 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::qp::{Dynamics, Solution, StageState};
 use crate::trajectory::STEPS;
 use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
-use nalgebra::{Matrix6, Matrix6x2, Vector2, Vector6};
+use nalgebra::{SMatrix, SVector, Vector2};
 
 /// Angles of the program are in tenths of a radian, so that they have about the same weight as metres.
 pub(super) const ANGLE_SCALE: f64 = 10.0;
+/// Number of states of a program: there is no pitch rate.
+pub(super) const MOTION_STATES: usize = 5;
+/// State of a program: deviations in x, z, airspeed, pitch and flight path.
+pub(super) type MotionState = StageState<MOTION_STATES>;
+
 /// A trajectory as the aircraft would fly it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
@@ -21,7 +26,12 @@ pub(super) struct Candidate {
 impl Candidate {
     /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
     /// attack and the thrust.
-    pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
+    pub(super) fn roll_out(
+        &mut self,
+        solution: &Solution<MOTION_STATES>,
+        frame: &Frame,
+        limits: &Limits,
+    ) {
         let [down, up] = limits.rolled_out;
         let trim = &frame.trim;
         let level = trim.state.angle_of_attack();
@@ -61,22 +71,25 @@ impl Frame {
     }
 
     /// The program's state: deviations in position and speed, and in pitch and flight path in tenths of a
-    /// radian. The pitch rate is not used and is zero.
-    pub(super) fn deviation(&self, state: &PathState, stage: usize) -> Vector6<f64> {
+    /// radian.
+    pub(super) fn deviation(&self, state: &PathState, stage: usize) -> SVector<f64, MOTION_STATES> {
         let trim = &self.trim.state;
         let level = self.start.x + trim.airspeed * STAGE_PERIOD * stage as f64;
-        Vector6::new(
+        SVector::from([
             state.x - level,
             state.z - self.start.z,
             state.airspeed - trim.airspeed,
             ANGLE_SCALE * (state.flight_path + state.angle_of_attack - trim.pitch),
-            0.0,
             ANGLE_SCALE * (state.flight_path - trim.flight_path),
-        )
+        ])
     }
 
     /// Writes the dynamics of each stage, linearised about a candidate.
-    pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
+    pub(super) fn linearise(
+        &self,
+        candidate: &Candidate,
+        dynamics: &mut [Dynamics<MOTION_STATES>; STAGES],
+    ) {
         let [_, following @ ..] = &candidate.knots;
         let knots = candidate.knots.iter().zip(following);
         let stages = dynamics.iter_mut().zip(knots.zip(&candidate.controls));
@@ -90,10 +103,9 @@ impl Frame {
                 *turning -= alpha;
             }
             let [alpha, turning] = [alpha, turning].map(|column| column.map(|it| it / ANGLE_SCALE));
-            let a: Matrix6<f64> = [x, z, v, alpha, [0.0; 5], turning]
-                .map(program_state)
-                .into();
-            let b: Matrix6x2<f64> = input.data.0.map(program_state).into();
+            let a: SMatrix<f64, MOTION_STATES, MOTION_STATES> =
+                [x, z, v, alpha, turning].map(program_state).into();
+            let b: SMatrix<f64, MOTION_STATES, 2> = input.data.0.map(program_state).into();
             // A roll-out ends each stage in its next knot; a path need not.
             let next = if candidate.price.is_finite() {
                 *following
@@ -110,7 +122,7 @@ impl Frame {
 }
 
 /// Converts deviations of the point mass to the program's state.
-fn program_state([x, z, v, path, alpha]: [f64; 5]) -> StageState {
+fn program_state([x, z, v, path, alpha]: [f64; 5]) -> MotionState {
     let pitch = ANGLE_SCALE * (path + alpha);
-    [x, z, v, pitch, 0.0, ANGLE_SCALE * path]
+    [x, z, v, pitch, ANGLE_SCALE * path]
 }

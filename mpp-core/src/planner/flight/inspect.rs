@@ -1,12 +1,13 @@
 //! What others may see of a cycle: map, candidates, programs. And another candidate than the best, for whoever
 //! chooses himself.
 
+use super::candidate::{MOTION_STATES, MotionState};
 use super::judge::PriceParts;
 use super::workspace::Workspace;
 use super::{FlightPlanner, Phase};
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::{ClearanceField, MemoryMap};
-use crate::qp::{Dynamics, Problem};
+use crate::qp::{Dynamics, Problem, STATES, StageState};
 use crate::trajectory::Trajectory;
 
 impl FlightPlanner {
@@ -23,22 +24,36 @@ impl FlightPlanner {
 
     /// The path of the present candidate and its program; see [`crate::planner::Planner::candidate`].
     #[must_use]
-    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], Problem)> {
         if self.phase != Phase::Improve {
             return None;
         }
         let candidate = self.candidates.get(self.at_hand)?;
         let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
-        Some((path, &self.solver.problem))
+        let Problem {
+            initial,
+            target,
+            bounds,
+            penalty,
+            cost_limit,
+        } = self.solver.problem;
+        let problem = Problem {
+            initial: with_pitch_rate(initial),
+            target: with_pitch_rate(target),
+            bounds,
+            penalty,
+            cost_limit,
+        };
+        Some((path, problem))
     }
 
     /// The dynamics of every stage in the program of [`Self::candidate`], if there is one.
     #[must_use]
-    pub fn stages(&self) -> Option<&[Dynamics; STAGES]> {
-        match &self.workspace {
-            Workspace::Program(shared) => Some(shared.stages()),
-            _ => None,
-        }
+    pub fn stages(&self) -> Option<[Dynamics; STAGES]> {
+        let Workspace::Program(shared) = &self.workspace else {
+            return None;
+        };
+        Some(shared.stages().each_ref().map(dynamics_with_pitch_rate))
     }
 
     /// Price of the best trajectory so far, by which the planner ranks trajectories. It is infinite without one.
@@ -101,5 +116,19 @@ impl FlightPlanner {
     #[must_use]
     pub fn map(&self) -> &MemoryMap {
         &self.map
+    }
+}
+
+/// A state in the form of the paper's programs: with a pitch rate, which is zero.
+fn with_pitch_rate([x, z, v, pitch, path]: MotionState) -> StageState {
+    [x, z, v, pitch, 0.0, path]
+}
+
+fn dynamics_with_pitch_rate(stage: &Dynamics<MOTION_STATES>) -> Dynamics {
+    let [x, z, v, pitch, path] = stage.a.data.0.map(with_pitch_rate);
+    Dynamics {
+        a: [x, z, v, pitch, [0.0; STATES], path].into(),
+        b: stage.b.data.0.map(with_pitch_rate).into(),
+        offset: with_pitch_rate(stage.offset.into()).into(),
     }
 }

@@ -47,7 +47,7 @@ use crate::units::Units;
 use crate::vehicle::{
     ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
 };
-use candidate::{Candidate, Frame};
+use candidate::{Candidate, Frame, MOTION_STATES};
 pub use judge::PriceParts;
 use limits::Limits;
 use workspace::{Intake, Workspace};
@@ -126,7 +126,7 @@ pub struct FlightPlanner {
     order: [usize; MAX_CANDIDATES],
     /// Index of the candidate that the planner improves now.
     at_hand: usize,
-    solver: Solver,
+    solver: Solver<MOTION_STATES>,
 
     // Results of the cycle. The best trajectory outlives the cycle.
     best: Trajectory,
@@ -205,7 +205,7 @@ impl FlightPlanner {
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
-        self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
+        self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.solver
             .problem

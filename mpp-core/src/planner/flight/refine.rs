@@ -3,7 +3,7 @@
 
 use super::super::shared::STEPS_PER_SLICE;
 use super::super::summary::FEASIBLE;
-use super::candidate::{ANGLE_SCALE, Candidate};
+use super::candidate::{ANGLE_SCALE, Candidate, MOTION_STATES};
 use super::limits::Limits;
 use super::workspace::Workspace;
 use super::{FlightPlanner, MAX_CANDIDATES, Phase};
@@ -120,7 +120,7 @@ impl FlightPlanner {
 
     /// Computes the roll-out of the solution, judges it, and keeps it if it is the best.
     #[inline(never)]
-    fn fly_out(&mut self, solution: &Solution) {
+    fn fly_out(&mut self, solution: &Solution<MOTION_STATES>) {
         let mut flown = self.cruising();
         flown.roll_out(solution, &self.frame(), &self.limits);
         let judgement = self.judge(&flown);

@@ -53,6 +53,7 @@ pub struct PaperPlanner {
     padding: Padding,
     airframe: Airframe,
     trim: Trim,
+    model: StageModel,
     shared: Condensed,
     /// Random numbers of the tree; `None` until the planner is set up.
     random: Option<Pcg64Mcg>,
@@ -85,6 +86,7 @@ impl PaperPlanner {
             padding: Padding::AUTHORS,
             airframe: Airframe::REFERENCE,
             trim: NO_TRIM,
+            model: StageModel::at_rest(),
             shared: Condensed::new(),
             random: None,
             phase: Phase::Idle,
@@ -129,9 +131,9 @@ impl PaperPlanner {
         let airframe = &settings.airframe;
         let trim = check(settings)?;
         let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
-        let model = StageModel::new(&trim, &linear, own.initial).map_err(SetupError::Model)?;
+        self.model = StageModel::new(&trim, &linear, own.initial).map_err(SetupError::Model)?;
         self.shared
-            .condense(&model, &planner.weights)
+            .condense(&self.model.dynamics(), &planner.weights)
             .map_err(SetupError::Condense)?;
         self.paths = planner.paths;
         self.altitude = planner.altitude;
@@ -165,7 +167,7 @@ impl PaperPlanner {
         self.time = time;
         self.state = *state;
         self.scan.clone_from(scan);
-        self.problem.initial = self.shared.initial_state(&self.trim, &state.air);
+        self.problem.initial = self.model.initial_state(&self.trim, &state.air);
         self.problem.target = [0.0, self.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
         self.problem.bounds.set_thrust(self.trim.control.thrust);
         self.summary = PlanSummary::NOTHING;
@@ -243,7 +245,7 @@ impl PaperPlanner {
     /// The linear model of the programs.
     #[must_use]
     pub fn model(&self) -> &StageModel {
-        self.shared.model()
+        &self.model
     }
 
     /// Collocation points of the present candidate.
@@ -260,12 +262,12 @@ impl PaperPlanner {
 
     /// The path of the present candidate and its program; see [`super::Planner::candidate`].
     #[must_use]
-    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], &Problem)> {
+    pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], Problem)> {
         let origin = GridPoint::AIRCRAFT;
         let VehicleState { x, z, .. } = self.state;
         let place = |point: GridPoint| (x + point.col - origin.col, z + point.row - origin.row);
         self.program()
-            .map(|problem| (self.points.map(place), problem))
+            .map(|problem| (self.points.map(place), *problem))
     }
 }
 

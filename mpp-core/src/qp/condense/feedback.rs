@@ -14,44 +14,43 @@
 use crate::config::STAGES;
 use crate::qp::controls::ControlVector;
 use crate::qp::{Dynamics, StageControl, StageState, Weights};
-use nalgebra::{Matrix2, Matrix2x6, Matrix6, Vector2, Vector6};
+use nalgebra::{ArrayStorage, Matrix2, SMatrix, SVector, Vector2};
 
 /// Feedback of one stage.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Feedback {
-    /// `F`, 2 x 6.
-    pub(super) gain: Matrix2x6<f64>,
+pub(super) struct Feedback<const N: usize> {
+    /// `F`, 2 x N.
+    pub(super) gain: SMatrix<f64, 2, N>,
     /// `T`, 2 x 2, lower triangular.
     pub(super) scale: Matrix2<f64>,
     /// `S d`: the part of the slope `s` that the offset of the stage adds.
-    offset_slope: Vector6<f64>,
+    offset_slope: SVector<f64, N>,
 }
 
-impl Feedback {
+impl<const N: usize> Feedback<N> {
     /// Feedback of zeros, to be filled.
     pub(super) const fn none() -> Self {
-        let zero = nalgebra::ArrayStorage([[0.0; 2]; 6]);
         Self {
-            gain: Matrix2x6::from_array_storage(zero),
-            scale: Matrix2::from_array_storage(nalgebra::ArrayStorage([[0.0; 2]; 2])),
-            offset_slope: Vector6::from_array_storage(nalgebra::ArrayStorage([[0.0; 6]])),
+            gain: SMatrix::from_array_storage(ArrayStorage([[0.0; 2]; N])),
+            scale: Matrix2::from_array_storage(ArrayStorage([[0.0; 2]; 2])),
+            offset_slope: SVector::from_array_storage(ArrayStorage([[0.0; N]])),
         }
     }
 
     /// State matrix of the stage under the feedback, `A - B F`.
-    pub(super) fn closed(&self, dynamics: &Dynamics) -> Matrix6<f64> {
+    pub(super) fn closed(&self, dynamics: &Dynamics<N>) -> SMatrix<f64, N, N> {
         dynamics.a - dynamics.b * self.gain
     }
 
     /// The control `-F x - g + T v`.
     pub(super) fn control(
         &self,
-        state: &StageState,
+        state: &StageState<N>,
         feedforward: &StageControl,
         normalised: &StageControl,
     ) -> StageControl {
         let [g, v] = [feedforward, normalised].map(|pair| Vector2::from(*pair));
-        let state = Vector6::from(*state);
+        let state = SVector::from(*state);
         (self.scale * v - self.gain * state - g).into()
     }
 }
@@ -60,13 +59,13 @@ impl Feedback {
 /// positive definite or the model is not finite.
 // Not inlined, so that its matrices do not lie on the stack beneath the response.
 #[inline(never)]
-pub(super) fn design(
-    dynamics: &[Dynamics; STAGES],
+pub(super) fn design<const N: usize>(
+    dynamics: &[Dynamics<N>; STAGES],
     weights: &Weights,
-    feedback: &mut [Feedback; STAGES],
+    feedback: &mut [Feedback<N>; STAGES],
 ) -> Option<()> {
     let control = Matrix2::from_diagonal(&Vector2::from(weights.control));
-    let mut cost = Matrix6::from_diagonal_element(weights.terminal);
+    let mut cost = SMatrix::<f64, N, N>::from_diagonal_element(weights.terminal);
     for (stage, feedback) in dynamics.iter().zip(feedback).rev() {
         let Dynamics { a, b, offset } = stage;
         let weighted = b.transpose() * cost;
@@ -85,14 +84,14 @@ pub(super) fn design(
 }
 
 /// The feedforward `g` of every stage for a target of the last state.
-pub(super) fn feedforward(
-    dynamics: &[Dynamics; STAGES],
+pub(super) fn feedforward<const N: usize>(
+    dynamics: &[Dynamics<N>; STAGES],
     weights: &Weights,
-    feedback: &[Feedback; STAGES],
-    target: &StageState,
+    feedback: &[Feedback<N>; STAGES],
+    target: &StageState<N>,
 ) -> ControlVector {
     let mut controls = [[0.0; 2]; STAGES];
-    let mut slope = Vector6::from(*target) * -weights.terminal;
+    let mut slope = SVector::from(*target) * -weights.terminal;
     let stages = dynamics.iter().zip(feedback).zip(&mut controls);
     for ((stage, feedback), control) in stages.rev() {
         let Feedback {
