@@ -36,7 +36,7 @@ const TASK: LatticeTask = LatticeTask {
 
 fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) {
     let mut lattice = Box::new(Lattice::new());
-    lattice.start(task);
+    lattice.start(task, field);
     let mut slices = 1;
     while lattice.advance(field) {
         slices += 1;
@@ -213,7 +213,7 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
         let field = field(&random_map(&mut draw, 100.0, 2));
         let task = tasks(&mut draw);
         let mut lattice = Box::new(Lattice::new());
-        lattice.start(&task);
+        lattice.start(&task, &field);
         while lattice.advance(&field) {}
         let mut found = heapless::Vec::new();
         lattice.paths(&mut found);
@@ -308,7 +308,7 @@ fn a_search_that_is_started_again_is_as_new() {
         TASK,
     ]
     .map(|task| {
-        lattice.start(&task);
+        lattice.start(&task, &field);
         while lattice.advance(&field) {}
         let mut paths = heapless::Vec::new();
         lattice.paths(&mut paths);

@@ -4,7 +4,7 @@ use super::error::FigureError;
 use super::mark::{Mark, Outline};
 use super::page::{COLUMN, Sample, document, legend, legend_height};
 use super::panel::{Axis, Panel};
-use crate::campaign::{AgainstCeiling, Cell, CellReport, Report};
+use crate::campaign::{AgainstCeiling, Campaign, Cell, CellReport, Report};
 use mpp_sim::scenario::Preset;
 use plotters::prelude::*;
 
@@ -43,27 +43,26 @@ pub enum Rule {
 }
 
 /// Draws a panel for each preset and replanning rate of a campaign, with a curve for each number of
-/// paths. Rings beside a curve's marks are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
+/// paths. Presets with one number of paths share a panel. Rings beside a curve's marks are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
 /// ceiling's band reaches from the fields that are proven to be passable to those that are not proven to be blocked.
 ///
 /// # Errors
 /// [`FigureError`].
 pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
-    let paths = &report.campaign.paths;
-    let names: Vec<String> = paths.iter().map(|paths| name(*paths)).collect();
+    let names = names(&report.campaign);
     let mut entries: Vec<(Sample, &str)> = names
         .iter()
         .enumerate()
         .map(|(index, name)| {
             (
-                Sample::Curve(shade(index, paths.len()), Outline::of_curve(index)),
+                Sample::Curve(shade(index, names.len()), Outline::of_curve(index)),
                 name.as_str(),
             )
         })
         .collect();
     if report.campaign.oracle {
         entries.push((
-            Sample::Curve(ORACLE, Outline::of_curve(paths.len())),
+            Sample::Curve(ORACLE, Outline::of_curve(names.len())),
             "oracle",
         ));
     }
@@ -92,12 +91,23 @@ pub fn success_svg(report: &Report, rule: Rule) -> Result<String, FigureError> {
     })
 }
 
-fn name(paths: u16) -> String {
-    match paths {
+/// Whether presets share a panel: there is one number of paths.
+fn shared(campaign: &Campaign) -> bool {
+    campaign.paths.len() == 1 && campaign.preset.len() > 1
+}
+
+/// What the curves of a panel are called.
+fn names(campaign: &Campaign) -> Vec<String> {
+    if shared(campaign) {
+        let presets = campaign.preset.iter();
+        return presets.map(|preset| preset.name().to_owned()).collect();
+    }
+    let name = |paths: &u16| match paths {
         0 => "RRT* alone".to_owned(),
         1 => "1 path".to_owned(),
         more => format!("{more} paths"),
-    }
+    };
+    campaign.paths.iter().map(name).collect()
 }
 
 /// The colour of a curve. The colours go evenly from light to dark.
@@ -113,59 +123,68 @@ fn shade(index: usize, count: usize) -> RGBColor {
 
 fn panels(report: &Report, rule: Rule) -> Vec<Panel> {
     let campaign = &report.campaign;
+    let groups: Vec<&[Preset]> = if shared(campaign) {
+        vec![&campaign.preset]
+    } else {
+        campaign.preset.chunks(1).collect()
+    };
+    let rates = |group| campaign.replan_hz.iter().map(move |rate| (group, *rate));
+    let panels = groups.into_iter().flat_map(rates);
+    panels
+        .map(|(presets, replan_hz)| panel(report, rule, presets, replan_hz))
+        .collect()
+}
+
+/// The curves of some presets at a replanning rate, with those of the oracle and of the ceiling.
+fn panel(report: &Report, rule: Rule, presets: &[Preset], replan_hz: f64) -> Panel {
+    let campaign = &report.campaign;
     let most = campaign.obstacles.iter().copied().max().unwrap_or(0) as f64;
-    let mut panels = Vec::new();
-    for &preset in &campaign.preset {
-        for &replan_hz in &campaign.replan_hz {
-            let x = Axis::tight("Obstacles", -0.02 * most..1.03 * most.max(1.0), 8);
-            let y_label = match rule {
-                Rule::Paper => "Success (%)",
-                Rule::Strict => "Strict success (%)",
-            };
-            let mut panel = Panel::new(x, Axis::tight(y_label, -3.0..108.0, 6));
-            for (index, &paths) in campaign.paths.iter().enumerate() {
-                let cells = cells(report, |cell| {
-                    let key = (cell.preset, cell.paths, cell.oracle);
-                    key == (preset, paths, false) && cell.replan_hz.to_bits() == replan_hz.to_bits()
-                });
-                let colour = shade(index, campaign.paths.len());
-                // Marks of one number of obstacles stand beside each other.
-                let beside =
-                    (index as f64 - 0.5 * (campaign.paths.len() as f64 - 1.0)) * 0.012 * most;
-                let look = Look {
-                    colour,
-                    outline: Outline::of_curve(index),
-                    beside,
-                };
-                curve(&mut panel, &cells, rule, &look);
-                if rule == Rule::Paper && preset == Preset::Reference {
-                    let beside = |(x, rate): (f64, f64)| (x + beside, rate);
-                    panel
-                        .marks
-                        .extend(published(paths).into_iter().map(beside).map(|at| Mark {
-                            at,
-                            outline: Outline::Ring,
-                            colour: PUBLISHED,
-                        }));
-                }
-            }
-            let oracle = cells(report, |cell| cell.oracle);
-            let look = Look {
-                colour: ORACLE,
-                outline: Outline::of_curve(campaign.paths.len()),
-                beside: 0.0,
-            };
-            curve(&mut panel, &oracle, rule, &look);
-            ceiling(&mut panel, &cells(report, |_| true));
-            let of_panel = cells(report, |cell| {
-                cell.preset == preset && cell.replan_hz.to_bits() == replan_hz.to_bits()
+    let x = Axis::tight("Obstacles", -0.02 * most..1.03 * most.max(1.0), 8);
+    let y_label = match rule {
+        Rule::Paper => "Success (%)",
+        Rule::Strict => "Strict success (%)",
+    };
+    let mut panel = Panel::new(x, Axis::tight(y_label, -3.0..108.0, 6));
+    let at_rate = |cell: &Cell| cell.replan_hz.to_bits() == replan_hz.to_bits();
+    let curves: Vec<(Preset, u16)> = presets
+        .iter()
+        .flat_map(|preset| campaign.paths.iter().map(|paths| (*preset, *paths)))
+        .collect();
+    for (index, &(preset, paths)) in curves.iter().enumerate() {
+        let cells = cells(report, |cell| {
+            (cell.preset, cell.paths, cell.oracle) == (preset, paths, false) && at_rate(cell)
+        });
+        // Marks of one number of obstacles stand beside each other.
+        let beside = (index as f64 - 0.5 * (curves.len() as f64 - 1.0)) * 0.012 * most;
+        let look = Look {
+            colour: shade(index, curves.len()),
+            outline: Outline::of_curve(index),
+            beside,
+        };
+        curve(&mut panel, &cells, rule, &look);
+        if rule == Rule::Paper && preset == Preset::Reference {
+            let rings = published(paths).into_iter().map(|(x, rate)| Mark {
+                at: (x + beside, rate),
+                outline: Outline::Ring,
+                colour: PUBLISHED,
             });
-            let words = format!("{}, {replan_hz} Hz{}", preset.name(), flights(&of_panel));
-            panel.labels.push(((0.02 * most, 8.0), words, BLACK));
-            panels.push(panel);
+            panel.marks.extend(rings);
         }
     }
-    panels
+    let look = Look {
+        colour: ORACLE,
+        outline: Outline::of_curve(curves.len()),
+        beside: 0.0,
+    };
+    curve(&mut panel, &cells(report, |cell| cell.oracle), rule, &look);
+    ceiling(&mut panel, &cells(report, |_| true));
+    let of_panel = cells(report, |cell| {
+        !cell.oracle && presets.contains(&cell.preset) && at_rate(cell)
+    });
+    let names: Vec<&str> = presets.iter().map(|preset| preset.name()).collect();
+    let words = format!("{}, {replan_hz} Hz{}", names.join(", "), flights(&of_panel));
+    panel.labels.push(((0.02 * most, 8.0), words, BLACK));
+    panel
 }
 
 /// The flown cells of a curve, by obstacles.

@@ -323,4 +323,13 @@ fn success_curves_show_every_cell_and_the_papers_results() {
     let strict = strict.matches("<polygon").count();
     assert_eq!(svg.matches("<polygon").count(), strict + 2 * (1 + 3) + 1);
     assert!(svg.contains(">\noracle\n<"));
+    // With one number of paths the presets are curves of one panel.
+    campaign.paths = vec![25];
+    let together = success_svg(&flown(Report::new(&campaign, &[])), Rule::Strict).unwrap();
+    assert_eq!(
+        together.matches("<polygon").count(),
+        3 * (1 + 3) + 3,
+        "two presets and the oracle"
+    );
+    assert!(together.contains("reference, flight, 1 Hz, n = 4"));
 }

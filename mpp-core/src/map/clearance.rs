@@ -137,7 +137,6 @@ impl ClearanceField {
         let mut column = Column {
             along: [0.0; ROWS],
             unknown: [false; ROWS],
-            floor: self.floor,
             body_radius: self.body_radius,
         };
         for (along, distances) in column.along.iter_mut().zip(&self.distance) {
@@ -150,6 +149,17 @@ impl ClearanceField {
             }
         }
         column
+    }
+
+    /// Where a height \[m\] lies in the field.
+    pub(crate) fn height(&self, z: f64) -> Height {
+        let (below, up) = split((z - self.floor) / CELL - 0.5, ROWS);
+        let within = cell((z - self.floor) / CELL).unwrap_or(ROWS);
+        Height {
+            below: below as u8,
+            within: within.min(ROWS) as u8,
+            up,
+        }
     }
 
     /// Whether the cell of a point is in the window and the map knows nothing of it.
@@ -210,23 +220,42 @@ pub(crate) struct Column {
     /// Distances between the cell centres of a row, by row [1 / PARTS m].
     along: [f64; ROWS],
     unknown: [bool; ROWS],
-    floor: f64,
     body_radius: f64,
+}
+
+/// A height in the clearance field, for callers that ask at many places downrange.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Height {
+    /// The last row whose centre is below.
+    below: u8,
+    /// The row that contains the height; [`ROWS`] outside of the field.
+    within: u8,
+    /// Share of the way from the centre of the row below to that of the next one [-].
+    up: f64,
+}
+
+impl Height {
+    /// The lowest row, to be overwritten.
+    pub(crate) const LOWEST: Self = Self {
+        below: 0,
+        within: 0,
+        up: 0.0,
+    };
 }
 
 impl Column {
     /// The same as [`ClearanceField::distance`].
-    pub(crate) fn distance(&self, z: f64) -> f64 {
-        let (row, up) = split((z - self.floor) / CELL - 0.5, ROWS);
+    pub(crate) fn distance(&self, height: &Height) -> f64 {
+        let Height { below, up, .. } = *height;
+        let row = usize::from(below);
         let (low, high) = (self.along[row % ROWS], self.along[(row + 1) % ROWS]);
         (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
     /// The same as [`ClearanceField::is_unknown`].
-    pub(crate) fn is_unknown(&self, z: f64) -> bool {
-        let row = cell((z - self.floor) / CELL);
-        row.and_then(|row| self.unknown.get(row))
-            .is_some_and(|unknown| *unknown)
+    pub(crate) fn is_unknown(&self, height: &Height) -> bool {
+        let unknown = self.unknown.get(usize::from(height.within));
+        unknown.is_some_and(|unknown| *unknown)
     }
 }
 

@@ -16,8 +16,8 @@ use crate::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use crate::sense::LidarScan;
 use crate::vehicle::VehicleState;
 pub(crate) use cell::rounded_down;
-pub(crate) use clearance::split;
 pub use clearance::{ClearanceField, FAR};
+pub(crate) use clearance::{Height, split};
 pub use memory::{LoneHits, MemoryMap};
 pub use point::GridPoint;
 pub(crate) use walk::CellWalk;
@@ -270,10 +270,13 @@ mod tests {
                 least + (most - least) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
             };
             let (x, z) = (between(95.0, 175.0), between(30.0, 75.0));
-            let column = field.column(x);
-            assert_eq!(column.distance(z).to_bits(), field.distance(x, z).to_bits());
-            assert_eq!(column.is_unknown(z), field.is_unknown(x, z));
-            unknown += u32::from(column.is_unknown(z));
+            let (column, height) = (field.column(x), field.height(z));
+            assert_eq!(
+                column.distance(&height).to_bits(),
+                field.distance(x, z).to_bits()
+            );
+            assert_eq!(column.is_unknown(&height), field.is_unknown(x, z));
+            unknown += u32::from(column.is_unknown(&height));
         }
         assert!(unknown > 100, "{unknown} points were unknown");
     }

@@ -10,7 +10,7 @@
 mod cost_to_go;
 mod edges;
 
-use crate::map::ClearanceField;
+use crate::map::{ClearanceField, Height};
 use crate::tuning::lattice::{
     AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, MARGIN, MARGIN_PRICE, RISE, SPACING, STRETCH,
 };
@@ -68,6 +68,8 @@ pub struct Lattice {
     layer: Layer,
     /// The same one station on, as far as the search knows it.
     next: Layer,
+    /// The heights of the points.
+    points: [Point; POINTS],
     /// Prices of the points of the present edges.
     prices: Prices,
     /// Costs from the start to the via station.
@@ -98,6 +100,7 @@ impl Lattice {
             station: STATIONS,
             layer: NO_COSTS,
             next: NO_COSTS,
+            points: [Point::NONE; POINTS],
             prices: NO_PRICES,
             to_via: NO_COSTS,
             before: [[[0; HEIGHTS]; _]; VIA + 1],
@@ -106,8 +109,12 @@ impl Lattice {
     }
 
     /// Starts a search. For an aircraft that turns less, the stations are farther apart and the slopes finer.
-    pub fn start(&mut self, task: &LatticeTask) {
+    /// The field must not change during the search.
+    pub fn start(&mut self, task: &LatticeTask, field: &ClearanceField) {
         self.task = *task;
+        for (place, point) in self.points.iter_mut().enumerate() {
+            *point = Point::new(task, field, place);
+        }
         // RISE = spacing * step / 2 holds at every spacing.
         let stretch = libm::sqrt(AGILE / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
         self.spacing = SPACING * stretch;
@@ -229,20 +236,18 @@ impl Lattice {
             } else {
                 0.0
             };
-            let points = prices.iter_mut().skip(EDGE_REACH).enumerate();
-            for (point, price) in points.take(last).skip(first) {
-                let z = task.z + 0.5 * RISE * (point as f64 - f64::from(2 * MIDDLE));
-                let from_altitude = z - task.altitude;
-                let outside = (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0);
-                let distance = column.distance(z);
-                let lack = (MARGIN - distance).max(0.0) + outside;
+            let prices = prices.get_mut(EDGE_REACH + first..EDGE_REACH + last);
+            let points = self.points.get(first..last).unwrap_or_default();
+            for (price, point) in prices.unwrap_or_default().iter_mut().zip(points) {
+                let distance = column.distance(&point.height);
+                let lack = (MARGIN - distance).max(0.0) + point.outside;
                 let crowded = (task.room - distance).max(0.0);
                 let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
-                if column.is_unknown(z) {
+                if column.is_unknown(&point.height) {
                     cost += unknown;
                 }
                 if quarter + 1 == QUARTERS {
-                    cost += ALTITUDE_PRICE * from_altitude * from_altitude;
+                    cost += point.altitude_price;
                 }
                 *price = (COST_UNIT * cost).min(DEAREST) as u32;
             }
@@ -314,6 +319,34 @@ impl Lattice {
             *place = z(at.0);
         }
         path
+    }
+}
+
+/// What the prices of the points at one height have in common.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    height: Height,
+    /// Distance beyond the band less its margin \[m\].
+    outside: f64,
+    /// Price of the distance from the altitude [-].
+    altitude_price: f64,
+}
+
+impl Point {
+    const NONE: Self = Self {
+        height: Height::LOWEST,
+        outside: 0.0,
+        altitude_price: 0.0,
+    };
+
+    fn new(task: &LatticeTask, field: &ClearanceField, place: usize) -> Self {
+        let z = task.z + 0.5 * RISE * (place as f64 - f64::from(2 * MIDDLE));
+        let from_altitude = z - task.altitude;
+        Self {
+            height: field.height(z),
+            outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
+            altitude_price: ALTITUDE_PRICE * from_altitude * from_altitude,
+        }
     }
 }
 

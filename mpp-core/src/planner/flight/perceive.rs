@@ -46,7 +46,7 @@ impl FlightPlanner {
         };
         self.workspace = Workspace::Lattice(Lattice::new());
         if let Workspace::Lattice(lattice) = &mut self.workspace {
-            lattice.start(&task);
+            lattice.start(&task, &self.field);
         }
         self.phase = Phase::Lattice;
     }
