@@ -130,6 +130,24 @@ fn without_turns_the_elevator_shows_nothing() {
     assert!(seen.iter().all(|trust| *trust == Trust::Healthy));
 }
 
+/// An elevator that was seen to answer is not corrected for a weakness that is soon over.
+#[test]
+fn a_proven_elevator_must_look_weak_for_longer() {
+    for seed in 0..5 {
+        let found_after = |proven: f64| {
+            let mut flight = Flight::new(0.3, seed);
+            let seen = flight.fly(proven, 1.0, 4.0);
+            assert!(seen.iter().all(|trust| *trust == Trust::Healthy), "{seed}");
+            let weak = flight.fly(6.0, 0.25, 4.0);
+            let found = weak.iter().position(|trust| *trust == Trust::Suspected);
+            found.unwrap() as f64 * TICK_PERIOD
+        };
+        // The regression needs about 2.2 s to forget what the elevator did before.
+        let [new, proven] = [0.0, 3.0].map(found_after);
+        assert!(new < 1.5 && proven > 2.7, "{new} s and {proven} s");
+    }
+}
+
 /// A share of the effect that is next to nothing cannot be made up for.
 #[test]
 fn an_elevator_that_does_not_answer_is_told_and_not_corrected() {

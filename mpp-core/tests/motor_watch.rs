@@ -210,6 +210,35 @@ fn what_is_not_a_number_is_no_speed() {
     assert!(told.is_some());
 }
 
+/// The speed by positions is of no use when the position jumps, so the watch begins anew.
+#[test]
+fn after_a_jump_of_the_position_the_watch_settles_again() {
+    let told_after = |jump: f64| {
+        let mut watch = MotorWatch::new(3.2, 4.4, 12.0);
+        let (mut x, mut air) = (0.0, 12.0);
+        let mut told = None;
+        for tick in 0..3000_u32 {
+            let slower = -4.4 / 3.2 * TICK_PERIOD;
+            let corrected = if tick < 1000 { 0.0 } else { slower };
+            air += corrected;
+            x += TICK_PERIOD * air + if tick == 990 { jump } else { 0.0 };
+            let progress = Progress {
+                x,
+                air,
+                corrected,
+                wind: 0.0,
+            };
+            watch.update(&progress, 4.4, TICK_PERIOD);
+            told = told.or_else(|| watch.lost().then_some(tick));
+        }
+        told.unwrap()
+    };
+    assert!((1000..1200).contains(&told_after(0.0)));
+    for jump in [-5.0, 5.0] {
+        assert!(told_after(jump) > 1300, "{}", told_after(jump));
+    }
+}
+
 /// A gap between two ticks, and estimates that jump and say so, are no lost speed. A motor without a thrust to give cannot be lost.
 #[test]
 fn gaps_and_jumps_of_the_estimates_are_no_lost_motor() {

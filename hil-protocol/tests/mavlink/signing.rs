@@ -53,6 +53,21 @@ fn the_signer_never_uses_a_time_twice() {
     }
 }
 
+/// A receiver that learns the time refuses what was signed long before, from whichever sender.
+#[test]
+fn a_verifier_that_is_told_the_time_refuses_older_frames() {
+    let mut verifier = Verifier::new(key(), 0);
+    verifier.set_time(NOW);
+    verifier.set_time(NOW - 1);
+    assert_eq!(verifier.time(), NOW);
+    let hour = 3600 * 100_000;
+    assert_eq!(
+        verdict(&mut verifier, &signed(NOW - hour, 400)),
+        Err(Refusal::Old)
+    );
+    assert_eq!(verdict(&mut verifier, &signed(NOW + 1, 400)), Ok(()));
+}
+
 #[test]
 fn without_a_signature_nothing_passes() {
     let frame = Sender::new(255, 190).frame(&HEARTBEAT_DATA::DEFAULT);
