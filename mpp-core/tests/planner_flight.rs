@@ -20,7 +20,7 @@ use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::estimate::Conditions;
 use mpp_core::paths::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
-use mpp_core::qp::{MAX_ITERATIONS, Penalty};
+use mpp_core::qp::{Dynamics, MAX_ITERATIONS, Penalty};
 use mpp_core::settings::{FlightSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{PathControl, PathState, VehicleState};
@@ -102,6 +102,32 @@ fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
     assert_eq!(own.price().to_bits(), least.to_bits());
     assert_eq!(planner.summary().cost.to_bits(), effort.to_bits());
     assert!(own.price_parts(own.offers()).is_none());
+}
+
+/// The copies of a program and of its dynamics have the six states of the paper's programs.
+#[test]
+fn copies_of_a_program_have_a_pitch_rate_of_zero() {
+    let mut planner = planner(&Settings::flight());
+    let state = level(&planner);
+    let scan = scan(&[(125.0, 50.5, 1.0)], &state);
+    planner.begin(0.0, &state, &Conditions::STILL, &scan);
+    let mut seen = 0;
+    while planner.advance() {
+        let Some((_, problem)) = planner.candidate() else {
+            continue;
+        };
+        assert!(problem.initial[4].abs() + problem.target[4].abs() == 0.0);
+        for Dynamics { a, b, offset } in planner.flight().unwrap().stages().unwrap() {
+            let (row, column) = (a.row(4), a.column(4));
+            let of_rate = row.iter().chain(&column).chain([&b[(4, 0)], &b[(4, 1)]]);
+            assert!(of_rate.map(|entry| entry.abs()).sum::<f64>() + offset[4].abs() == 0.0);
+            // A path that points up climbs. The place turns nothing.
+            assert!(a[(1, 5)] > 0.0 && a[(5, 1)].abs() == 0.0);
+            assert!((a[(0, 0)] - 1.0).abs() + (a[(1, 1)] - 1.0).abs() == 0.0);
+        }
+        seen += 1;
+    }
+    assert!(seen > 3);
 }
 
 #[test]

@@ -253,7 +253,7 @@ fn values_of_the_estimator_that_changed_in_memory_are_noticed_and_put_back() {
     let known = Settings::flight();
     let trim = Trim::of_authors(&known.airframe);
     let design = Estimator::new(&known, &trim).design();
-    let mut others = [known.clone(), known.clone(), known.clone(), known.clone()];
+    let mut others = [known; 4];
     others[0].airframe.mass *= 1.01;
     others[1].actuators.elevator_rate = Some(7.0);
     others[2].estimator.gate += 1.0;

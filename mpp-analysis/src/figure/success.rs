@@ -8,7 +8,7 @@ use crate::campaign::{AgainstCeiling, Campaign, Cell, CellReport, Report};
 use mpp_sim::scenario::Preset;
 use plotters::prelude::*;
 
-/// The colours of the curves, from few paths to many. These colours mean nothing else in any
+/// The colours of the curves, from few paths to many or from the first preset to the last. These colours mean nothing else in any
 /// figure.
 const SHADES: [RGBColor; 4] = [
     RGBColor(150, 150, 150),
@@ -43,8 +43,9 @@ pub enum Rule {
 }
 
 /// Draws a panel for each preset and replanning rate of a campaign, with a curve for each number of
-/// paths. Presets with one number of paths share a panel. Rings beside a curve's marks are the paper's results. The curves of the oracle and of the ceiling are in each panel; the
-/// ceiling's band reaches from the fields that are proven to be passable to those that are not proven to be blocked.
+/// paths. If the campaign has one number of paths, its presets share a panel. Rings beside a curve's marks are the
+/// paper's results. The curves of the oracle and of the ceiling are in each panel; the ceiling's band reaches
+/// from the fields that are proven to be passable to those that are not proven to be blocked.
 ///
 /// # Errors
 /// [`FigureError`].

@@ -223,6 +223,8 @@ pub(crate) struct Column {
     body_radius: f64,
 }
 
+const _: () = assert!(ROWS <= u8::MAX as usize);
+
 /// A height in the clearance field, for callers that ask at many places downrange.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Height {

@@ -6,7 +6,7 @@ mod feedback;
 use super::controls::{CONTROLS, ControlVector, add_scaled, dot};
 use super::response::{Pair, Response};
 use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
-use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights};
+use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights, check_states};
 use crate::config::{KNOTS, STAGES};
 use core::fmt;
 use feedback::Feedback;
@@ -58,6 +58,7 @@ impl<const N: usize> Condensed<N> {
     /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
     #[must_use]
     pub const fn new() -> Self {
+        check_states::<N>();
         Self {
             dynamics: [Dynamics::at_rest(); STAGES],
             weights: Weights {

@@ -35,10 +35,22 @@ pub use solve::{MAX_ITERATIONS, Solver};
 
 /// Number of states of the paper's programs, `(x, z, v, theta, theta', gamma)`.
 pub const STATES: usize = 6;
-/// State of a program, the deviation from level trim: [`STATES`] numbers, or `(x, z, v, theta, gamma)`.
+/// State of a program, the deviation from level trim: `(x, z, v, theta, theta', gamma)`, or with `N = 5`
+/// `(x, z, v, theta, gamma)`. Programs with another `N` do not compile.
 pub type StageState<const N: usize = STATES> = [f64; N];
 /// Place of the pitch in a state. The flight path stands last.
 const PITCH: usize = 3;
+
+/// Fails to compile for a number of states that no program has.
+const fn check_states<const N: usize>() {
+    const {
+        assert!(
+            N == STATES || N == STATES - 1,
+            "a program has 5 or 6 states"
+        );
+    }
+}
+
 /// Control of a program: the deviation `(elevator, thrust)` from level trim.
 pub type StageControl = [f64; 2];
 

@@ -53,6 +53,7 @@ impl StageModel {
         let Dynamics { a, b, .. } = Dynamics::at_rest();
         Self { a, b, initial: a }
     }
+
     /// Discretises the linearised aircraft about level trim. Pitch and pitch rate are too fast for the stage
     /// period, so they are in steady state (the paper): `(I - A) x_{k+1} = B u_k` holds for both. This makes
     /// the pitch rate zero.

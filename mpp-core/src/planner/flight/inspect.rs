@@ -22,7 +22,7 @@ impl FlightPlanner {
         &mut self.map
     }
 
-    /// The path of the present candidate and its program; see [`crate::planner::Planner::candidate`].
+    /// The path of the present candidate and a copy of its program; see [`crate::planner::Planner::candidate`].
     #[must_use]
     pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], Problem)> {
         if self.phase != Phase::Improve {
@@ -47,7 +47,8 @@ impl FlightPlanner {
         Some((path, problem))
     }
 
-    /// The dynamics of every stage in the program of [`Self::candidate`], if there is one.
+    /// A copy of the dynamics of every stage in the program of [`Self::candidate`], if there is one. The pitch rate
+    /// of the copy is zero in each stage.
     #[must_use]
     pub fn stages(&self) -> Option<[Dynamics; STAGES]> {
         let Workspace::Program(shared) = &self.workspace else {

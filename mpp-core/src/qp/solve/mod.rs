@@ -18,7 +18,7 @@ use super::condense::{Condensed, outputs};
 use super::controls::{CONTROLS, ControlVector};
 use super::factor::{CAPACITY, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
-use super::{Problem, STATES, Solution, Status};
+use super::{Problem, STATES, Solution, Status, check_states};
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -132,6 +132,7 @@ impl<const N: usize> Solver<N> {
     /// An empty workspace.
     #[must_use]
     pub const fn new() -> Self {
+        check_states::<N>();
         Self {
             problem: Problem {
                 initial: [0.0; N],
