@@ -239,6 +239,33 @@ fn after_a_jump_of_the_position_the_watch_settles_again() {
     }
 }
 
+/// An aircraft that is larger in the sense of Froude has a slower watch: all of its times scale alike.
+#[test]
+fn the_watch_keeps_the_time_of_the_aircraft() {
+    let told_after = |scale: f64| {
+        let mut watch = MotorWatch::new(3.2, 4.4, 12.0 * scale);
+        let (mut x, mut air) = (0.0, 12.0 * scale);
+        let stop = (10.0 * scale / TICK_PERIOD) as u32;
+        let told = (0..stop + 1000).find(|tick| {
+            let slower = -4.4 / 3.2 * TICK_PERIOD;
+            let corrected = if *tick < stop { 0.0 } else { slower };
+            air += corrected;
+            x += TICK_PERIOD * air;
+            let progress = Progress {
+                x,
+                air,
+                corrected,
+                wind: 0.0,
+            };
+            watch.update(&progress, 4.4, TICK_PERIOD);
+            watch.lost()
+        });
+        f64::from(told.unwrap() - stop) * TICK_PERIOD
+    };
+    let [own, large] = [1.0, 2.0].map(told_after);
+    assert!((large / own - 2.0).abs() < 0.2, "{own} s and {large} s");
+}
+
 /// A gap between two ticks, and estimates that jump and say so, are no lost speed. A motor without a thrust to give cannot be lost.
 #[test]
 fn gaps_and_jumps_of_the_estimates_are_no_lost_motor() {
