@@ -9,6 +9,8 @@ use std::process::{Command, Stdio};
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Greatest size of the page as a server would send it \[bytes\].
 const PAGE_MAX: usize = 500_000;
+/// What a flight in the browser spends its time in. It is built for speed, and the rest for size.
+const FAST: [&str; 5] = ["mpp-core", "mpp-sim", "hil-protocol", "libm", "nalgebra"];
 /// The parts of the page, in order. The module comes after the last one.
 const PARTS: [&str; 7] = [
     "mpp-analysis/src/picture/page_head.html",
@@ -23,9 +25,14 @@ const PARTS: [&str; 7] = [
 /// Builds the simulation and its interface for WebAssembly. Returns the path of the module.
 pub(crate) fn build() -> Result<PathBuf> {
     let toolchain = Toolchain::find(TARGET)?;
+    let mut cargo = toolchain.cargo("rustc", "")?;
+    cargo.args(["--config", "profile.release.opt-level='s'"]);
+    for package in FAST {
+        let level = format!("profile.release.package.{package}.opt-level=3");
+        cargo.args(["--config", &level]);
+    }
     succeed(
-        toolchain
-            .cargo("rustc", "")?
+        cargo
             .args(["--locked", "--release", "-p", "mpp-web", "--lib"])
             .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"]),
     )?;
