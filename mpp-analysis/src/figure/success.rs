@@ -8,8 +8,8 @@ use crate::campaign::{AgainstCeiling, Campaign, Cell, CellReport, Report};
 use mpp_sim::scenario::Preset;
 use plotters::prelude::*;
 
-/// The colours of the curves, from few paths to many or from the first preset to the last. These colours mean nothing else in any
-/// figure.
+/// The colours of the curves, from few paths to many or from the first preset to the last. These colours mean
+/// nothing else in any figure.
 const SHADES: [RGBColor; 4] = [
     RGBColor(150, 150, 150),
     RGBColor(188, 157, 225),

@@ -1,11 +1,7 @@
 //! Trajectories in which every number is different.
 
-use mpp_core::config::{STAGE_PERIOD, STAGES};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{AirState, Control, VehicleState};
-
-/// Length of a trajectory \[s\].
-pub(crate) const HORIZON: f64 = STAGES as f64 * STAGE_PERIOD;
 
 /// A trajectory in which every number is different.
 pub(crate) fn trajectory(start: f64) -> Trajectory {
