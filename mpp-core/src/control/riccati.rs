@@ -68,12 +68,10 @@ pub fn solve_riccati(
     let one = Matrix4::identity();
     // The Cayley transform with a shift of the size of A maps the stable half-plane into the unit circle.
     let shift = norm(a).max(1.0);
-    let shifted_inverse = inverse(&plus(a, -shift, &one))?;
-    let w = plus(
-        &product(&[q, &shifted_inverse, g]),
-        1.0,
-        &transposed(&plus(a, -shift, &one)),
-    );
+    let shifted = plus(a, -shift, &one);
+    let shifted_inverse = inverse(&shifted)?;
+    let coupling = product(&[q, &shifted_inverse, g]);
+    let w = plus(&transposed(&shifted), 1.0, &coupling);
     let w_inverse = inverse(&w)?;
     let mut ak = plus(&one, 2.0 * shift, &transposed(&w_inverse));
     let doubled = plus(&Matrix4::zeros(), 2.0 * shift, &one);
