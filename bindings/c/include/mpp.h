@@ -7,6 +7,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+// Alignment that the storage needs [bytes].
+#define MPP_ALIGNMENT 16
+
 // Greatest number of beams of a scan.
 #define MPP_BEAMS 128
 
@@ -15,9 +18,6 @@
 
 // Counters of events.
 #define MPP_COUNTERS 19
-
-// Alignment that the storage needs [bytes].
-#define MPP_ALIGNMENT 16
 
 // The result of a call. Every result but `Ok` leaves the core as it was; only a refused `mpp_set_up` leaves it
 // without a configuration.
@@ -267,9 +267,6 @@ typedef struct mpp_plan {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
-
-// Text of a status, for people: what is wrong and what to do. Any number may be given.
-const char *mpp_text(int32_t status);
 
 // Bytes that the storage of a core needs.
 size_t mpp_storage_size(void);
