@@ -15,6 +15,7 @@ use crate::log::{FlightLog, Header};
 use crate::moment::Moment;
 use crate::orders::Ground;
 use crate::outcome::Outcome;
+use crate::plant::PlantError;
 use crate::scenario::Scenario;
 use crate::sensors::Measurement;
 use crate::world::World;
@@ -187,7 +188,14 @@ impl Flight {
         let mut answer = self.exchange.tick(&mut session, passage, scan, frame)?;
         self.steering.limit(&mut answer.command);
         let wind = plant.wind();
-        let applied = plant.step(control(&answer)).map_err(FlyError::Plant)?;
+        let applied = match plant.step(control(&answer)) {
+            // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
+            Err(PlantError::NonFiniteState) => {
+                self.judge.end = Some(Outcome::FlightPathLimit);
+                return Ok(false);
+            }
+            stepped => stepped.map_err(FlyError::Plant)?,
+        };
         let tick = Tick {
             applied,
             wind,

@@ -30,7 +30,8 @@ pub enum Outcome {
     Collision,
     /// The pitch went beyond [`PITCH_LIMIT`].
     PitchLimit,
-    /// The flight path angle went beyond [`FLIGHT_PATH_LIMIT`].
+    /// The flight path angle went beyond [`FLIGHT_PATH_LIMIT`], or the plant had no flight path any more: its airspeed fell
+    /// to zero.
     FlightPathLimit,
     /// An order from the ground ended the flight.
     Terminated,

@@ -8,7 +8,7 @@ use mpp_core::vehicle::{Control, VehicleState};
 pub enum PlantError {
     /// Thrust or elevator is not a number: the controller is broken, and the flight ends.
     NonFiniteControl,
-    /// The equations left their domain (an airspeed of zero): the flight ends.
+    /// The equations left their domain (an airspeed of zero): the flight ends, as one beyond the limit of the flight path.
     NonFiniteState,
 }
 

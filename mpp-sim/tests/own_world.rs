@@ -83,6 +83,50 @@ fn a_plant_of_ones_own_is_flown() {
     assert!(more > usual + 0.3, "{more} N against {usual} N");
 }
 
+/// An aircraft whose equations leave their domain after some ticks.
+struct Stopping {
+    body: Dynamics,
+    ticks: u32,
+}
+
+impl Plant for Stopping {
+    fn state(&self) -> &VehicleState {
+        &self.body.state
+    }
+
+    fn wind(&self) -> (f64, f64) {
+        (0.0, 0.0)
+    }
+
+    fn step(&mut self, command: Control) -> Result<Control, PlantError> {
+        self.ticks = self
+            .ticks
+            .checked_sub(1)
+            .ok_or(PlantError::NonFiniteState)?;
+        self.body.step(command, TICK_PERIOD)?;
+        Ok(command)
+    }
+}
+
+/// Such a flight is lost, with a log and an outcome: a campaign goes on with the next one.
+#[test]
+fn a_plant_without_a_state_ends_its_flight_and_no_more() {
+    let scenario = scenario();
+    let body = Dynamics {
+        airframe: scenario.aircraft.known.airframe,
+        more: Aerodynamics::NONE,
+        state: scenario.start().unwrap(),
+    };
+    let mut world = World {
+        plant: Box::new(Stopping { body, ticks: 150 }),
+        ..World::of(&scenario).unwrap()
+    };
+    let log = flown(&mut world, &scenario);
+    assert_eq!(log.summary.outcome, Outcome::FlightPathLimit);
+    assert_eq!(log.ticks.thrust.len(), 150);
+    assert!(!log.summary.strict && log.summary.t_end > 1.49);
+}
+
 #[test]
 fn the_scenarios_own_world_is_its_flight() {
     let mut scenario = Scenario {
