@@ -7,11 +7,12 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 
-/// Runs cargo at the top of the project and returns what it prints.
+/// Runs cargo at the top of the project and returns what it prints. It downloads what the lock file names and no build
+/// needed so far: packages for other machines, and those of optional features.
 fn cargo(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO"))
         .args(arguments)
-        .args(["--offline", "--locked"])
+        .arg("--locked")
         .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
         .output()
         .unwrap();
