@@ -83,28 +83,25 @@ fn a_plant_of_ones_own_is_flown() {
     assert!(more > usual + 0.3, "{more} N against {usual} N");
 }
 
-/// An aircraft whose equations leave their domain after some ticks.
+/// The usual aircraft, whose equations leave their domain after some ticks.
 struct Stopping {
-    body: Dynamics,
+    aircraft: Aircraft,
     ticks: u32,
 }
 
 impl Plant for Stopping {
     fn state(&self) -> &VehicleState {
-        &self.body.state
+        self.aircraft.state()
     }
 
     fn wind(&self) -> (f64, f64) {
-        (0.0, 0.0)
+        self.aircraft.wind()
     }
 
     fn step(&mut self, command: Control) -> Result<Control, PlantError> {
-        self.ticks = self
-            .ticks
-            .checked_sub(1)
-            .ok_or(PlantError::NonFiniteState)?;
-        self.body.step(command, TICK_PERIOD)?;
-        Ok(command)
+        let left = self.ticks.checked_sub(1);
+        self.ticks = left.ok_or(PlantError::NonFiniteState)?;
+        self.aircraft.step(command)
     }
 }
 
@@ -112,13 +109,12 @@ impl Plant for Stopping {
 #[test]
 fn a_plant_without_a_state_ends_its_flight_and_no_more() {
     let scenario = scenario();
-    let body = Dynamics {
-        airframe: scenario.aircraft.known.airframe,
-        more: Aerodynamics::NONE,
-        state: scenario.start().unwrap(),
-    };
+    let aircraft = Aircraft::new(&scenario).unwrap();
     let mut world = World {
-        plant: Box::new(Stopping { body, ticks: 150 }),
+        plant: Box::new(Stopping {
+            aircraft,
+            ticks: 150,
+        }),
         ..World::of(&scenario).unwrap()
     };
     let log = flown(&mut world, &scenario);
