@@ -207,6 +207,9 @@ pub mod navigation {
     pub const MOST_WIND: f64 = 10.0;
     /// Standard deviation of the wind below which the estimate of the lift begins [m/s].
     pub const SETTLED_WIND: f64 = 1.0;
+    /// Share of the greatest change of the wind that the filter for plans assumes [-]. A smaller share lets less noise of
+    /// the positions into the start of a plan, and follows strong gusts later. Source: D34.
+    pub const SMOOTH_SHARE: f64 = 0.5;
     /// Time without an accepted position after which the filter starts anew from a refused one \[s\]. Before
     /// it a jump of the source does no harm; after it the source is believed again.
     pub const RESTART_TIME: f64 = 1.0;

@@ -134,7 +134,7 @@ impl Estimator {
     /// The estimated position and motion.
     #[must_use]
     pub fn state(&self) -> VehicleState {
-        let (x, z) = self.navigation.position();
+        let (x, z) = self.navigation.smooth().position();
         VehicleState {
             x,
             z,
@@ -146,7 +146,7 @@ impl Estimator {
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         Conditions {
-            wind: self.navigation.wind(),
+            wind: self.navigation.smooth().wind(),
             lift: self.lift.as_ref().map_or(0.0, LiftEstimator::offset),
         }
     }
@@ -352,7 +352,7 @@ impl Estimator {
         });
         self.watch_motor(elapsed, verdict);
         let effective = self.actuators.effective();
-        let climb = rise + self.navigation.wind().z;
+        let climb = rise + self.navigation.quick().wind().z;
         if let Some(lift) = &mut self.lift {
             if verdict == Some(PositionVerdict::Restarted) || !self.navigation.is_settled() {
                 lift.interrupt();
@@ -360,11 +360,12 @@ impl Estimator {
                 lift.update(elapsed, climb, &air, effective);
                 if let Some(behind) = self.behind.take() {
                     // The tilts as they would seem if nothing corrected the pitch.
-                    let by_wind = self.pitch_error - self.navigation.wind().z / air.airspeed;
+                    let by_wind =
+                        self.pitch_error - self.navigation.quick().wind().z / air.airspeed;
                     let by_airspeed = self.pitch_error + behind * self.air.follows() / GRAVITY;
                     self.biases.see_tilt(by_wind, by_airspeed, elapsed);
                 }
-                let (wind, observed) = (self.navigation.wind().x, lift.observed());
+                let (wind, observed) = (self.navigation.quick().wind().x, lift.observed());
                 if let Some(before) = (self.biases).see_wind(wind, observed, air.airspeed, elapsed)
                 {
                     self.air.shift_airspeed(wind - before.wind);
@@ -384,10 +385,10 @@ impl Estimator {
         let air = self.air.present();
         let along = 1.0 - 0.5 * (air.flight_path * air.flight_path); // The cosine, to 2 % at 45 degrees.
         let progress = Progress {
-            x: self.navigation.position().0,
+            x: self.navigation.quick().position().0,
             air: air.airspeed * along,
             corrected: self.corrected * along,
-            wind: self.navigation.wind().x,
+            wind: self.navigation.quick().wind().x,
         };
         let right = self.airspeed.uses() && self.biases.airspeed().is_right(self.conditions().lift);
         let settled = self.navigation.is_settled() && position != Some(PositionVerdict::Restarted);

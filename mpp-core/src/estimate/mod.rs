@@ -15,6 +15,7 @@ mod navigation;
 mod pitch_bias;
 mod verdicts;
 mod watch;
+mod wind_filter;
 
 use crate::vehicle::{
     AirState, Airframe, Control, Directions, JacobianForm, air_rate_along, linearize_along,
@@ -35,6 +36,7 @@ use nalgebra::{Matrix4, Vector4};
 pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
 pub use watch::{Trust, Watch};
+pub use wind_filter::{Observation, WindFilter};
 
 /// Measured airspeed and pitch. Their errors are independent.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,18 +1,16 @@
-//! Kalman filter on position and wind, from positions and velocities over ground.
+//! Position and wind, from positions and velocities over ground.
 //!
-//! The model of an axis: `p' = a + w` and `w' = noise`, with the position `p`, the estimated velocity
-//! through the air `a` as the known input, and the wind `w`. An error of the estimated velocity also counts
-//! as wind. Plans move with the sum of wind and velocity through the air, and this sum is then right. Both
-//! axes have the same errors, so one covariance serves both. Source: Bar-Shalom, Li and Kirubarajan,
-//! "Estimation with Applications to Tracking and Navigation", 6.2 (white noise acceleration).
+//! Two filters take each fix. The *quick* one assumes that the wind changes as much as it can. Its wind holds each gust,
+//! and the watches of sensors and actuators need that. It also takes the noise of positions for gusts, and a plan
+//! that starts with such a gust sets off by a wrong angle. The *smooth* one assumes a share of this change. Plans, the map and
+//! the regulator use it (docs/decisions/0034).
 
 use super::History;
 use super::history::MOST_AGE;
+use super::wind_filter::{Observation, WindFilter};
 use crate::config::TICK_PERIOD;
 use crate::sense::Position;
-use crate::tuning::navigation::{
-    FIRST_WIND, GATE, LEAST_SIGMA, MOST_WIND, RESTART_TIME, SETTLED_WIND,
-};
+use crate::tuning::navigation::{LEAST_SIGMA, RESTART_TIME, SETTLED_WIND, SMOOTH_SHARE};
 use crate::vehicle::{AirState, Wind};
 
 /// The filter's decision on a position.
@@ -33,34 +31,16 @@ pub enum PositionVerdict {
     Restarted,
 }
 
-/// Covariance of position and wind of one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Covariance {
-    /// Variance of the position [m^2].
-    position: f64,
-    /// Covariance of position and wind [m^2/s].
-    both: f64,
-    /// Variance of the wind [(m/s)^2].
-    wind: f64,
-}
-
-/// The scalar measurement `h0 p + h1 w` of one axis.
-#[derive(Clone, Copy, Debug)]
-struct Observation {
-    h: [f64; 2],
-    /// Variance of its error.
-    variance: f64,
-}
-
-/// The filter, and the history that it needs for late positions.
+/// The filters, and the history that they need for late positions.
 #[derive(Clone, Debug)]
 pub struct Navigation {
     /// Standard deviation of the change of the wind in one second [m/s]. Without it the filter assumes still
     /// air, and takes each position as it is.
     wind_change: Option<f64>,
-    position: (f64, f64),
-    wind: Wind,
-    covariance: Covariance,
+    /// The filter for the watches.
+    quick: WindFilter,
+    /// The filter for plans, the map and the regulator.
+    smooth: WindFilter,
     history: History,
     /// Whether there was a position.
     started: bool,
@@ -80,13 +60,8 @@ impl Navigation {
     pub const fn new(wind_change: Option<f64>, altitude: f64) -> Self {
         Self {
             wind_change,
-            position: (0.0, altitude),
-            wind: Wind::STILL,
-            covariance: Covariance {
-                position: 0.0,
-                both: 0.0,
-                wind: FIRST_WIND * FIRST_WIND,
-            },
+            quick: WindFilter::new(altitude),
+            smooth: WindFilter::new(altitude),
             history: History::new(),
             started: false,
             last: None,
@@ -106,22 +81,22 @@ impl Navigation {
         self.wind_change = wind_change;
     }
 
-    /// The estimated position `(x, z)` \[m\].
+    /// The filter for plans, the map and the regulator.
     #[must_use]
-    pub fn position(&self) -> (f64, f64) {
-        self.position
+    pub fn smooth(&self) -> &WindFilter {
+        &self.smooth
     }
 
-    /// The estimated wind.
+    /// The filter for the watches of sensors and actuators.
     #[must_use]
-    pub fn wind(&self) -> Wind {
-        self.wind
+    pub fn quick(&self) -> &WindFilter {
+        &self.quick
     }
 
     /// Whether the wind is known well enough to tell the lift from it.
     #[must_use]
     pub fn is_settled(&self) -> bool {
-        self.started && self.covariance.wind < SETTLED_WIND * SETTLED_WIND
+        self.started && self.quick.wind_variance() < SETTLED_WIND * SETTLED_WIND
     }
 
     /// Square of the last innovation over its variance, mean of both axes [-]. It is 1 in the mean for errors
@@ -136,32 +111,28 @@ impl Navigation {
     pub fn pose_at(&self, age: u32) -> Option<((f64, f64), f64)> {
         let way = self.history.way_since(age)?;
         let time = f64::from(age) * TICK_PERIOD;
-        let x = self.position.0 - way.0 - self.wind.x * time;
-        let z = self.position.1 - way.1 - self.wind.z * time;
+        let (position, wind) = (self.smooth.position(), self.smooth.wind());
+        let x = position.0 - way.0 - wind.x * time;
+        let z = position.1 - way.1 - wind.z * time;
         Some(((x, z), self.history.pitch_at(age)?))
     }
 
     /// Moves the estimate on by a period \[s\], at the end of which the motion through the air is `air`.
     pub fn predict(&mut self, air: &AirState, period: f64) {
         let way = self.history.push(air, period);
-        self.position.0 += way.0 + self.wind.x * period;
-        self.position.1 += way.1 + self.wind.z * period;
+        let noise = self.noise();
+        self.quick.predict(way, period, noise.quick);
+        self.smooth.predict(way, period, noise.smooth);
         self.unaided = self.unaided.saturating_add(1);
         if let Some((_, age)) = &mut self.last {
             *age = age.saturating_add(1);
         }
-        let change = self.wind_change.unwrap_or(0.0);
-        let noise = change * change;
-        let c = &mut self.covariance;
-        let square = period * period;
-        c.position += 2.0 * period * c.both + square * c.wind + noise * square * period / 3.0;
-        c.both += period * c.wind + 0.5 * noise * square;
-        c.wind += noise * period;
     }
 
     /// Doubts the position by this distance \[m\], because the time since the last step is not known.
     pub fn doubt(&mut self, distance: f64) {
-        self.covariance.position += distance * distance;
+        self.quick.doubt(distance);
+        self.smooth.doubt(distance);
     }
 
     /// Takes over a motion through the air that was turned by a known error of the pitch \[rad\]. The velocity over
@@ -175,15 +146,23 @@ impl Navigation {
             Wind::STILL.ground_velocity(turned),
             Wind::STILL.ground_velocity(&before),
         );
-        self.wind.x += then.0 - now.0;
-        self.wind.z += then.1 - now.1;
+        for filter in [&mut self.quick, &mut self.smooth] {
+            let wind = filter.wind();
+            filter.set_wind(Wind {
+                x: wind.x + then.0 - now.0,
+                z: wind.z + then.1 - now.1,
+            });
+        }
         self.history.turn(by);
         self.history.correct(turned);
     }
 
     /// Replaces the estimate of the wind along the way [m/s].
     pub fn set_wind_along(&mut self, wind: f64) {
-        self.wind.x = wind;
+        for filter in [&mut self.quick, &mut self.smooth] {
+            let z = filter.wind().z;
+            filter.set_wind(Wind { x: wind, z });
+        }
     }
 
     /// Takes in the motion through the air as it is after the sensors of this tick. Gives its velocity, `(x, z)` [m/s].
@@ -208,93 +187,76 @@ impl Navigation {
         self.last = Some((bits, fix.age));
         let delay = f64::from(fix.age) * TICK_PERIOD;
         let now = (fix.x + way.0, fix.z + way.1);
-        let Some(change) = self.wind_change else {
-            self.position = now;
+        if self.wind_change.is_none() {
+            self.quick.set_position(now);
+            self.smooth.set_position(now);
             self.unaided = 0;
             return PositionVerdict::Accepted;
-        };
-        let sigma = fix.sigma.max(LEAST_SIGMA);
-        // The wind has changed since the measurement.
-        let noise = change * change;
-        let observation = Observation {
-            h: [1.0, -delay],
-            variance: sigma * sigma + noise * delay * delay * delay / 3.0,
-        };
+        }
+        let observed = Observation::position(now, delay, fix.sigma.max(LEAST_SIGMA));
         if !self.started {
-            self.start(now, &observation);
+            self.start(&observed);
             return PositionVerdict::Accepted;
         }
-        let off = (
-            now.0 - (self.position.0 - self.wind.x * delay),
-            now.1 - (self.position.1 - self.wind.z * delay),
-        );
-        if !self.correct(&observation, off) {
+        if !self.correct(&observed) {
             if f64::from(self.unaided) * TICK_PERIOD < RESTART_TIME {
                 return PositionVerdict::Gated;
             }
-            self.start(now, &observation);
+            self.start(&observed);
             return PositionVerdict::Restarted;
         }
         self.unaided = 0;
-        self.take_velocity(fix, noise * delay);
+        self.take_velocity(fix, delay);
         PositionVerdict::Accepted
     }
 
-    /// Takes in the velocity over ground of a fix. `since` is the variance by which the wind has changed since
-    /// [(m/s)^2].
-    fn take_velocity(&mut self, fix: &Position, since: f64) {
+    /// Takes in the velocity over ground of a fix that was measured `delay` \[s\] ago.
+    fn take_velocity(&mut self, fix: &Position, delay: f64) {
         let (Some(velocity), Some(air)) = (fix.velocity, self.history.velocity_at(fix.age)) else {
             return;
         };
-        let sigma = velocity.sigma.max(LEAST_SIGMA);
-        let observation = Observation {
-            h: [0.0, 1.0],
-            variance: sigma * sigma + since,
-        };
-        let off = (
-            velocity.x - air.0 - self.wind.x,
-            velocity.z - air.1 - self.wind.z,
-        );
-        // A velocity that contradicts the positions is dropped; the positions alone carry the filter.
-        self.correct(&observation, off);
+        let wind = (velocity.x - air.0, velocity.z - air.1);
+        let observed = Observation::wind(wind, delay, velocity.sigma.max(LEAST_SIGMA));
+        // A velocity that contradicts the positions is dropped; the positions alone carry the filters.
+        self.correct(&observed);
     }
 
-    /// Starts from a position that the way through the air has brought up to now.
-    fn start(&mut self, now: (f64, f64), observation: &Observation) {
-        let delay = -observation.h[1];
-        self.position = (now.0 + self.wind.x * delay, now.1 + self.wind.z * delay);
-        let wind = FIRST_WIND * FIRST_WIND;
-        self.covariance = Covariance {
-            position: observation.variance + delay * delay * wind,
-            both: delay * wind,
-            wind,
-        };
+    /// Starts both filters from a position.
+    fn start(&mut self, observed: &Observation) {
+        self.quick.start(observed, self.noise().quick);
+        self.smooth = self.quick;
         self.started = true;
         self.unaided = 0;
     }
 
-    /// Corrects both axes by innovations. Returns false, and corrects nothing, if one is beyond the gate.
-    fn correct(&mut self, observation: &Observation, off: (f64, f64)) -> bool {
-        let [h0, h1] = observation.h;
-        let c = &mut self.covariance;
-        let position = c.position * h0 + c.both * h1;
-        let wind = c.both * h0 + c.wind * h1;
-        let variance = h0 * position + h1 * wind + observation.variance;
-        let most = GATE * GATE * variance;
-        let (x, z) = (off.0 * off.0, off.1 * off.1);
-        // The tests are false for values that are not numbers.
-        if !(x <= most && z <= most && variance > 0.0) {
+    /// Corrects both filters. Returns false, and corrects nothing, if the quick one refuses the observation. If only the smooth
+    /// one refuses it, the wind has changed by more than it assumes, and it goes on from the quick one.
+    fn correct(&mut self, observed: &Observation) -> bool {
+        let noise = self.noise();
+        let Some(innovation) = self.quick.correct(observed, noise.quick) else {
             return false;
+        };
+        self.innovation = innovation;
+        if self.smooth.correct(observed, noise.smooth).is_none() {
+            self.smooth = self.quick;
         }
-        self.innovation = 0.5 * (x + z) / variance;
-        let gain = (position / variance, wind / variance);
-        self.position.0 += gain.0 * off.0;
-        self.position.1 += gain.0 * off.1;
-        self.wind.x = (self.wind.x + gain.1 * off.0).clamp(-MOST_WIND, MOST_WIND);
-        self.wind.z = (self.wind.z + gain.1 * off.1).clamp(-MOST_WIND, MOST_WIND);
-        c.position -= gain.0 * position;
-        c.both -= gain.0 * wind;
-        c.wind -= gain.1 * wind;
         true
     }
+
+    /// Variance of the change of the wind in one second that each filter assumes.
+    fn noise(&self) -> Noise {
+        let change = self.wind_change.unwrap_or(0.0);
+        let quick = change * change;
+        Noise {
+            quick,
+            smooth: SMOOTH_SHARE * SMOOTH_SHARE * quick,
+        }
+    }
+}
+
+/// Variances of the change of the wind in one second [(m/s)^2].
+#[derive(Clone, Copy, Debug)]
+struct Noise {
+    quick: f64,
+    smooth: f64,
 }
