@@ -13,7 +13,7 @@ use crate::sense::Position;
 use crate::tuning::navigation::{LEAST_SIGMA, RESTART_TIME, SETTLED_WIND, SMOOTH_SHARE};
 use crate::vehicle::{AirState, Wind};
 
-/// The filter's decision on a position.
+/// The quick filter's decision on a position, which holds for both.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PositionVerdict {
     /// The filter used the position.
@@ -34,8 +34,8 @@ pub enum PositionVerdict {
 /// The filters, and the history that they need for late positions.
 #[derive(Clone, Debug)]
 pub struct Navigation {
-    /// Standard deviation of the change of the wind in one second [m/s]. Without it the filter assumes still
-    /// air, and takes each position as it is.
+    /// Standard deviation of the change of the wind in one second that the quick filter assumes [m/s]. Without it both
+    /// filters assume still air, and take each position as it is.
     wind_change: Option<f64>,
     /// The filter for the watches.
     quick: WindFilter,
@@ -48,12 +48,12 @@ pub struct Navigation {
     last: Option<([u64; 2], u32)>,
     /// Ticks since the last position that the filter used.
     unaided: u32,
-    /// Square of the last innovation over its variance, mean of both axes [-].
+    /// Square of the quick filter's last innovation over its variance, mean of both axes [-].
     innovation: f64,
 }
 
 impl Navigation {
-    /// A filter that starts at downrange 0 and an altitude \[m\] in still air.
+    /// Filters that start at downrange 0 and an altitude \[m\] in still air.
     // Inlined, as all parts of a loop are, so that it is written where the loop will be.
     #[inline(always)]
     #[must_use]
