@@ -5,8 +5,9 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::GridPoint;
 use crate::paths::CollocationPoints;
 use crate::qp::Solution;
+use crate::units::Units;
 use crate::vehicle::{
-    AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState, Wind,
+    AirState, Airframe, Control, PathControl, PathState, ThrustLag, Trim, VehicleState, Wind,
 };
 
 /// Number of integration steps in a stage of a trajectory that is flown out. Roll-outs have the same number, so that
@@ -23,6 +24,17 @@ pub struct Reference {
     pub feedforward: Control,
 }
 
+/// A plan as the point mass flies it out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RollOut {
+    /// States at the stage boundaries.
+    pub knots: [PathState; KNOTS],
+    /// Commands of the stages.
+    pub controls: [PathControl; STAGES],
+    /// Thrust at the start \[N\]. From there it follows the commands with the lag of the actuators.
+    pub thrust: f64,
+}
+
 /// A plan over the whole horizon.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
@@ -37,13 +49,27 @@ pub struct Trajectory {
 }
 
 /// Kind of interpolation between the references of a trajectory.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "there is no heap to put the larger one on"
+)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Between {
     /// Linear interpolation (the paper).
     Lines,
-    /// Motion of the point mass in a steady wind. Thrust and rate of the angle of attack are constant over
-    /// a stage.
-    Flown(Airframe, Wind),
+    /// Motion of the point mass in a steady wind. The rate of the angle of attack is constant over a stage, and the
+    /// thrust has its mean.
+    Flown(Medium),
+}
+
+/// What the motion between the references of a roll-out depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Medium {
+    airframe: Airframe,
+    wind: Wind,
+    lag: ThrustLag,
+    /// Mean thrust of each stage \[N\].
+    thrusts: [f64; STAGES],
 }
 
 impl Trajectory {
@@ -95,29 +121,66 @@ impl Trajectory {
             knot.state.air.pitch += by;
             knot.state.air.flight_path += by;
         }
-        if let Between::Flown(_, wind) = &mut self.between {
-            wind.z -= airspeed * by;
+        if let Between::Flown(medium) = &mut self.between {
+            medium.wind.z -= airspeed * by;
         }
     }
 
-    /// Takes over a roll-out: its states at the stage boundaries, and the controls of the stages, which last
-    /// `stage_period` \[s\] each.
+    /// Takes over a roll-out in own units, for an airframe and a wind in SI units.
     pub fn fly_out(
         &mut self,
-        knots: &[PathState; KNOTS],
-        controls: &[PathControl; STAGES],
+        flown: &RollOut,
+        units: &Units,
         airframe: &Airframe,
         wind: &Wind,
+        lag: &ThrustLag,
         start: f64,
-        stage_period: f64,
     ) {
         self.start = start;
-        self.stage_period = stage_period;
-        self.between = Between::Flown(*airframe, *wind);
-        for (stage, (place, knot)) in self.knots.iter_mut().zip(knots).enumerate() {
-            let (state, feedforward) = knot.reference(airframe, &controls[stage.min(STAGES - 1)]);
-            *place = Reference { state, feedforward };
+        self.stage_period = STAGE_PERIOD * units.time;
+        let mut thrusts = [0.0; STAGES];
+        let (mut given, mut command, mut acting) = (flown.thrust, 0.0, PathControl::default());
+        for (stage, (place, knot)) in self.knots.iter_mut().zip(&flown.knots).enumerate() {
+            // The last knot has the controls of the last stage.
+            if let (Some(control), Some(mean)) = (flown.controls.get(stage), thrusts.get_mut(stage))
+            {
+                acting = units.si_path_control(control);
+                command = acting.thrust;
+                acting.thrust = lag.mean(given, control.thrust) * units.force();
+                given = lag.end(given, control.thrust);
+                *mean = acting.thrust;
+            }
+            *place = commanded(&units.si_path_state(knot), airframe, &acting, command);
         }
+        self.between = Between::Flown(Medium {
+            airframe: *airframe,
+            wind: *wind,
+            lag: *lag,
+            thrusts,
+        });
+    }
+
+    /// The thrust that the motor gives at a time \[s\], by its lag. `None` where [`Self::sample`] gives none, and for a
+    /// plan that knows no lag.
+    #[must_use]
+    pub fn thrust(&self, time: f64) -> Option<f64> {
+        let Between::Flown(medium) = &self.between else {
+            return None;
+        };
+        let (stage, share) = self.stage_at(time)?;
+        let command = self.knots[stage].feedforward.thrust;
+        Some((medium.lag).within(share, medium.thrusts[stage], command))
+    }
+
+    /// The stage at a time \[s\], and the share of it that is over. `None` before the start and after the last stage.
+    fn stage_at(&self, time: f64) -> Option<(usize, f64)> {
+        let stages = (time - self.start) / self.stage_period;
+        // Rounding may move a tick on the first or last boundary slightly outside.
+        if !(-1e-6..=STAGES as f64 + 1e-6).contains(&stages) {
+            return None;
+        }
+        let stage = (stages.max(0.0) as usize).min(STAGES - 1);
+        Some((stage, stages - stage as f64))
     }
 
     /// Places a solution in the world. Its states are deviations from level flight at trim that starts at
@@ -186,17 +249,11 @@ impl Trajectory {
     /// and after the last stage.
     #[must_use]
     pub fn sample(&self, time: f64) -> Option<Reference> {
-        let stages = (time - self.start) / self.stage_period;
-        // Rounding may move a tick on the first or last boundary slightly outside.
-        if !(-1e-6..=STAGES as f64 + 1e-6).contains(&stages) {
-            return None;
-        }
-        let stage = (stages.max(0.0) as usize).min(STAGES - 1);
-        let share = stages - stage as f64;
+        let (stage, share) = self.stage_at(time)?;
         let (from, to) = (&self.knots[stage], &self.knots[stage + 1]);
-        if let Between::Flown(airframe, wind) = &self.between {
-            let period = self.stage_period;
-            return Some(flown(airframe, wind, from, to, share, period));
+        if let Between::Flown(medium) = &self.between {
+            let thrust = medium.thrusts[stage];
+            return Some(medium.flown([from, to], thrust, share, self.stage_period));
         }
         let mix = |a: f64, b: f64| a * (1.0 - share) + b * share;
         let air = from.state.air.to_vector() * (1.0 - share) + to.state.air.to_vector() * share;
@@ -214,24 +271,37 @@ impl Trajectory {
     }
 }
 
-/// The motion of the point mass at a share of the way from one knot to the next.
-fn flown(
-    airframe: &Airframe,
-    wind: &Wind,
-    from: &Reference,
-    to: &Reference,
-    share: f64,
-    stage_period: f64,
-) -> Reference {
-    let rise = to.state.air.angle_of_attack() - from.state.air.angle_of_attack();
-    let control = PathControl {
-        angle_of_attack_rate: rise / stage_period,
-        thrust: from.feedforward.thrust,
-    };
-    let knot = PathState::of(&from.state);
-    let at = knot.after_in(wind, airframe, &control, share * stage_period, STEPS);
-    let (state, feedforward) = at.reference(airframe, &control);
-    Reference { state, feedforward }
+impl Medium {
+    /// The motion of the point mass at a share of the way from one knot to the next, under the mean thrust.
+    fn flown(
+        &self,
+        [from, to]: [&Reference; 2],
+        thrust: f64,
+        share: f64,
+        stage_period: f64,
+    ) -> Reference {
+        let rise = to.state.air.angle_of_attack() - from.state.air.angle_of_attack();
+        let control = PathControl {
+            angle_of_attack_rate: rise / stage_period,
+            thrust,
+        };
+        let knot = PathState::of(&from.state);
+        let elapsed = share * stage_period;
+        let at = knot.after_in(&self.wind, &self.airframe, &control, elapsed, STEPS);
+        commanded(&at, &self.airframe, &control, from.feedforward.thrust)
+    }
+}
+
+/// The reference of a point mass that moves under `control`, with the thrust to command.
+fn commanded(at: &PathState, airframe: &Airframe, control: &PathControl, thrust: f64) -> Reference {
+    let (state, feedforward) = at.reference(airframe, control);
+    Reference {
+        state,
+        feedforward: Control {
+            thrust,
+            ..feedforward
+        },
+    }
 }
 
 impl Default for Trajectory {

@@ -99,6 +99,9 @@ pub mod candidates {
     /// solver then makes a third fewer steps past 40 obstacles. With 100 and 50 instead of 200, 1,065 and 1,015 of
     /// 1,200 flights past 160 obstacles succeeded, against 1,077 without a limit and 1,081. Source: D24.
     pub const HOPELESS: f64 = 200.0;
+    /// Thrust that counts in a program's last state like a metre \[N\], so 15 N cost as much as 0.15 m. A smaller one pulls
+    /// the end of a plan to the thrust of trim. Source: chosen.
+    pub const THRUST_SCALE: f64 = 100.0;
 }
 
 /// The lattice of stations downrange, heights and slopes. Its prices have the units of the judgement.

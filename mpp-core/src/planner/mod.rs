@@ -234,8 +234,7 @@ impl Planner {
     }
 
     /// The path of the present candidate, `(x, z)` at the stage boundaries in the world \[m\], and its
-    /// program. They exist only while the solver works on the program. The program is a copy with six states; the
-    /// flight planner's has no pitch rate, so it is zero there.
+    /// program. They exist only while the solver works on the program.
     #[must_use]
     pub fn candidate(&self) -> Option<([(f64, f64); KNOTS], Problem)> {
         of_chosen!(self, candidate())

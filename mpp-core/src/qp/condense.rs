@@ -6,7 +6,7 @@ mod feedback;
 use super::controls::{CONTROLS, ControlVector, add_scaled, dot};
 use super::response::{Pair, Response};
 use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
-use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights, check_states};
+use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
 use core::fmt;
 use feedback::Feedback;
@@ -18,10 +18,10 @@ const UNCHANGEABLE: f64 = 1e-20;
 
 /// The part of the program that all candidates of a model share.
 #[derive(Clone, Debug)]
-pub struct Condensed<const N: usize = STATES> {
-    dynamics: [Dynamics<N>; STAGES],
+pub struct Condensed {
+    dynamics: [Dynamics; STAGES],
     pub(super) weights: Weights,
-    feedback: [Feedback<N>; STAGES],
+    feedback: [Feedback; STAGES],
     /// Response of the outputs to the normalised controls.
     response: Response,
     /// Price of each row: `1 / |y|^2` for the row's response `y`, and 0 if the controls cannot change the row. A
@@ -45,20 +45,19 @@ impl fmt::Display for CondenseError {
 
 impl core::error::Error for CondenseError {}
 
-impl<const N: usize> Condensed<N> {
+impl Condensed {
     /// Index in the state, and first place among the outputs, of the outputs that are states: x, z, pitch and
     /// flight path.
     const MOTION_OUTPUTS: [(usize, usize); 4] = [
         (0, 0),
         (1, 1),
         (PITCH, ATTITUDE_OUTPUT),
-        (N - 1, ATTITUDE_OUTPUT + 1),
+        (STATES - 1, ATTITUDE_OUTPUT + 1),
     ];
 
     /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
     #[must_use]
     pub const fn new() -> Self {
-        check_states::<N>();
         Self {
             dynamics: [Dynamics::at_rest(); STAGES],
             weights: Weights {
@@ -75,11 +74,7 @@ impl<const N: usize> Condensed<N> {
     ///
     /// # Errors
     /// [`CondenseError`] if the cost has no single optimum.
-    pub fn condense(
-        &mut self,
-        model: &Dynamics<N>,
-        weights: &Weights,
-    ) -> Result<(), CondenseError> {
+    pub fn condense(&mut self, model: &Dynamics, weights: &Weights) -> Result<(), CondenseError> {
         self.dynamics.fill(*model);
         self.condense_stages(weights)
     }
@@ -92,7 +87,7 @@ impl<const N: usize> Condensed<N> {
     pub fn condense_varying(
         &mut self,
         weights: &Weights,
-        linearise: impl FnOnce(&mut [Dynamics<N>; STAGES]),
+        linearise: impl FnOnce(&mut [Dynamics; STAGES]),
     ) -> Result<(), CondenseError> {
         linearise(&mut self.dynamics);
         self.condense_stages(weights)
@@ -159,12 +154,12 @@ impl<const N: usize> Condensed<N> {
 
     /// The condensed dynamics of every stage.
     #[must_use]
-    pub fn stages(&self) -> &[Dynamics<N>; STAGES] {
+    pub fn stages(&self) -> &[Dynamics; STAGES] {
         &self.dynamics
     }
 
     /// Computes the feedforward of every stage for a target.
-    pub(super) fn feedforward(&self, target: &StageState<N>) -> ControlVector {
+    pub(super) fn feedforward(&self, target: &StageState) -> ControlVector {
         feedback::feedforward(&self.dynamics, &self.weights, &self.feedback, target)
     }
 
@@ -193,14 +188,14 @@ impl<const N: usize> Condensed<N> {
     /// Computes states and controls from the normalised controls.
     pub(super) fn roll_out(
         &self,
-        initial: &StageState<N>,
+        initial: &StageState,
         feedforward: &ControlVector,
         normalised: &ControlVector,
-        solution: &mut Solution<N>,
+        solution: &mut Solution,
     ) {
         let [first, later @ ..] = &mut solution.states;
         *first = *initial;
-        let mut state: &StageState<N> = first;
+        let mut state: &StageState = first;
         let feedforward = feedforward.as_chunks::<2>().0.iter();
         let pushes = feedforward.zip(normalised.as_chunks::<2>().0);
         let stages = self.dynamics.iter().zip(&self.feedback).zip(pushes);
@@ -214,7 +209,7 @@ impl<const N: usize> Condensed<N> {
     }
 
     /// Cost of a trajectory without penalties.
-    pub(super) fn cost(&self, solution: &Solution<N>, target: &StageState<N>) -> f64 {
+    pub(super) fn cost(&self, solution: &Solution, target: &StageState) -> f64 {
         let [elevator, thrust] = self.weights.control;
         let efforts = solution
             .controls
@@ -228,14 +223,14 @@ impl<const N: usize> Condensed<N> {
     }
 }
 
-impl<const N: usize> Default for Condensed<N> {
+impl Default for Condensed {
     fn default() -> Self {
         Self::new()
     }
 }
 
 /// The outputs of a trajectory.
-pub(super) fn outputs<const N: usize>(solution: &Solution<N>) -> [f64; OUTPUTS] {
+pub(super) fn outputs(solution: &Solution) -> [f64; OUTPUTS] {
     let mut outputs = [0.0; OUTPUTS];
     let (motion, rest) = outputs.split_at_mut(THRUST_OUTPUT);
     let (thrusts, attitudes) = rest.split_at_mut(STAGES);
@@ -245,7 +240,7 @@ pub(super) fn outputs<const N: usize>(solution: &Solution<N>) -> [f64; OUTPUTS] 
     for (((motion, thrust), attitude), (control, state)) in places.zip(stages) {
         *motion = [state[0], state[1]];
         *thrust = control[1];
-        *attitude = [state[PITCH], state[N - 1]];
+        *attitude = [state[PITCH], state[STATES - 1]];
     }
     outputs
 }

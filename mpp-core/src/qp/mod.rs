@@ -33,23 +33,13 @@ pub use model::{Dynamics, Initial, ModelError, StageModel};
 pub use rows::{Bounds, ROWS, RowKind};
 pub use solve::{MAX_ITERATIONS, Solver};
 
-/// Number of states of the paper's programs, `(x, z, v, theta, theta', gamma)`.
+/// Number of states of a program.
 pub const STATES: usize = 6;
-/// State of a program, the deviation from level trim: `(x, z, v, theta, theta', gamma)`, or with `N = 5`
-/// `(x, z, v, theta, gamma)`. Programs with another `N` do not compile.
-pub type StageState<const N: usize = STATES> = [f64; N];
+/// State of a program, the deviation from level trim: `(x, z, v, theta, theta', gamma)` in the paper's method, and in the
+/// flight planner `(x, z, v, theta, thrust, gamma)`.
+pub type StageState = [f64; STATES];
 /// Place of the pitch in a state. The flight path stands last.
 const PITCH: usize = 3;
-
-/// Fails to compile for a number of states that no program has.
-const fn check_states<const N: usize>() {
-    const {
-        assert!(
-            N == STATES || N == STATES - 1,
-            "a program has 5 or 6 states"
-        );
-    }
-}
 
 /// Control of a program: the deviation `(elevator, thrust)` from level trim.
 pub type StageControl = [f64; 2];
@@ -83,11 +73,11 @@ pub struct Penalty {
 
 /// The program of one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Problem<const N: usize = STATES> {
+pub struct Problem {
     /// First state.
-    pub initial: StageState<N>,
+    pub initial: StageState,
     /// Target of the last state.
-    pub target: StageState<N>,
+    pub target: StageState,
     /// Right-hand sides of all rows; infinite for a row that the program does not have.
     pub bounds: Bounds,
     /// Price of violating corridor and attitude rows. Without a price these rows are hard. Thrust rows are
@@ -114,9 +104,9 @@ pub enum Status {
 
 /// The refined trajectory of one candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Solution<const N: usize = STATES> {
+pub struct Solution {
     /// States at the stage boundaries.
-    pub states: [StageState<N>; KNOTS],
+    pub states: [StageState; KNOTS],
     /// Controls of the stages.
     pub controls: [StageControl; STAGES],
     /// Cost without penalties.
@@ -125,12 +115,12 @@ pub struct Solution<const N: usize = STATES> {
     pub violation: f64,
 }
 
-impl<const N: usize> Solution<N> {
+impl Solution {
     /// A solution of zeros, to be filled.
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            states: [[0.0; N]; KNOTS],
+            states: [[0.0; STATES]; KNOTS],
             controls: [[0.0; 2]; STAGES],
             cost: 0.0,
             violation: 0.0,
@@ -138,7 +128,7 @@ impl<const N: usize> Solution<N> {
     }
 }
 
-impl<const N: usize> Default for Solution<N> {
+impl Default for Solution {
     fn default() -> Self {
         Self::new()
     }

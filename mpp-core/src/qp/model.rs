@@ -106,29 +106,29 @@ impl StageModel {
 
 /// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Dynamics<const N: usize = STATES> {
+pub struct Dynamics {
     /// State matrix, N x N.
-    pub a: SMatrix<f64, N, N>,
+    pub a: SMatrix<f64, STATES, STATES>,
     /// Control matrix, N x 2.
-    pub b: SMatrix<f64, N, 2>,
+    pub b: SMatrix<f64, STATES, 2>,
     /// Next state from the state zero without control.
-    pub offset: SVector<f64, N>,
+    pub offset: SVector<f64, STATES>,
 }
 
-impl<const N: usize> Dynamics<N> {
+impl Dynamics {
     /// Dynamics of zeros, to be filled.
     #[must_use]
     pub const fn at_rest() -> Self {
         Self {
-            a: SMatrix::from_array_storage(ArrayStorage([[0.0; N]; N])),
-            b: SMatrix::from_array_storage(ArrayStorage([[0.0; N]; 2])),
-            offset: SVector::from_array_storage(ArrayStorage([[0.0; N]])),
+            a: SMatrix::from_array_storage(ArrayStorage([[0.0; STATES]; STATES])),
+            b: SMatrix::from_array_storage(ArrayStorage([[0.0; STATES]; 2])),
+            offset: SVector::from_array_storage(ArrayStorage([[0.0; STATES]])),
         }
     }
 
     /// The state after the stage.
     #[must_use]
-    pub fn step(&self, state: &StageState<N>, control: &StageControl) -> StageState<N> {
+    pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
         let [elevator, thrust] = *control;
         let control = self.b * Vector2::new(elevator, thrust);
         (self.a * SVector::from(*state) + control + self.offset).into()

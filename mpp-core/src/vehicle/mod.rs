@@ -5,6 +5,7 @@ mod dynamics;
 mod limits;
 mod linearize;
 mod point_mass;
+mod thrust_lag;
 mod trim;
 mod wind;
 
@@ -15,5 +16,6 @@ pub use limits::ActuatorLimits;
 pub(crate) use linearize::linearize_along;
 pub use linearize::{JacobianForm, Linearization, linearize};
 pub use point_mass::{PathControl, PathState};
+pub use thrust_lag::ThrustLag;
 pub use trim::{Trim, TrimError};
 pub use wind::Wind;

@@ -31,7 +31,7 @@ pub struct PathState {
 pub struct PathControl {
     /// Rate of the angle of attack [rad/s].
     pub angle_of_attack_rate: f64,
-    /// Thrust \[N\].
+    /// Thrust \[N\]: in the equations of motion the thrust that acts, in a plan the command.
     pub thrust: f64,
 }
 

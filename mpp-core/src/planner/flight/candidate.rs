@@ -1,24 +1,22 @@
 //! The roll-out of a candidate and its linearisation.
 
 use super::limits::Limits;
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::qp::{Dynamics, Solution, StageState};
-use crate::trajectory::STEPS;
-use crate::vehicle::{Airframe, PathControl, PathState, Trim, Wind};
-use nalgebra::{SMatrix, SVector, Vector2};
+use crate::config::{STAGE_PERIOD, STAGES};
+use crate::qp::{Dynamics, STATES, Solution, StageState};
+use crate::trajectory::{RollOut, STEPS};
+use crate::tuning::candidates::THRUST_SCALE;
+use crate::vehicle::{Airframe, PathControl, PathState, ThrustLag, Trim, Wind};
+use nalgebra::{Matrix5, SMatrix, SVector, Vector2};
 
 /// Angles of the program are in tenths of a radian, so that they have about the same weight as metres.
 pub(super) const ANGLE_SCALE: f64 = 10.0;
-/// Number of states of a program: there is no pitch rate.
-pub(super) const MOTION_STATES: usize = 5;
-/// State of a program: deviations in x, z, airspeed, pitch and flight path.
-pub(super) type MotionState = StageState<MOTION_STATES>;
+/// Place of the thrust in the state of a program, which has no pitch rate.
+const THRUST: usize = 4;
 
 /// A trajectory as the aircraft would fly it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Candidate {
-    pub(super) knots: [PathState; KNOTS],
-    pub(super) controls: [PathControl; STAGES],
+    pub(super) flown: RollOut,
     /// The price that ranks the candidate. It is infinite before the first improvement.
     pub(super) price: f64,
 }
@@ -26,18 +24,17 @@ pub(super) struct Candidate {
 impl Candidate {
     /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
     /// attack and the thrust.
-    pub(super) fn roll_out(
-        &mut self,
-        solution: &Solution<MOTION_STATES>,
-        frame: &Frame,
-        limits: &Limits,
-    ) {
+    pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
         let [down, up] = limits.rolled_out;
         let trim = &frame.trim;
         let level = trim.state.angle_of_attack();
-        let [first, later @ ..] = &mut self.knots;
-        let mut state = *first;
-        let stages = self.controls.iter_mut().zip(later).zip(&solution.controls);
+        let RollOut {
+            knots: [first, later @ ..],
+            controls,
+            thrust,
+        } = &mut self.flown;
+        let (mut state, mut given) = (*first, *thrust);
+        let stages = controls.iter_mut().zip(later).zip(&solution.controls);
         for ((control, knot), [rate, thrust]) in stages {
             let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
             let allowed = aimed.max(level - down).min(level + up);
@@ -50,7 +47,8 @@ impl Candidate {
                     .min(limits.thrust_max)
                     .max(0.0),
             };
-            state = frame.after(&state, control);
+            state = frame.after(&state, control, given);
+            given = frame.lag.end(given, control.thrust);
             *knot = state;
         }
     }
@@ -62,17 +60,36 @@ pub(super) struct Frame {
     pub(super) trim: Trim,
     pub(super) wind: Wind,
     pub(super) start: PathState,
+    /// Thrust at the start, and its lag.
+    pub(super) thrust: f64,
+    pub(super) lag: ThrustLag,
 }
 
 impl Frame {
-    /// The state one stage after a knot.
-    fn after(&self, knot: &PathState, control: &PathControl) -> PathState {
-        knot.after_in(&self.wind, &self.airframe, control, STAGE_PERIOD, STEPS)
+    /// The state one stage after a knot at which the motor gives the thrust `given`.
+    fn after(&self, knot: &PathState, control: &PathControl, given: f64) -> PathState {
+        let control = self.acting(control, given);
+        knot.after_in(&self.wind, &self.airframe, &control, STAGE_PERIOD, STEPS)
     }
 
-    /// The program's state: deviations in position and speed, and in pitch and flight path in tenths of a
-    /// radian.
-    pub(super) fn deviation(&self, state: &PathState, stage: usize) -> SVector<f64, MOTION_STATES> {
+    /// The control that acts in a stage in which the thrust starts at `given`.
+    fn acting(&self, control: &PathControl, given: f64) -> PathControl {
+        PathControl {
+            thrust: self.lag.mean(given, control.thrust),
+            ..*control
+        }
+    }
+
+    /// The program's state: deviations in position and speed, in pitch and flight path in tenths of a radian, and in
+    /// the thrust in units of [`THRUST_SCALE`].
+    // Not inlined, because three callers would hold a copy each.
+    #[inline(never)]
+    pub(super) fn deviation(
+        &self,
+        state: &PathState,
+        thrust: f64,
+        stage: usize,
+    ) -> SVector<f64, STATES> {
         let trim = &self.trim.state;
         let level = self.start.x + trim.airspeed * STAGE_PERIOD * stage as f64;
         SVector::from([
@@ -80,49 +97,67 @@ impl Frame {
             state.z - self.start.z,
             state.airspeed - trim.airspeed,
             ANGLE_SCALE * (state.flight_path + state.angle_of_attack - trim.pitch),
+            (thrust - self.trim.control.thrust) / THRUST_SCALE,
             ANGLE_SCALE * (state.flight_path - trim.flight_path),
         ])
     }
 
     /// Writes the dynamics of each stage, linearised about a candidate.
-    pub(super) fn linearise(
-        &self,
-        candidate: &Candidate,
-        dynamics: &mut [Dynamics<MOTION_STATES>; STAGES],
-    ) {
-        let [_, following @ ..] = &candidate.knots;
-        let knots = candidate.knots.iter().zip(following);
-        let stages = dynamics.iter_mut().zip(knots.zip(&candidate.controls));
+    pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
+        let RollOut {
+            knots, controls, ..
+        } = &candidate.flown;
+        let mut given = self.thrust;
+        let knots = knots.iter().zip(knots.iter().skip(1));
+        let stages = dynamics.iter_mut().zip(knots.zip(controls));
         for (stage, (dynamics, ((knot, following), control))) in stages.enumerate() {
-            let (state, input) = knot.sensitivity(&self.airframe, control, STAGE_PERIOD);
-            // These columns convert between the program's (pitch, path) and the point mass's (path, angle
-            // of attack).
-            let [x, z, v, path, alpha] = state.data.0;
-            let mut turning = path;
-            for (turning, alpha) in turning.iter_mut().zip(&alpha) {
-                *turning -= alpha;
-            }
-            let [alpha, turning] = [alpha, turning].map(|column| column.map(|it| it / ANGLE_SCALE));
-            let a: SMatrix<f64, MOTION_STATES, MOTION_STATES> =
-                [x, z, v, alpha, turning].map(program_state).into();
-            let b: SMatrix<f64, MOTION_STATES, 2> = input.data.0.map(program_state).into();
+            let acting = self.acting(control, given);
+            let by = knot.sensitivity(&self.airframe, &acting, STAGE_PERIOD);
+            let (a, b) = program_model(by, &self.lag);
             // A roll-out ends each stage in its next knot; a path need not.
             let next = if candidate.price.is_finite() {
                 *following
             } else {
-                self.after(knot, control)
+                self.after(knot, control, given)
             };
+            let before = self.deviation(knot, given, stage);
+            given = self.lag.end(given, control.thrust);
             let thrust = control.thrust - self.trim.control.thrust;
             let control = Vector2::new(control.angle_of_attack_rate, thrust);
-            let offset =
-                self.deviation(&next, stage + 1) - a * self.deviation(knot, stage) - b * control;
+            let offset = self.deviation(&next, given, stage + 1) - a * before - b * control;
             *dynamics = Dynamics { a, b, offset };
         }
     }
 }
 
-/// Converts deviations of the point mass to the program's state.
-fn program_state([x, z, v, path, alpha]: [f64; 5]) -> MotionState {
+/// The matrices of a stage from the derivatives of the point mass. A thrust that is given at the start of the stage and the
+/// command both act by their share of the mean thrust.
+fn program_model(
+    (state, input): (Matrix5<f64>, SMatrix<f64, 5, 2>),
+    lag: &ThrustLag,
+) -> (SMatrix<f64, STATES, STATES>, SMatrix<f64, STATES, 2>) {
+    let [mean_by_given, mean_by_command] = lag.mean_by();
+    let [end_by_given, end_by_command] = lag.end_by();
+    // These columns convert between the program's (pitch, path) and the point mass's (path, angle of attack).
+    let [x, z, v, path, alpha] = state.data.0;
+    let mut turning = path;
+    for (turning, alpha) in turning.iter_mut().zip(&alpha) {
+        *turning -= alpha;
+    }
+    let [alpha, turning] = [alpha, turning].map(|column| column.map(|it| it / ANGLE_SCALE));
+    let [rate, mean] = input.data.0;
+    let given = mean.map(|it| it * (mean_by_given * THRUST_SCALE));
+    let command = mean.map(|it| it * mean_by_command);
+    let mut a: SMatrix<f64, STATES, STATES> =
+        [x, z, v, alpha, given, turning].map(program_state).into();
+    let mut b: SMatrix<f64, STATES, 2> = [rate, command].map(program_state).into();
+    a[(THRUST, THRUST)] = end_by_given;
+    b[(THRUST, 1)] = end_by_command / THRUST_SCALE;
+    (a, b)
+}
+
+/// Converts derivatives of the point mass to the program's state.
+fn program_state([x, z, v, path, alpha]: [f64; 5]) -> StageState {
     let pitch = ANGLE_SCALE * (path + alpha);
-    [x, z, v, pitch, ANGLE_SCALE * path]
+    [x, z, v, pitch, 0.0, ANGLE_SCALE * path]
 }

@@ -1,13 +1,12 @@
 //! What others may see of a cycle: map, candidates, programs. And another candidate than the best, for whoever
 //! chooses himself.
 
-use super::candidate::{MOTION_STATES, MotionState};
 use super::judge::PriceParts;
 use super::workspace::Workspace;
 use super::{FlightPlanner, Phase};
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::{KNOTS, STAGES};
 use crate::map::{ClearanceField, MemoryMap};
-use crate::qp::{Dynamics, Problem, STATES, StageState};
+use crate::qp::{Dynamics, Problem};
 use crate::trajectory::Trajectory;
 
 impl FlightPlanner {
@@ -29,32 +28,21 @@ impl FlightPlanner {
             return None;
         }
         let candidate = self.candidates.get(self.at_hand)?;
-        let path = candidate.knots.each_ref().map(|knot| (knot.x, knot.z));
-        let Problem {
-            initial,
-            target,
-            bounds,
-            penalty,
-            cost_limit,
-        } = self.solver.problem;
-        let problem = Problem {
-            initial: with_pitch_rate(initial),
-            target: with_pitch_rate(target),
-            bounds,
-            penalty,
-            cost_limit,
-        };
-        Some((path, problem))
+        let path = candidate
+            .flown
+            .knots
+            .each_ref()
+            .map(|knot| (knot.x, knot.z));
+        Some((path, self.solver.problem))
     }
 
-    /// A copy of the dynamics of every stage in the program of [`Self::candidate`], if there is one. The pitch rate
-    /// of the copy is zero in each stage.
+    /// The dynamics of every stage in the program of [`Self::candidate`], if there is one.
     #[must_use]
-    pub fn stages(&self) -> Option<[Dynamics; STAGES]> {
+    pub fn stages(&self) -> Option<&[Dynamics; STAGES]> {
         let Workspace::Program(shared) = &self.workspace else {
             return None;
         };
-        Some(shared.stages().each_ref().map(dynamics_with_pitch_rate))
+        Some(shared.stages())
     }
 
     /// Price of the best trajectory so far, by which the planner ranks trajectories. It is infinite without one.
@@ -74,17 +62,13 @@ impl FlightPlanner {
     /// path that the candidate began with. `None` if there is no such candidate.
     pub fn offer(&self, index: usize, trajectory: &mut Trajectory) -> Option<f64> {
         let candidate = self.candidates.get(index)?;
-        let units = &self.units;
         trajectory.fly_out(
-            &candidate
-                .knots
-                .each_ref()
-                .map(|knot| units.si_path_state(knot)),
-            &(candidate.controls.each_ref()).map(|control| units.si_path_control(control)),
+            &candidate.flown,
+            &self.units,
             &self.conditions.airframe(&self.si_airframe),
             &self.conditions.wind,
+            &self.lag,
             self.time,
-            STAGE_PERIOD * units.time,
         );
         Some(candidate.price)
     }
@@ -101,7 +85,7 @@ impl FlightPlanner {
     pub fn price_parts(&self, index: usize) -> Option<(f64, PriceParts)> {
         let candidate = self.candidates.get(index)?;
         let priced = candidate.price.is_finite();
-        priced.then(|| (candidate.price, self.parts_of(candidate)))
+        priced.then(|| (candidate.price, self.parts_of(&candidate.flown)))
     }
 
     /// Takes a candidate of the last cycle for the best one: the next cycle then counts on it being flown. Gives
@@ -117,19 +101,5 @@ impl FlightPlanner {
     #[must_use]
     pub fn map(&self) -> &MemoryMap {
         &self.map
-    }
-}
-
-/// A state in the form of the paper's programs: with a pitch rate, which is zero.
-fn with_pitch_rate([x, z, v, pitch, path]: MotionState) -> StageState {
-    [x, z, v, pitch, 0.0, path]
-}
-
-fn dynamics_with_pitch_rate(stage: &Dynamics<MOTION_STATES>) -> Dynamics {
-    let [x, z, v, pitch, path] = stage.a.data.0.map(with_pitch_rate);
-    Dynamics {
-        a: [x, z, v, pitch, [0.0; STATES], path].into(),
-        b: stage.b.data.0.map(with_pitch_rate).into(),
-        offset: with_pitch_rate(stage.offset.into()).into(),
     }
 }

@@ -2,8 +2,8 @@
 //! and the cost of the way on from the via station.
 
 use super::FlightPlanner;
-use super::candidate::Candidate;
 use crate::config::{KNOTS, STAGES};
+use crate::trajectory::RollOut;
 use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 
@@ -40,12 +40,12 @@ pub(super) struct Judgement {
 
 impl FlightPlanner {
     /// Computes lack of clearance, effort and price of a roll-out.
-    pub(super) fn judge(&self, flown: &Candidate) -> Judgement {
+    pub(super) fn judge(&self, flown: &RollOut) -> Judgement {
         self.add_up(flown, |_, _| {})
     }
 
     /// The parts of the price that [`Self::judge`] gives.
-    pub(super) fn parts_of(&self, flown: &Candidate) -> PriceParts {
+    pub(super) fn parts_of(&self, flown: &RollOut) -> PriceParts {
         let mut parts = PriceParts::default();
         let judgement = self.add_up(flown, |part, summand| match part {
             Part::Clearance => parts.clearance += summand,
@@ -60,7 +60,7 @@ impl FlightPlanner {
     }
 
     /// Adds up the price, and tells `note` of each summand.
-    fn add_up(&self, flown: &Candidate, mut note: impl FnMut(Part, f64)) -> Judgement {
+    fn add_up(&self, flown: &RollOut, mut note: impl FnMut(Part, f64)) -> Judgement {
         let (field, cost_to_go, own) = (&self.field, &self.cost_to_go, &self.settings);
         let via = cost_to_go.via();
         let (mut lack, mut price) = (0.0_f64, 0.0);
@@ -106,7 +106,7 @@ impl FlightPlanner {
     }
 
     /// The program's cost function, applied to a roll-out with angles in radians.
-    fn effort(&self, flown: &Candidate) -> f64 {
+    fn effort(&self, flown: &RollOut) -> f64 {
         let weights = &self.weights;
         let trim = &self.trim;
         let efforts = flown.controls.iter().map(|control| {

@@ -45,9 +45,9 @@ use crate::settings::FlightSettings;
 use crate::trajectory::Trajectory;
 use crate::units::Units;
 use crate::vehicle::{
-    ActuatorLimits, AirState, Airframe, PathControl, PathState, Trim, VehicleState, Wind,
+    ActuatorLimits, AirState, Airframe, PathControl, PathState, ThrustLag, Trim, VehicleState, Wind,
 };
-use candidate::{Candidate, Frame, MOTION_STATES};
+use candidate::{Candidate, Frame};
 pub use judge::PriceParts;
 use limits::Limits;
 use workspace::{Intake, Workspace};
@@ -95,6 +95,7 @@ pub struct FlightPlanner {
     known: (Airframe, Trim),
     si_airframe: Airframe,
     actuators: ActuatorLimits,
+    lag: ThrustLag,
     /// Whether the planner is set up.
     ready: bool,
 
@@ -104,9 +105,10 @@ pub struct FlightPlanner {
     conditions: Conditions,
     /// Where the scan was made.
     pose: Pose,
-    /// When the plan is taken over \[s\], and the state that the aircraft will have then.
+    /// When the plan is taken over \[s\], and the state and the thrust that the aircraft will have then.
     time: f64,
     state: VehicleState,
+    thrust: f64,
     wind: Wind,
     airframe: Airframe,
     trim: Trim,
@@ -126,7 +128,7 @@ pub struct FlightPlanner {
     order: [usize; MAX_CANDIDATES],
     /// Index of the candidate that the planner improves now.
     at_hand: usize,
-    solver: Solver<MOTION_STATES>,
+    solver: Solver,
 
     // Results of the cycle. The best trajectory outlives the cycle.
     best: Trajectory,
@@ -148,6 +150,7 @@ impl FlightPlanner {
             known: (Airframe::REFERENCE, NO_TRIM),
             si_airframe: Airframe::REFERENCE,
             actuators: ActuatorLimits::NONE,
+            lag: ThrustLag::NONE,
             ready: false,
             phase: Phase::Idle,
             conditions: Conditions::STILL,
@@ -157,6 +160,7 @@ impl FlightPlanner {
                 pitch: 0.0,
             },
             time: 0.0,
+            thrust: 0.0,
             state: VehicleState {
                 x: 0.0,
                 z: 0.0,
@@ -196,6 +200,8 @@ impl FlightPlanner {
         self.pose = self.units.own_pose(pose);
         self.state = self.taken_over(time, &self.units.own_state(state));
         self.time = time + self.settings.latency * self.units.time;
+        let thrust = self.best.thrust(self.time);
+        self.thrust = thrust.map_or(self.trim.control.thrust, |it| it / self.units.force());
         let mut scan = scan.clone();
         for range in &mut scan.ranges {
             *range = (f64::from(*range) / self.units.length) as f32;
@@ -205,7 +211,7 @@ impl FlightPlanner {
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
-        self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0];
+        self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.solver
             .problem
@@ -340,6 +346,8 @@ impl FlightPlanner {
             trim: self.trim,
             wind: self.wind,
             start: PathState::of(&self.state),
+            thrust: self.thrust,
+            lag: self.lag,
         }
     }
 }

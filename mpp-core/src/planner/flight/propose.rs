@@ -4,6 +4,7 @@ use super::FlightPlanner;
 use super::candidate::Candidate;
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::paths::LatticePath;
+use crate::trajectory::RollOut;
 use crate::vehicle::{PathControl, PathState};
 
 impl FlightPlanner {
@@ -15,7 +16,7 @@ impl FlightPlanner {
         let cruise = self.trim.state.airspeed;
         let mut candidate = self.cruising();
         let mut last = PathState::of(&self.state);
-        for (stage, knot) in candidate.knots.iter_mut().enumerate().skip(1) {
+        for (stage, knot) in candidate.flown.knots.iter_mut().enumerate().skip(1) {
             let time = self.time + STAGE_PERIOD * stage as f64 * self.units.time;
             *knot = match self.last_plan(time) {
                 Some(state) => PathState::of(&state),
@@ -46,11 +47,14 @@ impl FlightPlanner {
     pub(super) fn cruising(&self) -> Candidate {
         let thrust = self.trim.control.thrust;
         Candidate {
-            knots: [PathState::of(&self.state); KNOTS],
-            controls: [PathControl {
-                angle_of_attack_rate: 0.0,
-                thrust,
-            }; STAGES],
+            flown: RollOut {
+                knots: [PathState::of(&self.state); KNOTS],
+                controls: [PathControl {
+                    angle_of_attack_rate: 0.0,
+                    thrust,
+                }; STAGES],
+                thrust: self.thrust,
+            },
             price: f64::INFINITY,
         }
     }
@@ -70,7 +74,7 @@ impl FlightPlanner {
         let mut candidate = self.cruising();
         let cruise = self.trim.state.airspeed;
         let mut x = start.x;
-        for knot in candidate.knots.iter_mut().skip(1) {
+        for knot in candidate.flown.knots.iter_mut().skip(1) {
             let slope = at(x).1;
             x += (cruise / libm::sqrt(1.0 + slope * slope) + self.wind.x) * STAGE_PERIOD;
             let (z, slope) = at(x);

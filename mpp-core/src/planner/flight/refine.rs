@@ -3,11 +3,10 @@
 
 use super::super::shared::STEPS_PER_SLICE;
 use super::super::summary::FEASIBLE;
-use super::candidate::{ANGLE_SCALE, Candidate, MOTION_STATES};
+use super::candidate::{ANGLE_SCALE, Candidate};
 use super::limits::Limits;
 use super::workspace::Workspace;
 use super::{FlightPlanner, MAX_CANDIDATES, Phase};
-use crate::config::STAGE_PERIOD;
 use crate::corridor::{Corridor, Keep};
 use crate::qp::{Solution, Status};
 use crate::tuning::candidates::HOPELESS;
@@ -36,7 +35,7 @@ impl FlightPlanner {
         };
         let cruise = self.trim.state.airspeed;
         let mut corridor = Corridor::new();
-        corridor.separate(&self.field, &candidate.knots, cruise, &keep);
+        corridor.separate(&self.field, &candidate.flown.knots, cruise, &keep);
         self.solver.problem.bounds.set_corridor(&corridor);
         self.at_hand = index;
         self.phase = Phase::Linearise;
@@ -82,7 +81,7 @@ impl FlightPlanner {
         (self.solver.problem.bounds)
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
         self.solver.problem.cost_limit = HOPELESS * self.best_price;
-        self.solver.problem.initial = frame.deviation(&frame.start, 0).into();
+        self.solver.problem.initial = frame.deviation(&frame.start, frame.thrust, 0).into();
         self.solver.begin(shared);
         self.phase = Phase::Improve;
     }
@@ -120,28 +119,27 @@ impl FlightPlanner {
 
     /// Computes the roll-out of the solution, judges it, and keeps it if it is the best.
     #[inline(never)]
-    fn fly_out(&mut self, solution: &Solution<MOTION_STATES>) {
-        let mut flown = self.cruising();
-        flown.roll_out(solution, &self.frame(), &self.limits);
-        let judgement = self.judge(&flown);
-        flown.price = judgement.price;
+    fn fly_out(&mut self, solution: &Solution) {
+        let mut candidate = self.cruising();
+        candidate.roll_out(solution, &self.frame(), &self.limits);
+        let judgement = self.judge(&candidate.flown);
+        candidate.price = judgement.price;
         self.summary.feasible += usize::from(judgement.lack <= FEASIBLE);
         if judgement.price < self.best_price {
             self.best_price = judgement.price;
             self.summary.cost = judgement.effort;
             self.summary.violation = judgement.lack;
-            let units = &self.units;
             self.best.fly_out(
-                &flown.knots.each_ref().map(|knot| units.si_path_state(knot)),
-                &(flown.controls.each_ref()).map(|control| units.si_path_control(control)),
+                &candidate.flown,
+                &self.units,
                 &self.conditions.airframe(&self.si_airframe),
                 &self.conditions.wind,
+                &self.lag,
                 self.time,
-                STAGE_PERIOD * units.time,
             );
         }
         if let Some(place) = self.candidates.get_mut(self.at_hand) {
-            *place = flown;
+            *place = candidate;
         }
     }
 }

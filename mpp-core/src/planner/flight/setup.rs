@@ -6,7 +6,7 @@ use super::{FlightPlanner, Phase};
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::qp::ModelError;
 use crate::settings::{FlightSettings, Method, PlannerSettings, Setting, Settings};
-use crate::vehicle::VehicleState;
+use crate::vehicle::{ThrustLag, VehicleState};
 
 impl FlightPlanner {
     /// Sets the planner up; see [`crate::planner::Planner::set_up`].
@@ -33,6 +33,7 @@ impl FlightPlanner {
         );
         (self.airframe, self.trim) = self.known;
         self.actuators = self.units.own_actuators(&settings.actuators);
+        self.lag = ThrustLag::new(&self.actuators, STAGE_PERIOD);
         self.weights = planner.weights;
         self.adopt(planner, own);
         self.try_program()?;
@@ -83,6 +84,7 @@ impl FlightPlanner {
             z: self.altitude,
             air: self.trim.state,
         };
+        self.thrust = self.trim.control.thrust;
         let cruising = self.cruising();
         let frame = self.frame();
         self.workspace = Workspace::NEW;

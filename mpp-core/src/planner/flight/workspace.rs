@@ -1,6 +1,5 @@
 //! The memory that the phases of a cycle use one after the other.
 
-use super::candidate::MOTION_STATES;
 use crate::map::LoneHits;
 use crate::paths::Lattice;
 use crate::qp::Condensed;
@@ -15,7 +14,7 @@ use crate::sense::LidarScan;
 #[derive(Clone, Debug)]
 pub(super) enum Workspace {
     /// Phases Faces, Linearise and Improve.
-    Program(Condensed<MOTION_STATES>),
+    Program(Condensed),
     /// Phase Map.
     Scan(Intake),
     /// Phase Lattice.

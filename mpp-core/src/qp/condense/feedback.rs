@@ -13,39 +13,39 @@
 
 use crate::config::STAGES;
 use crate::qp::controls::ControlVector;
-use crate::qp::{Dynamics, StageControl, StageState, Weights};
+use crate::qp::{Dynamics, STATES, StageControl, StageState, Weights};
 use nalgebra::{ArrayStorage, Matrix2, SMatrix, SVector, Vector2};
 
 /// Feedback of one stage.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Feedback<const N: usize> {
+pub(super) struct Feedback {
     /// `F`, 2 x N.
-    pub(super) gain: SMatrix<f64, 2, N>,
+    pub(super) gain: SMatrix<f64, 2, STATES>,
     /// `T`, 2 x 2, lower triangular.
     pub(super) scale: Matrix2<f64>,
     /// `S d`: the part of the slope `s` that the offset of the stage adds.
-    offset_slope: SVector<f64, N>,
+    offset_slope: SVector<f64, STATES>,
 }
 
-impl<const N: usize> Feedback<N> {
+impl Feedback {
     /// Feedback of zeros, to be filled.
     pub(super) const fn none() -> Self {
         Self {
-            gain: SMatrix::from_array_storage(ArrayStorage([[0.0; 2]; N])),
+            gain: SMatrix::from_array_storage(ArrayStorage([[0.0; 2]; STATES])),
             scale: Matrix2::from_array_storage(ArrayStorage([[0.0; 2]; 2])),
-            offset_slope: SVector::from_array_storage(ArrayStorage([[0.0; N]])),
+            offset_slope: SVector::from_array_storage(ArrayStorage([[0.0; STATES]])),
         }
     }
 
     /// State matrix of the stage under the feedback, `A - B F`.
-    pub(super) fn closed(&self, dynamics: &Dynamics<N>) -> SMatrix<f64, N, N> {
+    pub(super) fn closed(&self, dynamics: &Dynamics) -> SMatrix<f64, STATES, STATES> {
         dynamics.a - dynamics.b * self.gain
     }
 
     /// The control `-F x - g + T v`.
     pub(super) fn control(
         &self,
-        state: &StageState<N>,
+        state: &StageState,
         feedforward: &StageControl,
         normalised: &StageControl,
     ) -> StageControl {
@@ -59,13 +59,13 @@ impl<const N: usize> Feedback<N> {
 /// positive definite or the model is not finite.
 // Not inlined, so that its matrices do not lie on the stack beneath the response.
 #[inline(never)]
-pub(super) fn design<const N: usize>(
-    dynamics: &[Dynamics<N>; STAGES],
+pub(super) fn design(
+    dynamics: &[Dynamics; STAGES],
     weights: &Weights,
-    feedback: &mut [Feedback<N>; STAGES],
+    feedback: &mut [Feedback; STAGES],
 ) -> Option<()> {
     let control = Matrix2::from_diagonal(&Vector2::from(weights.control));
-    let mut cost = SMatrix::<f64, N, N>::from_diagonal_element(weights.terminal);
+    let mut cost = SMatrix::<f64, STATES, STATES>::from_diagonal_element(weights.terminal);
     for (stage, feedback) in dynamics.iter().zip(feedback).rev() {
         let Dynamics { a, b, offset } = stage;
         let weighted = b.transpose() * cost;
@@ -84,11 +84,11 @@ pub(super) fn design<const N: usize>(
 }
 
 /// The feedforward `g` of every stage for a target of the last state.
-pub(super) fn feedforward<const N: usize>(
-    dynamics: &[Dynamics<N>; STAGES],
+pub(super) fn feedforward(
+    dynamics: &[Dynamics; STAGES],
     weights: &Weights,
-    feedback: &[Feedback<N>; STAGES],
-    target: &StageState<N>,
+    feedback: &[Feedback; STAGES],
+    target: &StageState,
 ) -> ControlVector {
     let mut controls = [[0.0; 2]; STAGES];
     let mut slope = SVector::from(*target) * -weights.terminal;

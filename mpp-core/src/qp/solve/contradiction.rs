@@ -18,12 +18,12 @@ const NEGLIGIBLE: f64 = 1e-8;
 /// Share of the largest rate below which a rate is zero up to rounding.
 const NO_RATE: f64 = 1e-13;
 
-impl<const N: usize> Solver<N> {
+impl Solver {
     /// Corrects a direction whose complement is lost in rounding. Returns the relation of the entering row to
     /// the active rows.
     pub(super) fn resolve(
         &self,
-        shared: &Condensed<N>,
+        shared: &Condensed,
         entering: &Entering,
         direction: &mut Direction,
     ) -> Stand {
@@ -47,7 +47,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Makes one step of iterative refinement of the rates, and computes the complement as a squared norm.
-    fn correct(&self, shared: &Condensed<N>, entering: &Active, direction: &mut Direction) {
+    fn correct(&self, shared: &Condensed, entering: &Active, direction: &mut Direction) {
         let rest = self.remainder(shared, entering, &direction.rates);
         let mut missing = [0.0; CAPACITY];
         let active = self.active.iter().zip(&direction.rates);
@@ -81,7 +81,7 @@ impl<const N: usize> Solver<N> {
     /// `Y' (c_p - C_A' r)`
     pub(super) fn remainder(
         &self,
-        shared: &Condensed<N>,
+        shared: &Condensed,
         entering: &Active,
         rates: &[f64; CAPACITY],
     ) -> ControlVector {
@@ -99,7 +99,7 @@ impl<const N: usize> Solver<N> {
     /// each other.
     pub(super) fn contradiction(
         &mut self,
-        shared: &Condensed<N>,
+        shared: &Condensed,
         entering: &Active,
         rates: &[f64; CAPACITY],
     ) -> Status {
@@ -116,7 +116,7 @@ impl<const N: usize> Solver<N> {
     /// The verdict on multipliers that have grown until the cost is absurd.
     pub(super) fn excessive_multipliers(
         &mut self,
-        shared: &Condensed<N>,
+        shared: &Condensed,
         entering: &Active,
     ) -> Status {
         let rows = || self.active.iter().chain([entering]);
@@ -131,7 +131,7 @@ impl<const N: usize> Solver<N> {
     /// Checks whether the certificate proves infeasibility from the data of the program alone. The proof is
     /// that the optimum without rows violates the weighted sum of the certificate's rows, and that a
     /// correction of this violation takes an absurd cost.
-    fn proven(&mut self, shared: &Condensed<N>) -> Status {
+    fn proven(&mut self, shared: &Condensed) -> Status {
         self.normalised = [0.0; CONTROLS];
         self.follow(shared);
         let mut sum = [0.0; CONTROLS];

@@ -18,7 +18,7 @@ use super::condense::{Condensed, outputs};
 use super::controls::{CONTROLS, ControlVector};
 use super::factor::{CAPACITY, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
-use super::{Problem, STATES, Solution, Status, check_states};
+use super::{Problem, STATES, Solution, Status};
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -99,14 +99,14 @@ struct Entering {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Debug)]
-pub struct Solver<const N: usize = STATES> {
+pub struct Solver {
     /// The program. Its owner may change it between the end of one and the beginning of the next.
-    pub(crate) problem: Problem<N>,
+    pub(crate) problem: Problem,
     /// The feedforward of the optimum without rows.
     feedforward: ControlVector,
     /// The present normalised controls, their trajectory, and the outputs of the trajectory.
     normalised: ControlVector,
-    trajectory: Solution<N>,
+    trajectory: Solution,
     outputs: [f64; OUTPUTS],
     /// Whether the multipliers have changed since the controls were computed.
     stale: bool,
@@ -128,15 +128,14 @@ pub struct Solver<const N: usize = STATES> {
     certificate: heapless::Vec<(usize, f64), { CAPACITY + 1 }>,
 }
 
-impl<const N: usize> Solver<N> {
+impl Solver {
     /// An empty workspace.
     #[must_use]
     pub const fn new() -> Self {
-        check_states::<N>();
         Self {
             problem: Problem {
-                initial: [0.0; N],
-                target: [0.0; N],
+                initial: [0.0; STATES],
+                target: [0.0; STATES],
                 bounds: Bounds::none(),
                 penalty: None,
                 cost_limit: f64::INFINITY,
@@ -162,13 +161,13 @@ impl<const N: usize> Solver<N> {
 
     /// Starts on a problem: computes the optimum without rows, and checks the rows that no control can change
     /// and the opposite faces.
-    pub fn start(&mut self, shared: &Condensed<N>, problem: &Problem<N>) {
+    pub fn start(&mut self, shared: &Condensed, problem: &Problem) {
         self.problem = *problem;
         self.begin(shared);
     }
 
     /// Starts on the problem that is here already.
-    pub(crate) fn begin(&mut self, shared: &Condensed<N>) {
+    pub(crate) fn begin(&mut self, shared: &Condensed) {
         self.active.clear();
         let problem = &self.problem;
         let rows = problem.bounds.0.iter().zip(&shared.prices);
@@ -206,7 +205,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Computes trajectory and outputs of the present normalised controls.
-    fn follow(&mut self, shared: &Condensed<N>) {
+    fn follow(&mut self, shared: &Condensed) {
         let initial = &self.problem.initial;
         shared.roll_out(
             initial,
@@ -220,7 +219,7 @@ impl<const N: usize> Solver<N> {
     /// Makes up to `iterations` steps. Returns the status as soon as there is one.
     // Not inlined, so that the steps do not lie on the stack beneath what follows the last of them.
     #[inline(never)]
-    pub fn advance(&mut self, shared: &Condensed<N>, iterations: usize) -> Option<Status> {
+    pub fn advance(&mut self, shared: &Condensed, iterations: usize) -> Option<Status> {
         for _ in 0..iterations {
             if self.status.is_some() {
                 break;
@@ -236,7 +235,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Solves to the end.
-    pub fn solve(&mut self, shared: &Condensed<N>, problem: &Problem<N>) -> Status {
+    pub fn solve(&mut self, shared: &Condensed, problem: &Problem) -> Status {
         self.start(shared, problem);
         self.advance(shared, MAX_ITERATIONS + 1)
             .unwrap_or(Status::IterationLimit)
@@ -266,7 +265,7 @@ impl<const N: usize> Solver<N> {
     /// Writes the trajectory that follows from the multipliers. Returns the status, or
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
     #[inline(never)]
-    pub fn solution(&self, shared: &Condensed<N>, solution: &mut Solution<N>) -> Status {
+    pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
         if self.stale {
             let normalised = self.controls(shared, None);
             let initial = &self.problem.initial;
@@ -288,7 +287,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Worst violation of soft and of hard rows that controls can change.
-    fn worst_violations(&self, shared: &Condensed<N>, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
+    fn worst_violations(&self, shared: &Condensed, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
         let excess = excesses(outputs, &self.problem.bounds);
         let worst = |(rows, prices): (&[f64], &[f64])| {
             let changeable = rows.iter().zip(prices).filter(|(_, price)| **price > 0.0);
@@ -308,7 +307,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// The normalised controls of the present multipliers, `-Y' (C_A' lambda_A + c_p lambda_p)`.
-    fn controls(&self, shared: &Condensed<N>, entering: Option<&Active>) -> ControlVector {
+    fn controls(&self, shared: &Condensed, entering: Option<&Active>) -> ControlVector {
         let mut normalised = [0.0; CONTROLS];
         for row in self.active.iter().chain(entering) {
             shared.add_normal(&mut normalised, &row.pattern, -row.multiplier);
@@ -322,7 +321,7 @@ impl<const N: usize> Solver<N> {
 
     /// Checks the hard rows that no control can change. If one of them is violated, the problem is
     /// infeasible.
-    fn check_constant_rows(&mut self, shared: &Condensed<N>) -> Option<Status> {
+    fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
         let rows = shared.prices.iter().zip(&self.problem.bounds.0);
         for (row, (price, bound)) in rows.enumerate() {
             if *price > 0.0 || self.is_soft(row) {
@@ -357,7 +356,7 @@ impl<const N: usize> Solver<N> {
     }
 }
 
-impl<const N: usize> Default for Solver<N> {
+impl Default for Solver {
     fn default() -> Self {
         Self::new()
     }

@@ -29,9 +29,9 @@ enum Event {
     Toggle(usize),
 }
 
-impl<const N: usize> Solver<N> {
+impl Solver {
     /// One step of the method: from one event to the next.
-    pub(super) fn step(&mut self, shared: &Condensed<N>) -> Option<Status> {
+    pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
         let mut entering = match self.entering.take() {
             Some(entering) => entering,
             None => match self.select(shared) {
@@ -78,7 +78,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Selects the row that enters next. The error is the status of a solver that ends here.
-    fn select(&mut self, shared: &Condensed<N>) -> Result<Entering, Status> {
+    fn select(&mut self, shared: &Condensed) -> Result<Entering, Status> {
         self.refresh(shared, None);
         let by_effort = self.problem.penalty.is_none();
         let worst = most_violated(
@@ -212,7 +212,7 @@ impl<const N: usize> Solver<N> {
     }
 
     /// Computes controls, trajectory and outputs of the present multipliers, if they have changed.
-    fn refresh(&mut self, shared: &Condensed<N>, entering: Option<&Active>) {
+    fn refresh(&mut self, shared: &Condensed, entering: Option<&Active>) {
         if self.stale {
             self.normalised = self.controls(shared, entering);
             self.follow(shared);
@@ -222,7 +222,7 @@ impl<const N: usize> Solver<N> {
 
     fn apply(
         &mut self,
-        shared: &Condensed<N>,
+        shared: &Condensed,
         event: Event,
         mut entering: Entering,
         direction: &Direction,
@@ -292,8 +292,8 @@ impl<const N: usize> Solver<N> {
 }
 
 /// Computes the products of a row's response with those of the active rows. Returns its squared norm.
-fn meet<const N: usize>(
-    shared: &Condensed<N>,
+fn meet(
+    shared: &Condensed,
     own: &Active,
     active: &[Active],
     products: &mut [f64; CAPACITY],
