@@ -24,14 +24,14 @@ pub struct Reference {
     pub feedforward: Control,
 }
 
-/// A plan as the point mass flies it out.
+/// A plan as the point mass flies it out, in the planner's [own units](Units).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RollOut {
     /// States at the stage boundaries.
     pub knots: [PathState; KNOTS],
     /// Commands of the stages.
     pub controls: [PathControl; STAGES],
-    /// Thrust at the start \[N\]. From there it follows the commands with the lag of the actuators.
+    /// Thrust at the start. From there it follows the commands with the lag of the actuators.
     pub thrust: f64,
 }
 
@@ -160,8 +160,8 @@ impl Trajectory {
         });
     }
 
-    /// The thrust that the motor gives at a time \[s\], by its lag. `None` where [`Self::sample`] gives none, and for a
-    /// plan that knows no lag.
+    /// The thrust that the motor gives at a time \[s\], by its lag. `None` where [`Self::sample`] gives none, and for
+    /// a plan that is no roll-out.
     #[must_use]
     pub fn thrust(&self, time: f64) -> Option<f64> {
         let Between::Flown(medium) = &self.between else {
