@@ -294,14 +294,9 @@ impl Medium {
 
 /// The reference of a point mass that moves under `control`, with the thrust to command.
 fn commanded(at: &PathState, airframe: &Airframe, control: &PathControl, thrust: f64) -> Reference {
-    let (state, feedforward) = at.reference(airframe, control);
-    Reference {
-        state,
-        feedforward: Control {
-            thrust,
-            ..feedforward
-        },
-    }
+    let (state, mut feedforward) = at.reference(airframe, control);
+    feedforward.thrust = thrust;
+    Reference { state, feedforward }
 }
 
 impl Default for Trajectory {

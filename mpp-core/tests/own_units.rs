@@ -117,6 +117,12 @@ fn a_similar_aircraft_flies_the_similar_plan() {
             assert!((a.thrust * force - b.thrust).abs() < 1e-5 * force);
             assert!((a.elevator - b.elevator).abs() < 1e-5);
         }
+        // So is the thrust that the motor gives.
+        for elapsed in [0.0, 0.1, 1.3, 4.4] {
+            let given = |plan: &Trajectory, time: f64| plan.thrust(plan.start + elapsed * time);
+            let (a, b) = (given(&first, 1.0).unwrap(), given(&other, time).unwrap());
+            assert!((a * force - b).abs() < 1e-5 * force, "{a} {b}");
+        }
     }
 }
 

@@ -107,9 +107,9 @@ impl StageModel {
 /// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dynamics {
-    /// State matrix, N x N.
+    /// State matrix, 6 x 6.
     pub a: SMatrix<f64, STATES, STATES>,
-    /// Control matrix, N x 2.
+    /// Control matrix, 6 x 2.
     pub b: SMatrix<f64, STATES, 2>,
     /// Next state from the state zero without control.
     pub offset: SVector<f64, STATES>,

@@ -40,18 +40,6 @@ impl ThrustLag {
         })
     }
 
-    /// Derivatives of the thrust at the end of a stage by the thrust at its start and by the command [-].
-    #[must_use]
-    pub fn end_by(&self) -> [f64; 2] {
-        [self.at_end, 1.0 - self.at_end]
-    }
-
-    /// Derivatives of the mean thrust of a stage by the thrust at its start and by the command [-].
-    #[must_use]
-    pub fn mean_by(&self) -> [f64; 2] {
-        [self.in_mean, 1.0 - self.in_mean]
-    }
-
     /// The thrust at the end of a stage that starts with the thrust `given`.
     #[must_use]
     pub fn end(&self, given: f64, command: f64) -> f64 {

@@ -47,7 +47,7 @@ impl Candidate {
                     .min(limits.thrust_max)
                     .max(0.0),
             };
-            state = frame.after(&state, control, given);
+            state = frame.after(&state, &frame.acting(control, given));
             given = frame.lag.end(given, control.thrust);
             *knot = state;
         }
@@ -60,16 +60,13 @@ pub(super) struct Frame {
     pub(super) trim: Trim,
     pub(super) wind: Wind,
     pub(super) start: PathState,
-    /// Thrust at the start, and its lag.
-    pub(super) thrust: f64,
     pub(super) lag: ThrustLag,
 }
 
 impl Frame {
-    /// The state one stage after a knot at which the motor gives the thrust `given`.
-    fn after(&self, knot: &PathState, control: &PathControl, given: f64) -> PathState {
-        let control = self.acting(control, given);
-        knot.after_in(&self.wind, &self.airframe, &control, STAGE_PERIOD, STEPS)
+    /// The state one stage after a knot under the control that acts.
+    fn after(&self, knot: &PathState, acting: &PathControl) -> PathState {
+        knot.after_in(&self.wind, &self.airframe, acting, STAGE_PERIOD, STEPS)
     }
 
     /// The control that acts in a stage in which the thrust starts at `given`.
@@ -105,9 +102,11 @@ impl Frame {
     /// Writes the dynamics of each stage, linearised about a candidate.
     pub(super) fn linearise(&self, candidate: &Candidate, dynamics: &mut [Dynamics; STAGES]) {
         let RollOut {
-            knots, controls, ..
+            knots,
+            controls,
+            thrust,
         } = &candidate.flown;
-        let mut given = self.thrust;
+        let mut given = *thrust;
         let knots = knots.iter().zip(knots.iter().skip(1));
         let stages = dynamics.iter_mut().zip(knots.zip(controls));
         for (stage, (dynamics, ((knot, following), control))) in stages.enumerate() {
@@ -118,7 +117,7 @@ impl Frame {
             let next = if candidate.price.is_finite() {
                 *following
             } else {
-                self.after(knot, control, given)
+                self.after(knot, &acting)
             };
             let before = self.deviation(knot, given, stage);
             given = self.lag.end(given, control.thrust);
@@ -130,14 +129,12 @@ impl Frame {
     }
 }
 
-/// The matrices of a stage from the derivatives of the point mass. A thrust that is given at the start of the stage and the
-/// command both act by their share of the mean thrust.
+/// The matrices of a stage from the derivatives of the point mass. The thrust at the start of the stage and the command
+/// act by their share of the mean thrust. Mean and end are linear in both, so one newton of each gives the shares.
 fn program_model(
     (state, input): (Matrix5<f64>, SMatrix<f64, 5, 2>),
     lag: &ThrustLag,
 ) -> (SMatrix<f64, STATES, STATES>, SMatrix<f64, STATES, 2>) {
-    let [mean_by_given, mean_by_command] = lag.mean_by();
-    let [end_by_given, end_by_command] = lag.end_by();
     // These columns convert between the program's (pitch, path) and the point mass's (path, angle of attack).
     let [x, z, v, path, alpha] = state.data.0;
     let mut turning = path;
@@ -146,13 +143,13 @@ fn program_model(
     }
     let [alpha, turning] = [alpha, turning].map(|column| column.map(|it| it / ANGLE_SCALE));
     let [rate, mean] = input.data.0;
-    let given = mean.map(|it| it * (mean_by_given * THRUST_SCALE));
-    let command = mean.map(|it| it * mean_by_command);
+    let given = mean.map(|it| it * (lag.mean(1.0, 0.0) * THRUST_SCALE));
+    let command = mean.map(|it| it * lag.mean(0.0, 1.0));
     let mut a: SMatrix<f64, STATES, STATES> =
         [x, z, v, alpha, given, turning].map(program_state).into();
     let mut b: SMatrix<f64, STATES, 2> = [rate, command].map(program_state).into();
-    a[(THRUST, THRUST)] = end_by_given;
-    b[(THRUST, 1)] = end_by_command / THRUST_SCALE;
+    a[(THRUST, THRUST)] = lag.end(1.0, 0.0);
+    b[(THRUST, 1)] = lag.end(0.0, 1.0) / THRUST_SCALE;
     (a, b)
 }
 

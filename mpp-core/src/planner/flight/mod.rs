@@ -346,7 +346,6 @@ impl FlightPlanner {
             trim: self.trim,
             wind: self.wind,
             start: PathState::of(&self.state),
-            thrust: self.thrust,
             lag: self.lag,
         }
     }

@@ -81,7 +81,7 @@ impl FlightPlanner {
         (self.solver.problem.bounds)
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
         self.solver.problem.cost_limit = HOPELESS * self.best_price;
-        self.solver.problem.initial = frame.deviation(&frame.start, frame.thrust, 0).into();
+        self.solver.problem.initial = frame.deviation(&frame.start, self.thrust, 0).into();
         self.solver.begin(shared);
         self.phase = Phase::Improve;
     }

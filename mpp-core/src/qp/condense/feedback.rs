@@ -19,7 +19,7 @@ use nalgebra::{ArrayStorage, Matrix2, SMatrix, SVector, Vector2};
 /// Feedback of one stage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Feedback {
-    /// `F`, 2 x N.
+    /// `F`, 2 x 6.
     pub(super) gain: SMatrix<f64, 2, STATES>,
     /// `T`, 2 x 2, lower triangular.
     pub(super) scale: Matrix2<f64>,
