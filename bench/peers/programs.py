@@ -215,6 +215,7 @@ def _rows(record: dict[str, Any]) -> Iterator[tuple[Array, Array, float | None]]
                 yield *attack, sign * limits[0]
                 yield *climb, sign * limits[1]
     for stage in range(STAGES):
-        states, controls = row()
-        controls[stage, THRUST] = -1.0
-        yield states, controls, record["thrust_reserve"]
+        for sign, bound in ((1.0, record.get("thrust_rise")), (-1.0, record["thrust_reserve"])):
+            states, controls = row()
+            controls[stage, THRUST] = sign
+            yield states, controls, bound

@@ -4,7 +4,7 @@ use serde_json::Value;
 use std::error::Error;
 
 /// Fields of a program and how many numbers each holds, in the order in which the image reads them.
-const FIELDS: [(&str, usize); 10] = [
+const FIELDS: [(&str, usize); 11] = [
     ("a", 36),
     ("b", 12),
     ("control_weight", 2),
@@ -12,6 +12,7 @@ const FIELDS: [(&str, usize); 10] = [
     ("initial", 6),
     ("target", 6),
     ("position_bounds", 152),
+    ("thrust_rise", 1),
     ("thrust_reserve", 1),
     ("attitude", 4),
     ("penalty", 2),
@@ -36,6 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut source = format!("static PROGRAMS: &[[Real; {count}]] = &[");
     for line in std::fs::read_to_string(file)?.lines() {
         let (program, mut numbers) = (serde_json::from_str::<Value>(line)?, Vec::new());
+        // The image has no field for it.
+        let hard = program["hard_angle_of_attack"].to_string();
+        assert!(!hard.contains("true"), "hard_angle_of_attack is {hard}");
         let mut end = 0;
         for (field, count) in FIELDS {
             end += count;

@@ -6,16 +6,17 @@
 use mpp_core::config::{DIRECTIONS, KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::qp::{
-    Bounds, CondenseError, Condensed, Dynamics, Penalty, Problem, RowKind, Weights,
+    Bounds, CondenseError, Condensed, Dynamics, POSITION, Penalty, Problem, RowKind, Weights,
 };
-use nalgebra::{Matrix6, Matrix6x2, SMatrix};
+use nalgebra::{Matrix6x2, SMatrix};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// One program: everything that a solver needs.
 ///
 /// States are `(x, z, v, theta, theta', gamma)` and controls `(elevator, thrust)`, deviations from
-/// level flight; SI units and radians.
+/// level flight; SI units and radians. Programs of the flight planner are in its own units and tenths of radians, with the
+/// states `(x, z, v, theta, thrust, gamma)` and the controls `(rate of the angle of attack, thrust)`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Instance {
@@ -40,12 +41,18 @@ pub struct Instance {
     pub directions: [[f64; 2]; DIRECTIONS],
     /// Bounds in `directions[i] . (x_k, z_k) <= position_bounds[k][i]`.
     pub position_bounds: Vec<[f64; DIRECTIONS]>,
-    /// Largest amount by which thrust may fall.
+    /// Largest amount by which thrust may rise \[N\], if bounded.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thrust_rise: Option<f64>,
+    /// Largest amount by which thrust may fall \[N\].
     pub thrust_reserve: f64,
     /// Limits of `(angle of attack, flight path)`, upper then lower, if bounded.
     pub attitude: Option<[[f64; 2]; 2]>,
     /// `(linear, quadratic)` price of violating position and attitude rows; `None` makes them hard.
     pub penalty: Option<[f64; 2]>,
+    /// Whether the upper and the lower rows of the angle of attack are hard although there is a penalty.
+    #[serde(default)]
+    pub hard_angle_of_attack: [bool; 2],
     /// The least uniform relaxation of all rows that makes the program feasible, if recorded.
     pub margin: Option<f64>,
     /// The optimal cost, if recorded.
@@ -64,19 +71,20 @@ impl Instance {
     ) -> Self {
         let mut position_bounds = vec![[f64::INFINITY; DIRECTIONS]; KNOTS];
         let mut limits = [f64::INFINITY; 4];
-        let mut thrust_reserve = f64::INFINITY;
+        let [mut thrust_rise, mut thrust_reserve] = [f64::INFINITY; 2];
         for (row, bound) in problem.bounds.0.iter().enumerate() {
             match RowKind::of(row) {
                 RowKind::Position(knot, direction) => position_bounds[knot][direction] = *bound,
                 RowKind::Attitude(_, side) => limits[side] = *bound,
-                RowKind::Thrust(_) => thrust_reserve = *bound,
+                RowKind::Thrust(_, 0) => thrust_rise = *bound,
+                RowKind::Thrust(..) => thrust_reserve = *bound,
             }
         }
         let [attack, path, minus_attack, minus_path] = limits;
         let bounded = limits.iter().all(|limit| limit.is_finite());
         Self {
             name,
-            a: stages.iter().map(|stage| rows_of(&stage.a)).collect(),
+            a: stages.iter().map(|stage| rows_of(&stage.a())).collect(),
             b: stages.iter().map(|stage| rows_of(&stage.b)).collect(),
             offset: stages.iter().map(|stage| stage.offset.into()).collect(),
             control_weight: weights.control,
@@ -85,11 +93,13 @@ impl Instance {
             target: problem.target,
             directions: DIRECTION_VECTORS.map(|[up, forward]| [forward, up]),
             position_bounds,
+            thrust_rise: thrust_rise.is_finite().then_some(thrust_rise),
             thrust_reserve,
             attitude: bounded.then_some([[attack, path], [-minus_attack, -minus_path]]),
             penalty: problem
                 .penalty
                 .map(|penalty| [penalty.linear, penalty.quadratic]),
+            hard_angle_of_attack: problem.hard_angle_of_attack,
             margin: None,
             cost: None,
         }
@@ -104,7 +114,7 @@ impl Instance {
     fn dynamics(&self, stage: usize) -> Dynamics {
         let at = self.place(stage);
         Dynamics {
-            a: Matrix6::from_fn(|row, col| self.a[at][row][col]),
+            motion: SMatrix::from_fn(|row, col| self.a[at][row][col + POSITION]),
             b: Matrix6x2::from_fn(|row, col| self.b[at][row][col]),
             offset: self.offset[at].into(),
         }
@@ -174,7 +184,8 @@ impl Instance {
         }
         let mut bounds = Bounds::none();
         bounds.set_corridor(&corridor);
-        bounds.set_thrust(self.thrust_reserve);
+        let rise = self.thrust_rise.unwrap_or(f64::INFINITY);
+        bounds.set_thrust([rise, self.thrust_reserve]);
         if let Some([upper, lower]) = self.attitude {
             bounds.set_attitude(upper, lower);
         }
@@ -185,6 +196,7 @@ impl Instance {
             penalty: self
                 .penalty
                 .map(|[linear, quadratic]| Penalty { linear, quadratic }),
+            hard_angle_of_attack: self.hard_angle_of_attack,
             cost_limit: f64::INFINITY,
         }
     }
@@ -207,7 +219,8 @@ impl Instance {
     /// Checks a program against the sizes and directions of the core.
     ///
     /// # Errors
-    /// [`InstanceError::Stages`], [`InstanceError::Dynamics`] or [`InstanceError::Directions`].
+    /// [`InstanceError::Stages`], [`InstanceError::Dynamics`], [`InstanceError::Position`] or
+    /// [`InstanceError::Directions`].
     pub fn check(&self) -> Result<(), InstanceError> {
         if self.position_bounds.len() != KNOTS {
             let found = self.position_bounds.len();
@@ -216,6 +229,13 @@ impl Instance {
         let stages = self.a.len();
         if ![1, STAGES].contains(&stages) || self.b.len() != stages || self.offset.len() != stages {
             return Err(InstanceError::Dynamics(self.name.clone(), stages));
+        }
+        let bits = |row: &[f64; 6]| row.map(|entry| (entry + 0.0).to_bits());
+        let differs = |(at, a): (usize, &[[f64; 6]; 6])| {
+            a.map(|row| bits(&row)) != rows_of(&self.dynamics(at).a()).map(|row| bits(&row))
+        };
+        if self.a.iter().enumerate().any(differs) {
+            return Err(InstanceError::Position(self.name.clone()));
         }
         let vectors = DIRECTION_VECTORS.map(|[up, forward]| [forward, up]);
         let far = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()) > 1e-9;
@@ -240,6 +260,8 @@ pub enum InstanceError {
     Stages(String, usize),
     /// The program of this name has dynamics for another number of stages than one or all.
     Dynamics(String, usize),
+    /// The program of this name has a motion that depends on the position.
+    Position(String),
     /// The program of this name has other directions than the core.
     Directions(String),
     /// The recorded case of this name has a model without steady state.
@@ -258,6 +280,11 @@ impl fmt::Display for InstanceError {
                 f,
                 "{name}: a, b and offset have {found} stages instead of 1 or {STAGES}"
             ),
+            Self::Position(name) => write!(
+                f,
+                "{name}: the first two columns of a must be those of the identity, because the core \
+                 takes it that a motion does not depend on the position"
+            ),
             Self::Directions(name) => {
                 write!(f, "{name}: directions are not the eight of this crate")
             }
@@ -274,6 +301,7 @@ impl std::error::Error for InstanceError {
             Self::Json(error) => Some(error),
             Self::Stages(..)
             | Self::Dynamics(..)
+            | Self::Position(_)
             | Self::Directions(_)
             | Self::NoSteadyState(_) => None,
         }
@@ -283,5 +311,57 @@ impl std::error::Error for InstanceError {
 impl From<serde_json::Error> for InstanceError {
     fn from(error: serde_json::Error) -> Self {
         Self::Json(error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Instance, InstanceError};
+    use mpp_core::qp::{Bounds, Dynamics, MOTION, Penalty, Problem, STATES, Weights};
+    use nalgebra::SMatrix;
+
+    fn program() -> (Dynamics, Problem) {
+        let model = Dynamics {
+            motion: SMatrix::<f64, STATES, MOTION>::from_fn(|row, col| (row + 6 * col) as f64),
+            ..Dynamics::at_rest()
+        };
+        let mut bounds = Bounds::none();
+        bounds.set_thrust([12.0, 3.0]);
+        bounds.set_attitude([0.2, 0.6], [-0.1, -0.5]);
+        let problem = Problem {
+            initial: [1.0; STATES],
+            target: [2.0; STATES],
+            bounds,
+            penalty: Some(Penalty {
+                linear: 10.0,
+                quadratic: 20.0,
+            }),
+            hard_angle_of_attack: [true, false],
+            cost_limit: f64::INFINITY,
+        };
+        (model, problem)
+    }
+
+    #[test]
+    fn a_program_keeps_its_model_and_rows() {
+        let (model, problem) = program();
+        let instance = Instance::of_program("a".into(), &[model], &Weights::PAPER, &problem);
+        assert_eq!(instance.dynamics(0), model);
+        assert_eq!(instance.problem(), problem);
+        instance.check().unwrap();
+    }
+
+    #[test]
+    fn a_model_that_depends_on_the_position_is_refused() {
+        let (model, problem) = program();
+        let mut instance = Instance::of_program("a".into(), &[model], &Weights::PAPER, &problem);
+        instance.a[0][2][1] = 1e-3;
+        let refusal = instance.check().unwrap_err();
+        assert!(matches!(&refusal, InstanceError::Position(name) if name == "a"));
+        assert!(
+            refusal
+                .to_string()
+                .starts_with("a: the first two columns of a must be")
+        );
     }
 }

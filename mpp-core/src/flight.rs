@@ -307,7 +307,8 @@ impl FlightLoop {
         let VehicleState { x, z, .. } = self.estimator.state();
         let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
         let ahead = ahead.max(LEAST_ADVANCE);
-        let off = (ahead * (reference.z - z) - up * (reference.x - x)) / libm::hypot(ahead, up);
+        let speed = libm::sqrt(ahead * ahead + up * up);
+        let off = (ahead * (reference.z - z) - up * (reference.x - x)) / speed;
         let turn = (self.cross_track * off).clamp(-MOST_TURN, MOST_TURN);
         AirState {
             pitch: reference.air.pitch + turn,

@@ -71,12 +71,13 @@ fn program(
     );
     let mut bounds = Bounds::none();
     bounds.set_corridor(&corridor);
-    bounds.set_thrust(trim.control.thrust);
+    bounds.set_thrust([f64::INFINITY, trim.control.thrust]);
     Problem {
         initial: model.initial_state(trim, &state.air),
         target: [0.0, settings.planner.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
         bounds,
         penalty: None,
+        hard_angle_of_attack: [false; 2],
         cost_limit: f64::INFINITY,
     }
 }

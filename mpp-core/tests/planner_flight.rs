@@ -20,7 +20,7 @@ use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::estimate::Conditions;
 use mpp_core::paths::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
-use mpp_core::qp::{Dynamics, MAX_ITERATIONS, Penalty};
+use mpp_core::qp::{MAX_ITERATIONS, Penalty};
 use mpp_core::settings::{FlightSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{PathControl, PathState, VehicleState};
@@ -102,41 +102,6 @@ fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
     assert_eq!(own.price().to_bits(), least.to_bits());
     assert_eq!(planner.summary().cost.to_bits(), effort.to_bits());
     assert!(own.price_parts(own.offers()).is_none());
-}
-
-/// The states of a program are `(x, z, v, theta, thrust, gamma)`.
-#[test]
-fn programs_know_place_path_and_thrust() {
-    let mut settings = Settings::flight();
-    settings.actuators.thrust_lag = Some(STAGE_PERIOD);
-    let mut planner = planner(&settings);
-    let state = level(&planner);
-    let scan = scan(&[(125.0, 50.5, 1.0)], &state);
-    planner.begin(0.0, &state, &Conditions::STILL, &scan);
-    let remains = libm::exp(-1.0);
-    let mut seen = 0;
-    while planner.advance() {
-        let Some((_, problem)) = planner.candidate() else {
-            continue;
-        };
-        assert!(problem.initial[4].abs() + problem.target[4].abs() == 0.0);
-        for Dynamics { a, b, .. } in planner.flight().unwrap().stages().unwrap() {
-            // Nothing but its command changes the thrust.
-            assert!((a[(4, 4)] - remains).abs() < 1e-12);
-            assert!((a.row(4).sum() - a[(4, 4)]).abs() + b[(4, 0)].abs() == 0.0);
-            // A command of 1 N for long gives a thrust of 1 N, and any thrust accelerates.
-            let gain = b[(4, 1)] / (1.0 - remains);
-            assert!((a[(2, 4)] * gain).abs() > 0.0 && b[(2, 1)] > 0.0);
-            let (by_given, by_command) = (a[(2, 4)] * gain, b[(2, 1)]);
-            let in_mean = 1.0 - remains;
-            assert!((by_given / (by_given + by_command) - in_mean).abs() < 1e-9);
-            // A path that points up climbs. The place turns nothing.
-            assert!(a[(1, 5)] > 0.0 && a[(5, 1)].abs() == 0.0);
-            assert!((a[(0, 0)] - 1.0).abs() + (a[(1, 1)] - 1.0).abs() == 0.0);
-        }
-        seen += 1;
-    }
-    assert!(seen > 3);
 }
 
 #[test]

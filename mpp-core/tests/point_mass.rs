@@ -150,7 +150,7 @@ proptest! {
     ) {
         let error = |dt: f64| {
             let end = |x: &PathState, u: &PathControl| x.after(&airframe, u, dt, 40);
-            let (a, b) = at.sensitivity(&airframe, &control, dt);
+            let (a, b) = at.sensitivity(&end(&at, &control), &airframe, &control, dt);
             let (expected_a, expected_b) = differences(end, &at, &control);
             [(a - expected_a).amax(), (b - expected_b).amax()]
         };

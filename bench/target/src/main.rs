@@ -10,7 +10,7 @@ use core::fmt::{self, Write};
 use core::panic::PanicInfo;
 use mpp_core::corridor::Corridor;
 use mpp_core::qp::{
-    Bounds, Condensed, Dynamics, Penalty, Problem, Solution, Solver, Status, Weights,
+    Bounds, Condensed, Dynamics, POSITION, Penalty, Problem, Solution, Solver, Status, Weights,
 };
 use nalgebra::{Matrix6, Matrix6x2};
 
@@ -139,7 +139,9 @@ fn take<const N: usize>(rest: &mut &[Real]) -> [Real; N] {
 fn program(mut rest: &[Real]) -> (Dynamics, Weights, Problem) {
     let rest = &mut rest;
     let model = Dynamics {
-        a: Matrix6::from_row_slice(&take::<36>(rest)),
+        motion: Matrix6::from_row_slice(&take::<36>(rest))
+            .fixed_columns(POSITION)
+            .into_owned(),
         b: Matrix6x2::from_row_slice(&take::<12>(rest)),
         ..Dynamics::at_rest()
     };
@@ -150,8 +152,7 @@ fn program(mut rest: &[Real]) -> (Dynamics, Weights, Problem) {
     corridor.bounds.fill_with(|| take(rest));
     let mut bounds = Bounds::none();
     bounds.set_corridor(&corridor);
-    let [reserve] = take(rest);
-    bounds.set_thrust(reserve);
+    bounds.set_thrust(take(rest));
     let [attack, path, least_attack, least_path] = take(rest);
     if attack < INFINITY {
         bounds.set_attitude([attack, path], [least_attack, least_path]);
@@ -162,6 +163,7 @@ fn program(mut rest: &[Real]) -> (Dynamics, Weights, Problem) {
         target,
         bounds,
         penalty: (linear < INFINITY).then_some(Penalty { linear, quadratic }),
+        hard_angle_of_attack: [false; 2],
         cost_limit: INFINITY,
     };
     (model, Weights { control, terminal }, problem)

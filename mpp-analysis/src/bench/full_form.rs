@@ -252,27 +252,35 @@ fn inequalities(instance: &Instance) -> Vec<Row> {
             let path = state(knot, FLIGHT_PATH);
             let angle_of_attack = vec![(state(knot, PITCH), 1.0), (path, -1.0)];
             for (which, terms) in [angle_of_attack, vec![(path, 1.0)]].into_iter().enumerate() {
-                for (sign, bound) in [(1.0, upper[which]), (-1.0, -lower[which])] {
+                let [hard_up, hard_down] = instance.hard_angle_of_attack;
+                let sides = [
+                    (1.0, upper[which], hard_up),
+                    (-1.0, -lower[which], hard_down),
+                ];
+                for (sign, bound, hard) in sides {
                     rows.push(Row {
                         terms: terms
                             .iter()
                             .map(|(at, factor)| (*at, sign * factor))
                             .collect(),
                         bound,
-                        softens: true,
+                        softens: which == 1 || !hard,
                         constant: false,
                     });
                 }
             }
         }
     }
+    let rise = instance.thrust_rise.unwrap_or(f64::INFINITY);
     for stage in 0..STAGES {
-        rows.push(Row {
-            terms: vec![(control(stage, 1), -1.0)],
-            bound: instance.thrust_reserve,
-            softens: false,
-            constant: false,
-        });
+        for (sign, bound) in [(1.0, rise), (-1.0, instance.thrust_reserve)] {
+            rows.push(Row {
+                terms: vec![(control(stage, 1), sign)],
+                bound,
+                softens: false,
+                constant: false,
+            });
+        }
     }
     rows.retain(|row| row.bound.is_finite());
     rows

@@ -183,7 +183,7 @@ pub fn run_qp(
     })
 }
 
-/// The margin: the recorded one, or else Clarabel's. Programs with soft rows always have room.
+/// The margin: the recorded one, or else Clarabel's. Programs with soft rows have room.
 fn margin(instance: &Instance) -> Result<f64, QpBenchError> {
     match (instance.penalty, instance.margin) {
         (Some(_), _) => Ok(-1.0),

@@ -135,7 +135,10 @@ fn instances_of(name: &str, file: &CaseFile) -> Result<Vec<Instance>, ModelError
     }
     let mut bounds = Bounds::none();
     bounds.set_corridor(&corridor);
-    bounds.set_thrust(file.h_thrust.first().copied().unwrap_or(f64::NAN));
+    bounds.set_thrust([
+        f64::INFINITY,
+        file.h_thrust.first().copied().unwrap_or(f64::NAN),
+    ]);
     let instance = |(form, initial, margin, recorded): (&str, Initial, f64, &Recorded)| {
         let model = StageModel::new(&trim, &linear, initial)?;
         let [v, pitch, pitch_rate, path]: [f64; 4] = deviation.into();
@@ -144,6 +147,7 @@ fn instances_of(name: &str, file: &CaseFile) -> Result<Vec<Instance>, ModelError
             target: file.xgoal,
             bounds,
             penalty: None,
+            hard_angle_of_attack: [false; 2],
             cost_limit: f64::INFINITY,
         };
         // The recorded objective leaves out the constant w |target|^2 / 2.

@@ -4,10 +4,11 @@
 mod feedback;
 
 use super::controls::{CONTROLS, ControlVector, add_scaled, dot};
-use super::response::{Pair, Response};
-use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT};
+use super::response::Response;
+use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT, parts_mut};
 use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
+use crate::corridor::DIRECTION_VECTORS;
 use core::fmt;
 use feedback::Feedback;
 use nalgebra::SVector;
@@ -46,15 +47,6 @@ impl fmt::Display for CondenseError {
 impl core::error::Error for CondenseError {}
 
 impl Condensed {
-    /// Index in the state, and first place among the outputs, of the outputs that are states: x, z, pitch and
-    /// flight path.
-    const MOTION_OUTPUTS: [(usize, usize); 4] = [
-        (0, 0),
-        (1, 1),
-        (PITCH, ATTITUDE_OUTPUT),
-        (STATES - 1, ATTITUDE_OUTPUT + 1),
-    ];
-
     /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
     #[must_use]
     pub const fn new() -> Self {
@@ -110,45 +102,54 @@ impl Condensed {
         let stages = self.dynamics.iter().zip(&self.feedback).enumerate();
         for (stage, (dynamics, feedback)) in stages {
             let so_far = 2 * stage;
+            let attitude = ATTITUDE_OUTPUT + so_far;
+            let outputs = [so_far, so_far + 1, attitude, attitude + 1];
             let thrusts = self.response.row_mut(THRUST_OUTPUT + stage);
             thrusts.fill(0.0);
             let gain = feedback.gain.row(1);
-            for (thrust, column) in thrusts.iter_mut().zip(&columns).take(so_far) {
-                *thrust = -(gain * column).x;
+            let closed = feedback.closed(dynamics);
+            for (thrust, column) in thrusts.iter_mut().zip(&mut columns).take(so_far) {
+                *thrust = -(gain * *column).x;
+                *column = closed * *column;
             }
             if let Some([elevator, thrust, ..]) = thrusts.get_mut(so_far..) {
                 [*elevator, *thrust] = feedback.scale.row(1).into_owned().into();
-            }
-            let closed = feedback.closed(dynamics);
-            for column in columns.iter_mut().take(so_far) {
-                *column = closed * *column;
             }
             if let Some(own) = columns.as_chunks_mut::<2>().0.get_mut(stage) {
                 let first = dynamics.b * feedback.scale;
                 *own = [first.column(0).into_owned(), first.column(1).into_owned()];
             }
-            for (state, output) in Self::MOTION_OUTPUTS {
-                let row = self.response.row_mut(output + so_far);
-                for (entry, column) in row.iter_mut().zip(&columns) {
-                    *entry = column[state];
-                }
+            let [x, z, pitch, flight_path] = self.response.rows_mut(outputs);
+            let entries = x.iter_mut().zip(z).zip(pitch).zip(flight_path);
+            for ((((x, z), pitch), flight_path), column) in entries.zip(&columns) {
+                *x = column[0];
+                *z = column[1];
+                *pitch = column[PITCH];
+                *flight_path = column[STATES - 1];
             }
         }
     }
 
     /// Writes the price of each row.
     fn write_prices(&mut self) {
-        let mut pair = Pair::none();
-        for (row, price) in self.prices.iter_mut().enumerate() {
-            let squared = RowPattern::of(row).map_or(0.0, |pattern| {
-                pair.take_up(&self.response, &pattern);
-                pair.norm_squared(&pattern)
-            });
-            *price = if squared > UNCHANGEABLE {
-                1.0 / squared
-            } else {
-                0.0
-            };
+        let Self {
+            response, prices, ..
+        } = self;
+        prices.fill(0.0);
+        let (positions, attitudes, thrusts) = parts_mut(prices);
+        // No control can change the rows of boundary 0.
+        let stages = positions.iter_mut().skip(1).zip(attitudes).zip(thrusts);
+        for (stage, ((position, attitude), thrust)) in stages.enumerate() {
+            let pair = response.pair(2 * stage);
+            for (price, [up, forward]) in position.iter_mut().zip(&DIRECTION_VECTORS) {
+                *price = price_of(pair.norm_squared([*forward, *up]));
+            }
+            let pair = response.pair(ATTITUDE_OUTPUT + 2 * stage);
+            let attack = price_of(pair.norm_squared([1.0, -1.0]));
+            let flight_path = price_of(pair.norm_squared([0.0, 1.0]));
+            *attitude = [attack, flight_path, attack, flight_path];
+            let row = response.row(THRUST_OUTPUT + stage);
+            *thrust = [price_of(dot(row, row)); 2];
         }
     }
 
@@ -226,6 +227,15 @@ impl Condensed {
 impl Default for Condensed {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+/// Price of a row with this squared norm of its response.
+fn price_of(squared: f64) -> f64 {
+    if squared > UNCHANGEABLE {
+        1.0 / squared
+    } else {
+        0.0
     }
 }
 

@@ -5,13 +5,13 @@
 //! s.t. x_{k+1} = A x_k + B u_k,  x_0 given
 //!      g_i . (z_k, x_k) <= h_ki                         half-planes of the corridor
 //!      |theta_k|, |gamma_k| within limits               attitude rows, where asked for
-//!      thrust_k >= 0
+//!      0 <= thrust_k <= greatest thrust
 //! ```
 //!
 //! The program has two parts. [`Condensed`] depends on the model alone and serves every candidate of that
 //! model. [`Solver`] finds the optimum of one candidate. States and controls are deviations from level
 //! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`. The programs of the flight
-//! planner have no pitch rate: their state has five numbers, `(x, z, v, theta, gamma)`.
+//! planner have no pitch rate. The thrust that the motor gives stands in its place.
 //!
 //! The method is a dual active set (Goldfarb, Idnani: "A numerically stable dual method for
 //! solving strictly convex quadratic programs", 1983). It works on *normalised controls* `v` and *outputs*.
@@ -20,6 +20,7 @@
 
 mod condense;
 mod controls;
+mod excess;
 mod factor;
 mod model;
 mod response;
@@ -35,6 +36,10 @@ pub use solve::{MAX_ITERATIONS, Solver};
 
 /// Number of states of a program.
 pub const STATES: usize = 6;
+/// Number of states that are the position `(x, z)`. They stand first.
+pub const POSITION: usize = 2;
+/// Number of the other states, which are called the motion.
+pub const MOTION: usize = STATES - POSITION;
 /// State of a program, the deviation from level trim: `(x, z, v, theta, theta', gamma)` in the paper's method, and in the
 /// flight planner `(x, z, v, theta, thrust, gamma)`.
 pub type StageState = [f64; STATES];
@@ -81,8 +86,14 @@ pub struct Problem {
     /// Right-hand sides of all rows; infinite for a row that the program does not have.
     pub bounds: Bounds,
     /// Price of violating corridor and attitude rows. Without a price these rows are hard. Thrust rows are
-    /// always hard.
+    /// always hard, and [`Self::hard_angle_of_attack`] names others.
     pub penalty: Option<Penalty>,
+    /// Whether the upper and the lower rows of the angle of attack are hard although there is a price. A price can make
+    /// a program leave its corridor. It cannot make an elevator reach further.
+    ///
+    /// In a program with a price, hard rows must not contradict each other. The solver then finds no optimum, and
+    /// gives no proof.
+    pub hard_angle_of_attack: [bool; 2],
     /// Cost above which the solver drops the candidate. With an infinite limit it solves to the end.
     pub cost_limit: f64,
 }

@@ -1,7 +1,7 @@
 //! The discrete model of the planner: forward Euler at the stage period, with the rotation in steady
 //! state (paper, section III-D).
 
-use super::{PITCH, STATES, StageControl, StageState};
+use super::{MOTION, PITCH, POSITION, STATES, StageControl, StageState};
 use crate::config::STAGE_PERIOD;
 use crate::inverse::inverse;
 use crate::vehicle::{AirState, Linearization, Trim};
@@ -50,8 +50,12 @@ impl StageModel {
     /// A model of zeros, to be filled.
     #[cfg(feature = "paper")]
     pub(crate) const fn at_rest() -> Self {
-        let Dynamics { a, b, .. } = Dynamics::at_rest();
-        Self { a, b, initial: a }
+        let nothing = Matrix6::from_array_storage(ArrayStorage([[0.0; STATES]; STATES]));
+        Self {
+            a: nothing,
+            b: Dynamics::at_rest().b,
+            initial: nothing,
+        }
     }
 
     /// Discretises the linearised aircraft about level trim. Pitch and pitch rate are too fast for the stage
@@ -84,7 +88,7 @@ impl StageModel {
     #[must_use]
     pub fn dynamics(&self) -> Dynamics {
         Dynamics {
-            a: self.a,
+            motion: self.a.fixed_columns::<MOTION>(POSITION).into_owned(),
             b: self.b,
             offset: Vector6::zeros(),
         }
@@ -104,11 +108,12 @@ impl StageModel {
     }
 }
 
-/// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory.
+/// Dynamics of one stage, `x_{k+1} = a x_k + b u_k + offset`, linearised about any trajectory. An aircraft moves in the
+/// same way wherever it is, so the first two columns of `a` are those of the identity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dynamics {
-    /// State matrix, 6 x 6.
-    pub a: SMatrix<f64, STATES, STATES>,
+    /// Columns 3 to 6 of the state matrix, 6 x 4: those of the motion.
+    pub motion: SMatrix<f64, STATES, MOTION>,
     /// Control matrix, 6 x 2.
     pub b: SMatrix<f64, STATES, 2>,
     /// Next state from the state zero without control.
@@ -120,7 +125,7 @@ impl Dynamics {
     #[must_use]
     pub const fn at_rest() -> Self {
         Self {
-            a: SMatrix::from_array_storage(ArrayStorage([[0.0; STATES]; STATES])),
+            motion: SMatrix::from_array_storage(ArrayStorage([[0.0; STATES]; MOTION])),
             b: SMatrix::from_array_storage(ArrayStorage([[0.0; STATES]; 2])),
             offset: SVector::from_array_storage(ArrayStorage([[0.0; STATES]])),
         }
@@ -131,7 +136,21 @@ impl Dynamics {
     pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
         let [elevator, thrust] = *control;
         let control = self.b * Vector2::new(elevator, thrust);
-        (self.a * SVector::from(*state) + control + self.offset).into()
+        let [x, z, motion @ ..] = *state;
+        let moved = self.motion * SVector::from(motion) + control + self.offset;
+        let mut next: StageState = moved.into();
+        next[0] += x;
+        next[1] += z;
+        next
+    }
+
+    /// The whole state matrix, 6 x 6.
+    #[must_use]
+    pub fn a(&self) -> SMatrix<f64, STATES, STATES> {
+        let mut a = SMatrix::<f64, STATES, STATES>::identity();
+        a.fixed_columns_mut::<MOTION>(POSITION)
+            .copy_from(&self.motion);
+        a
     }
 }
 

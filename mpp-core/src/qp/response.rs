@@ -2,7 +2,8 @@
 //! change its output.
 
 use super::controls::dot;
-use super::rows::{OUTPUTS, RowPattern, reach};
+use super::rows::{OUTPUTS, reach};
+use core::ops::Range;
 
 /// One row for each output, with one entry for each control that can change the output. The length of a
 /// row is rounded up to a multiple of four, after the sums of [`super::controls::dot`]. The sums are then
@@ -26,6 +27,12 @@ const ENTRIES: usize = {
     start + reach.next_multiple_of(4)
 };
 
+/// Place of a row.
+fn range(output: usize) -> Range<usize> {
+    let (start, reach) = ROWS.get(output).copied().unwrap_or_default();
+    start..start + reach.next_multiple_of(4)
+}
+
 impl Response {
     pub(super) const fn new() -> Self {
         Self([0.0; ENTRIES])
@@ -33,55 +40,41 @@ impl Response {
 
     /// A row. Its length is a multiple of four.
     pub(super) fn row(&self, output: usize) -> &[f64] {
-        let (start, reach) = ROWS.get(output).copied().unwrap_or_default();
-        let end = start + reach.next_multiple_of(4);
-        self.0.get(start..end).unwrap_or(&[])
+        self.0.get(range(output)).unwrap_or(&[])
     }
 
     pub(super) fn row_mut(&mut self, output: usize) -> &mut [f64] {
-        let (start, reach) = ROWS.get(output).copied().unwrap_or_default();
-        let end = start + reach.next_multiple_of(4);
-        self.0.get_mut(start..end).unwrap_or(&mut [])
+        self.0.get_mut(range(output)).unwrap_or(&mut [])
+    }
+
+    /// The rows of outputs. They are empty if two of the outputs are the same.
+    pub(super) fn rows_mut<const N: usize>(&mut self, outputs: [usize; N]) -> [&mut [f64]; N] {
+        self.0
+            .get_disjoint_mut(outputs.map(range))
+            .unwrap_or_else(|_| core::array::from_fn(|_| Default::default()))
+    }
+
+    /// The products of the responses of an output and the next one.
+    pub(super) fn pair(&self, output: usize) -> Pair {
+        let [one, other] = [output, output + 1].map(|output| self.row(output));
+        Pair {
+            first: dot(one, one),
+            both: dot(one, other),
+            second: dot(other, other),
+        }
     }
 }
 
 /// Products of the responses of two outputs, from which the norms of all rows in these outputs follow.
 pub(super) struct Pair {
-    outputs: (usize, usize),
     first: f64,
     both: f64,
     second: f64,
 }
 
 impl Pair {
-    /// No pair yet.
-    pub(super) const fn none() -> Self {
-        Self {
-            outputs: (OUTPUTS, OUTPUTS),
-            first: 0.0,
-            both: 0.0,
-            second: 0.0,
-        }
-    }
-
-    /// Computes the products for the outputs of a row, unless they are those of the row before.
-    pub(super) fn take_up(&mut self, response: &Response, row: &RowPattern) {
-        let outputs = (row.first.0, row.second.0);
-        if self.outputs == outputs {
-            return;
-        }
-        let [one, other] = [outputs.0, outputs.1].map(|output| response.row(output));
-        *self = Self {
-            outputs,
-            first: dot(one, one),
-            both: dot(one, other),
-            second: dot(other, other),
-        };
-    }
-
-    /// Squared norm of a row's response. The row bounds the outputs of this pair.
-    pub(super) fn norm_squared(&self, row: &RowPattern) -> f64 {
-        let (p, q) = (row.first.1, row.second.1);
+    /// Squared norm of the response of a row that bounds `p first + q second`.
+    pub(super) fn norm_squared(&self, [p, q]: [f64; 2]) -> f64 {
         p * p * self.first + 2.0 * p * q * self.both + q * q * self.second
     }
 }

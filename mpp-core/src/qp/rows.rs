@@ -25,11 +25,11 @@ pub(super) const fn reach(output: usize) -> usize {
 }
 
 /// Number of rows on positions, boundary 0 included.
-const POSITION_ROWS: usize = KNOTS * DIRECTIONS;
+pub(super) const POSITION_ROWS: usize = KNOTS * DIRECTIONS;
 /// Number of rows on attitudes: angle of attack and flight path, upper and lower, at boundaries 1 to N.
-const ATTITUDE_ROWS: usize = STAGES * 4;
+pub(super) const ATTITUDE_ROWS: usize = STAGES * 4;
 /// Number of all rows of a program.
-pub const ROWS: usize = POSITION_ROWS + ATTITUDE_ROWS + STAGES;
+pub const ROWS: usize = POSITION_ROWS + ATTITUDE_ROWS + 2 * STAGES;
 
 const _: () = assert!(ROWS < u16::MAX as usize && OUTPUTS < u8::MAX as usize);
 
@@ -45,8 +45,9 @@ pub enum RowKind {
     /// Limit of the attitude. The first number is the stage boundary. The second number is even for the
     /// angle of attack and odd for the flight path; 0 and 1 are upper limits, 2 and 3 are lower limits.
     Attitude(usize, usize),
-    /// Lower limit of the thrust. The number is the stage.
-    Thrust(usize),
+    /// Limit of the thrust. The first number is the stage. The second number is 0 for the upper limit and 1
+    /// for the lower limit.
+    Thrust(usize, usize),
 }
 
 impl RowKind {
@@ -59,7 +60,8 @@ impl RowKind {
             let row = row - POSITION_ROWS;
             Self::Attitude(row / 4 + 1, row % 4)
         } else {
-            Self::Thrust(row - POSITION_ROWS - ATTITUDE_ROWS)
+            let row = row - POSITION_ROWS - ATTITUDE_ROWS;
+            Self::Thrust(row / 2, row % 2)
         }
     }
 }
@@ -93,7 +95,10 @@ impl RowPattern {
                     second: (pitch + 1, if angle_of_attack { -side } else { side }),
                 })
             }
-            RowKind::Thrust(stage) => Some(Self::single(THRUST_OUTPUT + stage, -1.0)),
+            RowKind::Thrust(stage, side) => {
+                let side = if side == 0 { 1.0 } else { -1.0 };
+                Some(Self::single(THRUST_OUTPUT + stage, side))
+            }
         }
     }
 
@@ -113,149 +118,34 @@ impl RowPattern {
     }
 }
 
-/// Excess of the outputs over the bounds of all rows. The outputs do not contain boundary 0, so its rows
-/// get minus infinity.
-pub(super) fn excesses(outputs: &[f64; OUTPUTS], bounds: &Bounds) -> [f64; ROWS] {
-    let mut excess = [f64::NEG_INFINITY; ROWS];
-    let (positions, rest) = excess.split_at_mut(POSITION_ROWS);
+/// Rows of positions by boundary and direction, and rows of attitudes and thrusts by stage.
+type RowParts<'a> = (&'a [[f64; DIRECTIONS]], &'a [[f64; 4]], &'a [[f64; 2]]);
+type RowPartsMut<'a> = (
+    &'a mut [[f64; DIRECTIONS]],
+    &'a mut [[f64; 4]],
+    &'a mut [[f64; 2]],
+);
+
+/// Splits values by row into those of positions, attitudes and thrusts.
+pub(super) fn parts(values: &[f64; ROWS]) -> RowParts<'_> {
+    let (positions, rest) = values.split_at(POSITION_ROWS);
+    let (attitudes, thrusts) = rest.split_at(ATTITUDE_ROWS);
+    (
+        positions.as_chunks().0,
+        attitudes.as_chunks().0,
+        thrusts.as_chunks().0,
+    )
+}
+
+/// Splits values as [`parts`] does, so that the caller can write them.
+pub(super) fn parts_mut(values: &mut [f64; ROWS]) -> RowPartsMut<'_> {
+    let (positions, rest) = values.split_at_mut(POSITION_ROWS);
     let (attitudes, thrusts) = rest.split_at_mut(ATTITUDE_ROWS);
-    let (position_bounds, attitude_bounds, thrust_bounds) = bounds.parts();
-    let (motion, thrust, attitude) = parts(outputs);
-
-    let positions = positions.as_chunks_mut::<DIRECTIONS>().0.iter_mut().skip(1);
-    for ((at, excess), bounds) in motion
-        .iter()
-        .zip(positions)
-        .zip(position_bounds.iter().skip(1))
-    {
-        *excess = position_excess(at, bounds);
-    }
-    let attitudes = attitudes.as_chunks_mut::<4>().0;
-    for ((at, excess), limits) in attitude.iter().zip(attitudes).zip(attitude_bounds) {
-        *excess = attitude_excess(at, limits);
-    }
-    for ((excess, thrust), bound) in thrusts.iter_mut().zip(thrust).zip(thrust_bounds) {
-        *excess = -thrust - bound;
-    }
-    excess
-}
-
-/// The row whose excess counts most, if any row has an excess. An excess `s` counts as `s^2` times the row's
-/// price if `by_effort` is true, which is twice the cost of its correction. Otherwise it counts as `s^4` times
-/// the price, which is between its size and its effort; this shortens the longest solves of programs with soft
-/// rows. The function leaves out the attitude rows unless `attitude_rows` is true.
-pub(super) fn most_violated(
-    outputs: &[f64; OUTPUTS],
-    bounds: &Bounds,
-    prices: &[f64; ROWS],
-    by_effort: bool,
-    attitude_rows: bool,
-) -> Option<usize> {
-    let count = |excess: &mut f64, price: &f64| {
-        let over = excess.max(0.0);
-        let square = over * over;
-        let counted = if by_effort { square } else { square * square };
-        *excess = counted * price;
-    };
-    let (position_bounds, attitude_bounds, thrust_bounds) = bounds.parts();
-    let (position_prices, rest) = prices.split_at(POSITION_ROWS);
-    let (attitude_prices, thrust_prices) = rest.split_at(ATTITUDE_ROWS);
-    let (motion, thrust, attitude) = parts(outputs);
-    let mut worst = Worst {
-        most: 0.0,
-        row: None,
-    };
-
-    let prices = position_prices.as_chunks::<DIRECTIONS>().0.iter();
-    let stages = motion
-        .iter()
-        .zip(position_bounds.iter().zip(prices).skip(1));
-    for (stage, (at, (bounds, prices))) in stages.enumerate() {
-        let mut excess = position_excess(at, bounds);
-        for (excess, price) in excess.iter_mut().zip(prices) {
-            count(excess, price);
-        }
-        worst.consider(&excess, (stage + 1) * DIRECTIONS);
-    }
-    let stages = thrust.iter().zip(thrust_bounds.iter().zip(thrust_prices));
-    for (stage, (thrust, (bound, price))) in stages.enumerate() {
-        let mut excess = [-thrust - bound];
-        count(&mut excess[0], price);
-        worst.consider(&excess, POSITION_ROWS + ATTITUDE_ROWS + stage);
-    }
-    if attitude_rows {
-        let prices = attitude_prices.as_chunks::<4>().0;
-        let stages = attitude.iter().zip(attitude_bounds.iter().zip(prices));
-        for (stage, (at, (limits, prices))) in stages.enumerate() {
-            let mut excess = attitude_excess(at, limits);
-            for (excess, price) in excess.iter_mut().zip(prices) {
-                count(excess, price);
-            }
-            worst.consider(&excess, POSITION_ROWS + 4 * stage);
-        }
-    }
-    worst.row
-}
-
-/// The largest value so far and its row.
-struct Worst {
-    most: f64,
-    row: Option<usize>,
-}
-
-impl Worst {
-    /// Compares with the values of the rows from `first` on. Repeated halving finds the largest value with
-    /// few comparisons that depend on each other.
-    fn consider<const N: usize>(&mut self, values: &[f64; N], first: usize) {
-        let mut halves = *values;
-        let mut len = N;
-        while len > 1 {
-            len /= 2;
-            let (low, high) = halves.split_at_mut(len);
-            for (low, high) in low.iter_mut().zip(high) {
-                if *high > *low {
-                    *low = *high;
-                }
-            }
-        }
-        if halves.first().is_some_and(|largest| *largest > self.most) {
-            for (offset, value) in values.iter().enumerate() {
-                if *value > self.most {
-                    self.most = *value;
-                    self.row = Some(first + offset);
-                }
-            }
-        }
-    }
-}
-
-type OutputParts<'a> = (&'a [[f64; 2]], &'a [f64], &'a [[f64; 2]]);
-
-/// Splits the outputs into positions, thrusts and attitudes.
-fn parts(outputs: &[f64; OUTPUTS]) -> OutputParts<'_> {
-    let (motion, rest) = outputs.split_at(THRUST_OUTPUT);
-    let (thrust, attitude) = rest.split_at(STAGES);
-    (motion.as_chunks().0, thrust, attitude.as_chunks().0)
-}
-
-fn position_excess([x, z]: &[f64; 2], bounds: &[f64; DIRECTIONS]) -> [f64; DIRECTIONS] {
-    let mut excess = [0.0; DIRECTIONS];
-    for ((excess, bound), [up, forward]) in excess.iter_mut().zip(bounds).zip(&DIRECTION_VECTORS) {
-        *excess = forward * x + up * z - bound;
-    }
-    excess
-}
-
-fn attitude_excess([pitch, flight_path]: &[f64; 2], limits: &[f64; 4]) -> [f64; 4] {
-    let attack = pitch - flight_path;
-    let [a, b, c, d] = limits;
-    [attack - a, flight_path - b, -attack - c, -flight_path - d]
-}
-
-/// Splits values by row into those of rows that a penalty can soften and those of rows that are always
-/// hard.
-pub(super) fn split_soft(values: &[f64; ROWS]) -> (&[f64], &[f64]) {
-    values.split_at(POSITION_ROWS + ATTITUDE_ROWS)
+    (
+        positions.as_chunks_mut().0,
+        attitudes.as_chunks_mut().0,
+        thrusts.as_chunks_mut().0,
+    )
 }
 
 impl Bounds {
@@ -265,17 +155,10 @@ impl Bounds {
         Self([f64::INFINITY; ROWS])
     }
 
-    /// Splits the bounds into those of positions, attitudes and thrusts.
-    fn parts(&self) -> (&[[f64; DIRECTIONS]], &[[f64; 4]], &[f64]) {
-        let (position, rest) = self.0.split_at(POSITION_ROWS);
-        let (attitude, thrust) = rest.split_at(ATTITUDE_ROWS);
-        (position.as_chunks().0, attitude.as_chunks().0, thrust)
-    }
-
     /// The rows of two opposite faces that cross by more than `least` \[m\], if there are such faces.
     pub(super) fn crossing_faces(&self, least: f64) -> Option<(usize, usize)> {
         const HALF: usize = DIRECTIONS / 2;
-        self.parts()
+        parts(&self.0)
             .0
             .iter()
             .enumerate()
@@ -292,7 +175,7 @@ impl Bounds {
 
     /// Whether the program has any attitude row.
     pub(super) fn has_attitude(&self) -> bool {
-        self.parts()
+        parts(&self.0)
             .1
             .as_flattened()
             .iter()
@@ -322,10 +205,11 @@ impl Bounds {
         }
     }
 
-    /// Sets the thrust rows: the thrust may fall below trim by at most `reserve` \[N\].
-    pub fn set_thrust(&mut self, reserve: f64) {
-        for row in self.0.iter_mut().skip(POSITION_ROWS + ATTITUDE_ROWS) {
-            *row = reserve;
+    /// Sets the thrust rows: the greatest rise of the thrust above trim and the greatest fall below it \[N\].
+    pub fn set_thrust(&mut self, sides: [f64; 2]) {
+        let rows = self.0.iter_mut().skip(POSITION_ROWS + ATTITUDE_ROWS);
+        for (row, side) in rows.zip(sides.iter().cycle()) {
+            *row = *side;
         }
     }
 }

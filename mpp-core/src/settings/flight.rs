@@ -19,7 +19,8 @@ pub struct FlightSettings {
     pub sight: f64,
     /// Time from a scan until its plan is taken over \[s\]. A plan starts where the aircraft will be then.
     pub latency: f64,
-    /// Price of violating corridor and attitude rows. These rows are soft.
+    /// Price of violating corridor and attitude rows. These rows are soft, but those of an angle of attack that the
+    /// elevator limits are hard.
     pub penalty: Penalty,
     /// Limits of the attitude rows.
     pub attitude: AttitudeLimits,

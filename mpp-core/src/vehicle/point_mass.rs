@@ -164,17 +164,24 @@ impl PathState {
         (state, feedforward)
     }
 
-    /// Derivatives of the state after `dt` \[s\]: 5 x 5 with respect to `(x, z, v, gamma, alpha)` and 5 x 2
+    /// Derivatives of the state `end` after `dt` \[s\]: 5 x 5 with respect to `(x, z, v, gamma, alpha)` and 5 x 2
     /// with respect to `(alpha rate, thrust)`. They come from the matrix exponential (to the fourth order) of
-    /// the Jacobian halfway.
+    /// the Jacobian halfway, at the mean of both states.
     #[must_use]
     pub fn sensitivity(
         &self,
+        end: &Self,
         airframe: &Airframe,
         control: &PathControl,
         dt: f64,
     ) -> (Matrix5<f64>, SMatrix<f64, 5, 2>) {
-        let middle = self.moved(&self.rate(airframe, control), 0.5 * dt);
+        let middle = Self {
+            airspeed: (0.5 * (self.airspeed + end.airspeed)).max(LEAST_AIRSPEED),
+            flight_path: 0.5 * (self.flight_path + end.flight_path),
+            angle_of_attack: 0.5 * (self.angle_of_attack + end.angle_of_attack),
+            // The Jacobian does not depend on the position.
+            ..*self
+        };
         let (state, input) = middle.jacobian(airframe, control);
         // The position changes nothing, so the exponential is that of the other three states. `second` is the
         // mean of the mean over the time.

@@ -4,7 +4,7 @@
 use crate::dense::{
     CONTROLS, DenseProgram, Stages, Vector, cost, flat, largest, solve_equations, staged,
 };
-use crate::programs::{Setup, softens};
+use crate::programs::Setup;
 use crate::small_programs::{Made, difference, for_each_program};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Penalty, Problem, Solution, Solver, Status};
@@ -79,7 +79,7 @@ fn is_optimal(
     for ((row, role), multiplier) in program.rows.iter().zip(roles).zip(multipliers) {
         let excess = row.excess(controls);
         let price = match penalty {
-            Some(penalty) if softens(row.number) => penalty.linear,
+            Some(penalty) if row.softens => penalty.linear,
             _ => f64::INFINITY,
         };
         let keeps = match role {
@@ -108,7 +108,7 @@ fn try_everything(program: &DenseProgram, penalty: Option<Penalty>) -> Option<(V
         for row in rows {
             let role = [Role::Inactive, Role::Tight, Role::Yielding][number % choices];
             number /= choices;
-            if role == Role::Yielding && !softens(row.number) {
+            if role == Role::Yielding && !row.softens {
                 return None;
             }
             roles.push(role);
@@ -169,7 +169,7 @@ fn priced(
     let price: f64 = dense
         .rows
         .iter()
-        .filter(|row| softens(row.number))
+        .filter(|row| row.softens)
         .map(|row| row.excess(controls).max(0.0))
         .map(|slack| penalty.linear * slack + 0.5 * penalty.quadratic * slack * slack)
         .sum();

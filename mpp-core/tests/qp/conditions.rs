@@ -2,7 +2,6 @@
 //! at an optimum, and a valid sum of rows at a contradiction. They use the dense program alone.
 
 use crate::dense::{CONTROLS, DenseProgram, flat, largest};
-use crate::programs::softens;
 use mpp_core::qp::{Penalty, ROWS, Solution, Solver};
 
 /// Largest entry of a gradient that should vanish, relative to the largest term of its sum.
@@ -41,11 +40,11 @@ pub(crate) fn assert_optimal(
         let context = format!("row {}: {excess}, {multiplier}", row.number);
         assert!(multiplier >= 0.0, "{context}");
         match penalty {
-            Some(_) if row.is_constant() && softens(row.number) => {
+            Some(_) if row.is_constant() && row.softens => {
                 assert!(multiplier == 0.0, "{context}");
                 continue;
             }
-            Some(Penalty { linear, quadratic }) if softens(row.number) => {
+            Some(Penalty { linear, quadratic }) if row.softens => {
                 let price = linear + quadratic * excess.max(0.0);
                 assert!(
                     multiplier <= price + quadratic * tight + STATIONARY * price,

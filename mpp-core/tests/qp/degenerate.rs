@@ -55,6 +55,7 @@ fn assert_same(a: &Solution, b: &Solution) {
 fn bare(setup: &Setup, draw: &mut Draw) -> Problem {
     Problem {
         bounds: Bounds::none(),
+        hard_angle_of_attack: [false; 2],
         ..setup.program(draw)
     }
 }
@@ -71,7 +72,7 @@ fn is_chosen(way: usize, row: usize) -> bool {
         && match way % 4 {
             0 => true,
             1 => matches!(kind, RowKind::Position(..)),
-            2 => matches!(kind, RowKind::Position(..) | RowKind::Thrust(_)),
+            2 => matches!(kind, RowKind::Position(..) | RowKind::Thrust(..)),
             _ => matches!(kind, RowKind::Attitude(knot, _) if knot % 3 == 0),
         }
 }
@@ -196,7 +197,7 @@ fn rows_that_say_the_same_count_once() {
         let mut less = free.controls;
         less[0][1] += draw.between(0.05, 1.0);
         let values = values(setup, &problem, &less);
-        let thrust = number(RowKind::Thrust(0));
+        let thrust = number(RowKind::Thrust(0, 1));
         problem.bounds.0[thrust] = values[thrust];
         let alone = optimum(&mut solver, setup, &problem);
         assert!(alone.cost > free.cost);
@@ -266,6 +267,10 @@ fn rows_met_exactly_by_the_optimum_without_rows_cost_nothing() {
             });
             problem.bounds = Bounds(kept);
             problem.bounds.0[cut] = values[cut] - off;
+            if let RowKind::Thrust(stage, side) = RowKind::of(cut) {
+                // A program with a price must not have hard rows that contradict each other.
+                problem.bounds.0[number(RowKind::Thrust(stage, 1 - side))] = f64::INFINITY;
+            }
             problem.penalty = None;
             if solver.solve(&setup.shared, &problem) == Status::NumericalFailure {
                 // The program is nearer to the boundary of feasibility than rounding lets the
@@ -319,7 +324,7 @@ fn stages_that_cannot_be_steered_leave_only_thrust_rows_a_say() {
         let mut problem = bare(&setup, &mut draw);
         let values = values(&setup, &problem, &still);
         problem.bounds = Bounds(values);
-        let missed = draw.below(number(RowKind::Thrust(0)));
+        let missed = draw.below(number(RowKind::Thrust(0, 0)));
         for (off, expected) in [
             (0.0, Status::Optimal),
             (1e-12, Status::Optimal),

@@ -1,7 +1,7 @@
 //! Programs in the controls alone, made by rolling out one control after the other. They are dense
 //! and slow, and they share nothing with the code that condenses and solves them.
 
-use crate::programs::left_hand_side;
+use crate::programs::{left_hand_side, softens};
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::qp::{Dynamics, Problem, ROWS, StageControl, StageState, Weights};
 
@@ -18,6 +18,8 @@ pub(crate) struct DenseRow {
     pub(crate) number: usize,
     pub(crate) normal: Vector,
     pub(crate) bound: f64,
+    /// Whether a penalty softens the row.
+    pub(crate) softens: bool,
 }
 
 impl DenseRow {
@@ -71,6 +73,7 @@ impl DenseProgram {
             rows: rows
                 .map(|number| DenseRow {
                     number,
+                    softens: softens(problem, number),
                     normal: core::array::from_fn(|index| {
                         let (controls, states) = &responses[index];
                         left_hand_side(number, states, controls)
@@ -100,7 +103,8 @@ pub(crate) fn roll_out(
     controls: &[StageControl; STAGES],
 ) -> [StageState; KNOTS] {
     let mut states = [*initial; KNOTS];
-    for (k, Dynamics { a, b, offset }) in stages.iter().enumerate() {
+    for (k, dynamics) in stages.iter().enumerate() {
+        let (a, Dynamics { b, offset, .. }) = (dynamics.a(), dynamics);
         states[k + 1] = core::array::from_fn(|row| {
             let motion: f64 = (0..6).map(|col| a[(row, col)] * states[k][col]).sum();
             let steering: f64 = (0..2).map(|col| b[(row, col)] * controls[k][col]).sum();

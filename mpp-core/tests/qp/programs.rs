@@ -71,7 +71,12 @@ impl Setup {
         }
         let mut bounds = Bounds::none();
         bounds.set_corridor(&corridor);
-        bounds.set_thrust(self.thrust);
+        let rise = if draw.unit() < 0.5 {
+            draw.between(2.0, 6.0)
+        } else {
+            f64::INFINITY
+        };
+        bounds.set_thrust([rise, self.thrust]);
         if draw.unit() < 0.5 {
             let (attack, path) = (draw.between(0.05, 0.3), draw.between(0.2, 0.6));
             bounds.set_attitude([attack, path], [-attack, -path]);
@@ -82,6 +87,7 @@ impl Setup {
             target: [0.0, draw.between(-8.0, 8.0), 0.0, 0.0, 0.0, 0.0],
             bounds,
             penalty: None,
+            hard_angle_of_attack: [0; 2].map(|_| draw.unit() < 0.5),
             cost_limit: f64::INFINITY,
         }
     }
@@ -147,7 +153,8 @@ pub(crate) fn left_hand_side(
         RowKind::Attitude(knot, 1) => states[knot][5],
         RowKind::Attitude(knot, 2) => states[knot][5] - states[knot][3],
         RowKind::Attitude(knot, _) => -states[knot][5],
-        RowKind::Thrust(stage) => -controls[stage][1],
+        RowKind::Thrust(stage, 0) => controls[stage][1],
+        RowKind::Thrust(stage, _) => -controls[stage][1],
     }
 }
 
@@ -158,9 +165,14 @@ pub(crate) fn violations(problem: &Problem, solution: &Solution) -> [f64; ROWS] 
     })
 }
 
-/// Whether a penalty softens a row.
-pub(crate) fn softens(row: usize) -> bool {
-    !matches!(RowKind::of(row), RowKind::Thrust(_))
+/// Whether a penalty softens a row of this program.
+pub(crate) fn softens(problem: &Problem, row: usize) -> bool {
+    match RowKind::of(row) {
+        RowKind::Attitude(_, 0) => !problem.hard_angle_of_attack[0],
+        RowKind::Attitude(_, 2) => !problem.hard_angle_of_attack[1],
+        RowKind::Position(..) | RowKind::Attitude(..) => true,
+        RowKind::Thrust(..) => false,
+    }
 }
 
 /// Whether no control can change a row. Positions follow the controls two stages later.
@@ -173,7 +185,7 @@ pub(crate) fn priced(problem: &Problem, solution: &Solution, penalty: &Penalty) 
     let price: f64 = violations(problem, solution)
         .iter()
         .enumerate()
-        .filter(|(row, _)| softens(*row) && !is_constant(*row))
+        .filter(|(row, _)| softens(problem, *row) && !is_constant(*row))
         .map(|(_, violation)| violation.max(0.0))
         .map(|slack| penalty.linear * slack + 0.5 * penalty.quadratic * slack * slack)
         .sum();

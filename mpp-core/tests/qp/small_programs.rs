@@ -9,7 +9,11 @@ pub(crate) fn any_row(draw: &mut Draw) -> usize {
     let kind = match draw.below(3) {
         0 => RowKind::Position(2 + draw.below(STAGES - 1), draw.below(8)),
         1 => RowKind::Attitude(1 + draw.below(STAGES), draw.below(4)),
-        _ => RowKind::Thrust(draw.below(STAGES)),
+        _ => {
+            // Thrust rows are always hard, and two of one stage could contradict each other.
+            let stage = draw.below(STAGES);
+            RowKind::Thrust(stage, stage % 2)
+        }
     };
     number(kind)
 }
@@ -91,6 +95,8 @@ fn program(setup: &Setup, most_rows: usize, made: Made, draw: &mut Draw) -> Prob
         target: [0.0, draw.between(-8.0, 8.0), 0.0, 0.0, 0.0, 0.0],
         bounds,
         penalty: None,
+        // With both sides two hard rows could contradict each other.
+        hard_angle_of_attack: [draw.unit() < 0.5, false],
         cost_limit: f64::INFINITY,
     }
 }

@@ -118,7 +118,7 @@ fn mirrored_row(row: usize) -> usize {
     number(match RowKind::of(row) {
         RowKind::Position(knot, direction) => RowKind::Position(knot, (12 - direction) % 8),
         RowKind::Attitude(knot, which) => RowKind::Attitude(knot, (which + 2) % 4),
-        RowKind::Thrust(stage) => RowKind::Thrust(stage),
+        RowKind::Thrust(stage, side) => RowKind::Thrust(stage, side),
     })
 }
 
@@ -139,10 +139,12 @@ fn mirrored(setup: &Setup, problem: &Problem) -> (Box<Condensed>, Problem) {
     for row in 0..ROWS {
         bounds.0[mirrored_row(row)] = problem.bounds.0[row];
     }
+    let [hard_up, hard_down] = problem.hard_angle_of_attack;
     let problem = Problem {
         initial: mirrored_state(problem.initial),
         target: mirrored_state(problem.target),
         bounds,
+        hard_angle_of_attack: [hard_down, hard_up],
         ..*problem
     };
     (shared, problem)

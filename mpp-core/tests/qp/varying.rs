@@ -30,7 +30,8 @@ fn trace(shared: &Condensed, problem: &Problem) -> Trace {
 fn bent(setup: &Setup, draw: &mut Draw) -> Stages {
     core::array::from_fn(|_| {
         let mut dynamics = setup.model.dynamics();
-        for entry in dynamics.a.iter_mut().chain(dynamics.b.iter_mut()) {
+        let entries = dynamics.motion.iter_mut();
+        for entry in entries.chain(dynamics.b.iter_mut()) {
             *entry *= draw.between(0.9, 1.1);
         }
         let push = [0.1, 0.1, 0.1, 0.01, 0.01, 0.01];
@@ -70,7 +71,7 @@ fn a_workspace_forgets_what_it_condensed_before() {
         let problem = setup.program(&mut draw);
         let stages = bent(setup, &mut draw);
         let mut broken = stages;
-        broken[draw.below(STAGES)].a[(2, 2)] = f64::NAN;
+        broken[draw.below(STAGES)].motion[(2, 0)] = f64::NAN;
         let failed = condense(&mut used, &broken, setup);
         assert_eq!(failed, Err(CondenseError));
         condense(&mut used, &stages, setup).unwrap();
@@ -98,9 +99,10 @@ fn optima_over_stages_of_their_own_meet_the_optimality_conditions() {
             quadratic: libm::exp10(draw.between(0.0, 3.0)),
         });
         // The prices are below the cost of thrust rows, which are still hard.
+        let sides = [draw.between(0.2, 2.0), draw.between(0.2, 1.0)];
         problem
             .bounds
-            .set_thrust(draw.between(0.2, 1.0) * setup.thrust);
+            .set_thrust(sides.map(|side| side * setup.thrust));
         let dense = DenseProgram::new(&stages, &setup.weights, &problem);
         if solver.solve(&shared, &problem) == Status::Infeasible {
             assert_contradiction(&dense, &solver);

@@ -33,7 +33,9 @@ pub(crate) struct Instance {
     pub(crate) corridor: Corridor,
     /// Upper limits, then lower limits, of `(angle of attack, flight path)` as deviations from trim.
     pub(crate) attitude: Option<([f64; 2], [f64; 2])>,
+    pub(crate) thrust_rise: f64,
     pub(crate) thrust_reserve: f64,
+    pub(crate) hard_angle_of_attack: [bool; 2],
 }
 
 impl Preset {
@@ -78,6 +80,7 @@ impl Instance {
             .iter_mut()
             .flatten()
             .for_each(|bound| *bound += by);
+        relaxed.thrust_rise += by;
         relaxed.thrust_reserve += by;
         if let Some((upper, lower)) = &mut relaxed.attitude {
             upper.iter_mut().for_each(|limit| *limit += by);
@@ -90,7 +93,7 @@ impl Instance {
     pub(crate) fn problem(&self, penalty: Option<Penalty>) -> Problem {
         let mut bounds = Bounds::none();
         bounds.set_corridor(&self.corridor);
-        bounds.set_thrust(self.thrust_reserve);
+        bounds.set_thrust([self.thrust_rise, self.thrust_reserve]);
         if let Some((upper, lower)) = self.attitude {
             bounds.set_attitude(upper, lower);
         }
@@ -99,6 +102,7 @@ impl Instance {
             target: self.target,
             bounds,
             penalty,
+            hard_angle_of_attack: self.hard_angle_of_attack,
             cost_limit: f64::INFINITY,
         }
     }
@@ -202,7 +206,12 @@ pub(crate) fn next_instances(draw: &mut Draw, preset: &Preset) -> Vec<Instance> 
                     [-angle_of_attack, -flight_path - level],
                 )
             }),
+            thrust_rise: preset.attitude.map_or(f64::INFINITY, |_| {
+                2.0 * strictness * preset.trim.control.thrust
+            }),
             thrust_reserve: preset.trim.control.thrust,
+            // The share of these programs is chosen so that rows of both kinds bind.
+            hard_angle_of_attack: [strictness < 0.8, strictness < 0.6],
         });
     }
     instances

@@ -7,7 +7,7 @@ use mpp_core::qp::{Problem, RowKind, Solver, StageControl, StageModel, StageStat
 /// The terms `(knot or stage, index, factor)` of the states or of the controls in a row.
 enum Terms {
     States(usize, Vec<(usize, f64)>),
-    Thrust(usize),
+    Thrust(usize, f64),
 }
 
 fn terms(row: usize) -> Terms {
@@ -29,7 +29,7 @@ fn terms(row: usize) -> Terms {
                 },
             )
         }
-        RowKind::Thrust(stage) => Terms::Thrust(stage),
+        RowKind::Thrust(stage, side) => Terms::Thrust(stage, if side == 0 { 1.0 } else { -1.0 }),
     }
 }
 
@@ -60,7 +60,7 @@ fn value(
                 .map(|(index, factor)| factor * states[knot][*index])
                 .sum()
         }
-        Terms::Thrust(stage) => -controls[stage][1],
+        Terms::Thrust(stage, side) => side * controls[stage][1],
     }
 }
 

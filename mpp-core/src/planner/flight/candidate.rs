@@ -6,7 +6,7 @@ use crate::qp::{Dynamics, STATES, Solution, StageState};
 use crate::trajectory::{RollOut, STEPS};
 use crate::tuning::candidates::THRUST_SCALE;
 use crate::vehicle::{Airframe, PathControl, PathState, ThrustLag, Trim, Wind};
-use nalgebra::{Matrix5, SMatrix, SVector, Vector2};
+use nalgebra::{Matrix5, SMatrix, SVector};
 
 /// Angles of the program are in tenths of a radian, so that they have about the same weight as metres.
 pub(super) const ANGLE_SCALE: f64 = 10.0;
@@ -111,32 +111,30 @@ impl Frame {
         let stages = dynamics.iter_mut().zip(knots.zip(controls));
         for (stage, (dynamics, ((knot, following), control))) in stages.enumerate() {
             let acting = self.acting(control, given);
-            let by = knot.sensitivity(&self.airframe, &acting, STAGE_PERIOD);
-            let (a, b) = program_model(by, &self.lag);
             // A roll-out ends each stage in its next knot; a path need not.
             let next = if candidate.price.is_finite() {
                 *following
             } else {
                 self.after(knot, &acting)
             };
+            let by = knot.sensitivity(&next, &self.airframe, &acting, STAGE_PERIOD);
+            *dynamics = program_model(by, &self.lag);
             let before = self.deviation(knot, given, stage);
             given = self.lag.end(given, control.thrust);
             let thrust = control.thrust - self.trim.control.thrust;
-            let control = Vector2::new(control.angle_of_attack_rate, thrust);
-            let offset = self.deviation(&next, given, stage + 1) - a * before - b * control;
-            *dynamics = Dynamics { a, b, offset };
+            let control = [control.angle_of_attack_rate, thrust];
+            let after = self.deviation(&next, given, stage + 1);
+            dynamics.offset = after - SVector::from(dynamics.step(&before.into(), &control));
         }
     }
 }
 
-/// The matrices of a stage from the derivatives of the point mass. The thrust at the start of the stage and the command
-/// act by their share of the mean thrust. Mean and end are linear in both, so one newton of each gives the shares.
-fn program_model(
-    (state, input): (Matrix5<f64>, SMatrix<f64, 5, 2>),
-    lag: &ThrustLag,
-) -> (SMatrix<f64, STATES, STATES>, SMatrix<f64, STATES, 2>) {
+/// The dynamics of a stage, without an offset, from the derivatives of the point mass. The thrust at the start of the
+/// stage and the command act by their share of the mean thrust. Mean and end are linear in both, so one newton of each
+/// gives the shares.
+fn program_model((state, input): (Matrix5<f64>, SMatrix<f64, 5, 2>), lag: &ThrustLag) -> Dynamics {
     // These columns convert between the program's (pitch, path) and the point mass's (path, angle of attack).
-    let [x, z, v, path, alpha] = state.data.0;
+    let [_, _, v, path, alpha] = state.data.0;
     let mut turning = path;
     for (turning, alpha) in turning.iter_mut().zip(&alpha) {
         *turning -= alpha;
@@ -145,12 +143,15 @@ fn program_model(
     let [rate, mean] = input.data.0;
     let given = mean.map(|it| it * (lag.mean(1.0, 0.0) * THRUST_SCALE));
     let command = mean.map(|it| it * lag.mean(0.0, 1.0));
-    let mut a: SMatrix<f64, STATES, STATES> =
-        [x, z, v, alpha, given, turning].map(program_state).into();
-    let mut b: SMatrix<f64, STATES, 2> = [rate, command].map(program_state).into();
-    a[(THRUST, THRUST)] = lag.end(1.0, 0.0);
-    b[(THRUST, 1)] = lag.end(0.0, 1.0) / THRUST_SCALE;
-    (a, b)
+    let [v, alpha, mut given, turning] = [v, alpha, given, turning].map(program_state);
+    let [rate, mut command] = [rate, command].map(program_state);
+    given[THRUST] = lag.end(1.0, 0.0);
+    command[THRUST] = lag.end(0.0, 1.0) / THRUST_SCALE;
+    Dynamics {
+        motion: [v, alpha, given, turning].into(),
+        b: [rate, command].into(),
+        offset: SVector::zeros(),
+    }
 }
 
 /// Converts derivatives of the point mass to the program's state.

@@ -7,10 +7,6 @@ use crate::sense::LidarScan;
 
 /// What a phase needs for itself. The next phase overwrites it, so that all of them take the memory of the largest
 /// alone. What outlives a phase is a field of [`super::FlightPlanner`].
-#[expect(
-    clippy::large_enum_variant,
-    reason = "they share their memory, which has to be as large as the largest"
-)]
 #[derive(Clone, Debug)]
 pub(super) enum Workspace {
     /// Phases Faces, Linearise and Improve.

@@ -108,6 +108,7 @@ impl PaperPlanner {
                 target: [0.0; 6],
                 bounds: Bounds::none(),
                 penalty: None,
+                hard_angle_of_attack: [false; 2],
                 cost_limit: f64::INFINITY,
             },
             solver: Solver::new(),
@@ -169,7 +170,9 @@ impl PaperPlanner {
         self.scan.clone_from(scan);
         self.problem.initial = self.model.initial_state(&self.trim, &state.air);
         self.problem.target = [0.0, self.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
-        self.problem.bounds.set_thrust(self.trim.control.thrust);
+        self.problem
+            .bounds
+            .set_thrust([f64::INFINITY, self.trim.control.thrust]);
         self.summary = PlanSummary::NOTHING;
         self.best_length = f64::INFINITY;
         self.phase = if state.is_finite() {

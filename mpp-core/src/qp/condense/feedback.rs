@@ -13,7 +13,7 @@
 
 use crate::config::STAGES;
 use crate::qp::controls::ControlVector;
-use crate::qp::{Dynamics, STATES, StageControl, StageState, Weights};
+use crate::qp::{Dynamics, MOTION, POSITION, STATES, StageControl, StageState, Weights};
 use nalgebra::{ArrayStorage, Matrix2, SMatrix, SVector, Vector2};
 
 /// Feedback of one stage.
@@ -39,7 +39,7 @@ impl Feedback {
 
     /// State matrix of the stage under the feedback, `A - B F`.
     pub(super) fn closed(&self, dynamics: &Dynamics) -> SMatrix<f64, STATES, STATES> {
-        dynamics.a - dynamics.b * self.gain
+        dynamics.a() - dynamics.b * self.gain
     }
 
     /// The control `-F x - g + T v`.
@@ -67,18 +67,25 @@ pub(super) fn design(
     let control = Matrix2::from_diagonal(&Vector2::from(weights.control));
     let mut cost = SMatrix::<f64, STATES, STATES>::from_diagonal_element(weights.terminal);
     for (stage, feedback) in dynamics.iter().zip(feedback).rev() {
-        let Dynamics { a, b, offset } = stage;
-        let weighted = b.transpose() * cost;
-        let scale = inverse_root(&(control + weighted * b))?;
-        let gain = scale * (scale.transpose() * (weighted * a));
+        let Dynamics { motion, b, offset } = stage;
+        let by_control = cost * b;
+        let columns = cost * motion;
+        // `S A`
+        let mut passed = cost;
+        (passed.fixed_columns_mut::<MOTION>(POSITION)).copy_from(&columns);
+        let scale = inverse_root(&(control + b.transpose() * by_control))?;
+        let gain = scale * (scale.transpose() * (b.transpose() * passed));
         *feedback = Feedback {
             gain,
             scale,
             offset_slope: cost * offset,
         };
-        // Joseph's form: as a sum of squares the matrix stays positive.
-        let closed = feedback.closed(stage);
-        cost = closed.transpose() * (cost * closed) + gain.transpose() * (control * gain);
+        // The cost from this stage on, `A' (S A - S B F)`, is symmetric, so its upper triangle serves for both.
+        passed -= by_control * gain;
+        let rows = motion.transpose() * passed;
+        cost = passed;
+        (cost.fixed_rows_mut::<MOTION>(POSITION)).copy_from(&rows);
+        cost.fill_lower_triangle_with_upper_triangle();
     }
     cost.iter().all(|entry| entry.is_finite()).then_some(())
 }
@@ -101,7 +108,10 @@ pub(super) fn feedforward(
         } = feedback;
         slope += offset_slope;
         let pull = stage.b.transpose() * slope;
-        slope = stage.a.transpose() * slope - gain.transpose() * pull;
+        // `A' s`
+        let rows = stage.motion.transpose() * slope;
+        (slope.fixed_rows_mut::<MOTION>(POSITION)).copy_from(&rows);
+        slope -= gain.transpose() * pull;
         *control = (scale * (scale.transpose() * pull)).into();
     }
     *controls

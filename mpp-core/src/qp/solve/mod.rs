@@ -16,8 +16,9 @@ mod step;
 
 use super::condense::{Condensed, outputs};
 use super::controls::{CONTROLS, ControlVector};
+use super::excess::{WorstExcess, worst_excess};
 use super::factor::{CAPACITY, Factor};
-use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern, excesses, split_soft};
+use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern};
 use super::{Problem, STATES, Solution, Status};
 
 /// Greatest number of iterations of one solve.
@@ -84,10 +85,11 @@ struct Entering {
 ///     target: [0.0; 6],
 ///     bounds: Bounds::none(),
 ///     penalty: None,
+///     hard_angle_of_attack: [false; 2],
 ///     cost_limit: f64::INFINITY,
 /// };
 /// problem.bounds.set_corridor(&corridor);
-/// problem.bounds.set_thrust(trim.control.thrust);
+/// problem.bounds.set_thrust([f64::INFINITY, trim.control.thrust]);
 ///
 /// let mut solver = Box::new(Solver::new());
 /// let mut solution = Solution::new();
@@ -120,8 +122,8 @@ pub struct Solver {
     products: [f64; CAPACITY],
     factor: Factor,
     dual: f64,
-    /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because a
-    /// program with soft rows always has a solution.
+    /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because the hard rows
+    /// of such a program do not contradict each other.
     absurd_rise: f64,
     iterations: usize,
     status: Option<Status>,
@@ -138,6 +140,7 @@ impl Solver {
                 target: [0.0; STATES],
                 bounds: Bounds::none(),
                 penalty: None,
+                hard_angle_of_attack: [false; 2],
                 cost_limit: f64::INFINITY,
             },
             feedforward: [0.0; CONTROLS],
@@ -288,22 +291,23 @@ impl Solver {
 
     /// Worst violation of soft and of hard rows that controls can change.
     fn worst_violations(&self, shared: &Condensed, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
-        let excess = excesses(outputs, &self.problem.bounds);
-        let worst = |(rows, prices): (&[f64], &[f64])| {
-            let changeable = rows.iter().zip(prices).filter(|(_, price)| **price > 0.0);
-            changeable.fold(
-                0.0,
-                |worst, (row, _)| if *row > worst { *row } else { worst },
-            )
-        };
-        let (soft, hard) = split_soft(&excess);
-        let (soft_prices, hard_prices) = split_soft(&shared.prices);
-        let (soft, hard) = (worst((soft, soft_prices)), worst((hard, hard_prices)));
-        if self.problem.penalty.is_some() {
-            (soft, hard)
-        } else {
-            (0.0, soft.max(hard))
+        let WorstExcess {
+            position,
+            attitude,
+            thrust,
+        } = worst_excess(outputs, &self.problem.bounds, &shared.prices);
+        let (mut soft, mut hard) = (0.0_f64, thrust);
+        let [up, climb, down, dive] = attitude;
+        let [hard_up, hard_down] = self.problem.hard_angle_of_attack;
+        let kinds = [position, climb, dive].map(|excess| (excess, false));
+        for (excess, is_hard) in kinds.into_iter().chain([(up, hard_up), (down, hard_down)]) {
+            if is_hard || self.problem.penalty.is_none() {
+                hard = hard.max(excess);
+            } else {
+                soft = soft.max(excess);
+            }
         }
+        (soft, hard)
     }
 
     /// The normalised controls of the present multipliers, `-Y' (C_A' lambda_A + c_p lambda_p)`.
@@ -316,7 +320,14 @@ impl Solver {
     }
 
     fn is_soft(&self, row: usize) -> bool {
-        self.problem.penalty.is_some() && !matches!(RowKind::of(row), RowKind::Thrust(_))
+        self.problem.penalty.is_some()
+            && match RowKind::of(row) {
+                RowKind::Position(..) => true,
+                RowKind::Attitude(_, 0) => !self.problem.hard_angle_of_attack[0],
+                RowKind::Attitude(_, 2) => !self.problem.hard_angle_of_attack[1],
+                RowKind::Attitude(..) => true,
+                RowKind::Thrust(..) => false,
+            }
     }
 
     /// Checks the hard rows that no control can change. If one of them is violated, the problem is

@@ -5,8 +5,9 @@ use super::{Active, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
 use crate::qp::controls::{CONTROLS, dot};
+use crate::qp::excess::most_violated;
 use crate::qp::factor::CAPACITY;
-use crate::qp::rows::{RowPattern, most_violated};
+use crate::qp::rows::RowPattern;
 
 /// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
 /// depends on the active rows.
