@@ -18,6 +18,10 @@ use mpp_sim::world::World;
 
 /// Greatest pitch of level flight \[rad\], and greatest distance from its height \[m\].
 const MOST: (f64, f64) = (std::f64::consts::FRAC_PI_4, 3.0);
+/// Greatest pitch on the way to another height \[rad\]: that of a success. The way begins with [`LEAST_WAY`] at least.
+const STEEPEST: f64 = std::f64::consts::FRAC_PI_3;
+/// Part of the way to another height that five seconds take at least \[m\].
+const LEAST_WAY: f64 = 10.0;
 
 /// A ground that sets one parameter before the flight.
 struct Setter {
@@ -136,8 +140,13 @@ fn every_value_of_a_parameter_is_refused_or_flown() {
             let pitch = furthest(&log.ticks.pitch, 0.0);
             let height = furthest(&log.ticks.z, ALTITUDE);
             // The aircraft is meant to leave its height for another one.
-            let meant = parameter.name == "MPP_ALT_M";
-            if log.ticks.z.len() < 500 || pitch > MOST.0 || height > MOST.1 && !meant {
+            let meant = parameter.name == "MPP_ALT_M" && (value - ALTITUDE).abs() > LEAST_WAY;
+            let flies = if meant {
+                pitch <= STEEPEST && height >= LEAST_WAY
+            } else {
+                pitch <= MOST.0 && height <= MOST.1
+            };
+            if log.ticks.z.len() < 500 || !flies {
                 fallen.push(format!(
                     "{} {value}: pitch {pitch:.2} height {height:.2} after {} ticks",
                     parameter.name,
