@@ -56,7 +56,8 @@ fn kill_after(directory: &Path, arguments: &[&str], rows: &Path, growth: u64) {
 fn a_campaign_that_is_killed_loses_no_row_and_doubles_none() {
     let directory = scratch("killed");
     let rows = directory.join("rows.jsonl");
-    let flags = "campaign --trials 150 --duration 1 --threads 2 --out rows.jsonl";
+    // So many flights that a busy machine, which kills late, does not fly them all.
+    let flags = "campaign --trials 500 --duration 1 --threads 2 --out rows.jsonl";
     let arguments: Vec<&str> = flags.split(' ').collect();
     let mut before: Vec<String> = vec![];
     for place in 0..KILLS {
@@ -69,17 +70,17 @@ fn a_campaign_that_is_killed_loses_no_row_and_doubles_none() {
         before = now;
     }
     let flown = before.len() - 1;
-    assert!((10..150).contains(&flown), "{flown}");
+    assert!((10..500).contains(&flown), "{flown}");
     let output = run_in(&directory, &arguments);
     assert!(output.status.success(), "{}", talk(&output));
-    assert!(talk(&output).contains(&format!("{flown} of 150 flights are there")));
+    assert!(talk(&output).contains(&format!("{flown} of 500 flights are there")));
     assert!(whole_lines(&rows).starts_with(&before));
     // The same rows as of an undisturbed run, but for their order.
     let fresh = flags.replace("rows.jsonl", "fresh.jsonl");
     let fresh: Vec<&str> = fresh.split(' ').collect();
     assert!(run_in(&directory, &fresh).status.success());
     assert_eq!(sorted(&rows), sorted(&directory.join("fresh.jsonl")));
-    assert_eq!(sorted(&rows).len(), 151);
+    assert_eq!(sorted(&rows).len(), 501);
     std::fs::remove_dir_all(directory).unwrap();
 }
 
