@@ -230,6 +230,7 @@ impl Instance {
         if ![1, STAGES].contains(&stages) || self.b.len() != stages || self.offset.len() != stages {
             return Err(InstanceError::Dynamics(self.name.clone(), stages));
         }
+        // Bits are compared so that no number that is none passes. The sum makes -0 to 0.
         let bits = |row: &[f64; 6]| row.map(|entry| (entry + 0.0).to_bits());
         let differs = |(at, a): (usize, &[[f64; 6]; 6])| {
             a.map(|row| bits(&row)) != rows_of(&self.dynamics(at).a()).map(|row| bits(&row))

@@ -10,8 +10,6 @@ use crate::vehicle::{ActuatorLimits, Airframe};
 pub(super) struct Limits {
     /// Greatest distances of the angle of attack below and above trim in a program \[rad\].
     pub(super) angle_of_attack: [f64; 2],
-    /// Whether the limits above and below trim are those of the elevator, and not those of the settings.
-    pub(super) hard_angle_of_attack: [bool; 2],
     /// Greatest distances of the angle of attack below and above trim in a roll-out \[rad\]. They are larger
     /// than in a program, because its rows may be soft.
     pub(super) rolled_out: [f64; 2],
@@ -34,7 +32,6 @@ pub(super) struct Limits {
 impl Limits {
     pub(super) const NONE: Self = Self {
         angle_of_attack: [0.0; 2],
-        hard_angle_of_attack: [false; 2],
         rolled_out: [0.0; 2],
         turn_rate: 0.0,
         flight_path: 0.0,
@@ -61,7 +58,6 @@ impl Limits {
         };
         Self {
             angle_of_attack,
-            hard_angle_of_attack: [up < allowed, down < allowed],
             rolled_out: [rolled_out(0), rolled_out(1)],
             turn_rate: limits::PLANNED_RATE_SHARE * rate,
             flight_path: own.attitude.flight_path,

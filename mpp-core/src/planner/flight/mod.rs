@@ -213,7 +213,6 @@ impl FlightPlanner {
             .min(self.state.z + CLIMB);
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
-        self.solver.problem.hard_angle_of_attack = self.limits.hard_angle_of_attack;
         let reserve = self.trim.control.thrust;
         let rise = self.limits.thrust_max - reserve;
         self.solver.problem.bounds.set_thrust([rise, reserve]);

@@ -296,16 +296,23 @@ impl Solver {
             attitude,
             thrust,
         } = worst_excess(outputs, &self.problem.bounds, &shared.prices);
-        let (mut soft, mut hard) = (0.0_f64, thrust);
         let [up, climb, down, dive] = attitude;
-        let [hard_up, hard_down] = self.problem.hard_angle_of_attack;
-        let kinds = [position, climb, dive].map(|excess| (excess, false));
-        for (excess, is_hard) in kinds.into_iter().chain([(up, hard_up), (down, hard_down)]) {
-            if is_hard || self.problem.penalty.is_none() {
-                hard = hard.max(excess);
+        let kinds = [
+            (RowKind::Position(0, 0), position),
+            (RowKind::Attitude(0, 0), up),
+            (RowKind::Attitude(0, 1), climb),
+            (RowKind::Attitude(0, 2), down),
+            (RowKind::Attitude(0, 3), dive),
+            (RowKind::Thrust(0, 0), thrust),
+        ];
+        let (mut soft, mut hard) = (0.0_f64, 0.0_f64);
+        for (kind, excess) in kinds {
+            let worst = if self.softens(kind) {
+                &mut soft
             } else {
-                soft = soft.max(excess);
-            }
+                &mut hard
+            };
+            *worst = worst.max(excess);
         }
         (soft, hard)
     }
@@ -320,12 +327,17 @@ impl Solver {
     }
 
     fn is_soft(&self, row: usize) -> bool {
+        self.softens(RowKind::of(row))
+    }
+
+    /// Whether the program has a price that softens rows of a kind, at any boundary or stage.
+    fn softens(&self, kind: RowKind) -> bool {
+        let [hard_up, hard_down] = self.problem.hard_angle_of_attack;
         self.problem.penalty.is_some()
-            && match RowKind::of(row) {
-                RowKind::Position(..) => true,
-                RowKind::Attitude(_, 0) => !self.problem.hard_angle_of_attack[0],
-                RowKind::Attitude(_, 2) => !self.problem.hard_angle_of_attack[1],
-                RowKind::Attitude(..) => true,
+            && match kind {
+                RowKind::Attitude(_, 0) => !hard_up,
+                RowKind::Attitude(_, 2) => !hard_down,
+                RowKind::Position(..) | RowKind::Attitude(..) => true,
                 RowKind::Thrust(..) => false,
             }
     }
