@@ -66,5 +66,5 @@ done
 
 for name in "${names[@]}"; do
   printf '\n== %s\n' "$name"
-  "$HARNESS" campaign --taxonomy --report "$out/$name"-*.jsonl | tee "$out/$name.txt"
+  "$HARNESS" campaign --taxonomy --report "$out/$name"-[0-9]*of*.jsonl | tee "$out/$name.txt"
 done

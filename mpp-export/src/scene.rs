@@ -89,13 +89,17 @@ pub(crate) fn cycle(time: u64, detail: &PlanDetail) -> Value {
     scene_update(time, "plan", &lines)
 }
 
-/// The scans of a flight; none if it does not come out the same again.
+/// The scans of a flight; none if it does not come out the same again, or if the map was told.
 pub(crate) fn scans(log: &FlightLog) -> Vec<LidarScan> {
     again(log).unwrap_or_default()
 }
 
 fn again(log: &FlightLog) -> Option<Vec<LidarScan>> {
-    let scenario = log.header.scenario().ok().filter(|asked| !asked.oracle)?;
+    let scenario = log
+        .header
+        .scenario()
+        .ok()
+        .filter(|asked| !asked.oracle && !asked.known_map)?;
     let until = u32::try_from(log.ticks.t.len()).ok()?;
     let mut again = Again::new(Some(log.orders.clone()), Scans(Vec::new())).until(Some(until));
     let flown = fly_with(&scenario, &mut PipeLink::new(), &mut again).ok()?;

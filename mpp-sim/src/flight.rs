@@ -94,8 +94,8 @@ pub struct Flight {
     log: FlightLog,
     /// Planned length \[ticks\].
     ticks: u32,
-    /// Whether the core is shown the truth.
-    oracle: bool,
+    /// Whether the core gets advice of an [`crate::oracle`].
+    advised: bool,
 }
 
 impl Flight {
@@ -131,7 +131,7 @@ impl Flight {
             steering,
             log,
             ticks: scenario.ticks,
-            oracle: scenario.oracle,
+            advised: scenario.oracle || scenario.known_map,
         })
     }
 
@@ -172,7 +172,7 @@ impl Flight {
         let before = *plant.state();
         let (x, z) = plant.wind();
         let air = Wind { x, z };
-        if self.oracle {
+        if self.advised {
             session.reveal(&before, air)?;
         }
         let sensing = &mut self.sensing;

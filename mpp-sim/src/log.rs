@@ -103,6 +103,9 @@ pub struct Header {
     /// Whether an oracle flew; not written if this is false.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub oracle: bool,
+    /// Whether the core's map held every obstacle within the lidar's range; not written if this is false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub known_map: bool,
     /// Radius of the aircraft's body \[m\]; not written if it is 0.
     #[serde(default, skip_serializing_if = "is_point")]
     pub body_radius: f64,
@@ -149,6 +152,7 @@ impl Header {
             faults: scenario.faults,
             scene: scenario.scene,
             oracle: scenario.oracle,
+            known_map: scenario.known_map,
             body_radius: scenario.body_radius,
             field: FieldFile::of(field.obstacles()),
         }
@@ -181,6 +185,7 @@ impl Header {
             navigation: self.navigation,
             faults: self.faults,
             oracle: self.oracle,
+            known_map: self.known_map,
             ..Scenario::new(preset, self.seed)
         };
         let times = Times {

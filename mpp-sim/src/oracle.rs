@@ -12,6 +12,10 @@
 //!
 //! The oracle knows no future gust, no fault of the actuators, and not where an obstacle moves. A flight that the oracle fails is
 //! not proven to be impossible: the planner's horizon, window and margin limit the oracle.
+//!
+//! Key `known_map` of a scenario makes less of an oracle: its map holds every obstacle within the lidar's range, and
+//! nothing beyond. Estimates, sensors, rates and latency are as without it. So the difference of both flights is what
+//! hidden obstacles cost, and the difference from the oracle is what noise and rate cost.
 
 use crate::field::{Obstacle, Point, Shape};
 use mpp_core::config::MAX_PATHS;
@@ -23,11 +27,21 @@ use mpp_node::{FlightNode, Order};
 /// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
 const REACH: f64 = 80.0;
 
+/// What an oracle knows besides the obstacles.
+#[derive(Clone, Copy)]
+enum Knowledge {
+    /// Everything: the true state too, and every obstacle that the map has room for.
+    All,
+    /// The obstacles within a distance \[m\].
+    Within(f64),
+}
+
 /// The knowledge of an oracle. Without the true state it knows the field alone, and plans from the
 /// core's estimate.
 pub struct Oracle {
     obstacles: Vec<Obstacle>,
-    /// True state and wind; `None` before the first tick.
+    knowledge: Knowledge,
+    /// True state and wind; `None` before the first tick, and if the oracle does not use them.
     truth: Option<(VehicleState, Wind)>,
 }
 
@@ -37,13 +51,25 @@ impl Oracle {
     pub fn new(obstacles: &[Obstacle]) -> Self {
         Self {
             obstacles: obstacles.to_vec(),
+            knowledge: Knowledge::All,
             truth: None,
+        }
+    }
+
+    /// An oracle that knows of these obstacles those within a distance \[m\], and no true state.
+    #[must_use]
+    pub fn of_map(obstacles: &[Obstacle], sight: f64) -> Self {
+        Self {
+            knowledge: Knowledge::Within(sight),
+            ..Self::new(obstacles)
         }
     }
 
     /// Takes the true state of the aircraft and the motion of the air.
     pub(crate) fn see(&mut self, truth: &VehicleState, wind: Wind) {
-        self.truth = Some((*truth, wind));
+        if matches!(self.knowledge, Knowledge::All) {
+            self.truth = Some((*truth, wind));
+        }
     }
 
     /// Gives bytes to a core, with the advice of an oracle if there is one. `send` takes each frame of the core.
@@ -61,11 +87,13 @@ impl Oracle {
         }
     }
 
-    /// Replaces the core's estimates and its map by the truth.
+    /// Replaces the core's map by the truth, and its estimates if the oracle knows the true state.
     fn advise(&self, order: &mut Order, planner: &mut Planner) {
         match order {
             Order::SetUp { settings, .. } => {
-                if let Some(own) = settings.planner.flight_mut() {
+                if matches!(self.knowledge, Knowledge::All)
+                    && let Some(own) = settings.planner.flight_mut()
+                {
                     own.deepened = MAX_PATHS;
                 }
             }
@@ -94,7 +122,11 @@ impl Oracle {
                 scan.ranges.clear();
                 let length = planner.flight().map_or(1.0, |own| own.units().length);
                 let place = (state.x, state.z);
-                let near = |one: &&Obstacle| one.clearance(place, *time) < REACH * length;
+                let reach = match self.knowledge {
+                    Knowledge::All => REACH * length,
+                    Knowledge::Within(sight) => sight,
+                };
+                let near = |one: &&Obstacle| one.clearance(place, *time) < reach;
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
                 if let Some(planner) = planner.flight_mut() {
                     let map = planner.map_mut();
@@ -156,6 +188,24 @@ mod tests {
         assert_eq!(log.summary.outcome, Outcome::Survived);
         assert!(log.header.oracle && log.summary.min_clearance.unwrap() > 0.2);
         assert_eq!(log.plans.len(), 100);
+    }
+
+    /// A known map is that of the lidar's range: two metres do not suffice to turn, and the usual range does.
+    #[test]
+    fn a_known_map_ends_with_the_range_of_the_lidar() {
+        let mut scenario = in_the_dark();
+        scenario.known_map = true;
+        let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert_eq!(log.summary.outcome, Outcome::Collision);
+        scenario.lidar.range_max = 45.0;
+        // Behind the first one, where no beam reaches it before the aircraft has turned.
+        scenario.placed.push(Obstacle::circle(42.0, 53.5, 1.5));
+        let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert_eq!(log.summary.outcome, Outcome::Survived);
+        assert!(log.header.known_map && !log.header.oracle);
+        assert!(log.header.scenario().unwrap().known_map);
+        // Rate and sensors are those of the flight without it.
+        assert_eq!(log.plans.len(), 10);
     }
 
     /// The oracle knows more but cannot do more. A wall fills the band, so the oracle flies into

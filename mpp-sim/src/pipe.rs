@@ -38,8 +38,16 @@ impl PipeLink {
     /// A fresh core for a scenario in a field that is not the scenario's.
     #[must_use]
     pub fn in_field(scenario: &Scenario, field: &dyn Field) -> Self {
+        let obstacles = field.obstacles();
+        let oracle = if scenario.oracle {
+            Some(Oracle::new(obstacles))
+        } else if scenario.known_map {
+            Some(Oracle::of_map(obstacles, scenario.lidar.range_max))
+        } else {
+            None
+        };
         Self {
-            oracle: scenario.oracle.then(|| Oracle::new(field.obstacles())),
+            oracle,
             ..Self::new()
         }
     }

@@ -139,6 +139,8 @@ pub struct Scenario {
     pub faults: Faults,
     /// Whether the core knows the field and the true state, as [`crate::oracle`] says.
     pub oracle: bool,
+    /// Whether the core's map holds every obstacle within the lidar's range, hidden or not; see [`crate::oracle`].
+    pub known_map: bool,
 }
 
 impl Scenario {
@@ -172,6 +174,7 @@ impl Scenario {
             },
             faults: Faults::default(),
             oracle: false,
+            known_map: false,
         }
     }
 

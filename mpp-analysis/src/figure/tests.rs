@@ -100,6 +100,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             faults: Faults::default(),
             scene: None,
             oracle: false,
+            known_map: false,
             body_radius: 0.0,
             field: FieldFile::of(&field.obstacles),
         },

@@ -30,8 +30,12 @@ pub fn replay(log: &FlightLog, against: Option<&FlightLog>) -> Result<(String, b
 
 /// The planning cycles of a flight; `None` if the flight cannot be repeated.
 pub fn details(log: &FlightLog) -> Option<Vec<PlanDetail>> {
-    // The page has nothing to show of an oracle's planning.
-    let scenario = log.header.scenario().ok().filter(|asked| !asked.oracle)?;
+    // The page has nothing to show of the planning of an oracle.
+    let scenario = log
+        .header
+        .scenario()
+        .ok()
+        .filter(|asked| !asked.oracle && !asked.known_map)?;
     let witness = Witness {
         inspector: None,
         tuning: None,

@@ -83,6 +83,7 @@ fn example() -> FlightLog {
             faults: Faults::default(),
             scene: None,
             oracle: false,
+            known_map: false,
             body_radius: 0.0,
             field: FieldFile::of(&[obstacle]),
         },

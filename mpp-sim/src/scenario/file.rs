@@ -76,6 +76,10 @@ pub struct ScenarioFile {
     /// preset `flight`. It flies with 10 Hz and exact sensors, whatever the other keys say.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub oracle: Option<bool>,
+    /// Whether the core's map holds every obstacle within the lidar's range, hidden or not; by default `false`. All
+    /// else is as in the flight without it, so that the difference is what hidden obstacles cost. It needs preset `flight`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub known_map: Option<bool>,
     /// The lidar.
     pub lidar: LidarTable,
     /// Errors of the airspeed and pitch sensors.
@@ -160,6 +164,7 @@ impl ScenarioFile {
             air_data: self.air_data.over(base.air_data),
             navigation: self.navigation.over(base.navigation)?,
             faults: self.faults,
+            known_map: self.known_map.unwrap_or(false),
             ..base
         };
         self.field.check().map_err(ScenarioError::Field)?;
@@ -167,6 +172,9 @@ impl ScenarioFile {
         let oracle = self.oracle.unwrap_or(false);
         let advice = "only preset flight has an oracle";
         ensure(!oracle || preset == Preset::Flight, "oracle", advice)?;
+        let advice = "only preset flight can fly by a known map";
+        let flies = preset == Preset::Flight;
+        ensure(!scenario.known_map || flies, "known_map", advice)?;
         Ok(if oracle {
             scenario.informed()
         } else {
