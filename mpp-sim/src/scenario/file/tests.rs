@@ -30,7 +30,7 @@ fn the_documented_example_holds_every_key() {
     // too.
     let json = serde_json::to_value(&file).unwrap();
     let keys = |value: &serde_json::Value| value.as_object().unwrap().len();
-    assert_eq!(keys(&json), 19);
+    assert_eq!(keys(&json), 20);
     assert_eq!((keys(&json["generator"]), keys(&json["field"])), (5, 1));
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
     assert_eq!(keys(&json["navigation"]), 8);
@@ -41,6 +41,15 @@ fn the_documented_example_holds_every_key() {
     assert_eq!((keys(&faults["airspeed"]), keys(&faults["air"])), (7, 4));
     assert_eq!((keys(&faults["scan"]), keys(&faults["link"])), (5, 4));
     assert_eq!(keys(&faults["clock"]), 4);
+}
+
+#[test]
+fn the_papers_planner_has_no_map_to_be_known() {
+    assert!(parse("known_map = true").unwrap().known_map);
+    for preset in ["paper", "reference"] {
+        let error = parse(&format!("preset = \"{preset}\"\nknown_map = true")).unwrap_err();
+        assert!(error.to_string().contains("known_map"), "{error}");
+    }
 }
 
 #[test]
