@@ -29,6 +29,7 @@ fn the_named_conditions_are_sound() {
             "all-together",
             "example",
             "gusts",
+            "known-map",
             "lidar-faults",
             "model-error",
         ]
