@@ -198,6 +198,9 @@ impl Plan {
                 "preset: only flight has candidates, and no oracle has",
             ));
         }
+        if base.known_map {
+            return Err(input("known_map: only fly and campaign have it"));
+        }
         Ok(Self { file, base })
     }
 }

@@ -47,6 +47,11 @@ impl Core {
         if scenario.oracle {
             return Err(input("oracle: it needs the truth; fly(oracle=True) has it"));
         }
+        if scenario.known_map {
+            return Err(input(
+                "known_map: it needs the field; fly(known_map=True) has it",
+            ));
+        }
         let link = aside(py, |_| configured(&scenario))?.map_err(errors::flight)?;
         let guarded = Mutex::new(Stepped {
             link,

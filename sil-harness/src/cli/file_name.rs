@@ -4,7 +4,7 @@ use mpp_sim::field::FieldFile;
 use mpp_sim::generator::Generator;
 use mpp_sim::scenario::{Scenario, TICK_MS, TICKS_PER_SECOND};
 
-/// Preset and seed, then whatever differs from that preset's flight: scene, generator, `o` obstacles, `p` paths,
+/// Preset and seed, then whatever differs from that preset's flight: oracle, known map, scene, generator, `o` obstacles, `p` paths,
 /// replanning rate, latency, slices per tick, duration, aircraft; what has no short name (lidar,
 /// sensors, faults, fields, parameters of generators, numbers of another aircraft) as a number that stands for it.
 pub(super) fn file_name(scenario: &Scenario) -> String {
@@ -13,6 +13,10 @@ pub(super) fn file_name(scenario: &Scenario) -> String {
     if scenario.oracle {
         usual = usual.informed();
         name += "-oracle";
+    }
+    if scenario.known_map {
+        usual.known_map = true;
+        name += "-known-map";
     }
     if !scenario.generator.name.is_papers() {
         name += &format!("-{}", scenario.generator.name);
@@ -115,6 +119,7 @@ mod tests {
                 "flight-seed1-flytrap-o20",
             ),
             ("oracle = true", "flight-seed1-oracle"),
+            ("known_map = true", "flight-seed1-known-map"),
             ("[generator]\nname = \"walls\"", "flight-seed1-walls"),
             ("replan_hz = 0.5", "flight-seed1-0.5hz"),
             (
