@@ -15,7 +15,7 @@
 //!
 //! Key `known_map` of a scenario makes less of an oracle: its map holds every obstacle within the lidar's range, and
 //! nothing beyond. Estimates, sensors, rates and latency are as without it. So the difference of both flights is what
-//! hidden obstacles cost, and the difference from the oracle is what noise and rate cost.
+//! hidden obstacles cost. The oracle besides has exact measurements, more plans, all rounds and more sight.
 
 use crate::field::{Obstacle, Point, Shape};
 use mpp_core::config::MAX_PATHS;
