@@ -99,7 +99,7 @@ fn again(log: &FlightLog) -> Option<Vec<LidarScan>> {
         .header
         .scenario()
         .ok()
-        .filter(|asked| !asked.oracle && !asked.known_map)?;
+        .filter(|asked| !asked.is_advised())?;
     let until = u32::try_from(log.ticks.t.len()).ok()?;
     let mut again = Again::new(Some(log.orders.clone()), Scans(Vec::new())).until(Some(until));
     let flown = fly_with(&scenario, &mut PipeLink::new(), &mut again).ok()?;

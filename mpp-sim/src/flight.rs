@@ -131,7 +131,7 @@ impl Flight {
             steering,
             log,
             ticks: scenario.ticks,
-            advised: scenario.oracle || scenario.known_map,
+            advised: scenario.is_advised(),
         })
     }
 

@@ -160,6 +160,7 @@ fn occupies(obstacle: &Obstacle, centre: Point, cell: f64, time: f64) -> bool {
 mod tests {
     use crate::field::{Obstacle, Shape};
     use crate::flight::{FlyError, fly};
+    use crate::generator::{Generator, GeneratorName};
     use crate::link::LinkError;
     use crate::outcome::Outcome;
     use crate::pipe::PipeLink;
@@ -198,14 +199,34 @@ mod tests {
         let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
         assert_eq!(log.summary.outcome, Outcome::Collision);
         scenario.lidar.range_max = 45.0;
-        // Behind the first one, where no beam reaches it before the aircraft has turned.
-        scenario.placed.push(Obstacle::circle(42.0, 53.5, 1.5));
         let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
         assert_eq!(log.summary.outcome, Outcome::Survived);
         assert!(log.header.known_map && !log.header.oracle);
         assert!(log.header.scenario().unwrap().known_map);
         // Rate and sensors are those of the flight without it.
         assert_eq!(log.plans.len(), 10);
+    }
+
+    /// In a slalom the first wall hides the end of the second one. Who knows it flies through, by the same sensors and at
+    /// the same rate.
+    #[test]
+    fn a_known_map_shows_what_a_wall_hides() {
+        let mut scenario = Scenario {
+            obstacles: 12,
+            generator: Generator::named(GeneratorName::Slalom),
+            replan_ticks: 25,
+            ..Scenario::new(Preset::Flight, 50_001)
+        };
+        let unseen = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert_eq!(unseen.summary.outcome, Outcome::Collision);
+        scenario.known_map = true;
+        let known = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+        assert!(known.summary.strict);
+        let error = fly(&scenario, &mut PipeLink::new(), |_| {}).unwrap_err();
+        assert!(
+            matches!(error, FlyError::Link(LinkError::NoOracle)),
+            "{error}"
+        );
     }
 
     /// The oracle knows more but cannot do more. A wall fills the band, so the oracle flies into

@@ -193,6 +193,12 @@ impl Scenario {
         }
     }
 
+    /// Whether the core gets advice of an [`crate::oracle`], which knows more than the sensors tell.
+    #[must_use]
+    pub fn is_advised(&self) -> bool {
+        self.oracle || self.known_map
+    }
+
     /// Ticks from one plan of an oracle to the next.
     fn oracle_ticks(&self) -> u32 {
         let reference = f64::from(TICKS_PER_SECOND) / ORACLE_REPLAN_HZ;

@@ -35,7 +35,7 @@ pub fn details(log: &FlightLog) -> Option<Vec<PlanDetail>> {
         .header
         .scenario()
         .ok()
-        .filter(|asked| !asked.oracle && !asked.known_map)?;
+        .filter(|asked| !asked.is_advised())?;
     let witness = Witness {
         inspector: None,
         tuning: None,
