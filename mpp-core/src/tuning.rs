@@ -80,9 +80,9 @@ pub mod memory {
     /// Length before a hit that is no evidence at any range \[m\]: two cells, for beams that graze a rim.
     pub const HIT_DOUBT: f64 = 1.0;
     /// Number of occupied cells in the fan of a scan without returns at which the lidar counts as blind [-]. One
-    /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. Source:
-    /// derived.
-    pub const BLIND_CELLS: u32 = 8;
+    /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. With 8 a lidar that
+    /// shows nothing for 3 s past 20 obstacles was found in 240 of 400 flights at 1 Hz, with 4 in 368. Source: D37.
+    pub const BLIND_CELLS: u32 = 4;
     /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
     /// pose moves a cell out of sight.
     pub const BLIND_SHARE: f64 = 0.8;

@@ -38,8 +38,8 @@ pub enum Order {
         state: VehicleState,
         /// Estimated wind and lift at that tick.
         conditions: Conditions,
-        /// The scan.
-        scan: LidarScan,
+        /// The scan; `None` if the lidar has fallen silent.
+        scan: Option<LidarScan>,
         /// The settings of the planner in force.
         planner: PlannerSettings,
         /// Ticks from the start of the cycle until its plan is due.

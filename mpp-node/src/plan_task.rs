@@ -98,7 +98,7 @@ impl PlanTask {
                     self.planner.forget();
                 }
                 self.planner
-                    .begin_from(*time, pose, state, conditions, scan);
+                    .begin_from(*time, pose, state, conditions, scan.as_ref());
                 self.cycle = Some(Cycle {
                     tick: *tick,
                     slices: 0,

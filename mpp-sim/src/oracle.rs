@@ -20,6 +20,7 @@
 use crate::field::{Obstacle, Point, Shape};
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
+use mpp_core::sense::LidarScan;
 use mpp_core::tuning::memory::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::{FlightNode, Order};
@@ -118,8 +119,8 @@ impl Oracle {
                     (state.x, state.z) = (truth.x, truth.z);
                     (pose.x, pose.z) = (truth.x, truth.z);
                 }
-                // Beams would clear occupied cells that they graze.
-                scan.ranges.clear();
+                // Beams would clear occupied cells that they graze. Without a scan the planner would believe that it is blind.
+                *scan = Some(LidarScan::new());
                 let length = planner.flight().map_or(1.0, |own| own.units().length);
                 let place = (state.x, state.z);
                 let reach = match self.knowledge {

@@ -51,6 +51,7 @@ int autopilot_misuse(autopilot *own) {
   mpp_output output;
   mpp_plan plan;
   bool more;
+  double cruise;
   float ranges[MPP_BEAMS] = {0};
   mpp_scan scan = {.count = 3, .ranges = ranges};
   int wrong = 0;
@@ -63,6 +64,8 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_step(NULL, 0, &sensors, &output), MPP_STATUS_NULL);
   EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_NOT_SET_UP);
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_NOT_SET_UP);
+  EXPECT(mpp_begin_blind(core), MPP_STATUS_NOT_SET_UP);
+  EXPECT(mpp_begin_blind(NULL), MPP_STATUS_NULL);
   EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_NOT_SET_UP);
   bad = config, bad.aircraft.mass = 0.0 / 0.0;
   EXPECT(mpp_set_up(core, &bad), MPP_STATUS_OUT_OF_RANGE);
@@ -74,6 +77,7 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_set_up(core, &config), MPP_STATUS_OK);
   EXPECT(mpp_advance(core, &more), MPP_STATUS_IDLE);
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_TIME);
+  EXPECT(mpp_begin_blind(core), MPP_STATUS_TIME);
   EXPECT(mpp_step(core, 0.0 / 0.0, &sensors, &output), MPP_STATUS_TIME);
   EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_OK);
   EXPECT(mpp_step(core, 0, &sensors, &output), MPP_STATUS_TIME);
@@ -87,6 +91,16 @@ int autopilot_misuse(autopilot *own) {
   scan.age = 0;
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_OK);
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_BUSY);
+  EXPECT(mpp_begin_blind(core), MPP_STATUS_BUSY);
+  for (more = true; more;)
+    if (mpp_advance(core, &more) != MPP_STATUS_OK) return wrong + 1;
+  EXPECT(mpp_finish(core, 0.1, &plan), MPP_STATUS_OK);
+  cruise = plan.knots[MPP_KNOTS - 1].airspeed;
+  EXPECT(mpp_begin_blind(core), MPP_STATUS_OK);
+  for (more = true; more;)
+    if (mpp_advance(core, &more) != MPP_STATUS_OK) return wrong + 1;
+  EXPECT(mpp_finish(core, 0.2, &plan), MPP_STATUS_OK);
+  if (!(plan.knots[MPP_KNOTS - 1].airspeed < cruise - 1)) wrong++; /* slow flight */
   if (mpp_text(-7) == NULL || mpp_text(MPP_STATUS_TRIM) == mpp_text(MPP_STATUS_OK)) wrong++;
   return wrong;
 }

@@ -308,6 +308,13 @@ enum mpp_status mpp_step(struct mpp_core *core,
 enum mpp_status mpp_begin(struct mpp_core *core,
                           const struct mpp_scan *scan);
 
+// Begins a planning cycle without a scan, because the lidar is silent or its scans are refused: slow flight in the map that
+// earlier scans have left. Call it when a scan is late by a few ticks.
+//
+// # Safety
+// `core` is null or comes from `mpp_init`.
+enum mpp_status mpp_begin_blind(struct mpp_core *core);
+
 // Does one bounded slice of the cycle. `more` says whether there is another one to do.
 //
 // # Safety

@@ -259,7 +259,7 @@ impl Run {
         let pose = pose.ok_or_else(|| FlightError::new_err("the scan is too old for the core"))?;
         let (state, conditions) = (self.flight.state(), self.flight.conditions());
         let planner = &mut self.planner;
-        planner.begin_from(time, &pose, &state, &conditions, &core_scan(scan));
+        planner.begin_from(time, &pose, &state, &conditions, Some(&core_scan(scan)));
         while planner.advance() {}
         self.verdict = planner.finish();
         let mut offered = Trajectory::new();

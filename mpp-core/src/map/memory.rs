@@ -187,8 +187,7 @@ impl MemoryMap {
     /// evidence of free space: the lidar is blind.
     #[must_use]
     pub fn contradicts(&self, scan: &LidarScan, sight: f64, pose: &Pose) -> bool {
-        let returned = |range: &f32| is_return(f64::from(*range), sight);
-        if scan.ranges.iter().any(returned) {
+        if has_return(scan, sight) {
             return false;
         }
         let middle = 0.5 * (scan.ranges.len().saturating_sub(1)) as f64;
@@ -348,6 +347,12 @@ fn weighed(evidence: i8, more: i8) -> i8 {
         0 => -1,
         sum => sum,
     }
+}
+
+/// Whether a beam of a scan by a lidar with this range \[m\] has met an obstacle.
+pub(crate) fn has_return(scan: &LidarScan, sight: f64) -> bool {
+    let mut ranges = scan.ranges.iter();
+    ranges.any(|range| is_return(f64::from(*range), sight))
 }
 
 /// Whether a range \[m\] is that of an obstacle. Some lidars give 0 where nothing came back, others their full

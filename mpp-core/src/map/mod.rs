@@ -18,6 +18,7 @@ use crate::vehicle::VehicleState;
 pub(crate) use cell::rounded_down;
 pub use clearance::{ClearanceField, FAR};
 pub(crate) use clearance::{Height, split};
+pub(crate) use memory::has_return;
 pub use memory::{LoneHits, MemoryMap};
 pub use point::GridPoint;
 pub(crate) use walk::CellWalk;

@@ -163,18 +163,19 @@ impl Planner {
         conditions: &Conditions,
         scan: &LidarScan,
     ) {
-        self.begin_from(time, &Pose::of(state), state, conditions, scan);
+        self.begin_from(time, &Pose::of(state), state, conditions, Some(scan));
     }
 
-    /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from another pose. The
-    /// paper's method knows only the present pose.
+    /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from another pose, or without a scan
+    /// because the lidar shows nothing. The flight planner then plans slow flight in the map that it has. The
+    /// paper's method has no map and knows only the present pose: without a scan it plans nothing.
     pub fn begin_from(
         &mut self,
         time: f64,
         pose: &Pose,
         state: &VehicleState,
         conditions: &Conditions,
-        scan: &LidarScan,
+        scan: Option<&LidarScan>,
     ) {
         match self.chosen {
             Chosen::Flight => self.flight.begin(time, pose, state, conditions, scan),

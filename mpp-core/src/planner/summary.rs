@@ -19,7 +19,9 @@ pub struct PlanSummary {
     pub solver_steps: usize,
     /// Whether the cycle finished all its work.
     pub complete: bool,
-    /// Whether the scan had no return although the map knows obstacles in its fan. The map did not use it.
+    /// Whether the cycle had no scan, or one without a return by a lidar that is not believed: obstacles of the map stood
+    /// in the fan of this scan, or of an earlier one since which no beam has returned. The map did not use it, and the
+    /// plans fly slowly.
     pub blind: bool,
     /// Cost of the best trajectory. It is infinite if there is no trajectory.
     pub cost: f64,

@@ -44,6 +44,8 @@ struct Cycle {
     scan: u32,
     /// The tick at which the plan is due.
     due: u32,
+    /// Whether the cycle plans from the map alone, because the lidar has fallen silent. `scan` is then the tick of its start.
+    without_scan: bool,
 }
 
 /// A flight under way.

@@ -6,7 +6,8 @@ use crate::mail::Order;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
-use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
+use mpp_core::estimate::{Innovation, PositionVerdict, Trust, Verdict};
+use mpp_core::map::Pose;
 use mpp_core::planner::PlanSummary;
 
 /// Ticks from one report of the counters to the next.
@@ -67,7 +68,9 @@ impl StepTask {
             violation,
             ..
         } = plan.summary;
-        flight.lidar_good = Some(!blind);
+        if !cycle.without_scan {
+            flight.lidar_good = Some(!blind);
+        }
         flight.untold = Some(PlanReport {
             scan_tick,
             used_from_tick: tick,
@@ -81,7 +84,7 @@ impl StepTask {
             complete,
         });
         self.plan = None;
-        if blind {
+        if blind && !cycle.without_scan {
             self.reject(RejectionCause::ScanBlind, send);
         }
     }
@@ -168,8 +171,8 @@ impl StepTask {
         }
     }
 
-    /// Starts a cycle from the scan that has come, if one is due. A scan waits while the place of the aircraft is in
-    /// doubt.
+    /// Starts a cycle from the scan that has come, if one is due, or without a scan if the lidar has fallen silent. Both wait
+    /// while the place of the aircraft is in doubt.
     fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
         let Some(flight) = &mut self.flight else {
             return;
@@ -177,7 +180,19 @@ impl StepTask {
         if self.planner_off || flight.control.is_lost() {
             return;
         }
-        let Some(scan_tick) = flight.scan_tick.take() else {
+        match flight.scan_tick.take() {
+            Some(scan_tick) => self.plan_from_scan(tick, scan_tick, send),
+            None if flight.is_due_without_scan(tick) && self.order.is_none() => {
+                if let Some(pose) = flight.control.pose_at(0) {
+                    self.order_cycle(tick, tick, &pose, true);
+                }
+            }
+            None => {}
+        }
+    }
+
+    fn plan_from_scan(&mut self, tick: u32, scan_tick: u32, send: &mut impl FnMut(&[u8])) {
+        let Some(flight) = &mut self.flight else {
             return;
         };
         let age = tick.wrapping_sub(scan_tick);
@@ -194,25 +209,39 @@ impl StepTask {
         if !flight.is_due(tick, scan_tick) {
             return;
         }
+        if flight.cycle.is_some_and(|cycle| cycle.without_scan) {
+            // The scan tells more than the cycle knows. Its order may still wait, or its plan.
+            flight.cycle = None;
+            self.order = None;
+            self.plan = None;
+        }
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
+        flight.last_scan = Some(scan_tick);
+        self.order_cycle(tick, scan_tick, &pose, false);
+    }
+
+    fn order_cycle(&mut self, tick: u32, scan_tick: u32, pose: &Pose, without_scan: bool) {
+        let Some(flight) = &mut self.flight else {
+            return;
+        };
         // The planner gets the same latency with its order. A later change applies to the next cycle.
         flight.cycle = Some(Cycle {
             begun: tick,
             scan: scan_tick,
             due: tick.wrapping_add(flight.tuning.configure.latency_ticks),
+            without_scan,
         });
         flight.last_cycle = Some(tick);
-        flight.last_scan = Some(scan_tick);
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
             forget: flight.forget,
-            pose,
+            pose: *pose,
             state: flight.control.state(),
             conditions: flight.control.conditions(),
-            scan: self.scan.clone(),
+            scan: (!without_scan).then(|| self.scan.clone()),
             planner: flight.tuning.settings.planner,
             latency_ticks: flight.tuning.configure.latency_ticks,
             slices_per_tick: flight.tuning.configure.slices_per_tick,
@@ -222,6 +251,16 @@ impl StepTask {
 }
 
 impl Flight {
+    /// Whether the lidar has fallen silent, and the next cycle is due. Only the flight planner remembers what earlier scans
+    /// showed.
+    fn is_due_without_scan(&self, tick: u32) -> bool {
+        let silent = matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded);
+        let period = self.tuning.configure.replan_period_ticks;
+        let passed = |last: u32| tick.wrapping_sub(last) >= period;
+        let remembers = self.tuning.settings.planner.flight().is_some();
+        silent && remembers && self.cycle.is_none() && self.last_cycle.is_some_and(passed)
+    }
+
     /// Whether a cycle is due: a period after the last one, or from a scan that was taken a period after the last
     /// one's.
     fn is_due(&self, tick: u32, scan_tick: u32) -> bool {

@@ -2,6 +2,7 @@
 //! it.
 
 mod input;
+mod lidar;
 mod restarts;
 mod time;
 

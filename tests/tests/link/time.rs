@@ -2,7 +2,7 @@
 
 use crate::input::level_flight;
 use crate::short;
-use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame, SensorState};
+use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
@@ -267,57 +267,6 @@ fn measurements_that_are_late_are_used_as_late() {
         assert!(log.summary.strict, "seed {seed}");
         assert!(log.plans.len() >= 14, "{} plans", log.plans.len());
         assert!(log.rejections.is_empty(), "{:?}", log.rejections);
-    }
-}
-
-/// A lidar that freezes or goes blind is told, is excluded, and comes back.
-#[test]
-fn a_lidar_that_freezes_or_goes_blind_is_told() {
-    let fault: [fn(&mut LidarScan, &LidarScan); 2] = [
-        |scan, last| scan.ranges.clone_from(&last.ranges),
-        |scan, _| scan.ranges.iter_mut().for_each(|range| *range = 0.0),
-    ];
-    for (fault, cause) in fault.into_iter().zip(["ScanRepeated", "ScanBlind"]) {
-        let mut last: Option<LidarScan> = None;
-        let mut link = crate::Spoilt {
-            pipe: PipeLink::new(),
-            spoil: |pipe: &mut PipeLink, message: &Message| {
-                let Message::LidarScan(scan) = message else {
-                    return false;
-                };
-                let mut scan = scan.clone();
-                if let Some(last) = &last
-                    && (400..600).contains(&scan.tick)
-                {
-                    fault(&mut scan, last);
-                } else {
-                    last = Some(scan.clone());
-                }
-                pipe.send(&Message::LidarScan(scan)).is_ok()
-            },
-        };
-        let mut scenario = short(2);
-        scenario.obstacles = 60;
-        scenario.replan_ticks = 25;
-        scenario.ticks = 1000;
-        let log = fly(&scenario, &mut link, |_| {}).unwrap();
-        let causes = crate::causes(&log);
-        assert!(causes.len() >= 6, "{causes:?}");
-        assert!(causes.iter().all(|it| *it == cause), "{causes:?}");
-        let lidar: Vec<_> = log
-            .sensors
-            .iter()
-            .filter(|it| it.sensor == "lidar")
-            .collect();
-        let states: Vec<_> = lidar.iter().map(|it| it.state.clone()).collect();
-        let expected = [
-            SensorState::Suspected,
-            SensorState::Excluded,
-            SensorState::Recovering,
-            SensorState::Healthy,
-        ];
-        assert_eq!(states, expected.map(|state| state.to_string()), "{cause}");
-        assert!(lidar[1].tick < 450, "{lidar:?}");
     }
 }
 

@@ -28,6 +28,16 @@ struct Flight {
     restarts: u32,
 }
 
+impl Flight {
+    /// The time from which a new cycle plans \[s\].
+    fn time_to_begin(&self) -> Result<f64, MppStatus> {
+        if self.planning {
+            return Err(MppStatus::Busy);
+        }
+        self.last.ok_or(MppStatus::Time)
+    }
+}
+
 // SAFETY: the compiler checks every constant, and refuses one whose bytes are no value of its type. So a planner
 // of zeros is valid; `set_up` gives it its state.
 const _: Planner = unsafe { MaybeUninit::zeroed().assume_init() };
@@ -103,11 +113,8 @@ impl MppCore {
         angles: [f64; 2],
         ranges: &[f32],
     ) -> Result<(), MppStatus> {
-        let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
-        if flight.planning {
-            return Err(MppStatus::Busy);
-        }
-        let time = flight.last.ok_or(MppStatus::Time)?;
+        let flight = self.flight.as_ref().ok_or(MppStatus::NotSetUp)?;
+        flight.time_to_begin()?;
         let configure = &flight.tuning.configure;
         self.scan.ranges.clear();
         // A scan that is too long for the core is too long for every configuration.
@@ -117,6 +124,17 @@ impl MppCore {
         [self.scan.angle_min, self.scan.angle_increment] = angles;
         let (beams, range) = (usize::from(configure.beams), f64::from(configure.range_max));
         self.scan.check(beams, range).map_err(MppStatus::of_scan)?;
+        self.begin_from(age, true)
+    }
+
+    /// Begins a cycle without a scan: the plans are slow flight in the map that earlier scans have left.
+    pub(crate) fn begin_blind(&mut self) -> Result<(), MppStatus> {
+        self.begin_from(0, false)
+    }
+
+    fn begin_from(&mut self, age: u32, seen: bool) -> Result<(), MppStatus> {
+        let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
+        let time = flight.time_to_begin()?;
         let control = &flight.control;
         let pose = control.pose_at(age).ok_or(MppStatus::ScanAge)?;
         let restarts = control.health().positions_restarted;
@@ -125,8 +143,9 @@ impl MppCore {
             flight.restarts = restarts;
         }
         let (state, conditions) = (control.state(), control.conditions());
+        let scan = seen.then_some(&self.scan);
         self.planner
-            .begin_from(time, &pose, &state, &conditions, &self.scan);
+            .begin_from(time, &pose, &state, &conditions, scan);
         flight.planning = true;
         Ok(())
     }

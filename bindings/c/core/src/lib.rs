@@ -139,6 +139,20 @@ pub unsafe extern "C" fn mpp_begin(core: *mut MppCore, scan: *const MppScan) -> 
     given(core.begin(scan.age, angles, ranges), &mut ())
 }
 
+/// Begins a planning cycle without a scan, because the lidar is silent or its scans are refused: slow flight in the map that
+/// earlier scans have left. Call it when a scan is late by a few ticks.
+///
+/// # Safety
+/// `core` is null or comes from `mpp_init`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn mpp_begin_blind(core: *mut MppCore) -> MppStatus {
+    // SAFETY: the caller's promise.
+    let Some(core) = (unsafe { core.as_mut() }) else {
+        return MppStatus::Null;
+    };
+    given(core.begin_blind(), &mut ())
+}
+
 /// Does one bounded slice of the cycle. `more` says whether there is another one to do.
 ///
 /// # Safety

@@ -117,6 +117,8 @@ pub struct FlightPlanner {
 
     // From the scan to paths. The map outlives the cycle.
     map: MemoryMap,
+    /// Whether a scan without a return has contradicted the map, and no beam has returned since.
+    lidar_lies: bool,
     field: ClearanceField,
     cost_to_go: CostToGo,
 
@@ -172,6 +174,7 @@ impl FlightPlanner {
             limits: Limits::NONE,
             workspace: Workspace::NEW,
             map: MemoryMap::new(),
+            lidar_lies: false,
             field: ClearanceField::new(),
             cost_to_go: CostToGo::new(),
             candidates: heapless::Vec::new(),
@@ -185,7 +188,7 @@ impl FlightPlanner {
         }
     }
 
-    /// Starts a cycle; see [`super::Planner::begin`].
+    /// Starts a cycle; see [`super::Planner::begin_from`].
     // Not inlined, so that the scan does not lie on the stack beneath the set-up.
     #[inline(never)]
     pub fn begin(
@@ -194,7 +197,7 @@ impl FlightPlanner {
         pose: &Pose,
         state: &VehicleState,
         conditions: &Conditions,
-        scan: &LidarScan,
+        scan: Option<&LidarScan>,
     ) {
         self.reckon_with(conditions);
         self.pose = self.units.own_pose(pose);
@@ -202,7 +205,8 @@ impl FlightPlanner {
         self.time = time + self.settings.latency * self.units.time;
         let thrust = self.best.thrust(self.time);
         self.thrust = thrust.map_or(self.trim.control.thrust, |it| it / self.units.force());
-        let mut scan = scan.clone();
+        let blind = scan.is_none();
+        let mut scan = scan.cloned().unwrap_or_default();
         for range in &mut scan.ranges {
             *range = (f64::from(*range) / self.units.length) as f32;
         }
@@ -213,13 +217,14 @@ impl FlightPlanner {
             .min(self.state.z + CLIMB);
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
-        let reserve = self.trim.control.thrust;
-        let rise = self.limits.thrust_max - reserve;
-        self.solver.problem.bounds.set_thrust([rise, reserve]);
+        self.bound_thrust();
         self.candidates.clear();
         self.improvements = 0;
         self.best_price = f64::INFINITY;
-        self.summary = PlanSummary::NOTHING;
+        self.summary = PlanSummary {
+            blind,
+            ..PlanSummary::NOTHING
+        };
         // No plan starts from a state that is not finite; the map stays as it is.
         let starts = self.ready && state.is_finite() && self.state.is_finite();
         self.phase = if starts { Phase::Map } else { Phase::Done };
@@ -236,6 +241,12 @@ impl FlightPlanner {
         let alpha = trim.state.angle_of_attack();
         self.trim = Trim::at_angle_of_attack(&self.airframe, alpha).unwrap_or(*trim);
         self.limits = Limits::new(&self.settings, &self.actuators, &self.airframe);
+    }
+
+    fn bound_thrust(&mut self) {
+        let reserve = self.trim.control.thrust;
+        let rise = self.limits.thrust_max - reserve;
+        self.solver.problem.bounds.set_thrust([rise, reserve]);
     }
 
     /// The state, in own units, in which the step takes over the plan of a scan at this time \[s\]. The aircraft flies its
@@ -311,6 +322,7 @@ impl FlightPlanner {
     /// Forgets the map and the last plan; see [`super::Planner::forget`].
     pub fn forget(&mut self) {
         self.map.clear();
+        self.lidar_lies = false;
         self.best.clear();
     }
 

@@ -2,8 +2,10 @@
 
 use super::workspace::{Intake, Workspace};
 use super::{FlightPlanner, Phase};
+use crate::map::has_return;
 use crate::paths::{Lattice, LatticeTask};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
+use crate::vehicle::Trim;
 
 impl FlightPlanner {
     /// Takes some beams of the scan into the map. After the last beam it builds the clearance field, proposes
@@ -17,7 +19,10 @@ impl FlightPlanner {
         let (pose, sight) = (self.pose, self.settings.sight);
         if *beams == 0 {
             self.map.roll(pose.x, self.altitude);
-            if self.map.contradicts(scan, sight, &pose) {
+            // A lidar that has lied stays a liar until a beam returns.
+            self.lidar_lies = !has_return(scan, sight)
+                && (self.lidar_lies || self.map.contradicts(scan, sight, &pose));
+            if self.lidar_lies {
                 self.summary.blind = true;
                 scan.ranges.clear();
             }
@@ -28,6 +33,9 @@ impl FlightPlanner {
             *beams = next.end;
             self.map.insert_beams(scan, next, sight, &pose, lone);
             return;
+        }
+        if self.summary.blind {
+            self.slow_down();
         }
         self.field.build(&self.map, self.settings.body_radius);
         self.limits
@@ -49,6 +57,23 @@ impl FlightPlanner {
             lattice.start(&task, &self.field);
         }
         self.phase = Phase::Lattice;
+    }
+
+    /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what
+    /// comes. The aircraft then leaves later what the map knows.
+    fn slow_down(&mut self) {
+        let [down, up] = self.limits.angle_of_attack;
+        let alpha = self.trim.state.angle_of_attack() + up;
+        let slow = Trim::at_angle_of_attack(&self.airframe, alpha).ok();
+        let Some(trim) = slow.filter(|it| it.control.thrust < self.limits.thrust_max) else {
+            return;
+        };
+        self.trim = trim;
+        self.bound_thrust();
+        // The limits stay where they are. They count from trim.
+        self.limits.angle_of_attack = [down + up, 0.0];
+        let [down, most] = self.limits.rolled_out;
+        self.limits.rolled_out = [down + up, (most - up).max(0.0)];
     }
 
     /// Searches one station of the lattice. After the last one it proposes its paths.

@@ -41,6 +41,7 @@ impl FlightPlanner {
         self.solver.problem.bounds.clear();
         self.ready = true;
         self.map.clear();
+        self.lidar_lies = false;
         self.best.clear();
         Ok(())
     }

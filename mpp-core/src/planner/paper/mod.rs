@@ -164,10 +164,12 @@ impl PaperPlanner {
     }
 
     /// Starts a cycle; see [`super::Planner::begin`].
-    pub fn begin(&mut self, time: f64, state: &VehicleState, scan: &LidarScan) {
+    pub fn begin(&mut self, time: f64, state: &VehicleState, scan: Option<&LidarScan>) {
         self.time = time;
         self.state = *state;
-        self.scan.clone_from(scan);
+        if let Some(scan) = scan {
+            self.scan.clone_from(scan);
+        }
         self.problem.initial = self.model.initial_state(&self.trim, &state.air);
         self.problem.target = [0.0, self.altitude - state.z, 0.0, 0.0, 0.0, 0.0];
         self.problem
@@ -175,7 +177,7 @@ impl PaperPlanner {
             .set_thrust([f64::INFINITY, self.trim.control.thrust]);
         self.summary = PlanSummary::NOTHING;
         self.best_length = f64::INFINITY;
-        self.phase = if state.is_finite() {
+        self.phase = if state.is_finite() && scan.is_some() {
             Phase::Map
         } else {
             // No plan starts there.

@@ -1,0 +1,142 @@
+//! A lidar that fails: it is told, planned without, and believed again.
+
+use crate::{Spoilt, causes, short};
+use hil_protocol::{LidarScan, Message, SensorState};
+use mpp_sim::faults::ScanFault;
+use mpp_sim::flight::fly;
+use mpp_sim::link::Link;
+use mpp_sim::log::FlightLog;
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::{Preset, Scenario};
+
+/// A lidar that freezes or goes blind is told, is excluded, and comes back.
+#[test]
+fn a_lidar_that_freezes_or_goes_blind_is_told() {
+    let fault: [fn(&mut LidarScan, &LidarScan); 2] = [
+        |scan, last| scan.ranges.clone_from(&last.ranges),
+        |scan, _| scan.ranges.iter_mut().for_each(|range| *range = 0.0),
+    ];
+    for (fault, cause) in fault.into_iter().zip(["ScanRepeated", "ScanBlind"]) {
+        let mut last: Option<LidarScan> = None;
+        let mut link = Spoilt {
+            pipe: PipeLink::new(),
+            spoil: |pipe: &mut PipeLink, message: &Message| {
+                let Message::LidarScan(scan) = message else {
+                    return false;
+                };
+                let mut scan = scan.clone();
+                if let Some(last) = &last
+                    && (400..600).contains(&scan.tick)
+                {
+                    fault(&mut scan, last);
+                } else {
+                    last = Some(scan.clone());
+                }
+                pipe.send(&Message::LidarScan(scan)).is_ok()
+            },
+        };
+        let mut scenario = short(2);
+        scenario.obstacles = 60;
+        scenario.replan_ticks = 25;
+        scenario.ticks = 1000;
+        let log = fly(&scenario, &mut link, |_| {}).unwrap();
+        let causes = causes(&log);
+        assert!(causes.len() >= 6, "{causes:?}");
+        assert!(causes.iter().all(|it| *it == cause), "{causes:?}");
+        let lidar: Vec<_> = log
+            .sensors
+            .iter()
+            .filter(|it| it.sensor == "lidar")
+            .collect();
+        let states: Vec<_> = lidar.iter().map(|it| it.state.clone()).collect();
+        let expected = [
+            SensorState::Suspected,
+            SensorState::Excluded,
+            SensorState::Recovering,
+            SensorState::Healthy,
+        ];
+        assert_eq!(states, expected.map(|state| state.to_string()), "{cause}");
+        assert!(lidar[1].tick < 450, "{lidar:?}");
+    }
+}
+
+/// A flight at 4 Hz past 20 obstacles whose lidar sends nothing from 4 to 7 s.
+#[expect(clippy::unwrap_used, reason = "the core is in this process")]
+fn silent(preset: Preset, latency_ticks: u32) -> FlightLog {
+    let mut scenario = Scenario {
+        obstacles: 20,
+        replan_ticks: 25,
+        latency_ticks,
+        ticks: 1000,
+        ..Scenario::new(preset, 2)
+    };
+    scenario.faults.scan = ScanFault {
+        from: Some(4.0),
+        until: Some(7.0),
+        missing: true,
+        ..ScanFault::default()
+    };
+    fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap()
+}
+
+/// Ticks of the scans, or of the starts without one, from which plans were made within a range of ticks.
+fn planned(log: &FlightLog, ticks: std::ops::Range<u64>) -> Vec<u64> {
+    let all = log.plans.iter().map(|plan| plan.tick);
+    all.filter(|tick| ticks.contains(tick)).collect()
+}
+
+/// A lidar that has fallen silent is planned without, a period after each plan, and the aircraft slows down. It is back at cruise
+/// when scans have come again.
+#[test]
+fn a_silent_lidar_is_planned_without_and_slowly() {
+    let log = silent(Preset::Flight, 1);
+    assert!(
+        log.summary.strict && log.rejections.is_empty(),
+        "{:?}",
+        log.rejections
+    );
+    let without = planned(&log, 400..700);
+    assert!(
+        without.windows(2).all(|pair| pair[1] - pair[0] == 25),
+        "{without:?}"
+    );
+    assert!(
+        (400..=410).contains(&without[0]) && without.len() >= 11,
+        "{without:?}"
+    );
+    let airspeed = |tick: usize| log.ticks.airspeed[tick];
+    assert!(airspeed(399) > 11.5, "{} m/s", airspeed(399));
+    assert!(airspeed(700) < 10.0, "{} m/s", airspeed(700));
+    assert!(airspeed(999) > 11.0, "{} m/s", airspeed(999));
+}
+
+/// The first scan that comes again is used, although a plan without a scan is on its way.
+#[test]
+fn the_first_scan_after_a_silence_is_planned_from() {
+    for latency in [1, 20] {
+        let log = silent(Preset::Flight, latency);
+        let again = planned(&log, 700..1000);
+        assert_eq!(again[..3], [700, 725, 750], "latency {latency}: {again:?}");
+    }
+}
+
+/// The paper's method has no memory. Without a scan it would plan through what it does not see.
+#[test]
+fn the_papers_method_plans_from_scans_only() {
+    let log = silent(Preset::Paper, 1);
+    assert!(planned(&log, 400..700).is_empty());
+    assert!(!planned(&log, 0..400).is_empty());
+}
+
+/// A core that never got a scan has nothing to plan from.
+#[test]
+fn without_a_first_scan_there_is_no_plan() {
+    let mut scenario = short(1);
+    scenario.obstacles = 0;
+    scenario.faults.scan = ScanFault {
+        missing: true,
+        ..ScanFault::default()
+    };
+    let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
+    assert!(log.plans.is_empty(), "{:?}", log.plans);
+}
