@@ -64,6 +64,8 @@ struct Flight {
     last_cycle: Option<u32>,
     /// The tick of the last scan that started a cycle.
     last_scan: Option<u32>,
+    /// Ticks between the last two scans that started cycles. A lidar may be slower than the planner.
+    scan_interval: Option<u32>,
     /// The tick of the scan from which the present trajectory was planned.
     plan_tick: Option<u32>,
     /// The report of a plan that the last tick has taken over.

@@ -68,6 +68,7 @@ impl StepTask {
             cycle: None,
             last_cycle: None,
             last_scan: None,
+            scan_interval: None,
             plan_tick: None,
             untold: None,
             unsteered: None,

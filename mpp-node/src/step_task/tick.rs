@@ -9,6 +9,10 @@ use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, Rejec
 use mpp_core::estimate::{Innovation, PositionVerdict, Trust, Verdict};
 use mpp_core::map::Pose;
 use mpp_core::planner::PlanSummary;
+use mpp_core::tuning::sensors::SUSPECTED_AFTER;
+
+/// Time between two scans of the slowest lidar whose rate is no fault, in periods of the planner [-].
+const SLOWEST_LIDAR: u32 = 4;
 
 /// Ticks from one report of the counters to the next.
 const HEALTH_PERIOD: u32 = 100;
@@ -212,13 +216,15 @@ impl StepTask {
         if flight.cycle.is_some_and(|cycle| cycle.without_scan) {
             // The scan tells more than the cycle knows. Its order may still wait, or its plan.
             flight.cycle = None;
-            self.order = None;
             self.plan = None;
+            if let Some(Order::Begin { forget, .. }) = self.order.take() {
+                flight.forget |= forget;
+            }
         }
         if flight.cycle.is_some() || self.order.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
-        flight.last_scan = Some(scan_tick);
+        flight.note_scan(scan_tick);
         self.order_cycle(tick, scan_tick, &pose, false);
     }
 
@@ -254,11 +260,27 @@ impl Flight {
     /// Whether the lidar has fallen silent, and the next cycle is due. Only the flight planner remembers what earlier scans
     /// showed.
     fn is_due_without_scan(&self, tick: u32) -> bool {
-        let silent = matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded);
         let period = self.tuning.configure.replan_period_ticks;
-        let passed = |last: u32| tick.wrapping_sub(last) >= period;
+        let longer =
+            |last: Option<u32>, time: u32| last.is_some_and(|last| tick.wrapping_sub(last) >= time);
+        let suspected = matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded);
+        let missed = self.scan_interval.is_some_and(|interval| {
+            let late = u32::from(SUSPECTED_AFTER);
+            longer(self.last_scan, interval.saturating_add(late))
+        });
         let remembers = self.tuning.settings.planner.flight().is_some();
-        silent && remembers && self.cycle.is_none() && self.last_cycle.is_some_and(passed)
+        suspected && missed && remembers && self.cycle.is_none() && longer(self.last_cycle, period)
+    }
+
+    /// Takes note of a scan that starts a cycle. A longer time between two scans was an outage.
+    fn note_scan(&mut self, scan_tick: u32) {
+        let longest = SLOWEST_LIDAR.saturating_mul(self.tuning.configure.replan_period_ticks);
+        if let Some(last) = self.last_scan.replace(scan_tick) {
+            let interval = scan_tick.wrapping_sub(last);
+            if interval <= longest {
+                self.scan_interval = Some(interval);
+            }
+        }
     }
 
     /// Whether a cycle is due: a period after the last one, or from a scan that was taken a period after the last

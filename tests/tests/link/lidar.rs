@@ -120,6 +120,25 @@ fn the_first_scan_after_a_silence_is_planned_from() {
     }
 }
 
+/// A lidar that is slower than the planner is no fault: each plan is made from a scan.
+#[test]
+fn a_slow_lidar_is_not_planned_without() {
+    let mut scans = 0;
+    let mut link = Spoilt {
+        pipe: PipeLink::new(),
+        spoil: |_: &mut PipeLink, message: &Message| {
+            let is_scan = matches!(message, Message::LidarScan(_));
+            scans += u32::from(is_scan);
+            is_scan && scans % 2 == 0
+        },
+    };
+    let mut scenario = short(2);
+    scenario.replan_ticks = 25;
+    let log = fly(&scenario, &mut link, |_| {}).unwrap();
+    let ticks = planned(&log, 0..500);
+    assert_eq!(ticks, (0..10).map(|scan| 50 * scan).collect::<Vec<_>>());
+}
+
 /// The paper's method has no memory. Without a scan it would plan through what it does not see.
 #[test]
 fn the_papers_method_plans_from_scans_only() {
