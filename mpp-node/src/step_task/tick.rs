@@ -260,16 +260,19 @@ impl Flight {
     /// Whether the lidar has fallen silent, and the next cycle is due. Only the flight planner remembers what earlier scans
     /// showed.
     fn is_due_without_scan(&self, tick: u32) -> bool {
-        let period = self.tuning.configure.replan_period_ticks;
+        // This is asked at each tick, and healthy lidars are the rule.
+        if !matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded) {
+            return false;
+        }
         let longer =
             |last: Option<u32>, time: u32| last.is_some_and(|last| tick.wrapping_sub(last) >= time);
-        let suspected = matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded);
-        let missed = self.scan_interval.is_some_and(|interval| {
-            let late = u32::from(SUSPECTED_AFTER);
-            longer(self.last_scan, interval.saturating_add(late))
-        });
+        let late = u32::from(SUSPECTED_AFTER);
+        let missed = (self.scan_interval)
+            .is_some_and(|interval| longer(self.last_scan, interval.saturating_add(late)));
+        let configure = &self.tuning.configure;
         let remembers = self.tuning.settings.planner.flight().is_some();
-        suspected && missed && remembers && self.cycle.is_none() && longer(self.last_cycle, period)
+        let due = longer(self.last_cycle, configure.replan_period_ticks);
+        missed && remembers && self.cycle.is_none() && due
     }
 
     /// Takes note of a scan that starts a cycle. A longer time between two scans was an outage.
