@@ -65,7 +65,8 @@ pub enum Mode {
     /// The vehicle makes plans and flies them.
     #[default]
     Auto,
-    /// The vehicle makes no more plans. It flies the last plan to its end, then straight and level.
+    /// The vehicle looks no more. It flies level and slowly in the map that it has; a method without a map flies its last plan
+    /// to the end, then straight and level.
     Cruise,
 }
 
