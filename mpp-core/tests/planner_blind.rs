@@ -57,6 +57,36 @@ fn without_a_scan_the_aircraft_flies_slowly_and_with_one_at_cruise_again() {
     assert!((again - cruise.airspeed).abs() < 0.5, "{again} m/s");
 }
 
+/// Slow flight moves trim up to a limit of the programs. Only what the elevator limits must stay hard there.
+#[test]
+fn rows_of_the_angle_of_attack_are_hard_without_a_scan_as_with_one() {
+    let held = ActuatorLimits {
+        elevator_below: Some(4.0),
+        elevator_above: Some(4.0),
+        ..ActuatorLimits::NONE
+    };
+    for (actuators, hard) in [(ActuatorLimits::NONE, false), (held, true)] {
+        let settings = Settings {
+            actuators,
+            ..Settings::flight()
+        };
+        let mut planner = planner(&settings);
+        let state = level(&planner);
+        let empty = scan(&[], &state);
+        for scan in [Some(&empty), None] {
+            planner.begin_from(3.0, &Pose::of(&state), &state, &Conditions::STILL, scan);
+            let mut programs = 0;
+            while planner.advance() {
+                if let Some((_, program)) = planner.candidate() {
+                    assert_eq!(program.hard_angle_of_attack, [hard; 2]);
+                    programs += 1;
+                }
+            }
+            assert!(programs > 0);
+        }
+    }
+}
+
 /// A motor that cannot carry the slow flight is no reason to fly it.
 #[test]
 fn slow_flight_needs_less_than_the_greatest_thrust() {

@@ -90,6 +90,7 @@ impl StepTask {
         flight.cycle = None;
         flight.last_cycle = None;
         flight.last_scan = None;
+        flight.blind_from = None;
         flight.heard_scan = None;
         flight.plan_tick = flight.plan_tick.map(|_| tick);
         self.plan = None;

@@ -66,6 +66,8 @@ struct Flight {
     last_scan: Option<u32>,
     /// Ticks between the last two scans that started cycles. A lidar may be slower than the planner.
     scan_interval: Option<u32>,
+    /// The tick from which the planner does without a scan, if none comes before.
+    blind_from: Option<u32>,
     /// The tick of the scan from which the present trajectory was planned.
     plan_tick: Option<u32>,
     /// The report of a plan that the last tick has taken over.

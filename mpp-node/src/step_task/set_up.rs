@@ -69,6 +69,7 @@ impl StepTask {
             last_cycle: None,
             last_scan: None,
             scan_interval: None,
+            blind_from: None,
             plan_tick: None,
             untold: None,
             unsteered: None,

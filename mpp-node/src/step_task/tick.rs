@@ -6,7 +6,7 @@ use crate::mail::Order;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
-use mpp_core::estimate::{Innovation, PositionVerdict, Trust, Verdict};
+use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
 use mpp_core::map::Pose;
 use mpp_core::planner::PlanSummary;
 use mpp_core::tuning::sensors::SUSPECTED_AFTER;
@@ -240,6 +240,7 @@ impl StepTask {
             without_scan,
         });
         flight.last_cycle = Some(tick);
+        flight.blind_from = flight.blind_after(tick);
         self.order = Some(Order::Begin {
             tick,
             time: flight.time(tick),
@@ -257,22 +258,20 @@ impl StepTask {
 }
 
 impl Flight {
-    /// Whether the lidar has fallen silent, and the next cycle is due. Only the flight planner remembers what earlier scans
-    /// showed.
+    /// Whether the next cycle is due, and the planner has to do without a scan.
     fn is_due_without_scan(&self, tick: u32) -> bool {
-        // This is asked at each tick, and healthy lidars are the rule.
-        if !matches!(self.lidar.trust(), Trust::Suspected | Trust::Excluded) {
-            return false;
-        }
-        let longer =
-            |last: Option<u32>, time: u32| last.is_some_and(|last| tick.wrapping_sub(last) >= time);
-        let late = u32::from(SUSPECTED_AFTER);
-        let missed = (self.scan_interval)
-            .is_some_and(|interval| longer(self.last_scan, interval.saturating_add(late)));
-        let configure = &self.tuning.configure;
-        let remembers = self.tuning.settings.planner.flight().is_some();
-        let due = longer(self.last_cycle, configure.replan_period_ticks);
-        missed && remembers && self.cycle.is_none() && due
+        let silent = self.blind_from.is_some_and(|from| ticks(from, tick) >= 0);
+        silent && self.cycle.is_none()
+    }
+
+    /// The tick from which the planner does without a scan: the next cycle is due, and the scan that it waits for is late. Only
+    /// the flight planner remembers what earlier scans showed.
+    fn blind_after(&self, begun: u32) -> Option<u32> {
+        self.tuning.settings.planner.flight()?;
+        let interval = self.scan_interval?.saturating_add(SUSPECTED_AFTER.into());
+        let late = self.last_scan?.wrapping_add(interval);
+        let due = begun.wrapping_add(self.tuning.configure.replan_period_ticks);
+        Some(if ticks(due, late) >= 0 { late } else { due })
     }
 
     /// Takes note of a scan that starts a cycle. A longer time between two scans was an outage.

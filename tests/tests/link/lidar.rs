@@ -67,7 +67,7 @@ fn silent(preset: Preset, latency_ticks: u32) -> FlightLog {
         obstacles: 20,
         replan_ticks: 25,
         latency_ticks,
-        ticks: 1000,
+        ticks: 1200,
         ..Scenario::new(preset, 2)
     };
     scenario.faults.scan = ScanFault {
@@ -107,7 +107,17 @@ fn a_silent_lidar_is_planned_without_and_slowly() {
     let airspeed = |tick: usize| log.ticks.airspeed[tick];
     assert!(airspeed(399) > 11.5, "{} m/s", airspeed(399));
     assert!(airspeed(700) < 10.0, "{} m/s", airspeed(700));
-    assert!(airspeed(999) > 11.0, "{} m/s", airspeed(999));
+    assert!(airspeed(1199) > 11.0, "{} m/s", airspeed(1199));
+}
+
+/// How long the core waits for a scan does not depend on the latency of its plans.
+#[test]
+fn the_first_plan_without_a_scan_starts_three_ticks_late() {
+    for latency in [1, 10, 25] {
+        let log = silent(Preset::Flight, latency);
+        let without = planned(&log, 400..700);
+        assert_eq!(without.first(), Some(&403), "latency {latency}");
+    }
 }
 
 /// The first scan that comes again is used, although a plan without a scan is on its way.

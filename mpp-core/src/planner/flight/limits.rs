@@ -10,6 +10,8 @@ use crate::vehicle::{ActuatorLimits, Airframe};
 pub(super) struct Limits {
     /// Greatest distances of the angle of attack below and above trim in a program \[rad\].
     pub(super) angle_of_attack: [f64; 2],
+    /// Whether the elevator is the limit below and above trim, so that no program may pass it.
+    pub(super) held_by_elevator: [bool; 2],
     /// Greatest distances of the angle of attack below and above trim in a roll-out \[rad\]. They are larger
     /// than in a program, because its rows may be soft.
     pub(super) rolled_out: [f64; 2],
@@ -32,6 +34,7 @@ pub(super) struct Limits {
 impl Limits {
     pub(super) const NONE: Self = Self {
         angle_of_attack: [0.0; 2],
+        held_by_elevator: [false; 2],
         rolled_out: [0.0; 2],
         turn_rate: 0.0,
         flight_path: 0.0,
@@ -58,6 +61,7 @@ impl Limits {
         };
         Self {
             angle_of_attack,
+            held_by_elevator: angle_of_attack.map(|limit| limit < allowed),
             rolled_out: [rolled_out(0), rolled_out(1)],
             turn_rate: limits::PLANNED_RATE_SHARE * rate,
             flight_path: own.attitude.flight_path,
@@ -66,13 +70,14 @@ impl Limits {
                 .min(actuators.thrust_max.unwrap_or(f64::INFINITY)),
             curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * down.min(up) / a.mass
                 * a.turn_gain(REFERENCE_CRUISE),
+            wanted_room: ROOM,
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.
-            wanted_room: ROOM,
             room_price: judgement::ROOM_PRICE * (1.0 - agility),
             room: own.margin * (1.0 / agility).min(faces::MOST_MARGINS),
         }
     }
+
     /// Asks for more room in open country: clearance costs nothing there. `openness` is the share of the map's cells ahead
     /// that are open.
     pub(super) fn widen(&mut self, margin: f64, openness: f64) {

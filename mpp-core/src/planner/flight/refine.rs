@@ -74,15 +74,14 @@ impl FlightPlanner {
         }
         let Limits {
             angle_of_attack: [down, up],
+            held_by_elevator: [held_down, held_up],
             flight_path,
             ..
         } = self.limits;
         let scaled = |limits: [f64; 2]| limits.map(|limit| ANGLE_SCALE * limit);
         (self.solver.problem.bounds)
             .set_attitude(scaled([up, flight_path]), scaled([-down, -flight_path]));
-        // A limit that is less than that of the settings is the elevator's.
-        let allowed = self.settings.attitude.angle_of_attack;
-        self.solver.problem.hard_angle_of_attack = [up, down].map(|limit| limit < allowed);
+        self.solver.problem.hard_angle_of_attack = [held_up, held_down];
         self.solver.problem.cost_limit = HOPELESS * self.best_price;
         self.solver.problem.initial = frame.deviation(&frame.start, self.thrust, 0).into();
         self.solver.begin(shared);
