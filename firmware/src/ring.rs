@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
 
 /// Number of places in the ring; a power of two. A harness in lockstep sends a scan and a sensor frame at
 /// a time, which are 600 bytes. An answer is shorter.
-const PLACES: usize = 1024;
+pub const PLACES: usize = 1024;
 /// Half of the places. A ring that fills up passes this length.
 pub const HALF: usize = PLACES / 2;
 

@@ -1,8 +1,9 @@
 //! The link over a serial line by interrupts, with a ring of fixed size in each direction.
 
 use crate::mark::{self, Region};
-use crate::ring::{HALF, Ring};
-use crate::tasks::StepSide;
+use crate::processor;
+use crate::ring::{HALF, PLACES, Ring};
+use crate::tasks::{self, StepSide};
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
 use mpp_node::Pace;
@@ -59,8 +60,25 @@ fn count_lost(bytes: usize) {
     }
 }
 
-/// Gives the received bytes to the step. Only the step may call this function.
-pub fn run(side: &mut StepSide) {
+/// The interrupt of the step: answers of the planner, received bytes, and each 10 ms the watch of the planner and the
+/// watchdog. `kick` makes the line send.
+///
+/// # Safety
+/// Only the step's interrupt may call this function.
+pub unsafe fn step(feed_watchdog: impl FnOnce(), kick: impl FnOnce()) {
+    // SAFETY: this is the step's interrupt, as the caller promises.
+    let side = unsafe { tasks::step_side() };
+    side.collect(send);
+    run(side);
+    if processor::tick_passed() {
+        side.watch_planner(send);
+        feed_watchdog();
+    }
+    kick();
+}
+
+/// Gives the received bytes to the step.
+fn run(side: &mut StepSide) {
     let lost = lost();
     let unreported = lost.wrapping_sub(REPORTED.load(Ordering::Relaxed));
     // The step reports only if there is room, because the count would be lost with a lost report.
@@ -83,15 +101,19 @@ pub fn run(side: &mut StepSide) {
 pub fn interrupt<L: Line>() {
     mark::begin();
     L::acknowledge();
-    while let Some(byte) = L::take() {
+    // A ring holds no more than this. A line with more bytes interrupts again.
+    for _ in 0..PLACES {
+        let Some(byte) = L::take() else {
+            break;
+        };
         count_lost(RECEIVED.push(&[byte]));
         // The step must also take bytes in time if no delimiter comes.
         if byte == DELIMITER || RECEIVED.len() == HALF {
             SCB::set_pendst();
         }
     }
-    while L::has_room() {
-        let Some(byte) = TO_SEND.pop() else {
+    for _ in 0..PLACES {
+        let Some(byte) = L::has_room().then(|| TO_SEND.pop()).flatten() else {
             break;
         };
         L::put(byte);

@@ -31,8 +31,10 @@ pub mod open {
     /// instead of 6, and the power of 4, the clearance past 20 obstacles was 1.8 m instead of 2.3 m. Source: D21.
     pub const MARGINS: f64 = 10.0;
     /// Greatest distance that programs keep there, in margins [-]: 3.2 m, somewhat more than [`ROOM`].
+    /// Source: derived.
     pub const MOST_MARGINS: f64 = 4.0;
     /// Distance ahead within which cells are counted \[cells\]: 26 m, as in [`super::UNKNOWN_AHEAD`].
+    /// Source: derived.
     pub const AHEAD: u32 = 52;
 }
 
@@ -51,49 +53,51 @@ pub mod memory {
     /// gain. Source: D8.
     pub const CELL: f64 = 0.5;
     /// Number of columns of the window that stay behind the aircraft \[cells\]. They are 8 m, which is more
-    /// than an obstacle's radius and the reach of a face together.
+    /// than an obstacle's radius and the reach of a face together. Source: derived.
     pub const BEHIND: i32 = 16;
     /// Evidence that one hit adds. One hit makes an unknown cell occupied, because it is above
     /// [`OCCUPIED`]; two passing beams make the cell free again. Source: D8.
     pub const HIT: i8 = 60;
-    /// Least evidence at which a cell counts as occupied.
+    /// Least evidence at which a cell counts as occupied. Source: chosen.
     pub const OCCUPIED: i8 = 25;
-    /// Evidence that a beam takes away where it passes on its way to a hit.
+    /// Evidence that a beam takes away where it passes on its way to a hit. Source: chosen.
     pub const PASSED: i8 = 30;
     /// Evidence that a beam without a return takes away where it passes. Such a beam may be a lost one, so
-    /// it takes away a third of [`PASSED`].
+    /// it takes away a third of [`PASSED`]. Source: chosen.
     pub const PASSED_UNANSWERED: i8 = 10;
     /// Greatest number of cells hit by one scan, within a metre of one of them, that stand alone [-]. Other beams
     /// of the scan do not clear such cells. With a greater number beams leave cells beside the rims of
     /// obstacles that are not occupied. Source: D15.
     pub const LONE_CELLS: u32 = 2;
     /// Greatest evidence for and against an obstacle. Three or four beams can reverse the state of a cell.
+    /// Source: chosen.
     pub const LIMIT: i8 = 100;
     /// Distance between the points along a beam at which the map visits cells \[m\]. It is less than a
-    /// cell's edge divided by the square root of two, so that the points skip no cell.
+    /// cell's edge divided by the square root of two, so that the points skip no cell. Source: derived.
     pub const STEP: f64 = 0.35;
-    /// Distance of the first of these points \[m\]: half a cell, within the aircraft's own cell.
+    /// Distance of the first of these points \[m\]: half a cell, within the aircraft's own cell. Source: derived.
     pub const FIRST_STEP: f64 = 0.25;
     /// Share of its range by which a hit may be too far [-]: three standard deviations of a range error of
-    /// 1 %. This last part of a beam before its hit is no evidence.
+    /// 1 %. This last part of a beam before its hit is no evidence. Source: derived.
     pub const RANGE_DOUBT: f64 = 0.03;
     /// Length before a hit that is no evidence at any range \[m\]: two cells, for beams that graze a rim.
+    /// Source: chosen.
     pub const HIT_DOUBT: f64 = 1.0;
     /// Number of occupied cells in the fan of a scan without returns at which the lidar counts as blind [-]. One
     /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. With 8 a lidar that
     /// shows nothing for 3 s past 20 obstacles was found in 240 of 400 flights at 1 Hz, with 4 in 368. Source: D37.
     pub const BLIND_CELLS: u32 = 4;
     /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
-    /// pose moves a cell out of sight.
+    /// pose moves a cell out of sight. Source: chosen.
     pub const BLIND_SHARE: f64 = 0.8;
-    /// Share of the lidar's range over which a beam without a return is evidence [-]: 40 m of 45 m.
+    /// Share of the lidar's range over which a beam without a return is evidence [-]: 40 m of 45 m. Source: chosen.
     pub const UNANSWERED_SHARE: f64 = 8.0 / 9.0;
 }
 
 /// Candidates of a cycle.
 pub mod candidates {
     /// Number of beams that one slice takes in. This slice then takes less than half of the time of the
-    /// longest slice.
+    /// longest slice. Source: derived.
     pub const BEAMS_PER_SLICE: usize = 16;
     /// Cost of a program, in prices of the best roll-out so far, from which on its candidate is given up [-]. The
     /// solver then makes a third fewer steps past 40 obstacles. With 100 and 50 instead of 200, 1,065 and 1,015 of
@@ -106,7 +110,7 @@ pub mod candidates {
 
 /// The lattice of stations downrange, heights and slopes. Its prices have the units of the judgement.
 pub mod lattice {
-    /// Distance between heights \[m\]: half a cell of the map.
+    /// Distance between heights \[m\]: half a cell of the map. Source: derived.
     pub const RISE: f64 = 0.25;
     /// Distance between stations for an agile aircraft \[m\]. Over it the slope changes by one step at most: a
     /// curvature of 0.087 per metre, 1.6 times [`AGILE`]; roll-outs reach 1.75 times. With 3 m, the curvature of
@@ -121,36 +125,36 @@ pub mod lattice {
     /// Clearance that a path keeps \[m\]. It is more than the margin of programs, because a path is straight
     /// where the aircraft turns. Source: D8, D10, D11.
     pub const MARGIN: f64 = 1.2;
-    /// Price of the squared lack of [`MARGIN`] [1/m^2].
+    /// Price of the squared lack of [`MARGIN`] [1/m^2]. Source: chosen.
     pub const MARGIN_PRICE: f64 = 10.0;
-    /// Price of a change of the slope by one step, per station [-].
+    /// Price of a change of the slope by one step, per station [-]. Source: chosen.
     pub const TURN_PRICE: f64 = 1.0;
-    /// Price of the squared slope in steps, per station [-].
+    /// Price of the squared slope in steps, per station [-]. Source: chosen.
     pub const SLOPE_PRICE: f64 = 0.05;
-    /// Price of the squared distance from the altitude, per station [1/m^2].
+    /// Price of the squared distance from the altitude, per station [1/m^2]. Source: D11.
     pub const ALTITUDE_PRICE: f64 = 0.01;
-    /// Distance from floor and ceiling that a path keeps \[m\].
+    /// Distance from floor and ceiling that a path keeps \[m\]. Source: chosen.
     pub const BAND_MARGIN: f64 = 0.5;
-    /// Greatest price of a point, in sixteenths [-]. Costs then stay finite whole numbers.
+    /// Greatest price of a point, in sixteenths [-]. Costs then stay finite whole numbers. Source: derived.
     pub const DEAREST: f64 = 1e7;
     /// Greatest price of the way on from the via station [-]. It also applies to places from which no path
-    /// leads on.
+    /// leads on. Source: chosen.
     pub const DEAREST_ONWARD: f64 = 2000.0;
 }
 
 /// Faces between a candidate's segments and the obstacles around them.
 pub mod faces {
     /// Distance from a segment beyond which obstacles do not matter to it \[m\]. A program moves a segment by
-    /// less than this.
+    /// less than this. Source: derived.
     pub const REACH: f64 = 4.0;
     /// Room that a program may use up on its way to a cheaper trajectory \[m\]. With 0.3 and 0.4 m fewer
     /// flights succeed under all conditions together (758 and 765 against 768 of 800). Source: D13.
     pub const GIVE: f64 = 0.2;
     /// Distance by which a trajectory may move where no obstacle is in the way \[m\]. It is finite, but no
-    /// bound in practice.
+    /// bound in practice. Source: derived.
     pub const FREE: f64 = 60.0;
     /// Distance that programs keep in addition to the margin \[m\], so that their roll-outs still keep the
-    /// margin. Roll-outs differ from programs by a few centimetres after the first round.
+    /// margin. Roll-outs differ from programs by a few centimetres after the first round. Source: derived.
     pub const ROUNDING: f64 = 0.05;
     /// Greatest distance that programs keep where a candidate has the room, in margins [-]. Source: D13.
     pub const MOST_MARGINS: f64 = 2.0;
@@ -169,22 +173,23 @@ pub mod limits {
     /// and 42 of 60. Source: D15.
     pub const REACH_TIME: f64 = 0.15;
     /// Factor on the limit of the angle of attack for roll-outs [-]. Soft rows may exceed that limit, and a
-    /// roll-out follows up to this factor times the limit plus [`SOFT_EXTRA`].
+    /// roll-out follows up to this factor times the limit plus [`SOFT_EXTRA`]. Source: chosen.
     pub const SOFT_SHARE: f64 = 1.5;
     /// Addition to the limit of the angle of attack for roll-outs \[rad\]; see [`SOFT_SHARE`]. Beyond it a
-    /// roll-out would stall.
+    /// roll-out would stall. Source: chosen.
     pub const SOFT_EXTRA: f64 = 0.05;
 }
 
 /// The price of a roll-out.
 pub mod judgement {
     /// Number of points in a stage at which the judgement takes the clearance: 0.75 m apart at 12 m/s.
+    /// Source: derived.
     pub const SAMPLES: usize = 4;
     /// Price of the squared lack of margin [1/m^2]. With a lower price plans fly too close to obstacles to
     /// save effort; with a higher price they make violent motions to gain centimetres. Source: D8.
     pub const LACK_PRICE: f64 = 100.0;
     /// Discount of the last stage against the first [-]. The vehicle plans the last stage again before it
-    /// flies there.
+    /// flies there. Source: chosen.
     pub const LAST_STAGE: f64 = 0.5;
     /// Price of the squared lack of [`super::ROOM`] [1/m^2] for an aircraft that cannot turn at all. With
     /// half of this price as many flights succeeded (769 against 768 of 800). Source: D13.
@@ -202,19 +207,20 @@ pub mod navigation {
     pub const GATE: f64 = 6.0;
     /// Least standard deviation of a position \[m\] and of a velocity over ground [m/s] that the filter
     /// believes. It keeps the covariance regular. With 1 mm at 100 Hz the wind follows within two ticks.
+    /// Source: derived.
     pub const LEAST_SIGMA: f64 = 1e-3;
     /// Standard deviation of the wind before the first position [m/s]. Source: derived; it covers a fresh
     /// breeze along and a thermal across.
     pub const FIRST_WIND: f64 = 3.0;
     /// Greatest plausible wind along an axis [m/s]. Source: D10.
     pub const MOST_WIND: f64 = 10.0;
-    /// Standard deviation of the wind below which the estimate of the lift begins [m/s].
+    /// Standard deviation of the wind below which the estimate of the lift begins [m/s]. Source: derived.
     pub const SETTLED_WIND: f64 = 1.0;
     /// Share of the greatest change of the wind that the filter for plans assumes [-]. A smaller share lets less noise of
     /// the positions into the start of a plan, and follows strong gusts later. Source: D34.
     pub const SMOOTH_SHARE: f64 = 0.5;
     /// Time without an accepted position after which the filter starts anew from a refused one \[s\]. Before
-    /// it a jump of the source does no harm; after it the source is believed again.
+    /// it a jump of the source does no harm; after it the source is believed again. Source: chosen.
     pub const RESTART_TIME: f64 = 1.0;
 }
 
@@ -223,19 +229,20 @@ pub mod lift {
     /// Time of observation after which the observed lift and the known airframe have equal weight \[s\]. Over
     /// a shorter time gusts change the mean acceleration by more than errors of the airframe do. Source: D12.
     pub const TRUST_TIME: f64 = 0.7;
-    /// Time of observation beyond which the estimator slowly forgets older observations \[s\].
+    /// Time of observation beyond which the estimator slowly forgets older observations \[s\]. Source: chosen.
     pub const MEMORY: f64 = 6.0;
     /// Greatest plausible offset of the lift coefficient of the reference aircraft [-]: somewhat more than a
-    /// quarter of the lift of level flight.
+    /// quarter of the lift of level flight. Source: derived.
     pub const MOST: f64 = 0.4;
 }
 
 /// Tracking of a trajectory at 100 Hz.
 pub mod tracking {
     /// Least ground speed ahead in the computation of a course [m/s]. It keeps the divisor away from zero.
+    /// Source: derived.
     pub const LEAST_ADVANCE: f64 = 1.0;
     /// Greatest angle by which the regulator turns a reference back to its path \[rad\]. With 0.08 rad/m the
-    /// angle reaches this value 1.9 m from the path.
+    /// angle reaches this value 1.9 m from the path. Source: derived.
     pub const MOST_TURN: f64 = 0.15;
 }
 

@@ -186,7 +186,7 @@ fn seconds(ticks: u32) -> Option<f64> {
 }
 
 /// The number of ticks nearest to a duration \[s\].
-fn ticks(seconds: f64) -> u32 {
+fn whole_ticks(seconds: f64) -> u32 {
     libm::round(seconds / TICK_PERIOD) as u32
 }
 
@@ -237,11 +237,11 @@ parameters! { 41:
         |tuning, value| tuning.settings.planner.paths = value as usize;
     MppReplanS = "MPP_REPLAN_S", "s", [0.1, 60.0], Some(TICK_PERIOD), ANY_TIME,
         |tuning| seconds(tuning.configure.replan_period_ticks),
-        |tuning, value| tuning.configure.replan_period_ticks = ticks(value);
+        |tuning, value| tuning.configure.replan_period_ticks = whole_ticks(value);
     MppLatencyS = "MPP_LATENCY_S", "s", [0.01, 60.0], Some(TICK_PERIOD), ANY_TIME,
         |tuning| seconds(tuning.configure.latency_ticks),
         |tuning, value| {
-            tuning.configure.latency_ticks = ticks(value);
+            tuning.configure.latency_ticks = whole_ticks(value);
             let latency = crate::duration(tuning.configure.latency_ticks);
             set_flight(tuning, |own| own.latency = latency);
         };

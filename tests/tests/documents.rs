@@ -233,7 +233,9 @@ fn the_table_of_tuned_numbers_is_that_of_the_code() {
         let source = read(&root().join("mpp-core/src").join(file));
         let found = constants(&source);
         // Each constant of the file has a value that this test can read.
-        assert_eq!(found.len(), source.matches("pub const ").count(), "{file}");
+        let all = source.matches("pub const ").count();
+        assert_eq!(found.len(), all, "{file}");
+        assert_eq!(source.matches("Source: ").count(), all, "sources in {file}");
         numbers.extend(found);
     }
     assert_eq!(table("## Tuned numbers"), numbers);

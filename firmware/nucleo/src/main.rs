@@ -46,14 +46,9 @@ extern "C" fn planner_thread() -> ! {
 #[exception]
 fn SysTick() {
     // SAFETY: this is the step's interrupt.
-    let side = unsafe { tasks::step_side() };
-    side.collect(serial::send);
-    serial::run(side);
-    if processor::tick_passed() {
-        side.watch_planner(serial::send);
-        board::feed_watchdog();
+    unsafe {
+        serial::step(board::feed_watchdog, line::kick);
     }
-    line::kick();
 }
 
 #[exception]

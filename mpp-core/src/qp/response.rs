@@ -12,7 +12,7 @@ use core::ops::Range;
 pub(super) struct Response([f64; ENTRIES]);
 
 /// Start of each row, and number of controls that reach its output.
-const ROWS: [(usize, usize); OUTPUTS] = {
+const OUTPUT_ROWS: [(usize, usize); OUTPUTS] = {
     let mut rows = [(0, 0); OUTPUTS];
     let (mut output, mut start) = (0, 0);
     while output < OUTPUTS {
@@ -23,13 +23,13 @@ const ROWS: [(usize, usize); OUTPUTS] = {
     rows
 };
 const ENTRIES: usize = {
-    let (start, reach) = ROWS[OUTPUTS - 1];
+    let (start, reach) = OUTPUT_ROWS[OUTPUTS - 1];
     start + reach.next_multiple_of(4)
 };
 
 /// Place of a row.
 fn range(output: usize) -> Range<usize> {
-    let (start, reach) = ROWS.get(output).copied().unwrap_or_default();
+    let (start, reach) = OUTPUT_ROWS.get(output).copied().unwrap_or_default();
     start..start + reach.next_multiple_of(4)
 }
 

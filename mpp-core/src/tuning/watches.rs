@@ -6,12 +6,12 @@ pub mod sensors {
     /// more may hold its values between; with noise a repetition by chance is far rarer. Source: D15.
     pub const FROZEN_TICKS: u8 = 5;
     /// Ticks without a good value, beyond the sensor's own period, after which it is suspected [-]. One value
-    /// that fails its gate is no fault.
+    /// that fails its gate is no fault. Source: chosen.
     pub const SUSPECTED_AFTER: u16 = 3;
-    /// Ticks after which it is excluded [-]: 0.2 s. Its values are then no longer used.
+    /// Ticks after which it is excluded [-]: 0.2 s. Its values are then no longer used. Source: chosen.
     pub const EXCLUDED_AFTER: u16 = 20;
     /// Ticks with good values after which an excluded sensor is used again [-]: 0.5 s. A fault that blinks
-    /// faster keeps the sensor excluded.
+    /// faster keeps the sensor excluded. Source: chosen.
     pub const RECOVERED_AFTER: u16 = 50;
     /// Values of the pitch that the filter refuses in a row, on a steady course, before it believes them [-]: 30
     /// ms. An elevator that sticks turns the aircraft otherwise than the filter expects. Source: D27.
@@ -20,6 +20,7 @@ pub mod sensors {
     /// its noise. Source: derived.
     pub const MOST_TURN: f64 = 0.08;
     /// Greatest time between two positions of a healthy source \[ticks\]: 1 Hz is the slowest source.
+    /// Source: derived.
     pub const POSITION_PERIOD: u16 = 100;
     /// Number of measurements in a row that must be late before the filter falls behind to their age [-]. With
     /// fewer a single late one costs the freshness of the others. Source: derived; 0.03 s of data.
@@ -28,7 +29,7 @@ pub mod sensors {
     /// is another one; the sensors tell it. Source: D15.
     pub const LONGEST_PREDICTION: f64 = 0.5;
     /// Longest time without steps after which the first position is believed at once \[s\]. After a longer time the
-    /// filter of the positions starts anew.
+    /// filter of the positions starts anew. Source: derived.
     pub const LONGEST_GAP: f64 = 3.0;
     /// Standard deviations of the sensors by which the motion differs after steps were lost, and does not differ
     /// after the clock jumped [-]. Fewer take a fast turn of one tick for lost steps. Source: derived; 1.8
@@ -37,9 +38,9 @@ pub mod sensors {
     /// Standard deviation of the airspeed after lost steps, as a share of it [-]. Source: derived, as the next two; the
     /// sensors must pass their gates.
     pub const GAP_AIRSPEED: f64 = 0.15;
-    /// That of pitch and flight path angle \[rad\].
+    /// That of pitch and flight path angle \[rad\]. Source: derived.
     pub const GAP_ANGLE: f64 = 0.2;
-    /// That of the pitch rate [rad/s].
+    /// That of the pitch rate [rad/s]. Source: derived.
     pub const GAP_RATE: f64 = 0.5;
     /// Longest time after a jump of the time for which scans wait for a position that tells where the aircraft is
     /// \[s\]: three positions of a source of 10 Hz. Source: derived.
@@ -49,20 +50,21 @@ pub mod sensors {
 /// Bias of the pitch, seen as a steady vertical wind and a push along the way.
 pub mod pitch_bias {
     /// Time over which the tilt is averaged \[s\]. More of it tells gusts better from a bias, and finds a bias
-    /// later.
+    /// later. Source: D16.
     pub const MEMORY: f64 = 3.0;
-    /// Time after which the first estimate of the wind is settled \[s\].
+    /// Time after which the first estimate of the wind is settled \[s\]. Source: D26.
     pub const SETTLED: f64 = 0.5;
-    /// Time after that after which a bias can be found \[s\].
+    /// Time after that after which a bias can be found \[s\]. Source: D26.
     pub const SEEN: f64 = 1.0;
-    /// Least bias \[rad\]: 2.4 degrees. An error of the airframe looks like a smaller one.
+    /// Least bias \[rad\]: 2.4 degrees. An error of the airframe looks like a smaller one. Source: D16.
     pub const LEAST: f64 = 0.042;
     /// Least ratio of the tilts by wind and by airspeed, the lesser to the greater [-]. With 0.6 two of 200 flights in
     /// gusts failed, with 0.7 one of 600, as without the watch. Source: D26.
     pub const AGREE: f64 = 0.7;
     /// Least change of the bias by which the estimates turn \[rad\]: 1.1 deg. With less they turn often.
+    /// Source: chosen.
     pub const LEAST_TURN: f64 = 0.02;
-    /// Standard deviation of the tilt by the estimated wind in still air \[rad\].
+    /// Standard deviation of the tilt by the estimated wind in still air \[rad\]. Source: D16.
     pub const STILL: f64 = 0.0083;
     /// Standard deviations of the tilt by the wind that a bias exceeds [-]. Fewer take gusts for a bias. Source: D26.
     pub const STEADY: f64 = 3.0;
@@ -71,42 +73,46 @@ pub mod pitch_bias {
 /// Slow error of the airspeed, seen as wind and lift at once.
 pub mod airspeed_bias {
     /// Time after which wind and lift are settled \[s\]. What they are then counts as right, unless both are
-    /// impossible ([`FOUND_BY_LIFT_AT_START`]).
+    /// impossible ([`FOUND_BY_LIFT_AT_START`]). Source: D26.
     pub const SETTLED: f64 = 1.5;
     /// Time over which their slow means follow \[s\]. With more of it steady wind counts as a change for longer,
-    /// with less a slow error hides.
+    /// with less a slow error hides. Source: D26.
     pub const MEMORY: f64 = 20.0;
-    /// Error by the wind from which on the airspeed counts as wrong, as a share of it [-]: 1.4 m/s at 12 m/s. Source:
-    /// D26.
+    /// Error by the wind from which on the airspeed counts as wrong, as a share of it [-]: 1.4 m/s at 12 m/s.
+    /// Source: D26.
     pub const FOUND_BY_WIND: f64 = 0.115;
     /// The same by the lift [-]. The estimate of the lift averages over seconds, so it shows less of an error that
-    /// grows.
+    /// grows. Source: D26.
     pub const FOUND_BY_LIFT: f64 = 0.045;
     /// Error by the lift from which on the airspeed counts as wrong from the start, if the wind says so too [-]: an
     /// airframe that lifts 30 % more or less than is known. With 0.2 an airspeed that reads 3 m/s too little loses
     /// 4 points instead of 1; with 0.13 gusts and errors of the airframe look wrong twice as often. Source: D29.
     pub const FOUND_BY_LIFT_AT_START: f64 = 0.15;
-    /// Time for which both must say so \[s\]. Gusts do so for a moment.
+    /// Time for which both must say so \[s\]. Gusts do so for a moment. Source: D26.
     pub const FOUND_FOR: f64 = 0.3;
     /// Mean difference of the sensor from the estimate up to which they agree, as a share of the airspeed [-].
+    /// Source: chosen.
     pub const AGREES: f64 = 0.06;
-    /// Time for which they must agree before the sensor is believed again \[s\].
+    /// Time for which they must agree before the sensor is believed again \[s\]. Source: chosen.
     pub const AGREES_FOR: f64 = 3.0;
-    /// Time over which this mean is taken \[s\].
+    /// Time over which this mean is taken \[s\]. Source: chosen.
     pub const OFF_TIME: f64 = 1.0;
     /// Offset of the lift coefficient up to which the motor is judged, as a share of that of level flight [-]. An
     /// airspeed that reads 1 m/s too little shows more, and makes the drag look greater than it is known.
+    /// Source: D28.
     pub const MOST_LIFT: f64 = 0.18;
 }
 
 /// Effect of the elevator, seen by the turns that commands miss.
 pub mod elevator {
     /// Time over which a turn fades from the comparison \[s\]. With 0.5 errors of the lift stay in it for longer.
+    /// Source: chosen.
     pub const FADE: f64 = 0.25;
     /// Time over which turns are compared \[s\]. With 2 gusts look like a weak elevator twice as often as with 1;
     /// with less a flight shows fewer turns. Source: D27.
     pub const MEMORY: f64 = 1.0;
     /// Least covariance of the responses to command and plan from which on they are compared [rad^2]: turns by 0.8 deg.
+    /// Source: chosen.
     pub const LEAST_RESPONSE: f64 = 2e-4;
     /// Greatest difference of the pitch from the expected one \[rad\]: 0.1 s of an elevator that stalls the wing.
     /// What is beyond is no turn. Source: derived.
@@ -119,8 +125,9 @@ pub mod elevator {
     /// flights, with 8 a weak one is found late. Source: D27.
     pub const SIGMAS: f64 = 6.0;
     /// Missing share below which an elevator counts as proven, if its standard deviation is below [`PROVEN_ERROR`] [-].
+    /// Source: chosen.
     pub const PROVEN_MISSING: f64 = 0.3;
-    /// See [`PROVEN_MISSING`].
+    /// See [`PROVEN_MISSING`]. Source: chosen.
     pub const PROVEN_ERROR: f64 = 0.1;
     /// Time for which a proven elevator must look weak \[s\]. With less of it an elevator that sticks for a second
     /// looks weak, and is corrected when it is free again. Source: D27.
@@ -128,7 +135,7 @@ pub mod elevator {
     /// The same for an elevator that is not proven \[s\]. With 0.3 one flight of 100 with a quarter of the effect
     /// fails. Source: D27.
     pub const NEW_FOR: f64 = 0.1;
-    /// Least effect that is corrected [-]. With less of it the correction is greater than 7.
+    /// Least effect that is corrected [-]. With less of it the correction is greater than 7. Source: chosen.
     pub const LEAST_EFFECT: f64 = 0.15;
 }
 
@@ -139,31 +146,31 @@ pub mod motor {
     /// more. Source: D28.
     pub const FADE: f64 = 1.0;
     /// Rate at which the dead reckoned position follows the estimated one [1/s]. With more the noise of positions
-    /// looks like a lost motor; with less a lost motor is found later.
+    /// looks like a lost motor; with less a lost motor is found later. Source: chosen.
     pub const FOLLOWS: f64 = 3.0;
     /// Share of the expected gain that is missing by airspeed and wind when the motor is lost [-]. Less of it takes
-    /// gusts for a lost motor, more of it finds one later.
+    /// gusts for a lost motor, more of it finds one later. Source: D28.
     pub const BY_AIRSPEED: f64 = 0.5;
-    /// The same by the positions [-]. It is less because they say it later.
+    /// The same by the positions [-]. It is less because they say it later. Source: D28.
     pub const BY_POSITION: f64 = 0.25;
     /// Multiple of the usual gain by airspeed that a lost thrust exceeds [-]. With 4 a gust looks like a lost motor
     /// in one of 40 flights. Source: D28.
     pub const SIGMAS: f64 = 5.0;
     /// Time over which the usual gain is averaged \[s\]. Over less a lost motor counts as usual while it is being
-    /// found.
+    /// found. Source: D28.
     pub const USUAL: f64 = 6.0;
-    /// First value of the usual gain [m/s]: less than in still air, 0.1.
+    /// First value of the usual gain [m/s]: less than in still air, 0.1. Source: chosen.
     pub const QUIET: f64 = 0.05;
     /// Time for which both signs must say that the motor stopped or works again \[s\]. With 0.1 a gust looks like a
     /// lost motor in one of 40 flights. Source: D28.
     pub const SHOWN_FOR: f64 = 0.15;
     /// Time after which the estimates are settled \[s\]. With 2 the first estimates of the wind look like a lost
-    /// motor in 3 of 200 flights with all conditions together.
+    /// motor in 3 of 200 flights with all conditions together. Source: D28.
     pub const SETTLED: f64 = 4.0;
     /// Greatest distance of the estimated position from the dead reckoned one \[m\]. It is twice that of a motor
-    /// lost at full thrust; what is beyond is a jump of the position.
+    /// lost at full thrust; what is beyond is a jump of the position. Source: derived.
     pub const MOST_AHEAD: f64 = 1.0;
     /// Least thrust with which the comparison reckons, as a share of that of level flight [-]. Less lets noise look
-    /// great in a dive without thrust.
+    /// great in a dive without thrust. Source: chosen.
     pub const LEAST_GIVEN: f64 = 0.3;
 }
