@@ -31,29 +31,41 @@
 //! use mpp_core::settings::Settings;
 //!
 //! # fn main() -> Result<(), SetupError> {
-//! let settings = Settings::flight();
+//! let mut settings = Settings::flight();
+//! if let Some(own) = settings.planner.flight_mut() {
+//!     // The loop takes a plan over one tick after its cycle has begun.
+//!     own.latency = 0.01;
+//! }
 //! let mut flight = FlightLoop::new(&settings)?;
 //! let mut planner = Box::new(Planner::new());
 //! planner.set_up(&settings)?;
 //!
-//! // A scan without returns, taken at the start of the flight.
-//! let scan = LidarScan::new();
-//! planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
 //! let measurement = Measurement { airspeed: 12.0, pitch: 0.156 };
 //! let frame = SensorFrame {
 //!     air: Some(AirData { age: 0, measurement }),
 //!     position: None,
 //! };
 //! let first = flight.step(0.0, &frame);
+//!
+//! // A scan of a lidar with 100 beams and a range of 45 m. No beam came back.
+//! let mut scan = LidarScan::new();
+//! (scan.angle_min, scan.angle_increment) = (-0.5, 0.01);
+//! scan.ranges.resize(100, 0.0).expect("there is room for 128 beams");
+//! // The planner takes only checked scans.
+//! if scan.check(100, 45.0).is_ok() {
+//!     planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
+//! }
 //! // The flight step may run between any two slices.
 //! while planner.advance() {}
-//! let verdict = planner.finish();
-//! flight.adopt(0.01, verdict, planner.best());
+//! flight.adopt(0.01, planner.finish(), planner.best());
 //! let second = flight.step(0.01, &frame);
 //! assert!(second.control.thrust >= 0.0 && first.control.elevator.is_finite());
 //! # Ok(())
 //! # }
 //! ```
+//!
+//! A loop that goes on also looks at two results of a step. After [`moved`](flight::StepOutput::moved) it drops the cycle
+//! and calls [`planner::Planner::forget`]. While [`is_lost`](flight::FlightLoop::is_lost) holds it begins no cycle.
 #![no_std]
 #![forbid(unsafe_code)]
 
