@@ -110,7 +110,9 @@ impl fmt::Display for ConfigureVerdict {
                     "the core cannot take that number of beams: configure a lidar with 1 to {max}"
                 );
             }
-            Self::NonFinite => "the altitude is out of range or not a finite number: give it in metres",
+            Self::NonFinite => {
+                "the altitude is out of range or not a finite number: give -1000 to 20000 metres"
+            }
             Self::NotTrimmable => {
                 "no level flight was found at the cruise airspeed: check cruise and airframe"
             }
@@ -172,15 +174,17 @@ impl fmt::Display for ConfigureVerdict {
                 "the plan's cost has no single optimum: give the controls positive weights, and the \
                  terminal state one that is not negative"
             }
-            Self::Penalty => "the linear price of the soft rows is out of range: raise it above zero",
+            Self::Penalty => {
+                "the linear price of the soft rows is out of range: give 1e-6 to 1e12 per metre"
+            }
             Self::Margin => {
-                "the distance to keep from obstacles is out of range: give 0.01 to 20 metres"
+                "the distance to keep from obstacles is out of range: give 0.001 to 500 metres"
             }
             Self::Band => {
-                "the band about the altitude is out of range: give 1 to 1000 metres"
+                "the band about the altitude is out of range: give 0.1 to 10000 metres"
             }
             Self::PlanThrust => {
-                "the greatest thrust of a plan is out of range: give 0.1 to 10000 newtons"
+                "the greatest thrust of a plan is out of range: give 0.1 to 1e6 newtons"
             }
             Self::WindChange => {
                 "the change of the wind is out of range: give 0.001 to 100 metres per second"
