@@ -8,16 +8,17 @@
 //! # One tick
 //!
 //! ```text
-//! LidarScan k      kept until the sensor frame of the same tick
+//! LidarScan k      kept until the next sensor frame
 //! SensorFrame k    1. a plan that tick k - 1 has taken over is told -> PlanReport, PlanTrajectory
 //!                     the commands of the plan that tick k - 1 has told -> PlanControls
 //!                  2. a cycle whose latency has passed is finished and taken over
 //!                  3. estimate, reference, control          -> StepReport, ActuatorCommand
-//!                  4. a scan, if it is time to replan, starts a cycle
+//!                  4. if it is time to replan, a scan starts a cycle; without a scan one starts if the lidar
+//!                     has fallen silent
 //!                  5. the planner runs its slices of this tick
 //! ```
 //!
-//! The step uses a plan `latency_ticks` after its scan and not earlier, even if the planner was faster.
+//! The step uses a plan `latency_ticks` after the start of its cycle and not earlier, even if the planner was faster.
 //! The flight therefore does not depend on the speed of the machine.
 //!
 //! # Two tasks

@@ -24,7 +24,7 @@ struct Cycle {
 
 /// The planner and its orders. The value is large: place it in a `static` or a box.
 ///
-/// A cycle gets `slices_per_tick` slices for each tick from its scan until its plan is due. The cycle ends
+/// A cycle gets `slices_per_tick` slices for each tick from its start until its plan is due. The cycle ends
 /// when it has used these slices, when it has no more work, or when the tick at which the plan is due has
 /// passed. It then answers with its best trajectory so far.
 #[derive(Clone, Debug)]

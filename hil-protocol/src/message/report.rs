@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 /// Core to harness: the result of one planning cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanReport {
-    /// The tick of the scan from which the cycle planned.
+    /// The tick of the scan from which the cycle planned. If the cycle had no scan, this is the tick at which it
+    /// started.
     pub scan_tick: u32,
     /// The first tick that flies the outcome.
     pub used_from_tick: u32,
@@ -53,8 +54,8 @@ pub enum PlanOutcome {
 /// Core to harness: the trajectory that a planning cycle chose, after its [`PlanReport`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanTrajectory {
-    /// The tick of the scan from which the trajectory was planned. A trajectory of preset `flight` starts when
-    /// the step takes it over ([`PlanReport::used_from_tick`]); those of the other presets start at the scan.
+    /// [`PlanReport::scan_tick`] of its report. A trajectory of preset `flight` starts when the step takes it over
+    /// ([`PlanReport::used_from_tick`]); those of the other presets start at the scan.
     pub scan_tick: u32,
     /// Time from a knot to the next \[s\].
     pub period: f32,
@@ -74,7 +75,7 @@ impl PlanTrajectory {
 /// rest of the plan by them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanControls {
-    /// The tick of the scan from which the trajectory was planned.
+    /// [`PlanReport::scan_tick`] of its report.
     pub scan_tick: u32,
     /// Thrust \[N\] from each knot to the next, and elevator at each knot, which moves straight to that of the next.
     pub knots: Vec<[f32; 2], MAX_KNOTS>,

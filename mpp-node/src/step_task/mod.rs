@@ -68,11 +68,12 @@ struct Flight {
     scan_interval: Option<u32>,
     /// The tick from which the planner does without a scan, if none comes before.
     blind_from: Option<u32>,
-    /// The tick of the scan from which the present trajectory was planned.
+    /// The tick of the scan from which the present trajectory was planned. If its cycle had no scan, this is the tick
+    /// at which the cycle started.
     plan_tick: Option<u32>,
     /// The report of a plan that the last tick has taken over.
     untold: Option<PlanReport>,
-    /// Scan of the plan that was told, and whose commands are not told yet.
+    /// `plan_tick` of the plan that was told, and whose commands are not told yet.
     unsteered: Option<u32>,
     /// The tick of a checked scan that waits for its sensor frame.
     scan_tick: Option<u32>,
