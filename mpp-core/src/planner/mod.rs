@@ -1,10 +1,10 @@
-//! The interface of the planner, which can stop at any time. A cycle begins with a scan and advances in
-//! bounded slices. After each slice the best trajectory so far is available.
+//! The interface of the planner, which can stop at any time. A cycle begins with a scan, or without one if the lidar
+//! is silent, and advances in bounded slices. After each slice the best trajectory so far is available.
 //!
 //! ```text
 //! set_up --> begin --> advance, advance, .. --> finish --> best
 //!              ^                                  |
-//!              +----------- next scan ------------+
+//!              +----------- next cycle -----------+
 //! ```
 //!
 //! There are two planning methods, each with its own state and settings: the [`flight`] planner, and with
@@ -140,7 +140,7 @@ impl Planner {
     }
 
     /// Takes over the settings that can change in flight, for the cycles to come: number of paths and
-    /// altitude; padding (the paper's method); penalty and attitude limits (the flight planner).
+    /// altitude; padding (the paper's method); penalty, attitude limits and latency (the flight planner).
     ///
     /// # Errors
     /// [`SetupError`]: the settings stay as they were.
