@@ -82,7 +82,7 @@ pub struct Header {
     pub world_scale: f64,
     /// Replanning rate \[Hz\].
     pub replan_hz: f64,
-    /// Time from a scan until its plan is flown \[s\].
+    /// Time from the start of a cycle until its plan is flown \[s\].
     pub latency: f64,
     /// Slices of planning work done in each tick; not written if each tick does all of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]

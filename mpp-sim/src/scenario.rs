@@ -123,7 +123,7 @@ pub struct Scenario {
     pub paths: u16,
     /// Ticks from one plan to the next.
     pub replan_ticks: u32,
-    /// Ticks from a scan until its plan is flown.
+    /// Ticks from the start of a cycle until its plan is flown.
     pub latency_ticks: u32,
     /// Planner slices that run between two ticks.
     pub slices_per_tick: u32,

@@ -49,7 +49,8 @@ pub struct Configure {
     pub paths: u16,
     /// Ticks from the start of one planning cycle to the start of the next.
     pub replan_period_ticks: u32,
-    /// Ticks from a scan to the first tick that may use its plan.
+    /// Ticks from the start of a planning cycle to the first tick that may use its plan. A cycle starts at the sensor
+    /// frame after its scan, or without a scan.
     pub latency_ticks: u32,
     /// Number of slices of planning work in each tick.
     pub slices_per_tick: u32,

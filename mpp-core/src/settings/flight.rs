@@ -17,7 +17,8 @@ pub struct AttitudeLimits {
 pub struct FlightSettings {
     /// Range of the lidar \[m\]. A beam without a return shows that its way is free up to this range.
     pub sight: f64,
-    /// Time from a scan until its plan is taken over \[s\]. A plan starts where the aircraft will be then.
+    /// Time from the start of a cycle ([`Planner::begin`](crate::planner::Planner::begin)) until its plan is taken over
+    /// \[s\]. A plan starts where the aircraft will be then.
     pub latency: f64,
     /// Price of violating corridor and attitude rows. These rows are soft, but those of an angle of attack that the
     /// elevator limits are hard.

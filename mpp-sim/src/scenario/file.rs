@@ -63,7 +63,7 @@ pub struct ScenarioFile {
     /// Replanning rate \[Hz\]; by default 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub replan_hz: Option<f64>,
-    /// Simulated time from a scan until its plan is flown \[ms\]; by default 10.
+    /// Simulated time from the start of a cycle until its plan is flown \[ms\]; by default 10.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub latency_ms: Option<u32>,
     /// Planner slices that run between two ticks; by default all that the cycle needs.
