@@ -112,8 +112,8 @@ impl Condensed {
                 *thrust = -(gain * *column).x;
                 *column = closed * *column;
             }
-            if let Some([elevator, thrust, ..]) = thrusts.get_mut(so_far..) {
-                [*elevator, *thrust] = feedback.scale.row(1).into_owned().into();
+            if let Some([by_first, by_second, ..]) = thrusts.get_mut(so_far..) {
+                [*by_first, *by_second] = feedback.scale.row(1).into_owned().into();
             }
             if let Some(own) = columns.as_chunks_mut::<2>().0.get_mut(stage) {
                 let first = dynamics.b * feedback.scale;
@@ -211,11 +211,11 @@ impl Condensed {
 
     /// Cost of a trajectory without penalties.
     pub(super) fn cost(&self, solution: &Solution, target: &StageState) -> f64 {
-        let [elevator, thrust] = self.weights.control;
+        let [first, second] = self.weights.control;
         let efforts = solution
             .controls
             .iter()
-            .map(|u| elevator * (u[0] * u[0]) + thrust * (u[1] * u[1]));
+            .map(|u| first * (u[0] * u[0]) + second * (u[1] * u[1]));
         let missing = solution.states[KNOTS - 1]
             .iter()
             .zip(target)

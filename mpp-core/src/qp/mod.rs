@@ -2,16 +2,20 @@
 //!
 //! ```text
 //! min  sum_k u_k' R u_k / 2 + w |x_N - target|^2 / 2   (+ penalties of soft rows)
-//! s.t. x_{k+1} = A x_k + B u_k,  x_0 given
+//! s.t. x_{k+1} = A_k x_k + B_k u_k + c_k,  x_0 given
 //!      g_i . (z_k, x_k) <= h_ki                         half-planes of the corridor
-//!      |theta_k|, |gamma_k| within limits               attitude rows, where asked for
+//!      theta_k - gamma_k, gamma_k within limits         attitude rows, where asked for
 //!      0 <= thrust_k <= greatest thrust
 //! ```
 //!
+//! `theta - gamma` is the angle of attack. The flight planner linearises about a candidate, so each stage has its own
+//! `A`, `B` and offset `c`. In the paper's method all stages have the same `A` and `B`, and `c` is zero.
+//!
 //! The program has two parts. [`Condensed`] depends on the model alone and serves every candidate of that
 //! model. [`Solver`] finds the optimum of one candidate. States and controls are deviations from level
-//! trim, in the order `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`. The programs of the flight
-//! planner have no pitch rate. The thrust that the motor gives stands in its place.
+//! trim. In the paper's method they are `(x, z, v, theta, theta', gamma)` and `(elevator, thrust)`. The programs of the
+//! flight planner have no pitch rate; the thrust that the motor gives stands in its place. They have no elevator; the
+//! rate of the angle of attack stands in its place.
 //!
 //! The method is a dual active set (Goldfarb, Idnani: "A numerically stable dual method for
 //! solving strictly convex quadratic programs", 1983). It works on *normalised controls* `v` and *outputs*.
@@ -46,13 +50,14 @@ pub type StageState = [f64; STATES];
 /// Place of the pitch in a state. The flight path stands last.
 const PITCH: usize = 3;
 
-/// Control of a program: the deviation `(elevator, thrust)` from level trim.
+/// Control of a program, the deviation from level trim: `(elevator, thrust)` [-, N] in the paper's method, and in the
+/// flight planner `(rate of the angle of attack, thrust)` [rad/s, N], which reckons in its [own units](crate::units::Units).
 pub type StageControl = [f64; 2];
 
 /// Weights of the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights {
-    /// Weights of `(elevator^2, thrust^2)` in each stage.
+    /// Weights of the squares of both controls in each stage.
     pub control: StageControl,
     /// Weight of the squared distance of the last state from the target.
     pub terminal: f64,

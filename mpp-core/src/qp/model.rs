@@ -134,8 +134,7 @@ impl Dynamics {
     /// The state after the stage.
     #[must_use]
     pub fn step(&self, state: &StageState, control: &StageControl) -> StageState {
-        let [elevator, thrust] = *control;
-        let control = self.b * Vector2::new(elevator, thrust);
+        let control = self.b * Vector2::from(*control);
         let [x, z, motion @ ..] = *state;
         let moved = self.motion * SVector::from(motion) + control + self.offset;
         let mut next: StageState = moved.into();
