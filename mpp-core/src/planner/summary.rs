@@ -4,7 +4,7 @@
 pub(super) const FEASIBLE: f64 = 1e-6;
 
 /// The summary of a finished or interrupted cycle.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanSummary {
     /// Number of programs solved: one for each candidate, and the further rounds of the best candidates.
     pub candidates: usize,

@@ -47,11 +47,7 @@ impl StepTask {
             self.plan = Some(Plan {
                 tick: begun,
                 verdict: Verdict::Nothing,
-                summary: PlanSummary {
-                    cost: f64::INFINITY,
-                    violation: f64::INFINITY,
-                    ..PlanSummary::default()
-                },
+                summary: PlanSummary::NOTHING,
                 trajectory: Trajectory::new(),
             });
         }
