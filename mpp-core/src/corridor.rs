@@ -1,5 +1,8 @@
-//! Raytracing around the collocation points. It gives eight half-planes for each stage boundary (paper,
-//! section III-B).
+//! The corridor of a candidate: half-planes that its stage boundaries stay behind.
+//!
+//! In the paper's method rays around each collocation point give eight half-planes (paper, section III-B); this file
+//! traces them. In the flight planner the obstacles around each segment of a candidate give faces, see
+//! [`Corridor::separate`].
 
 mod segments;
 
