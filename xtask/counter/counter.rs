@@ -13,6 +13,7 @@ use std::ffi::{CStr, c_char, c_int, c_uint, c_void};
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 #[unsafe(no_mangle)]
 #[allow(non_upper_case_globals)]
@@ -45,8 +46,8 @@ unsafe extern "C" {
     );
 }
 
-/// Instructions executed. Only the emulated processor's thread uses it.
-static mut EXECUTED: u64 = 0;
+/// Instructions executed. The emulator's generated code adds to it; only the emulated processor's thread runs that code.
+static EXECUTED: AtomicU64 = AtomicU64::new(0);
 
 struct State {
     out: Option<BufWriter<File>>,
@@ -65,7 +66,7 @@ static STATE: Mutex<State> = Mutex::new(State {
 });
 
 extern "C" fn mark(_: c_uint, kind: *mut c_void) {
-    let executed = unsafe { EXECUTED };
+    let executed = EXECUTED.load(Ordering::Relaxed);
     let kind = kind as usize;
     let Ok(mut state) = STATE.lock() else { return };
     if kind == 0 {
@@ -103,7 +104,7 @@ extern "C" fn translate(_: u64, block: *mut c_void) {
                     qemu_plugin_register_vcpu_insn_exec_cb(instruction, mark, 0, kind);
                 }
             }
-            qemu_plugin_register_vcpu_insn_exec_inline(instruction, 0, &raw mut EXECUTED, 1);
+            qemu_plugin_register_vcpu_insn_exec_inline(instruction, 0, EXECUTED.as_ptr(), 1);
         }
     }
 }
@@ -113,7 +114,7 @@ extern "C" fn finish(_: u64, _: *mut c_void) {
     let unpaired = state.unpaired + state.open.len();
     if let Some(out) = &mut state.out {
         let _ = writeln!(out, "unpaired {unpaired}");
-        let _ = writeln!(out, "total {}", unsafe { EXECUTED });
+        let _ = writeln!(out, "total {}", EXECUTED.load(Ordering::Relaxed));
         let _ = out.flush();
     }
 }
