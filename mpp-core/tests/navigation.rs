@@ -29,6 +29,25 @@ fn fix(x: f64, z: f64, age: u32, sigma: f64) -> Position {
     }
 }
 
+/// Square of an innovation over its variance, mean of both axes [-], from a filter before and after a correction by
+/// `h0 p + h1 w` with an error of the variance `error`. A correction leaves the share `error / variance` of the
+/// innovation, so the product of what was off before and after, over `error`, is this square.
+fn normalised(
+    [before, after]: [&WindFilter; 2],
+    [h0, h1]: [f64; 2],
+    value: (f64, f64),
+    error: f64,
+) -> f64 {
+    let [before, after] = [before, after].map(|filter| {
+        let (position, wind) = (filter.position(), filter.wind());
+        (
+            value.0 - h0 * position.0 - h1 * wind.x,
+            value.1 - h0 * position.1 - h1 * wind.z,
+        )
+    });
+    0.5 * (before.0 * after.0 + before.1 * after.1) / error
+}
+
 fn air(airspeed: f64, flight_path: f64) -> AirState {
     AirState {
         airspeed,
@@ -103,18 +122,32 @@ proptest! {
             if let Some(then) = due {
                 let ((x, z), wind) = truth[then as usize];
                 let (ahead, up) = wind.ground_velocity(&air);
-                let position = Position {
-                    velocity: with_velocity.then(|| GroundVelocity {
-                        x: ahead + 0.1 * gaussian(&mut random),
-                        z: up + 0.1 * gaussian(&mut random),
-                        sigma: 0.1,
-                    }),
-                    ..fix(x + sigma * gaussian(&mut random), z + sigma * gaussian(&mut random), delay, sigma)
-                };
-                let verdict = navigation.take(&position);
+                let velocity = with_velocity.then(|| GroundVelocity {
+                    x: ahead + 0.1 * gaussian(&mut random),
+                    z: up + 0.1 * gaussian(&mut random),
+                    sigma: 0.1,
+                });
+                let position = fix(x + sigma * gaussian(&mut random), z + sigma * gaussian(&mut random), delay, sigma);
+                let mut without_velocity = navigation.clone();
+                let before = *navigation.quick();
+                without_velocity.take(&position);
+                let verdict = navigation.take(&Position { velocity, ..position });
                 prop_assert_eq!(verdict, PositionVerdict::Accepted);
                 if tick > 500 {
-                    sum += navigation.normalised_innovation();
+                    let (still, late) = (Wind::STILL.ground_velocity(&air), f64::from(delay) * TICK_PERIOD);
+                    let between = without_velocity.quick();
+                    sum += match velocity {
+                        Some(velocity) => {
+                            let wind = (velocity.x - still.0, velocity.z - still.1);
+                            let error = 0.1 * 0.1 + CHANGE * CHANGE * late;
+                            normalised([between, navigation.quick()], [0.0, 1.0], wind, error)
+                        }
+                        None => {
+                            let now = (position.x + still.0 * late, position.z + still.1 * late);
+                            let error = sigma * sigma + CHANGE * CHANGE * late * late * late / 3.0;
+                            normalised([&before, between], [1.0, -late], now, error)
+                        }
+                    };
                     count += 1.0;
                 }
             }
@@ -194,7 +227,10 @@ fn a_late_fix_reckons_with_a_wind_that_has_changed() {
         let off = 3.0 * sigma;
         let observed = Observation::position((0.0, 50.0 + off), delay, sigma);
         let variance = 2.0 * (sigma * sigma + noise * delay * delay * delay / 3.0);
-        let found = filter.correct(&observed, noise).unwrap();
+        let error = sigma * sigma + noise * delay * delay * delay / 3.0;
+        let before = filter;
+        assert!(filter.correct(&observed, noise));
+        let found = normalised([&before, &filter], [1.0, -delay], (0.0, 50.0 + off), error);
         assert!((found - 0.5 * off * off / variance).abs() < 1e-9, "{found}");
     }
 }

@@ -48,8 +48,6 @@ pub struct Navigation {
     last: Option<([u64; 2], u32)>,
     /// Ticks since the last position that the filter used.
     unaided: u32,
-    /// Square of the quick filter's last innovation over its variance, mean of both axes [-].
-    innovation: f64,
 }
 
 impl Navigation {
@@ -66,7 +64,6 @@ impl Navigation {
             started: false,
             last: None,
             unaided: 0,
-            innovation: 0.0,
         }
     }
 
@@ -97,13 +94,6 @@ impl Navigation {
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.started && self.quick.wind_variance() < SETTLED_WIND * SETTLED_WIND
-    }
-
-    /// Square of the last innovation over its variance, mean of both axes [-]. It is 1 in the mean for errors
-    /// as declared.
-    #[must_use]
-    pub fn normalised_innovation(&self) -> f64 {
-        self.innovation
     }
 
     /// The position `(x, z)` \[m\] and pitch \[rad\] at the tick that was `age` ticks ago.
@@ -233,11 +223,10 @@ impl Navigation {
     /// one refuses it, the wind has changed by more than it assumes, and it goes on from the quick one.
     fn correct(&mut self, observed: &Observation) -> bool {
         let noise = self.noise();
-        let Some(innovation) = self.quick.correct(observed, noise.quick) else {
+        if !self.quick.correct(observed, noise.quick) {
             return false;
-        };
-        self.innovation = innovation;
-        if self.smooth.correct(observed, noise.smooth).is_none() {
+        }
+        if !self.smooth.correct(observed, noise.smooth) {
             self.smooth = self.quick;
         }
         true

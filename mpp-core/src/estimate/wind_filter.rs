@@ -140,9 +140,9 @@ impl WindFilter {
         };
     }
 
-    /// Corrects both axes. Gives the square of the innovation over its variance, mean of both axes [-]. Gives `None`, and
-    /// corrects nothing, if the innovation of an axis is beyond the gate.
-    pub fn correct(&mut self, observed: &Observation, noise: f64) -> Option<f64> {
+    /// Corrects both axes. Returns false, and corrects nothing, if the innovation of an axis is beyond the gate.
+    #[must_use]
+    pub fn correct(&mut self, observed: &Observation, noise: f64) -> bool {
         let [h0, h1] = observed.h;
         let off = (
             observed.value.0 - h0 * self.position.0 - h1 * self.wind.x,
@@ -156,7 +156,7 @@ impl WindFilter {
         let (x, z) = (off.0 * off.0, off.1 * off.1);
         // The tests are false for values that are not numbers.
         if !(x <= most && z <= most && variance > 0.0) {
-            return None;
+            return false;
         }
         let gain = (position / variance, wind / variance);
         self.position.0 += gain.0 * off.0;
@@ -166,6 +166,6 @@ impl WindFilter {
         c.position -= gain.0 * position;
         c.both -= gain.0 * wind;
         c.wind -= gain.1 * wind;
-        Some(0.5 * (x + z) / variance)
+        true
     }
 }

@@ -162,17 +162,4 @@ impl Generator {
     pub fn is_papers(&self) -> bool {
         *self == Self::PAPER
     }
-
-    /// Whether everything that it makes is a circle.
-    #[must_use]
-    pub fn makes_circles(&self) -> bool {
-        match self.name {
-            GeneratorName::Paper
-            | GeneratorName::Sealed
-            | GeneratorName::Endless
-            | GeneratorName::Forest => true,
-            GeneratorName::Canyon | GeneratorName::Slalom | GeneratorName::Walls => false,
-            GeneratorName::Wires => self.length <= 0.0,
-        }
-    }
 }
