@@ -32,7 +32,13 @@ pub struct Sensors {
     pub motor: Trust,
 }
 
-/// The values of the estimators that no step changes.
+/// Those values of the estimators that no step changes and that a check compares with copies: the airframe, the limits of
+/// the actuators, the tuning of the filter, and the change of the wind that it assumes.
+///
+/// No copies exist of what the parts derive from the settings at their start: the airframe and the greatest offset of
+/// [`LiftEstimator`], the numbers of the aircraft in [`ElevatorEffect`](super::ElevatorEffect),
+/// [`MotorWatch`](super::MotorWatch) and [`AirspeedBias`](super::AirspeedBias), the periods of [`Watch`], and
+/// [`LaggedEkf::follows`]. The check does not notice a bit that flips there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatorDesign {
     airframe: Airframe,
@@ -91,7 +97,7 @@ impl Estimator {
         }
     }
 
-    /// The values that no step changes, as they are in memory now.
+    /// The values of [`EstimatorDesign`] as they are in memory now.
     #[must_use]
     pub fn design(&self) -> EstimatorDesign {
         EstimatorDesign {

@@ -1,11 +1,12 @@
-//! What a flight loop keeps unchanged from its start, for checks against copies.
+//! Values that a flight loop keeps unchanged from its start, for checks against copies.
 
 use super::FlightLoop;
 use crate::control::Lqr;
 use crate::estimate::EstimatorDesign;
 use crate::vehicle::Trim;
 
-/// The values of a flight loop that no step changes.
+/// Those values of a flight loop that no step changes and that a check compares with copies: the regulator's gain, the
+/// trim, `cross_track` and `airspeed_hold` of the settings, and an [`EstimatorDesign`], which says what it leaves out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Design {
     estimator: EstimatorDesign,

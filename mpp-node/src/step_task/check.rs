@@ -1,7 +1,12 @@
-//! The check of the values that only a configuration or a parameter changes. A bit of memory that flips by itself is noticed
-//! before it is flown, and repaired by majority. The design, which each step uses, is checked at each tick. The tuning is checked
-//! when a scan may begin a cycle with it, when a parameter changes it, and every [`TUNING_PERIOD`] ticks. A flip in a spare
-//! copy is noticed at the check after the next.
+//! The check of two values that only a configuration or a parameter changes: the [`Tuning`](crate::parameters::Tuning) and
+//! the [`Design`](mpp_core::flight::Design) of the flight loop. A bit of them that flips by itself is noticed before it is
+//! flown, and repaired by majority. The design, which each step uses, is checked at each tick. The tuning is checked when a
+//! scan may begin a cycle with it, when a parameter changes it, and every [`TUNING_PERIOD`] ticks. A flip in a spare copy is
+//! noticed at the check after the next.
+//!
+//! No other value has copies: neither what estimates and health counters hold, nor what the watches of sensors and actuators
+//! have derived from the settings ([`EstimatorDesign`](mpp_core::estimate::EstimatorDesign) names it), nor the memory of the
+//! planner.
 
 use super::StepTask;
 use super::spare::{Copies, Spare, compare, in_turn, same};
@@ -86,11 +91,13 @@ impl StepTask {
 mod tests {
     use super::super::Pace;
     use super::*;
+    use crate::parameters::Tuning;
     use hil_protocol::{
         ActuatorLimits, AirData, Aircraft, Body, Configure, Decoder, MAX_FRAME, Message, Preset,
         SensorFrame, SetParameter, encode_body,
     };
     use mpp_core::flight::FlightLoop;
+    use mpp_core::settings::Settings;
 
     const CONFIGURE: Configure = Configure {
         preset: Preset::Flight,
@@ -151,36 +158,114 @@ mod tests {
         told
     }
 
+    /// Makes ticks after the tick `at`, as many as any repair takes and more. Returns the repairs that were told in the first
+    /// `checked` of them, and those told later.
+    fn repairs(task: &mut StepTask, at: &mut u32, checked: u32) -> [u32; 2] {
+        let mut repairs = [0, 0];
+        for next in 1..=3 * TUNING_PERIOD {
+            let [repaired, commanded] = tick(task, *at + next);
+            assert!(commanded);
+            repairs[usize::from(next > checked)] += u32::from(repaired);
+        }
+        *at += 3 * TUNING_PERIOD;
+        repairs
+    }
+
     fn flip(value: &mut f64, bit: u32) {
         *value = f64::from_bits(value.to_bits() ^ 1 << bit);
     }
 
+    /// Numbers of the tuning, from its beginning to its end, and what flips a bit of each.
+    const NUMBERS: [(&str, fn(&mut Tuning, u32)); 7] = [
+        ("mass", |all, bit| {
+            flip(&mut all.settings.airframe.mass, bit)
+        }),
+        ("gate", |all, bit| {
+            flip(&mut all.settings.estimator.gate, bit)
+        }),
+        ("cross-track", |all, bit| {
+            flip(&mut all.settings.cross_track, bit)
+        }),
+        ("altitude", |all, bit| {
+            flip(&mut all.settings.planner.altitude, bit)
+        }),
+        ("sight", |all, bit| {
+            if let Some(own) = all.settings.planner.flight_mut() {
+                flip(&mut own.sight, bit);
+            }
+        }),
+        ("configured altitude", |all, bit| {
+            flip(&mut all.configure.altitude, bit)
+        }),
+        ("latency", |all, bit| {
+            all.configure.latency_ticks ^= 1 << (bit % 32)
+        }),
+    ];
+
     #[test]
-    fn any_flipped_bit_of_any_copy_is_repaired_and_told() {
+    fn a_flipped_bit_of_a_copy_of_the_tuning_is_repaired_and_told() {
         let mut task = in_flight();
         let before = task.flight.as_ref().map(|flight| flight.tuning);
         let mut at = 0;
-        for bit in 0..64 {
-            for copy in 0..3 {
+        for (name, number) in NUMBERS {
+            for (bit, copy) in (0..64)
+                .step_by(3)
+                .flat_map(|bit| [(bit, 0), (bit, 1), (bit, 2)])
+            {
                 if let (Some(flight), Some(spare)) = (&mut task.flight, &mut task.spare) {
                     let [second, third] = &mut spare.tuning;
                     let copies = [&mut flight.tuning, second, third];
-                    flip(&mut copies[copy].settings.cross_track, bit);
+                    number(copies[copy], bit);
                 }
                 // The copy in use is compared at each check, and a spare copy at every other one.
                 let checks = if copy == 0 { 1 } else { 2 };
-                let mut repairs = [0, 0];
-                for next in 1..=3 * TUNING_PERIOD {
-                    let [repaired, commanded] = tick(&mut task, at + next);
-                    assert!(commanded);
-                    let late = next > checks * TUNING_PERIOD;
-                    repairs[usize::from(late)] += u32::from(repaired);
-                }
-                at += 3 * TUNING_PERIOD;
-                assert_eq!(repairs, [1, 0], "bit {bit}, copy {copy}");
+                let repairs = repairs(&mut task, &mut at, checks * TUNING_PERIOD);
+                assert_eq!(repairs, [1, 0], "{name}, bit {bit}, copy {copy}");
             }
         }
         assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);
+    }
+
+    /// Changes of settings that give another design.
+    const CHANGES: [(&str, fn(&mut Settings)); 6] = [
+        ("airframe, gain and trim", |settings| {
+            settings.airframe.mass *= 1.01
+        }),
+        ("actuators", |settings| {
+            settings.actuators.thrust_max = Some(15.0)
+        }),
+        ("filter", |settings| settings.estimator.gate += 1.0),
+        ("wind", |settings| settings.wind_change = Some(2.0)),
+        ("cross-track", |settings| settings.cross_track *= 1.01),
+        ("airspeed", |settings| settings.airspeed_hold *= 1.01),
+    ];
+
+    /// A design in use that has changed is repaired before the next tick flies it.
+    #[test]
+    fn a_changed_copy_of_the_design_is_repaired_and_told() {
+        let mut task = in_flight();
+        let tuning = task.flight.as_ref().map(|flight| flight.tuning).unwrap();
+        let before = task.flight.as_ref().map(|flight| flight.control.design());
+        let mut at = 0;
+        for (name, change) in CHANGES {
+            let mut settings = tuning.settings;
+            change(&mut settings);
+            let other = FlightLoop::new(&settings).unwrap().design();
+            assert!(Some(other) != before, "{name}");
+            for copy in 0..3 {
+                if let (Some(flight), Some(spare)) = (&mut task.flight, &mut task.spare) {
+                    match copy {
+                        0 => flight.control.restore(&other),
+                        copy => spare.design[copy - 1] = other,
+                    }
+                }
+                let checks = if copy == 0 { 1 } else { 2 };
+                let repairs = repairs(&mut task, &mut at, checks);
+                assert_eq!(repairs, [1, 0], "{name}, copy {copy}");
+                let now = task.flight.as_ref().map(|flight| flight.control.design());
+                assert!(now == before, "{name}, copy {copy}");
+            }
+        }
     }
 
     #[test]
@@ -208,22 +293,6 @@ mod tests {
         };
         tell(&mut task, &set, |_| {});
         assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);
-    }
-
-    #[test]
-    fn a_changed_gain_is_repaired_before_it_is_flown() {
-        let mut task = in_flight();
-        let before = task.flight.as_ref().map(|flight| flight.control.design());
-        if let Some(flight) = &mut task.flight {
-            let mut settings = flight.tuning.settings;
-            settings.regulator.elevator *= 2.0;
-            if let Ok(other) = FlightLoop::new(&settings) {
-                flight.control.restore(&other.design());
-            }
-            assert!(Some(flight.control.design()) != before);
-        }
-        assert_eq!(tick(&mut task, 1), [true, true]);
-        assert!(before.is_some() && task.flight.map(|flight| flight.control.design()) == before);
     }
 
     #[test]
