@@ -5,6 +5,10 @@ use mpp_sim::outcome::Outcome;
 use sil_harness::files::read_log;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+/// Time after which a wait has failed. It is far longer than any wait takes on a busy machine.
+const LONGEST: Duration = Duration::from_secs(120);
 
 fn start(directory: &Path, arguments: &str) -> Child {
     let mut command = harness();
@@ -13,17 +17,22 @@ fn start(directory: &Path, arguments: &str) -> Child {
     command.stdout(out).stderr(error).spawn().unwrap()
 }
 
-/// Waits until something holds that will.
-fn until(mut holds: impl FnMut() -> bool) {
+/// Waits until something holds that the process will bring about, and ends the process if it does not.
+fn until(child: &mut Child, awaited: &str, mut holds: impl FnMut() -> bool) {
+    let begun = Instant::now();
     while !holds() {
-        std::thread::sleep(std::time::Duration::from_millis(5));
+        if begun.elapsed() > LONGEST {
+            child.kill().unwrap();
+            panic!("waited {LONGEST:?} in vain for {awaited}");
+        }
+        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
 /// Sends a signal once the process heeds it.
-fn signal(child: Child, name: &str, number: u32) -> Output {
+fn signal(mut child: Child, name: &str, number: u32) -> Output {
     let status = format!("/proc/{}/status", child.id());
-    until(|| {
+    until(&mut child, &format!("a handler of {name}"), || {
         let text = std::fs::read_to_string(&status).unwrap();
         let caught = text.lines().find_map(|line| line.strip_prefix("SigCgt:"));
         let caught = u64::from_str_radix(caught.unwrap().trim(), 16).unwrap();
@@ -42,9 +51,11 @@ fn an_interrupted_flight_keeps_what_was_flown() {
     for (name, number, code) in [("INT", 2, 130), ("TERM", 15, 143)] {
         let directory = scratch(&format!("interrupt-{name}"));
         let flags = "fly --speed 10 --duration 3600 --tlog a.tlog --json --out .";
-        let child = start(&directory, flags);
+        let mut child = start(&directory, flags);
         // It has flown for a while when the recording has its first block.
-        until(|| std::fs::metadata(directory.join("a.tlog")).is_ok_and(|found| found.len() > 0));
+        until(&mut child, "the recording's first block", || {
+            std::fs::metadata(directory.join("a.tlog")).is_ok_and(|found| found.len() > 0)
+        });
         let output = signal(child, name, number);
         assert_eq!(output.status.code(), Some(code), "{output:?}");
         let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
@@ -75,9 +86,11 @@ fn a_flight_that_waits_is_interrupted_too() {
 fn an_interrupted_campaign_says_how_to_go_on() {
     let directory = scratch("interrupt-campaign");
     let flags = "campaign --trials 1000000 --duration 1 --threads 2";
-    let child = start(&directory, &format!("{flags} --out rows.jsonl"));
+    let mut child = start(&directory, &format!("{flags} --out rows.jsonl"));
     let rows = || std::fs::read_to_string(directory.join("rows.jsonl")).unwrap_or_default();
-    until(|| rows().lines().count() > 3);
+    until(&mut child, "the rows of four flights", || {
+        rows().lines().count() > 3
+    });
     let output = signal(child, "INT", 2);
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(130), "{told}");

@@ -15,10 +15,13 @@ use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::link::{TcpLink, serve};
 use std::io::{Read, Write};
 use std::net::{TcpListener, TcpStream};
+use std::sync::mpsc::Receiver;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_millis(300);
+/// Time after which a wait has failed. It is far longer than any wait takes on a busy machine.
+const LONGEST: Duration = Duration::from_secs(60);
 
 fn short(seed: u64) -> Scenario {
     Scenario {
@@ -123,6 +126,20 @@ fn a_core_that_dies_in_flight_is_named() {
     assert!(text.contains("core"), "{text}");
 }
 
+/// Waits for a line that holds these words.
+fn hear(told: &Receiver<String>, words: &str) {
+    let deadline = Instant::now() + LONGEST;
+    loop {
+        let left = deadline.saturating_duration_since(Instant::now());
+        let line = told
+            .recv_timeout(left)
+            .unwrap_or_else(|error| panic!("waited in vain for {words:?}: {error}"));
+        if line.contains(words) {
+            return;
+        }
+    }
+}
+
 #[test]
 fn a_silent_harness_is_named_by_the_core() {
     let (listener, address) = local_listener();
@@ -134,10 +151,9 @@ fn a_silent_harness_is_named_by_the_core() {
             let _ = reports.send(line.to_owned());
         })
     });
-    let mut lines = told.iter();
-    assert!(lines.any(|line| line.contains("core waits for hello from the harness")));
+    hear(&told, "core waits for hello from the harness");
     let _next = TcpStream::connect(&address).unwrap();
-    assert!(lines.any(|line| line.contains("harness connected")));
+    hear(&told, "harness connected");
 }
 
 /// Somebody who sends something now and then, but never says hello, does not keep others waiting.
@@ -146,7 +162,12 @@ fn a_stranger_that_drips_is_dropped_and_the_next_harness_is_served() {
     let (listener, address) = local_listener();
     let mut stranger = TcpStream::connect(&address).unwrap();
     let drip = thread::spawn(move || {
+        let begun = Instant::now();
         while stranger.write_all(b"GET ").is_ok() {
+            assert!(
+                begun.elapsed() < LONGEST,
+                "waited {LONGEST:?} in vain for the core to drop a stranger"
+            );
             thread::sleep(PATIENCE / 20);
         }
     });
@@ -171,9 +192,12 @@ fn a_stranger_that_drips_is_dropped_and_the_next_harness_is_served() {
         .write_all(encode(&hello, &mut frame).unwrap())
         .unwrap();
     let mut answer = [0; 8];
-    harness.read_exact(&mut answer).unwrap();
+    harness.set_read_timeout(Some(LONGEST)).unwrap();
+    harness
+        .read_exact(&mut answer)
+        .expect("the core answers the hello");
     drip.join().unwrap();
-    let told: Vec<String> = told.iter().take(2).collect();
+    let told = [(); 2].map(|()| told.recv_timeout(LONGEST).expect("the core reports"));
     assert!(
         told[1].contains("core waits for hello from the harness"),
         "{told:?}"
