@@ -1,10 +1,12 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
+mod design;
+mod watching;
+
 use super::verdicts::{count_position, count_verdict};
 use super::{
-    Actuators, Biases, Changes, Conditions, Course, EkfTuning, Innovation, LaggedEkf,
-    LiftEstimator, MOST_SCAN_AGE, Measurement, Navigation, PositionVerdict, Progress, Taken, Trust,
-    Verdict, Watch,
+    Actuators, Biases, Changes, Conditions, Course, Innovation, LaggedEkf, LiftEstimator,
+    MOST_SCAN_AGE, Measurement, Navigation, PositionVerdict, Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -15,7 +17,8 @@ use crate::tuning::pitch_bias::LEAST_TURN;
 use crate::tuning::sensors::{
     CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
-use crate::vehicle::{ActuatorLimits, AirState, Airframe, Control, GRAVITY, Trim, VehicleState};
+use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim, VehicleState};
+pub use design::EstimatorDesign;
 
 /// The trust in each sensor of the step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -30,21 +33,6 @@ pub struct Sensors {
     pub elevator: Trust,
     /// The motor, likewise.
     pub motor: Trust,
-}
-
-/// Those values of the estimators that no step changes and that a check compares with copies: the airframe, the limits of
-/// the actuators, the tuning of the filter, and the change of the wind that it assumes.
-///
-/// No copies exist of what the parts derive from the settings at their start: the airframe and the greatest offset of
-/// [`LiftEstimator`], the numbers of the aircraft in [`ElevatorEffect`](super::ElevatorEffect),
-/// [`MotorWatch`](super::MotorWatch) and [`AirspeedBias`](super::AirspeedBias), the periods of [`Watch`], and
-/// [`LaggedEkf::follows`]. The check does not notice a bit that flips there.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EstimatorDesign {
-    airframe: Airframe,
-    limits: ActuatorLimits,
-    filter: EkfTuning,
-    wind_change: Option<f64>,
 }
 
 /// The estimators of a flight.
@@ -95,34 +83,6 @@ impl Estimator {
             corrected: 0.0,
             behind: None,
         }
-    }
-
-    /// The values of [`EstimatorDesign`] as they are in memory now.
-    #[must_use]
-    pub fn design(&self) -> EstimatorDesign {
-        EstimatorDesign {
-            airframe: self.airframe,
-            limits: *self.actuators.limits(),
-            filter: *self.air.tuning(),
-            wind_change: self.navigation.wind_change(),
-        }
-    }
-
-    /// Whether the values in memory now are these.
-    #[must_use]
-    pub fn has(&self, design: &EstimatorDesign) -> bool {
-        self.airframe == design.airframe
-            && *self.actuators.limits() == design.limits
-            && *self.air.tuning() == design.filter
-            && self.navigation.wind_change() == design.wind_change
-    }
-
-    /// Puts values back that have changed in memory by themselves.
-    pub fn restore(&mut self, design: &EstimatorDesign) {
-        self.airframe = design.airframe;
-        self.actuators.set_limits(design.limits);
-        self.air.set_tuning(design.filter);
-        self.navigation.set_wind_change(design.wind_change);
     }
 
     /// The actuators by their model.
@@ -331,21 +291,6 @@ impl Estimator {
         innovation
     }
 
-    /// Compares the turn with that of the commands, if the air data can be trusted.
-    fn watch_elevator(&mut self, elapsed: f64, air: Option<&AirData>, innovation: Innovation) {
-        let good =
-            matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
-        let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION)
-        else {
-            return;
-        };
-        let (pitch, lift) = (
-            air.measurement.pitch - self.pitch_error,
-            self.conditions().lift,
-        );
-        (self.actuators).see_turn(pitch, self.air.present(), lift, elapsed);
-    }
-
     /// Takes in the position, if there is one, and then estimates the lift.
     fn locate(&mut self, elapsed: f64, fix: Option<&Position>) -> Option<PositionVerdict> {
         let air = *self.air.present();
@@ -384,23 +329,5 @@ impl Estimator {
         let airframe = self.conditions().airframe(&self.airframe);
         self.air.set_airframe(&airframe);
         verdict
-    }
-
-    /// Compares the speed with the thrust, if the wind is known and the airspeed is measured.
-    fn watch_motor(&mut self, elapsed: f64, position: Option<PositionVerdict>) {
-        let air = self.air.present();
-        let along = 1.0 - 0.5 * (air.flight_path * air.flight_path); // The cosine, to 2 % at 45 degrees.
-        let progress = Progress {
-            x: self.navigation.quick().position().0,
-            air: air.airspeed * along,
-            corrected: self.corrected * along,
-            wind: self.navigation.quick().wind().x,
-        };
-        let right = self.airspeed.uses() && self.biases.airspeed().is_right(self.conditions().lift);
-        let settled = self.navigation.is_settled() && position != Some(PositionVerdict::Restarted);
-        if elapsed > 0.0 {
-            self.corrected = 0.0;
-            (self.actuators).see_speed((right && settled).then_some(&progress), elapsed);
-        }
     }
 }

@@ -5,7 +5,7 @@ mod imports;
 
 use imports::{circles, edges};
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The allowed dependencies of a crate.
@@ -251,6 +251,36 @@ fn no_files_import_each_other_in_a_circle() {
             "{name} has circles of imports; move what both sides need to a file of its own:\n{}",
             circles.join("\n")
         );
+    }
+}
+
+/// Greatest number of lines of a source file. What is longer has more than one task.
+const MOST_LINES: usize = 400;
+
+#[test]
+fn no_source_file_is_too_long() {
+    let mut sources = Vec::new();
+    collect(
+        Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap(),
+        &mut sources,
+    );
+    assert!(sources.len() > 300, "the repository was not read");
+    let lines = |file: &PathBuf| std::fs::read_to_string(file).unwrap().lines().count();
+    sources.retain(|file| lines(file) > MOST_LINES);
+    assert!(sources.is_empty(), "split by task: {sources:?}");
+}
+
+/// Adds the source files under a directory, but not those that a build made or fetched.
+fn collect(directory: &Path, sources: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(directory).into_iter().flatten().flatten() {
+        let path = entry.path();
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            collect(&path, sources);
+        } else if name.ends_with(".rs") {
+            sources.push(path);
+        }
     }
 }
 

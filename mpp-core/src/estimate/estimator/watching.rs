@@ -1,0 +1,46 @@
+//! What the estimators show to the watches of elevator and motor.
+
+use super::Estimator;
+use crate::estimate::{Innovation, PositionVerdict, Progress, Verdict};
+use crate::sense::AirData;
+use crate::tuning::sensors::LONGEST_PREDICTION;
+
+impl Estimator {
+    /// Compares the turn with that of the commands, if the air data can be trusted.
+    pub(super) fn watch_elevator(
+        &mut self,
+        elapsed: f64,
+        air: Option<&AirData>,
+        innovation: Innovation,
+    ) {
+        let good =
+            matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
+        let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION)
+        else {
+            return;
+        };
+        let (pitch, lift) = (
+            air.measurement.pitch - self.pitch_error,
+            self.conditions().lift,
+        );
+        (self.actuators).see_turn(pitch, self.air.present(), lift, elapsed);
+    }
+
+    /// Compares the speed with the thrust, if the wind is known and the airspeed is measured.
+    pub(super) fn watch_motor(&mut self, elapsed: f64, position: Option<PositionVerdict>) {
+        let air = self.air.present();
+        let along = 1.0 - 0.5 * (air.flight_path * air.flight_path); // The cosine, to 2 % at 45 degrees.
+        let progress = Progress {
+            x: self.navigation.quick().position().0,
+            air: air.airspeed * along,
+            corrected: self.corrected * along,
+            wind: self.navigation.quick().wind().x,
+        };
+        let right = self.airspeed.uses() && self.biases.airspeed().is_right(self.conditions().lift);
+        let settled = self.navigation.is_settled() && position != Some(PositionVerdict::Restarted);
+        if elapsed > 0.0 {
+            self.corrected = 0.0;
+            (self.actuators).see_speed((right && settled).then_some(&progress), elapsed);
+        }
+    }
+}
