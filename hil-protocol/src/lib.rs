@@ -51,7 +51,7 @@
 //! ```
 //!
 //! The [`ActuatorCommand`] ends the tick: a harness in lockstep sends nothing more until it has received
-//! this message.
+//! this message. Only the rejection of a scan may follow it; the harness finds it before the answers of the next tick.
 //!
 //! A core that starts sends a [`Hello`] without being asked. The harness then configures this core, sends
 //! it every parameter value that the core before the restart had accepted, and repeats the request whose

@@ -172,8 +172,12 @@ impl FlightLoop {
         }
     }
 
-    /// Takes over the result of a planning cycle. This function alone decides what the vehicle flies without
-    /// a feasible trajectory.
+    /// Takes over the result of a planning cycle at a time \[s\], on the clock of [`Self::step`]. This function alone decides
+    /// what the vehicle flies without a feasible trajectory.
+    ///
+    /// A trajectory of preset `flight` starts at the time of `begin` plus the latency of the settings. Call this function
+    /// then: a trajectory that is taken over earlier replaces the last one at once, and until it starts the vehicle holds
+    /// level trim.
     pub fn adopt(&mut self, time: f64, verdict: Verdict, offered: &Trajectory) -> Adoption {
         let valid = self
             .trajectory

@@ -104,7 +104,7 @@ impl LidarScan {
     pub const MAX_SIZE: usize = size::U32 + 2 * size::F32 + 2 * size::BYTE + MAX_BEAMS * size::F32;
 }
 
-/// Core to harness: the actuator command of one tick. It ends the tick.
+/// Core to harness: the actuator command of one tick. It ends the tick: only the rejection of a scan may follow it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ActuatorCommand {
     /// The tick of the [`SensorFrame`] that this message answers.
