@@ -238,11 +238,12 @@ impl Run {
         {
             self.flight.adopt(time, verdict, &chosen);
         }
-        let restarts = self.flight.health().positions_restarted;
         let output = self
             .flight
             .step(time, &mpp_node::sensor_frame(&readings.frame));
-        if restarts != self.flight.health().positions_restarted {
+        if output.moved {
+            // A choice that waits, and the map, count from estimates that are no more.
+            self.chosen = None;
             self.planner.forget();
         }
         if let Some(scan) = readings.scan {
