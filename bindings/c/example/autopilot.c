@@ -16,31 +16,48 @@ mpp_status autopilot_set_up(autopilot *own, uint64_t seed) {
   if (status != MPP_STATUS_OK) return status;
   config.seed = seed;
   own->planning = false;
+  own->refused = MPP_STATUS_OK;
   own->latency = config.latency_ticks;
   return mpp_set_up(own->core, &config);
+}
+
+/* Takes a plan over at its time: the best one so far is flown from the step of this tick on. */
+static void take_over(autopilot *own, uint32_t tick, mpp_answer *answer) {
+  if (!own->planning || tick - own->begin_tick < own->latency) return;
+  mpp_status status = mpp_finish(own->core, tick * TICK, &answer->plan);
+  if (status == MPP_STATUS_OK) {
+    answer->has_plan = true;
+    answer->plan_tick = own->scan_tick;
+  } else {
+    own->refused = status;
+  }
+  /* A plan that does not start yet is there in the next tick. After any other refusal the next scan begins anew. */
+  own->planning = status == MPP_STATUS_EARLY;
+}
+
+/* Begins a cycle from a scan if none is under way, and works on it. */
+static void plan(autopilot *own, uint32_t tick, const mpp_scan *scan) {
+  mpp_status status = MPP_STATUS_OK;
+  if (scan != NULL && !own->planning) {
+    status = mpp_begin(own->core, scan);
+    own->planning = status == MPP_STATUS_OK;
+    own->begin_tick = tick;
+    own->scan_tick = tick - scan->age;
+  }
+  /* A flight computer does a few slices between two steps, or as many as it has time for. */
+  for (bool more = own->planning; more && status == MPP_STATUS_OK;) status = mpp_advance(own->core, &more);
+  if (status != MPP_STATUS_OK) own->refused = status;
 }
 
 mpp_status autopilot_fly(void *context, uint32_t tick, const mpp_sensors *sensors, const mpp_scan *scan,
                          mpp_answer *answer) {
   autopilot *own = context;
-  double time = tick * TICK;
-  mpp_status status;
-  /* The deadline of a cycle: the best plan so far is flown from this step on. */
-  if (own->planning && tick - own->scan_tick >= own->latency) {
-    if ((status = mpp_finish(own->core, time, &answer->plan)) != MPP_STATUS_OK) return status;
-    answer->has_plan = true;
-    answer->plan_tick = own->scan_tick;
-    own->planning = false;
-  }
-  if ((status = mpp_step(own->core, time, sensors, &answer->output)) != MPP_STATUS_OK) return status;
-  if (scan != NULL && !own->planning) {
-    if ((status = mpp_begin(own->core, scan)) != MPP_STATUS_OK) return status;
-    own->planning = true;
-    own->scan_tick = tick - scan->age;
-  }
-  /* A flight computer does a few slices between two steps, or as many as it has time for. */
-  for (bool more = own->planning; more;)
-    if ((status = mpp_advance(own->core, &more)) != MPP_STATUS_OK) return status;
+  take_over(own, tick, answer);
+  /* The step comes in each tick, whatever the planner says. */
+  mpp_status status = mpp_step(own->core, tick * TICK, sensors, &answer->output);
+  if (status != MPP_STATUS_OK) return status;
+  if (answer->output.cycle_dropped) own->planning = false;
+  plan(own, tick, scan);
   return mpp_counters(own->core, &answer->counters);
 }
 
@@ -50,6 +67,7 @@ int autopilot_misuse(autopilot *own) {
   mpp_sensors sensors = {0};
   mpp_output output;
   mpp_plan plan;
+  mpp_refusal refused;
   bool more;
   double cruise;
   float ranges[MPP_BEAMS] = {0};
@@ -69,6 +87,9 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_NOT_SET_UP);
   bad = config, bad.aircraft.mass = 0.0 / 0.0;
   EXPECT(mpp_set_up(core, &bad), MPP_STATUS_OUT_OF_RANGE);
+  EXPECT(mpp_refused(core, NULL), MPP_STATUS_NULL);
+  EXPECT(mpp_refused(core, &refused), MPP_STATUS_OK);
+  EXPECT(refused.name[0], 'a'); /* airframe.mass */
   bad = config, bad.beams = 0;
   EXPECT(mpp_set_up(core, &bad), MPP_STATUS_BEAMS);
   bad = config, bad.latency_ticks = 0;
@@ -92,15 +113,17 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_OK);
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_BUSY);
   EXPECT(mpp_begin_blind(core), MPP_STATUS_BUSY);
+  EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_EARLY);
   for (more = true; more;)
     if (mpp_advance(core, &more) != MPP_STATUS_OK) return wrong + 1;
   EXPECT(mpp_finish(core, 0.1, &plan), MPP_STATUS_OK);
   cruise = plan.knots[MPP_KNOTS - 1].airspeed;
+  EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_REPEATED);
   EXPECT(mpp_begin_blind(core), MPP_STATUS_OK);
   for (more = true; more;)
     if (mpp_advance(core, &more) != MPP_STATUS_OK) return wrong + 1;
   EXPECT(mpp_finish(core, 0.2, &plan), MPP_STATUS_OK);
-  if (!(plan.knots[MPP_KNOTS - 1].airspeed < cruise - 1)) wrong++; /* slow flight */
+  if (!plan.blind || !(plan.knots[MPP_KNOTS - 1].airspeed < cruise - 1)) wrong++; /* slow flight */
   if (mpp_text(-7) == NULL || mpp_text(MPP_STATUS_TRIM) == mpp_text(MPP_STATUS_OK)) wrong++;
   return wrong;
 }

@@ -68,7 +68,9 @@ static mpp_status fly_here(uint64_t seed, uint32_t seconds, char (*hash)[17], bo
   }
   status = autopilot_set_up(&own, seed);
   if (status != MPP_STATUS_OK) return status;
-  return mpp_plant_fly(seed, seconds, autopilot_fly, &own, hash, survived);
+  status = mpp_plant_fly(seed, seconds, autopilot_fly, &own, hash, survived);
+  if (own.refused != MPP_STATUS_OK) fprintf(stderr, "the planner refused: %s\n", mpp_text(own.refused));
+  return status;
 }
 
 int main(int count, char **arguments) {

@@ -1,20 +1,29 @@
 //! One core: the step and the planner, and the order of calls that they ask for.
 
+use crate::refusal::MppRefusal;
 use crate::status::MppStatus;
 use crate::types::{MPP_COUNTERS, MPP_KNOTS, MppConfig, MppOutput, MppPlan, MppSensors, MppState};
 use core::mem::MaybeUninit;
-use mpp_core::config::MAX_BEAMS;
-use mpp_core::estimate::{PositionVerdict, Trust};
+use mpp_core::config::{MAX_BEAMS, TICK_PERIOD};
+use mpp_core::estimate::Trust;
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
-use mpp_core::planner::Planner;
+use mpp_core::map::Pose;
+use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
+use mpp_core::settings::Setting;
 use mpp_node::parameters::Tuning;
+
+/// By how much sums of ticks may differ [s]. A plan has no reference before its start.
+const ROUNDING: f64 = 1e-8;
 
 /// A core. Its content is private.
 pub struct MppCore {
     planner: Planner,
+    /// The last scan that began a cycle.
     scan: LidarScan,
     flight: Option<Flight>,
+    /// The number for which the last set-up was refused.
+    refused: Option<Setting>,
 }
 
 struct Flight {
@@ -22,19 +31,49 @@ struct Flight {
     tuning: Tuning,
     /// Time of the last step \[s\].
     last: Option<f64>,
-    /// Whether a planning cycle is under way.
-    planning: bool,
-    /// Jumps of the positions' origin that the planner knows of.
-    restarts: u32,
+    /// When the plan of the cycle under way starts \[s\].
+    due: Option<f64>,
+    /// When the last scan that began a cycle was taken \[s\].
+    seen: Option<f64>,
+    /// Whether the map of the planner no longer fits the estimates.
+    forget: bool,
 }
 
 impl Flight {
     /// The time from which a new cycle plans \[s\].
     fn time_to_begin(&self) -> Result<f64, MppStatus> {
-        if self.planning {
+        if self.due.is_some() {
             return Err(MppStatus::Busy);
         }
+        if self.control.is_lost() {
+            return Err(MppStatus::Lost);
+        }
         self.last.ok_or(MppStatus::Time)
+    }
+
+    /// The scan, if it fits the configuration.
+    fn checked(&self, angles: [f64; 2], ranges: &[f32]) -> Result<LidarScan, MppStatus> {
+        let mut scan = LidarScan::new();
+        // A scan that is too long for the core is too long for every configuration.
+        if ranges.len() > MAX_BEAMS || scan.ranges.extend_from_slice(ranges).is_err() {
+            return Err(MppStatus::ScanLength);
+        }
+        [scan.angle_min, scan.angle_increment] = angles;
+        let configure = &self.tuning.configure;
+        let (beams, range) = (usize::from(configure.beams), f64::from(configure.range_max));
+        scan.check(beams, range).map_err(MppStatus::of_scan)?;
+        Ok(scan)
+    }
+
+    /// Begins a cycle at a time \[s\]. Without a scan its plans are slow flight in the map that earlier scans have left.
+    fn begin(&mut self, planner: &mut Planner, time: f64, pose: &Pose, scan: Option<&LidarScan>) {
+        if core::mem::take(&mut self.forget) {
+            planner.forget();
+        }
+        let (state, conditions) = (self.control.state(), self.control.conditions());
+        planner.begin_from(time, pose, &state, &conditions, scan);
+        let latency = f64::from(self.tuning.configure.latency_ticks) * TICK_PERIOD;
+        self.due = Some(time + latency);
     }
 }
 
@@ -54,12 +93,13 @@ impl MppCore {
             (&raw mut (*place).planner).write_bytes(0, 1);
             (&raw mut (*place).scan).write(LidarScan::new());
             (&raw mut (*place).flight).write(None);
+            (&raw mut (*place).refused).write(None);
         }
     }
 
     pub(crate) fn set_up(&mut self, config: &MppConfig) -> MppStatus {
         let made = Tuning::new(&config.configure())
-            .map_err(MppStatus::of_configuration)
+            .map_err(|verdict| (MppStatus::of_configuration(verdict), None))
             .and_then(|tuning| {
                 let control = FlightLoop::new(&tuning.settings).map_err(of_set_up)?;
                 self.planner.set_up(&tuning.settings).map_err(of_set_up)?;
@@ -67,14 +107,23 @@ impl MppCore {
                     control,
                     tuning,
                     last: None,
-                    planning: false,
-                    restarts: 0,
+                    due: None,
+                    seen: None,
+                    forget: false,
                 })
             });
-        let status = made.as_ref().err().copied().unwrap_or(MppStatus::Ok);
+        let fault = made.as_ref().err().copied();
+        let (status, refused) = fault.unwrap_or((MppStatus::Ok, None));
+        self.refused = refused;
+        // The first scan of a flight repeats none.
+        self.scan.ranges.clear();
         // The planner may hold a part of a refused configuration: the core does not fly with it.
         self.flight = made.ok();
         status
+    }
+
+    pub(crate) fn refused(&self) -> MppRefusal {
+        self.refused.map_or(MppRefusal::NOTHING, MppRefusal::from)
     }
 
     pub(crate) fn step(&mut self, time: f64, sensors: &MppSensors) -> Result<MppOutput, MppStatus> {
@@ -85,10 +134,9 @@ impl MppCore {
         flight.last = Some(time);
         let control = &mut flight.control;
         let output = control.step(time, &sensors.frame());
-        if output.position == Some(PositionVerdict::Restarted) {
-            // The plan under way counts from an origin that is no more.
-            flight.planning = false;
-        }
+        // A plan under way counts from estimates that are no more.
+        let cycle_dropped = output.moved && flight.due.take().is_some();
+        flight.forget |= output.moved;
         let (conditions, trust) = (control.conditions(), control.sensors());
         Ok(MppOutput {
             thrust: output.control.thrust,
@@ -99,6 +147,7 @@ impl MppCore {
             position_trust: code(trust.position),
             elevator_trust: code(trust.elevator),
             motor_trust: code(trust.motor),
+            cycle_dropped,
             estimate: MppState::from(&control.state()),
             wind_x: conditions.wind.x,
             wind_z: conditions.wind.z,
@@ -113,47 +162,34 @@ impl MppCore {
         angles: [f64; 2],
         ranges: &[f32],
     ) -> Result<(), MppStatus> {
-        let flight = self.flight.as_ref().ok_or(MppStatus::NotSetUp)?;
-        flight.time_to_begin()?;
-        let configure = &flight.tuning.configure;
-        self.scan.ranges.clear();
-        // A scan that is too long for the core is too long for every configuration.
-        if ranges.len() > MAX_BEAMS || self.scan.ranges.extend_from_slice(ranges).is_err() {
-            return Err(MppStatus::ScanLength);
-        }
-        [self.scan.angle_min, self.scan.angle_increment] = angles;
-        let (beams, range) = (usize::from(configure.beams), f64::from(configure.range_max));
-        self.scan.check(beams, range).map_err(MppStatus::of_scan)?;
-        self.begin_from(age, true)
-    }
-
-    /// Begins a cycle without a scan: the plans are slow flight in the map that earlier scans have left.
-    pub(crate) fn begin_blind(&mut self) -> Result<(), MppStatus> {
-        self.begin_from(0, false)
-    }
-
-    fn begin_from(&mut self, age: u32, seen: bool) -> Result<(), MppStatus> {
         let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
         let time = flight.time_to_begin()?;
-        let control = &flight.control;
-        let pose = control.pose_at(age).ok_or(MppStatus::ScanAge)?;
-        let restarts = control.health().positions_restarted;
-        if restarts != flight.restarts {
-            self.planner.forget();
-            flight.restarts = restarts;
+        let pose = flight.control.pose_at(age).ok_or(MppStatus::ScanAge)?;
+        let scan = flight.checked(angles, ranges)?;
+        let taken = time - f64::from(age) * TICK_PERIOD;
+        let is_newer = (flight.seen).is_none_or(|seen| taken - seen > 0.5 * TICK_PERIOD);
+        if !is_newer || repeats(&self.scan, &scan) {
+            return Err(MppStatus::ScanRepeated);
         }
-        let (state, conditions) = (control.state(), control.conditions());
-        let scan = seen.then_some(&self.scan);
-        self.planner
-            .begin_from(time, &pose, &state, &conditions, scan);
-        flight.planning = true;
+        flight.seen = Some(taken);
+        self.scan = scan;
+        flight.begin(&mut self.planner, time, &pose, Some(&self.scan));
+        Ok(())
+    }
+
+    /// Begins a cycle without a scan.
+    pub(crate) fn begin_blind(&mut self) -> Result<(), MppStatus> {
+        let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
+        let time = flight.time_to_begin()?;
+        let pose = Pose::of(&flight.control.state());
+        flight.begin(&mut self.planner, time, &pose, None);
         Ok(())
     }
 
     /// Does a slice of the cycle. Gives whether there is more to do.
     pub(crate) fn advance(&mut self) -> Result<bool, MppStatus> {
         let flight = self.flight.as_ref().ok_or(MppStatus::NotSetUp)?;
-        if !flight.planning {
+        if flight.due.is_none() {
             return Err(MppStatus::Idle);
         }
         Ok(self.planner.is_working() && self.planner.advance())
@@ -161,13 +197,14 @@ impl MppCore {
 
     pub(crate) fn finish(&mut self, time: f64) -> Result<MppPlan, MppStatus> {
         let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
-        if !flight.planning {
-            return Err(MppStatus::Idle);
-        }
+        let start = flight.due.ok_or(MppStatus::Idle)?;
         if !time.is_finite() || flight.last.is_some_and(|last| time < last) {
             return Err(MppStatus::Time);
         }
-        flight.planning = false;
+        if time < start - ROUNDING {
+            return Err(MppStatus::Early);
+        }
+        flight.due = None;
         let (verdict, best) = (self.planner.finish(), self.planner.best());
         let outcome = match flight.control.adopt(time, verdict, best) {
             Adoption::Feasible => 0,
@@ -189,6 +226,7 @@ impl MppCore {
         Ok(MppPlan {
             outcome,
             complete: summary.complete,
+            blind: summary.blind,
             candidates: summary.candidates as u32,
             feasible: summary.feasible as u32,
             trees: summary.tree_runs as u32,
@@ -199,6 +237,7 @@ impl MppCore {
             knots,
             thrust,
             elevator,
+            start,
         })
     }
 
@@ -208,16 +247,26 @@ impl MppCore {
     }
 }
 
-fn of_set_up(error: mpp_core::planner::SetupError) -> MppStatus {
-    use mpp_core::planner::SetupError as E;
-    match error {
-        E::Trim(_) => MppStatus::Trim,
-        E::Regulator(_) | E::Unstable => MppStatus::Regulator,
-        E::TooManyPaths | E::NoPaths => MppStatus::Paths,
-        E::OutOfRange(_) => MppStatus::OutOfRange,
-        E::ThrustTooLow => MppStatus::Thrust,
-        E::Model(_) | E::Condense(_) | E::OtherMethod => MppStatus::Planner,
-    }
+/// The code of a failed set-up, and the number that is out of its range.
+fn of_set_up(error: SetupError) -> (MppStatus, Option<Setting>) {
+    let number = match error {
+        // The planner's units follow from mass and cruise.
+        SetupError::OutOfRange(Setting::MassUnit) => Some(Setting::Mass),
+        SetupError::OutOfRange(Setting::LengthUnit | Setting::TimeUnit) => {
+            Some(Setting::CruiseAirspeed)
+        }
+        SetupError::OutOfRange(setting) => Some(setting),
+        _ => None,
+    };
+    (MppStatus::of_set_up(error), number)
+}
+
+/// Whether a scan has returns and repeats the ranges of the one before to the last bit: the lidar is frozen.
+fn repeats(before: &LidarScan, now: &LidarScan) -> bool {
+    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
+    before.ranges.len() == now.ranges.len()
+        && now.ranges.iter().any(|range| *range > 0.0)
+        && before.ranges.iter().zip(&now.ranges).all(same)
 }
 
 fn code(trust: Trust) -> u8 {

@@ -14,16 +14,22 @@
     reason = "a C interface takes pointers; each use says what the caller promises"
 )]
 
+mod aircraft;
+mod counters;
 mod flying;
+mod refusal;
 mod status;
 mod types;
 
+pub use aircraft::MppAircraft;
 use core::mem::{align_of, size_of};
+pub use counters::MppCounter;
 pub use flying::MppCore;
+pub use refusal::{MPP_TEXT, MppRefusal};
 pub use status::{MppStatus, mpp_text};
 pub use types::{
-    MPP_BEAMS, MPP_COUNTERS, MPP_KNOTS, MppAircraft, MppConfig, MppOutput, MppPlan, MppScan,
-    MppSensors, MppState,
+    MPP_BEAMS, MPP_COUNTERS, MPP_KNOTS, MppConfig, MppOutput, MppPlan, MppScan, MppSensors,
+    MppState,
 };
 
 /// Alignment that the storage needs [bytes].
@@ -84,7 +90,7 @@ pub unsafe extern "C" fn mpp_usual(config: *mut MppConfig) -> MppStatus {
 }
 
 /// Sets the core up, or anew, for a flight that begins with its next step. A refused configuration leaves it
-/// without one.
+/// without one. If a number was out of its range, `mpp_refused` gives its name and range.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`; `config` is null or points to a configuration.
@@ -97,7 +103,28 @@ pub unsafe extern "C" fn mpp_set_up(core: *mut MppCore, config: *const MppConfig
     core.set_up(config)
 }
 
+/// Writes which number `mpp_set_up` refused the last time, and the range that it must be in.
+///
+/// # Safety
+/// `core` is null or comes from `mpp_init`; `refused` is null or points to its value.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn mpp_refused(core: *const MppCore, refused: *mut MppRefusal) -> MppStatus {
+    // SAFETY: the caller's promises.
+    let (Some(core), Some(refused)) = (unsafe { core.as_ref() }, unsafe { refused.as_mut() })
+    else {
+        return MppStatus::Null;
+    };
+    given(Ok(core.refused()), refused)
+}
+
 /// Makes the 100 Hz step at a time [s], which grows by 0.01 from step to step.
+///
+/// A step never fails because of its sensors. It does not use values that are not finite, negative standard deviations, and
+/// values that only repeat; it returns `MPP_STATUS_OK`, and `mpp_counters` tells of them.
+///
+/// A step drops the planning cycle that is under way if the estimates jump, because its plan no longer fits:
+/// `output.cycle_dropped` is true then. `mpp_advance` and `mpp_finish` return `MPP_STATUS_IDLE` from then on, and the
+/// next scan begins a new cycle.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`; the others are null or point to their values.
@@ -116,7 +143,11 @@ pub unsafe extern "C" fn mpp_step(
     given(core.step(time, sensors), output)
 }
 
-/// Begins a planning cycle from a scan and the estimate of the last step.
+/// Begins a planning cycle from a scan and the estimate of the last step. Its plan starts `latency_ticks` after that step.
+///
+/// Give each scan once. The core refuses one that is not newer than the last one, or whose returns repeat those of the last one to
+/// the last bit, because the lidar is frozen then. It also refuses one while it does not know where the aircraft is, because the
+/// time has jumped: `MPP_STATUS_LOST`.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`; `scan` is null or points to a scan whose `ranges` are null or `count`
@@ -140,7 +171,7 @@ pub unsafe extern "C" fn mpp_begin(core: *mut MppCore, scan: *const MppScan) -> 
 }
 
 /// Begins a planning cycle without a scan, because the lidar is silent or its scans are refused: slow flight in the map that
-/// earlier scans have left. Call it when a scan is late by a few ticks.
+/// earlier scans have left. Call it when a scan is late by a few ticks. It returns `MPP_STATUS_LOST` when `mpp_begin` does.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`.
@@ -166,7 +197,9 @@ pub unsafe extern "C" fn mpp_advance(core: *mut MppCore, more: *mut bool) -> Mpp
     given(core.advance(), more)
 }
 
-/// Ends the cycle and takes its best plan over at a time [s]: that of the step that follows.
+/// Ends the cycle and takes its best plan over at a time [s]: that of the step that follows. The plan starts `latency_ticks`
+/// after the step before `mpp_begin`. Before that time the call returns `MPP_STATUS_EARLY`, and the cycle goes on; call it
+/// again then.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`; `plan` is null or points to a plan.
@@ -183,7 +216,7 @@ pub unsafe extern "C" fn mpp_finish(
     given(core.finish(time), plan)
 }
 
-/// Writes the counters of events, in the order of `hil_protocol::HealthReport::NAMES`.
+/// Writes the counters of events. `mpp_counter` names their places.
 ///
 /// # Safety
 /// `core` is null or comes from `mpp_init`; `counters` is null or points to `MPP_COUNTERS` numbers.

@@ -2,7 +2,9 @@
 
 use core::ffi::{CStr, c_char};
 use hil_protocol::ConfigureVerdict;
+use mpp_core::planner::SetupError;
 use mpp_core::sense::ScanError;
+use mpp_core::settings::Setting;
 
 /// The result of a call. Every result but `Ok` leaves the core as it was; only a refused `mpp_set_up` leaves it
 /// without a configuration.
@@ -21,7 +23,7 @@ pub enum MppStatus {
     NotSetUp = 4,
     /// A planning cycle is under way.
     Busy = 5,
-    /// No planning cycle is under way.
+    /// No planning cycle is under way: none was begun, or a step has dropped it.
     Idle = 6,
     /// A time is not finite, or goes back.
     Time = 7,
@@ -31,9 +33,15 @@ pub enum MppStatus {
     ScanRange = 9,
     /// The scan is older than the poses that the core remembers.
     ScanAge = 10,
+    /// The plan does not start yet. The cycle goes on.
+    Early = 11,
+    /// The time has jumped, and no position has told since where the aircraft is.
+    Lost = 12,
+    /// The scan is not newer than the last one, or repeats its ranges to the last bit.
+    ScanRepeated = 13,
     /// The number of paths.
     Paths = 20,
-    /// The replanning period or the latency.
+    /// The latency.
     Period = 21,
     /// The number of beams.
     Beams = 22,
@@ -49,14 +57,14 @@ pub enum MppStatus {
     Thrust = 27,
     /// No regulator holds the aircraft.
     Regulator = 28,
-    /// A number is out of its range.
+    /// A number is out of its range; `mpp_refused` names it.
     OutOfRange = 29,
     /// The planner cannot be set up.
     Planner = 30,
 }
 
 /// Each code with its text.
-const TEXTS: [(MppStatus, &CStr); 22] = [
+const TEXTS: [(MppStatus, &CStr); 25] = [
     (MppStatus::Ok, c"done"),
     (
         MppStatus::Null,
@@ -80,7 +88,7 @@ const TEXTS: [(MppStatus, &CStr); 22] = [
     ),
     (
         MppStatus::Idle,
-        c"no planning cycle is under way: call mpp_begin first",
+        c"no planning cycle is under way: call mpp_begin with the next scan",
     ),
     (
         MppStatus::Time,
@@ -88,23 +96,35 @@ const TEXTS: [(MppStatus, &CStr); 22] = [
     ),
     (
         MppStatus::ScanLength,
-        c"the scan has another number of beams than the configuration",
+        c"the scan has another number of beams than the configuration: give as many as its field beams says",
     ),
     (
         MppStatus::ScanRange,
-        c"a range or an angle of the scan is not a number or out of range: give 0 for no return",
+        c"a range or an angle of the scan is not a number or out of range: give 0 for no return, and none above range_max",
     ),
     (
         MppStatus::ScanAge,
-        c"the scan is too old: give its age in ticks, below 50",
+        c"the scan is older than 120 ticks or than the first step: give its age in ticks",
+    ),
+    (
+        MppStatus::Early,
+        c"the plan does not start yet: call mpp_finish again latency_ticks after the step before mpp_begin",
+    ),
+    (
+        MppStatus::Lost,
+        c"the time has jumped and the pose is in doubt: give mpp_step a position, or begin again 0.3 s later",
+    ),
+    (
+        MppStatus::ScanRepeated,
+        c"the scan is not newer than the last one, or repeats it: give each scan once, and check the lidar",
     ),
     (
         MppStatus::Paths,
-        c"there is no room for that many candidate paths, or there are none: give 1 to 100",
+        c"there is no room for that many candidate paths, or there are none: give 1 to 50",
     ),
     (
         MppStatus::Period,
-        c"the replanning period is zero, or the latency is zero or longer than it",
+        c"the latency is zero or longer than a plan: give 1 to 37 ticks for each m/s of cruise, and check cruise",
     ),
     (
         MppStatus::Beams,
@@ -112,11 +132,11 @@ const TEXTS: [(MppStatus, &CStr); 22] = [
     ),
     (
         MppStatus::Range,
-        c"the range of the lidar is out of range: give 1 to 10000 metres",
+        c"range_max is out of range or not a finite number: give 1 to 10000 metres",
     ),
     (
         MppStatus::Altitude,
-        c"the altitude is out of range or not a finite number: give metres",
+        c"the altitude is out of range or not a finite number: give -1000 to 20000 metres",
     ),
     (
         MppStatus::Actuators,
@@ -128,7 +148,7 @@ const TEXTS: [(MppStatus, &CStr); 22] = [
     ),
     (
         MppStatus::Thrust,
-        c"the greatest thrust does not carry level flight",
+        c"the greatest thrust does not carry level flight: raise thrust_max, or check cruise, wing and drag",
     ),
     (
         MppStatus::Regulator,
@@ -136,11 +156,11 @@ const TEXTS: [(MppStatus, &CStr); 22] = [
     ),
     (
         MppStatus::OutOfRange,
-        c"a number of the aircraft or the configuration is out of range or not finite",
+        c"a number is out of range or not finite: mpp_refused gives its name and range, correct it",
     ),
     (
         MppStatus::Planner,
-        c"the planner cannot be set up with these numbers",
+        c"the planner finds no model of the aircraft: check moment_alpha and the other derivatives",
     ),
 ];
 
@@ -157,7 +177,10 @@ impl MppStatus {
         match verdict {
             V::Accepted => Self::Ok,
             V::TooManyPaths { .. } | V::PathsZero => Self::Paths,
-            V::ReplanPeriod | V::Latency | V::SlicesPerTick => Self::Period,
+            V::ReplanPeriod
+            | V::Latency
+            | V::SlicesPerTick
+            | V::OutOfRange(hil_protocol::Setting::Latency) => Self::Period,
             V::Beams { .. } => Self::Beams,
             V::RangeMax => Self::Range,
             V::NonFinite => Self::Altitude,
@@ -180,6 +203,21 @@ impl MppStatus {
             | V::AngleOfAttackLimit
             | V::FlightPathLimit
             | V::OutOfRange(_) => Self::OutOfRange,
+        }
+    }
+
+    /// The code of a failed set-up.
+    pub(crate) fn of_set_up(error: SetupError) -> Self {
+        use SetupError as E;
+        match error {
+            E::Trim(_) => Self::Trim,
+            E::Regulator(_) | E::Unstable => Self::Regulator,
+            E::TooManyPaths | E::NoPaths => Self::Paths,
+            E::OutOfRange(Setting::Sight) => Self::Range,
+            E::OutOfRange(Setting::Altitude) => Self::Altitude,
+            E::OutOfRange(_) => Self::OutOfRange,
+            E::ThrustTooLow => Self::Thrust,
+            E::Model(_) | E::Condense(_) | E::OtherMethod => Self::Planner,
         }
     }
 
@@ -206,7 +244,12 @@ mod tests {
     extern crate std;
 
     use super::*;
+    use mpp_core::config::{MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES, TICK_PERIOD};
+    use mpp_core::estimate::{MOST_AGE, MOST_SCAN_AGE};
+    use mpp_core::tuning::sensors::{FROZEN_TICKS, LONGEST_DOUBT};
+    use mpp_core::units::REFERENCE_CRUISE;
     use std::collections::BTreeSet;
+    use std::format;
 
     #[test]
     fn every_code_has_a_text_of_its_own() {
@@ -217,5 +260,40 @@ mod tests {
         let codes: BTreeSet<_> = TEXTS.iter().map(|(status, _)| *status as i32).collect();
         assert_eq!((texts.len(), codes.len()), (TEXTS.len(), TEXTS.len()));
         assert!(!texts.contains(text(-1)));
+    }
+
+    #[test]
+    fn texts_and_header_give_the_limits_of_the_core() {
+        let [altitude, sight] = [Setting::Altitude, Setting::Sight].map(|setting| {
+            let [least, most] = setting.range();
+            format!("{least} to {most}")
+        });
+        let longest = (STAGES as f64 * STAGE_PERIOD / REFERENCE_CRUISE / TICK_PERIOD) as u32;
+        let [paths, beams] = [MAX_PATHS, MAX_BEAMS].map(|most| format!("1 to {most}"));
+        let texts = [
+            (MppStatus::Paths, paths.clone()),
+            (MppStatus::Beams, beams.clone()),
+            (MppStatus::ScanAge, format!("than {MOST_SCAN_AGE} ticks")),
+            (MppStatus::Altitude, altitude.clone()),
+            (MppStatus::Range, sight.clone()),
+            (MppStatus::Lost, format!("{LONGEST_DOUBT} s later")),
+            (MppStatus::Period, format!("1 to {longest} ticks")),
+        ];
+        for (status, limit) in texts {
+            let text = text(status as i32).to_str().unwrap();
+            assert!(text.contains(&limit), "{text}: {limit}");
+        }
+        let header = include_str!("../../include/mpp.h");
+        for limit in [
+            format!("cycle, {paths}."),
+            format!("scan, {beams}."),
+            format!("returns [m], {altitude}."),
+            format!("reports [m], {sight}."),
+            format!("step, at most {MOST_SCAN_AGE}."),
+            format!("of 10 ms, at most {MOST_AGE}."),
+            format!("after {FROZEN_TICKS} repeats"),
+        ] {
+            assert!(header.contains(&limit), "{limit}");
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! The values that cross the interface. Units are SI; angles are nose-up positive; x is downrange, z is up.
 
-use hil_protocol::{ActuatorLimits, Aircraft, Configure, Preset};
+use crate::aircraft::MppAircraft;
+use hil_protocol::{Configure, Preset};
 use mpp_core::sense::{AirData, GroundVelocity, Position, SensorFrame};
 use mpp_core::trajectory::Reference;
 use mpp_core::vehicle::VehicleState;
@@ -12,85 +13,31 @@ pub const MPP_KNOTS: usize = 19;
 /// Counters of events.
 pub const MPP_COUNTERS: usize = 19;
 
-/// The aircraft, by its coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`,
-/// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
-/// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`. The elevator may be in any unit.
-#[repr(C)]
-#[derive(Clone, Copy, Debug)]
-pub struct MppAircraft {
-    /// Mass [kg].
-    pub mass: f64,
-    /// Moment of inertia in pitch [kg m^2].
-    pub pitch_inertia: f64,
-    /// Wing area [m^2].
-    pub wing_area: f64,
-    /// Reference length of the pitching moment [m].
-    pub moment_length: f64,
-    /// Air density [kg/m^3].
-    pub air_density: f64,
-    /// `C_L0` [-].
-    pub lift_zero: f64,
-    /// `C_La` [1/rad].
-    pub lift_alpha: f64,
-    /// `C_La'` [s/rad].
-    pub lift_alpha_rate: f64,
-    /// `C_Lq` [s/rad].
-    pub lift_pitch_rate: f64,
-    /// `C_Le` [1 per unit of elevator].
-    pub lift_elevator: f64,
-    /// `C_D0` [-].
-    pub drag_zero: f64,
-    /// `K` [-].
-    pub drag_induced: f64,
-    /// `C_M0` [-].
-    pub moment_zero: f64,
-    /// `C_Ma` [1/rad].
-    pub moment_alpha: f64,
-    /// `C_Ma'` [s/rad].
-    pub moment_alpha_rate: f64,
-    /// `C_Mq` [s/rad].
-    pub moment_pitch_rate: f64,
-    /// `C_Me` [1 per unit of elevator].
-    pub moment_elevator: f64,
-    /// Airspeed of level flight [m/s].
-    pub cruise: f64,
-    /// Radius of the circle that holds the aircraft [m].
-    pub body_radius: f64,
-    /// Distance of the stall from the angle of attack of level flight [rad]; 0 if it is not known.
-    pub stall: f64,
-    /// Greatest thrust [N]; 0 for no limit. The same holds for the four limits below.
-    pub thrust_max: f64,
-    /// Time constant of the thrust [s].
-    pub thrust_lag: f64,
-    /// Greatest distance of the elevator below its trim.
-    pub elevator_below: f64,
-    /// Greatest distance of the elevator above its trim.
-    pub elevator_above: f64,
-    /// Greatest rate of the elevator [1/s].
-    pub elevator_rate: f64,
-}
-
 /// What a flight needs to know before it begins.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct MppConfig {
     /// The aircraft.
     pub aircraft: MppAircraft,
-    /// Candidate paths of a planning cycle, 1 to 100.
+    /// Candidate paths of a planning cycle, 1 to 50.
     pub paths: u16,
     /// Beams of each scan, 1 to 128.
     pub beams: u16,
-    /// Ticks of 10 ms from a scan until its plan is flown, at least 1.
+    /// Ticks of 10 ms from `mpp_begin` until the plan of this cycle is flown, at least 1.
     pub latency_ticks: u32,
     /// Seed of the planner's random numbers.
     pub seed: u64,
-    /// Longest range that the lidar reports [m].
+    /// Longest range that the lidar reports [m], 1 to 10000.
     pub range_max: f32,
-    /// Height to which the aircraft returns [m].
+    /// Height to which the aircraft returns [m], -1000 to 20000.
     pub altitude: f64,
 }
 
-/// The measurements that are new in a tick. Ages are in ticks of 10 ms.
+/// The measurements that are new in a tick. Ages are in ticks of 10 ms, at most 30.
+///
+/// What has nothing new has `has_air` or `has_position` false, and not its old value: a value that repeats to the last bit
+/// counts as missing, a position at once and air data after 5 repeats. Values that are not finite and negative standard
+/// deviations are not used either; the counters tell of them.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct MppSensors {
@@ -98,9 +45,9 @@ pub struct MppSensors {
     pub has_air: bool,
     /// Their age.
     pub air_age: u32,
-    /// Airspeed [m/s].
+    /// True airspeed [m/s].
     pub airspeed: f64,
-    /// Pitch [rad].
+    /// Pitch against the horizontal [rad], nose up positive.
     pub pitch: f64,
     /// Whether there is a new position.
     pub has_position: bool,
@@ -110,7 +57,7 @@ pub struct MppSensors {
     pub x: f64,
     /// Height [m].
     pub z: f64,
-    /// Standard deviation of the white part of its error [m].
+    /// Standard deviation of the white part of its error along an axis [m].
     pub sigma: f64,
     /// Whether the position has a velocity over ground.
     pub has_velocity: bool,
@@ -118,7 +65,7 @@ pub struct MppSensors {
     pub velocity_x: f64,
     /// Velocity upwards [m/s].
     pub velocity_z: f64,
-    /// Standard deviation of its error [m/s].
+    /// Standard deviation of its error along an axis [m/s].
     pub velocity_sigma: f64,
 }
 
@@ -126,11 +73,11 @@ pub struct MppSensors {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct MppScan {
-    /// Age in ticks.
+    /// Age in ticks at the last step, at most 120.
     pub age: u32,
-    /// Angle of the first beam against the body axis [rad].
+    /// Angle of the first beam against the body axis [rad]: 0 is straight ahead, positive is above.
     pub angle_min: f64,
-    /// Angle from a beam to the next [rad].
+    /// Angle from a beam to the next [rad]; positive if the next one is above.
     pub angle_increment: f64,
     /// Number of ranges.
     pub count: usize,
@@ -152,7 +99,7 @@ pub struct MppState {
     pub pitch: f64,
     /// Pitch rate [rad/s].
     pub pitch_rate: f64,
-    /// Flight path angle [rad].
+    /// Angle of the motion through the air above the horizontal [rad].
     pub flight_path: f64,
 }
 
@@ -176,6 +123,9 @@ pub struct MppOutput {
     pub elevator_trust: u8,
     /// Trust in the motor: 2 while it gives no thrust.
     pub motor_trust: u8,
+    /// Whether this step has dropped the planning cycle that was under way: the estimates have jumped, and its plan does
+    /// not fit them. Begin a new one with the next scan.
+    pub cycle_dropped: bool,
     /// The estimate.
     pub estimate: MppState,
     /// Estimated wind downrange [m/s].
@@ -197,6 +147,9 @@ pub struct MppPlan {
     pub outcome: u8,
     /// Whether the cycle did all its work.
     pub complete: bool,
+    /// Whether the cycle had no scan, or one of a lidar that shows nothing where the map has obstacles. Its plans are slow
+    /// flight.
+    pub blind: bool,
     /// Programs that were solved.
     pub candidates: u32,
     /// Those that gave a feasible trajectory.
@@ -209,7 +162,7 @@ pub struct MppPlan {
     pub cost: f64,
     /// Worst violation [m or rad].
     pub violation: f64,
-    /// Time from a place to the next [s].
+    /// Time from a place to the next [s]. The first place is flown at `start`.
     pub period: f64,
     /// The places, if the outcome is 0 or 1.
     pub knots: [MppState; MPP_KNOTS],
@@ -217,82 +170,16 @@ pub struct MppPlan {
     pub thrust: [f64; MPP_KNOTS],
     /// Elevator command at each place.
     pub elevator: [f64; MPP_KNOTS],
+    /// Time from which the plan is flown [s]: that of the step before `mpp_begin`, and the latency.
+    pub start: f64,
 }
 
 const _: () = assert!(MPP_BEAMS == mpp_core::config::MAX_BEAMS);
 const _: () = assert!(MPP_KNOTS == mpp_core::config::KNOTS);
 const _: () = assert!(MPP_COUNTERS == hil_protocol::HealthReport::NAMES.len());
 
-impl MppAircraft {
-    pub(crate) const REFERENCE: Self = {
-        let own = Aircraft::REFERENCE;
-        Self {
-            mass: own.mass,
-            pitch_inertia: own.pitch_inertia,
-            wing_area: own.wing_area,
-            moment_length: own.moment_length,
-            air_density: own.air_density,
-            lift_zero: own.lift_zero,
-            lift_alpha: own.lift_alpha,
-            lift_alpha_rate: own.lift_alpha_rate,
-            lift_pitch_rate: own.lift_pitch_rate,
-            lift_elevator: own.lift_elevator,
-            drag_zero: own.drag_zero,
-            drag_induced: own.drag_induced,
-            moment_zero: own.moment_zero,
-            moment_alpha: own.moment_alpha,
-            moment_alpha_rate: own.moment_alpha_rate,
-            moment_pitch_rate: own.moment_pitch_rate,
-            moment_elevator: own.moment_elevator,
-            cruise: own.cruise,
-            body_radius: own.body_radius,
-            stall: 0.0,
-            thrust_max: 0.0,
-            thrust_lag: 0.0,
-            elevator_below: 0.0,
-            elevator_above: 0.0,
-            elevator_rate: 0.0,
-        }
-    };
-
-    fn told(&self) -> (Aircraft, ActuatorLimits) {
-        // Not a number is not "no limit": the core's checks refuse it.
-        let unless_zero = |value: f64| if value == 0.0 { None } else { Some(value) };
-        let aircraft = Aircraft {
-            mass: self.mass,
-            pitch_inertia: self.pitch_inertia,
-            wing_area: self.wing_area,
-            moment_length: self.moment_length,
-            air_density: self.air_density,
-            lift_zero: self.lift_zero,
-            lift_alpha: self.lift_alpha,
-            lift_alpha_rate: self.lift_alpha_rate,
-            lift_pitch_rate: self.lift_pitch_rate,
-            lift_elevator: self.lift_elevator,
-            drag_zero: self.drag_zero,
-            drag_induced: self.drag_induced,
-            moment_zero: self.moment_zero,
-            moment_alpha: self.moment_alpha,
-            moment_alpha_rate: self.moment_alpha_rate,
-            moment_pitch_rate: self.moment_pitch_rate,
-            moment_elevator: self.moment_elevator,
-            cruise: self.cruise,
-            body_radius: self.body_radius,
-            stall: unless_zero(self.stall),
-        };
-        let actuators = ActuatorLimits {
-            thrust_max: unless_zero(self.thrust_max),
-            thrust_lag: unless_zero(self.thrust_lag),
-            elevator_below: unless_zero(self.elevator_below),
-            elevator_above: unless_zero(self.elevator_above),
-            elevator_rate: unless_zero(self.elevator_rate),
-        };
-        (aircraft, actuators)
-    }
-}
-
 impl MppConfig {
-    /// The reference aircraft with the paper's lidar, 25 paths and plans that are flown one tick after their scan.
+    /// The reference aircraft with the paper's lidar, 25 paths and plans that are flown one tick after their cycle began.
     pub(crate) const USUAL: Self = Self {
         aircraft: MppAircraft::REFERENCE,
         paths: 25,

@@ -151,6 +151,7 @@ impl MppAnswer {
             plan: MppPlan {
                 outcome: 3,
                 complete: false,
+                blind: false,
                 candidates: 0,
                 feasible: 0,
                 trees: 0,
@@ -161,6 +162,7 @@ impl MppAnswer {
                 knots: [MppState::default(); mpp_c::MPP_KNOTS],
                 thrust: [0.0; mpp_c::MPP_KNOTS],
                 elevator: [0.0; mpp_c::MPP_KNOTS],
+                start: 0.0,
             },
             plan_tick: 0,
             counters: [0; MPP_COUNTERS],
