@@ -6,7 +6,7 @@ mod watching;
 use super::verdicts::{count_position, count_verdict};
 use super::{
     Actuators, Biases, Changes, Conditions, Course, Innovation, LaggedEkf, LiftEstimator,
-    MOST_SCAN_AGE, Measurement, Navigation, PositionVerdict, Taken, Trust, Verdict, Watch,
+    MOST_SCAN_AGE, Measurement, Navigation, PositionVerdict, Sensors, Taken, Trust, Verdict, Watch,
 };
 use crate::config::TICK_PERIOD;
 use crate::health::Health;
@@ -19,21 +19,6 @@ use crate::tuning::sensors::{
 };
 use crate::vehicle::{AirState, Airframe, Control, GRAVITY, Trim, VehicleState};
 pub use design::EstimatorDesign;
-
-/// The trust in each sensor of the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sensors {
-    /// Airspeed.
-    pub airspeed: Trust,
-    /// Pitch.
-    pub pitch: Trust,
-    /// Positions.
-    pub position: Trust,
-    /// The elevator, which is no sensor but is watched like one.
-    pub elevator: Trust,
-    /// The motor, likewise.
-    pub motor: Trust,
-}
 
 /// The estimators of a flight.
 #[derive(Clone, Debug)]

@@ -36,14 +36,14 @@ pub use changes::{Changes, Course};
 pub use conditions::Conditions;
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;
-pub use estimator::{Estimator, EstimatorDesign, Sensors};
+pub use estimator::{Estimator, EstimatorDesign};
 pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;
 pub use motor_watch::{MotorWatch, Progress};
 pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
-pub use watch::{Trust, Watch};
+pub use watch::{Sensors, Trust, Watch};
 pub use wind_filter::{Observation, WindFilter};
 
 /// Measured airspeed and pitch. Their errors are independent.

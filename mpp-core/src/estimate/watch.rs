@@ -27,6 +27,21 @@ impl Trust {
     }
 }
 
+/// The trust in each sensor of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Sensors {
+    /// Airspeed.
+    pub airspeed: Trust,
+    /// Pitch.
+    pub pitch: Trust,
+    /// Positions.
+    pub position: Trust,
+    /// The elevator, which is no sensor but is watched like one.
+    pub elevator: Trust,
+    /// The motor, likewise.
+    pub motor: Trust,
+}
+
 /// Watches one sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct Watch {

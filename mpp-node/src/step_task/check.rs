@@ -175,19 +175,22 @@ mod tests {
         *value = f64::from_bits(value.to_bits() ^ 1 << bit);
     }
 
-    /// Numbers of the tuning, from its beginning to its end, and what flips a bit of each.
-    const NUMBERS: [(&str, fn(&mut Tuning, u32)); 7] = [
+    /// Flips a bit of a number of the tuning.
+    type Flip = fn(&mut Tuning, u32);
+
+    /// Numbers of the tuning, from its beginning to its end.
+    const NUMBERS: [(&str, Flip); 7] = [
         ("mass", |all, bit| {
-            flip(&mut all.settings.airframe.mass, bit)
+            flip(&mut all.settings.airframe.mass, bit);
         }),
         ("gate", |all, bit| {
-            flip(&mut all.settings.estimator.gate, bit)
+            flip(&mut all.settings.estimator.gate, bit);
         }),
         ("cross-track", |all, bit| {
-            flip(&mut all.settings.cross_track, bit)
+            flip(&mut all.settings.cross_track, bit);
         }),
         ("altitude", |all, bit| {
-            flip(&mut all.settings.planner.altitude, bit)
+            flip(&mut all.settings.planner.altitude, bit);
         }),
         ("sight", |all, bit| {
             if let Some(own) = all.settings.planner.flight_mut() {
@@ -195,10 +198,10 @@ mod tests {
             }
         }),
         ("configured altitude", |all, bit| {
-            flip(&mut all.configure.altitude, bit)
+            flip(&mut all.configure.altitude, bit);
         }),
         ("latency", |all, bit| {
-            all.configure.latency_ticks ^= 1 << (bit % 32)
+            all.configure.latency_ticks ^= 1 << (bit % 32);
         }),
     ];
 
@@ -226,13 +229,16 @@ mod tests {
         assert!(before.is_some() && task.flight.map(|flight| flight.tuning) == before);
     }
 
-    /// Changes of settings that give another design.
-    const CHANGES: [(&str, fn(&mut Settings)); 6] = [
+    /// Changes settings so that they give another design.
+    type Change = fn(&mut Settings);
+
+    /// A change of each part of the design.
+    const CHANGES: [(&str, Change); 6] = [
         ("airframe, gain and trim", |settings| {
-            settings.airframe.mass *= 1.01
+            settings.airframe.mass *= 1.01;
         }),
         ("actuators", |settings| {
-            settings.actuators.thrust_max = Some(15.0)
+            settings.actuators.thrust_max = Some(15.0);
         }),
         ("filter", |settings| settings.estimator.gate += 1.0),
         ("wind", |settings| settings.wind_change = Some(2.0)),
