@@ -18,6 +18,7 @@ fn start(directory: &Path, arguments: &str) -> Child {
 }
 
 /// Waits until something holds that the process will bring about, and ends the process if it does not.
+#[expect(clippy::panic, reason = "a helper of tests fails as tests do")]
 fn until(child: &mut Child, awaited: &str, mut holds: impl FnMut() -> bool) {
     let begun = Instant::now();
     while !holds() {

@@ -127,6 +127,7 @@ fn a_core_that_dies_in_flight_is_named() {
 }
 
 /// Waits for a line that holds these words.
+#[expect(clippy::panic, reason = "a helper of tests fails as tests do")]
 fn hear(told: &Receiver<String>, words: &str) {
     let deadline = Instant::now() + LONGEST;
     loop {
