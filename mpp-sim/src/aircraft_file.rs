@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct AircraftFile {
-    /// Name in reports and in names of files.
+    /// Name in reports and in names of files: 1 to 64 bytes without slashes and control characters.
     pub name: String,
     /// Where the numbers come from.
     #[serde(default, skip_serializing_if = "String::is_empty")]

@@ -151,8 +151,23 @@ fn airframe(file: &AircraftFile) -> Airframe {
     }
 }
 
-/// Checks each number by itself.
+/// Greatest length of a name \[bytes\]. A file system takes names of files up to 255 bytes, and those of a flight's
+/// files hold more than the aircraft.
+const LONGEST_NAME: usize = 64;
+
+/// Checks whether a name can stand in the name of a file.
+fn check_name(name: &str) -> Result<(), ScenarioError> {
+    let fits = (1..=LONGEST_NAME).contains(&name.len());
+    let splits = name.contains(|c: char| c == '/' || c == '\\' || c.is_control());
+    let advice = format!(
+        "give 1 to {LONGEST_NAME} bytes without slashes and control characters: files of flights have it in their names"
+    );
+    ensure(fits && !splits, "aircraft.name", advice)
+}
+
+/// Checks each key by itself.
 fn check(file: &AircraftFile) -> Result<(), ScenarioError> {
+    check_name(&file.name)?;
     let positive = [
         (file.mass, "aircraft.mass"),
         (file.pitch_inertia, "aircraft.pitch_inertia"),

@@ -98,6 +98,26 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
     }
 }
 
+/// The files of a flight have the aircraft's name in theirs.
+#[test]
+fn a_name_that_no_file_can_have_is_refused() {
+    let named = |name: &str| {
+        let name = name.to_owned();
+        let example = AircraftFile::known("example").unwrap();
+        AircraftModel::new(AircraftFile { name, ..example })
+    };
+    for name in ["", "a/b", "..\\a", "a\nb", "a\0", &"a".repeat(65)] {
+        let error = named(name).unwrap_err().to_string();
+        assert!(
+            error.starts_with("aircraft.name: give 1 to 64 bytes"),
+            "{error}"
+        );
+    }
+    for name in ["a", "Šidlo 2, left wing", &"a".repeat(64)] {
+        assert_eq!(named(name).unwrap().file.name, name);
+    }
+}
+
 /// In own units similar aircraft have the same numbers, and so have their settings.
 #[test]
 fn similar_aircraft_are_one_aircraft_in_own_units() {
