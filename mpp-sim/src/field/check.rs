@@ -21,6 +21,8 @@ const MAX_SPEED: f64 = 1e3;
 pub enum FieldError {
     /// The text with this name is no field; the message names line and key.
     Toml(String, Box<toml::de::Error>),
+    /// The file with this name holds no obstacle.
+    Empty(String),
     /// The file has an obstacle that cannot be flown past.
     Obstacle {
         /// Name of the file; empty for a field that is part of something else.
@@ -47,6 +49,10 @@ impl fmt::Display for FieldError {
                 let place = error.span().map_or(0, |span| span.start);
                 write!(f, "field {name}, byte {place}: {}", error.message())
             }
+            Self::Empty(name) => write!(
+                f,
+                "field {name} holds no obstacle: give one, or leave the field out and give --obstacles 0"
+            ),
             Self::Obstacle { name, key, advice } if name.is_empty() => {
                 write!(f, "field, {key}: {advice}")
             }
@@ -59,7 +65,7 @@ impl core::error::Error for FieldError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::Toml(_, error) => Some(error),
-            Self::Obstacle { .. } => None,
+            Self::Empty(_) | Self::Obstacle { .. } => None,
         }
     }
 }
@@ -74,7 +80,7 @@ impl FieldError {
                 key,
                 advice,
             },
-            toml @ Self::Toml(..) => toml,
+            named @ (Self::Toml(..) | Self::Empty(_)) => named,
         }
     }
 }
@@ -90,6 +96,10 @@ impl FieldFile {
     pub fn parse(name: &str, text: &str) -> Result<Self, FieldError> {
         let file: Self = toml::from_str(text)
             .map_err(|error| FieldError::Toml(name.to_owned(), Box::new(error)))?;
+        // A scenario takes a field without obstacles for none, and would draw its own.
+        if file.is_empty() {
+            return Err(FieldError::Empty(name.to_owned()));
+        }
         file.check().map_err(|error| error.named(name))?;
         Ok(file)
     }

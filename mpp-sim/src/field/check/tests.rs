@@ -7,6 +7,17 @@ fn refused(text: &str) -> String {
 }
 
 #[test]
+fn a_file_without_an_obstacle_is_refused() {
+    for text in ["", "# nothing\n", "circle = []"] {
+        let error = refused(text);
+        assert!(
+            error.starts_with("field bad.toml holds no obstacle: give one, or leave"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
 fn a_bad_file_is_refused_by_file_and_key() {
     let many = format!(
         "[[polyline]]\nthickness = 1.0\npoints = [{}]",
