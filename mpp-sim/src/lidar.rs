@@ -73,6 +73,18 @@ impl LidarConfig {
         ..Self::PAPER
     };
 
+    /// Greatest range that a beam may return \[m\].
+    #[must_use]
+    pub fn farthest(&self) -> f64 {
+        // The authors' lidar may return the far side of an obstacle whose centre is at the greatest
+        // range.
+        let beyond = match self.rule {
+            LidarRule::Authors => 1.0,
+            LidarRule::Nearest => 0.0,
+        };
+        self.range_max + beyond
+    }
+
     /// Ranges of all beams without error \[m\], 0 = no return; from the lowest beam to the highest.
     #[must_use]
     pub fn exact_ranges(&self, state: &VehicleState, field: &dyn Field) -> Vec<f64> {

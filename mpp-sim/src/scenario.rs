@@ -8,7 +8,7 @@ use crate::aircraft_file::AircraftModel;
 use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
 use crate::generator::Generator;
-use crate::lidar::{LidarConfig, LidarRule};
+use crate::lidar::LidarConfig;
 use crate::names::{self, UnknownName};
 use crate::navigation::NavigationConfig;
 use crate::outcome::ALTITUDE_BAND;
@@ -286,12 +286,6 @@ impl Scenario {
     /// The configuration that the core gets.
     #[must_use]
     pub fn configure(&self) -> Configure {
-        // The authors' lidar may return the far side of an obstacle whose centre is at the greatest
-        // range.
-        let beyond = match self.lidar.rule {
-            LidarRule::Authors => 1.0,
-            LidarRule::Nearest => 0.0,
-        };
         Configure {
             preset: match self.preset {
                 Preset::Reference => hil_protocol::Preset::Reference,
@@ -308,7 +302,7 @@ impl Scenario {
             slices_per_tick: self.slices_per_tick,
             seed: self.seed,
             beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
-            range_max: (self.lidar.range_max + beyond) as f32,
+            range_max: self.lidar.farthest() as f32,
             altitude: ALTITUDE,
             actuators: told(self.limits()),
         }

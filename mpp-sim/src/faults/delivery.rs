@@ -1,6 +1,6 @@
 //! Faults on a measurement's way: measurements that do not come, come seldom, or come late.
 
-use super::window::{TICKS_PER_SECOND, Window, ticks_of};
+use super::window::{TICKS_PER_SECOND, Timed, Window, ticks_of};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -26,16 +26,23 @@ pub struct DeliveryFault {
     pub rate_hz: Option<f64>,
 }
 
-impl DeliveryFault {
-    pub(super) fn window(&self) -> Window {
+impl Timed for DeliveryFault {
+    fn window(&self) -> Window {
         Window {
             from: self.from,
             until: self.until,
         }
     }
 
-    /// What is wrong with the table.
-    pub(super) fn flaw(&self) -> Option<&'static str> {
+    fn timeless(&self) -> Self {
+        Self {
+            from: None,
+            until: None,
+            ..*self
+        }
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
         let delay = self.delay_ms.is_none_or(|delay| ticks_of(delay).is_some());
         let rate = self.rate_hz.is_none_or(|rate| period(rate).is_some());
         let flaw = match (delay, rate) {

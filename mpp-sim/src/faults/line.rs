@@ -1,6 +1,6 @@
 //! Faults of the line to the core: ticks whose messages are lost, and a clock that is wrong.
 
-use super::window::{TICKS_PER_SECOND, Window};
+use super::window::{TICKS_PER_SECOND, Timed, Window};
 use crate::random::{self, Stream};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -23,16 +23,23 @@ pub struct LinkFault {
     pub loss: Option<f64>,
 }
 
-impl LinkFault {
-    pub(super) fn window(&self) -> Window {
+impl Timed for LinkFault {
+    fn window(&self) -> Window {
         Window {
             from: self.from,
             until: self.until,
         }
     }
 
-    /// What is wrong with the table.
-    pub(super) fn flaw(&self) -> Option<&'static str> {
+    fn timeless(&self) -> Self {
+        Self {
+            from: None,
+            until: None,
+            ..*self
+        }
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
         let sound = (0.0..=1.0).contains(&self.loss.unwrap_or(0.0));
         let flaw = (!sound).then_some("give a `loss` from 0 to 1");
         self.window().flaw().or(flaw)
@@ -99,21 +106,30 @@ pub struct ClockFault {
     pub jump: Option<f64>,
 }
 
-impl ClockFault {
-    pub(super) fn window(&self) -> Window {
+impl Timed for ClockFault {
+    fn window(&self) -> Window {
         Window {
             from: self.from,
             until: self.until,
         }
     }
 
-    /// What is wrong with the table.
-    pub(super) fn flaw(&self) -> Option<&'static str> {
+    fn timeless(&self) -> Self {
+        // The number of the first tick has no times.
+        Self {
+            jump: self.jump,
+            ..Self::default()
+        }
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
         let sound = self.jump.unwrap_or(0.0).abs() <= 1e6;
         let flaw = (!sound).then_some("give a `jump` of -1000000 to 1000000 s");
         self.window().flaw().or(flaw)
     }
+}
 
+impl ClockFault {
     /// The number that the core sees for a tick of the flight.
     #[must_use]
     pub fn shown(&self, tick: u32) -> u32 {

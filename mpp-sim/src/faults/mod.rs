@@ -23,7 +23,7 @@ pub use model_error::{ModelError, Signs};
 pub use scan::{ScanFault, Scans, Show};
 use serde::{Deserialize, Serialize};
 pub use signal::{Signal, SignalFault};
-use window::is_absent;
+use window::{Timed, Window, is_absent};
 
 /// All faults of a flight. The default value has no fault.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -142,40 +142,59 @@ impl Faults {
     /// The first tick at which a fault with a time acts; 0 if no fault has one.
     #[must_use]
     pub fn onset(&self) -> u32 {
-        let windows = [
-            (self.airspeed.window(), is_absent(&self.airspeed)),
-            (self.pitch.window(), is_absent(&self.pitch)),
-            (self.air.window(), is_absent(&self.air)),
-            (self.x.window(), is_absent(&self.x)),
-            (self.z.window(), is_absent(&self.z)),
-            (self.position.window(), is_absent(&self.position)),
-            (self.scan.window(), is_absent(&self.scan)),
-            (self.elevator.window(), is_absent(&self.elevator)),
-            (self.thrust.window(), is_absent(&self.thrust)),
-            (self.link.window(), is_absent(&self.link)),
-            (self.clock.window(), is_absent(&self.clock)),
-        ];
-        let present = windows.into_iter().filter(|(_, absent)| !absent);
-        present.map(|(window, _)| window.first()).min().unwrap_or(0)
+        let tables = self.tables().into_iter().filter(|table| !table.absent);
+        tables.map(|table| table.window.first()).min().unwrap_or(0)
     }
 
-    /// The same for the tables that [`is_absent`] may leave out. The advice names the key of the table.
+    /// Returns the first table whose fault cannot act in a flight of so many ticks: its name and what to do.
+    #[must_use]
+    pub fn idle(&self, ticks: u32) -> Option<(&'static str, &'static str)> {
+        self.tables().into_iter().find_map(|table| {
+            let advice = table.window.idle(table.acts, ticks);
+            advice.map(|advice| (table.name, advice))
+        })
+    }
+
+    /// The first flaw of a table with times. The advice names the key of the table.
     fn table_flaw(&self) -> Option<(&'static str, &'static str)> {
+        let mut tables = self.tables().into_iter();
+        tables.find_map(|table| table.flaw.map(|advice| (table.name, advice)))
+    }
+
+    /// The tables that may have times.
+    fn tables(&self) -> [Table; 11] {
         [
-            ("faults.airspeed", self.airspeed.flaw()),
-            ("faults.pitch", self.pitch.flaw()),
-            ("faults.air", self.air.flaw()),
-            ("faults.x", self.x.flaw()),
-            ("faults.z", self.z.flaw()),
-            ("faults.position", self.position.flaw()),
-            ("faults.scan", self.scan.flaw()),
-            ("faults.elevator", self.elevator.flaw()),
-            ("faults.thrust", self.thrust.flaw()),
-            ("faults.link", self.link.flaw()),
-            ("faults.clock", self.clock.flaw()),
+            table("faults.airspeed", &self.airspeed),
+            table("faults.pitch", &self.pitch),
+            table("faults.air", &self.air),
+            table("faults.x", &self.x),
+            table("faults.z", &self.z),
+            table("faults.position", &self.position),
+            table("faults.scan", &self.scan),
+            table("faults.elevator", &self.elevator),
+            table("faults.thrust", &self.thrust),
+            table("faults.link", &self.link),
+            table("faults.clock", &self.clock),
         ]
-        .into_iter()
-        .find_map(|(table, flaw)| flaw.map(|advice| (table, advice)))
+    }
+}
+
+/// What a table with times says.
+struct Table {
+    name: &'static str,
+    absent: bool,
+    acts: bool,
+    window: Window,
+    flaw: Option<&'static str>,
+}
+
+fn table(name: &'static str, fault: &impl Timed) -> Table {
+    Table {
+        name,
+        absent: is_absent(fault),
+        acts: !is_absent(&fault.timeless()),
+        window: fault.window(),
+        flaw: fault.flaw(),
     }
 }
 
@@ -197,5 +216,45 @@ mod tests {
             faults.flaw().map(|flaw| flaw.0),
             Some("faults.actuators.thrust_lag")
         );
+    }
+    /// What a flight of 20 s does not show is refused: times without a fault, and times that it does not reach.
+    #[test]
+    fn a_fault_that_cannot_act_is_named() {
+        let of = |table: &str| -> Faults { toml::from_str(table).unwrap() };
+        assert_eq!(Faults::default().idle(2000), None);
+        for (table, name, advice) in [
+            ("[scan]\nfrom = 5.0", "faults.scan", "nothing fails"),
+            (
+                "[air]\nuntil = 5.0\nmissing = false",
+                "faults.air",
+                "nothing",
+            ),
+            ("[clock]\nfrom = 5.0\nstart = 9", "faults.clock", "nothing"),
+            (
+                "[z]\nfrom = 20.0\nbias = 1.0",
+                "faults.z",
+                "it begins after",
+            ),
+            (
+                "[link]\nfrom = 30.0\nuntil = 50.0\nsilent = true",
+                "faults.link",
+                "it begins after",
+            ),
+            (
+                "[pitch]\nfrom = 5.001\nuntil = 5.002\nfrozen = true",
+                "faults.pitch",
+                "it acts in no tick",
+            ),
+        ] {
+            let (found, why) = of(table).idle(2000).unwrap();
+            assert!(found == name && why.starts_with(advice), "{found}: {why}");
+        }
+        for table in [
+            "[scan]\nfrom = 19.99\nshow = \"zeros\"",
+            "[thrust]\nscale = 0.0",
+            "[clock]\nstart = 9",
+        ] {
+            assert_eq!(of(table).idle(2000), None, "{table}");
+        }
     }
 }

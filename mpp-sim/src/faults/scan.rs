@@ -1,7 +1,7 @@
 //! Faults of whole scans: a lidar that shows something else, and scans that do not come or come late.
 
 use super::delivery::{Delivery, DeliveryFault};
-use super::window::Window;
+use super::window::{Timed, Window};
 use hil_protocol::LidarScan;
 use serde::{Deserialize, Serialize};
 
@@ -44,11 +44,28 @@ pub struct ScanFault {
     pub one_late: bool,
 }
 
-impl ScanFault {
-    pub(super) fn window(&self) -> Window {
+impl Timed for ScanFault {
+    fn window(&self) -> Window {
         self.delivery().window()
     }
 
+    fn timeless(&self) -> Self {
+        Self {
+            from: None,
+            until: None,
+            ..*self
+        }
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let turned = self.rotation_deg.unwrap_or(0.0);
+        let flaw = (!(-180.0..=180.0).contains(&turned))
+            .then_some("give a `rotation_deg` of -180 to 180 deg");
+        self.delivery().flaw().or(flaw)
+    }
+}
+
+impl ScanFault {
     fn delivery(&self) -> DeliveryFault {
         DeliveryFault {
             from: self.from,
@@ -57,14 +74,6 @@ impl ScanFault {
             delay_ms: self.delay_ms,
             rate_hz: None,
         }
-    }
-
-    /// What is wrong with the table.
-    pub(super) fn flaw(&self) -> Option<&'static str> {
-        let turned = self.rotation_deg.unwrap_or(0.0);
-        let flaw = (!(-180.0..=180.0).contains(&turned))
-            .then_some("give a `rotation_deg` of -180 to 180 deg");
-        self.delivery().flaw().or(flaw)
     }
 
     /// Angle by which the lidar is turned at a tick \[rad\].

@@ -1,6 +1,6 @@
 //! Faults of one signal: a sensor that reports another value, or an actuator that gives another one.
 
-use super::window::{Window, is_absent};
+use super::window::{Timed, Window, is_absent};
 use crate::random::{self, Stream};
 use mpp_core::config::TICK_PERIOD;
 use rand_chacha::ChaCha8Rng;
@@ -37,16 +37,23 @@ pub struct SignalFault {
     pub frozen: bool,
 }
 
-impl SignalFault {
-    pub(super) fn window(&self) -> Window {
+impl Timed for SignalFault {
+    fn window(&self) -> Window {
         Window {
             from: self.from,
             until: self.until,
         }
     }
 
-    /// What is wrong with the table.
-    pub(super) fn flaw(&self) -> Option<&'static str> {
+    fn timeless(&self) -> Self {
+        Self {
+            from: None,
+            until: None,
+            ..*self
+        }
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
         let finite = |value: Option<f64>| value.is_none_or(f64::is_finite);
         let (noise, quantum) = (self.noise.unwrap_or(0.0), self.quantum.unwrap_or(1.0));
         let keys = [
@@ -65,7 +72,9 @@ impl SignalFault {
         let flaw = keys.into_iter().find(|(sound, _)| !sound);
         self.window().flaw().or(flaw.map(|(_, advice)| advice))
     }
+}
 
+impl SignalFault {
     /// The same fault of a signal whose unit is so many of this one's.
     #[must_use]
     pub fn in_units_of(self, unit: f64) -> Self {

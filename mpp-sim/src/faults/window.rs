@@ -2,6 +2,18 @@
 
 use mpp_core::config::TICK_PERIOD;
 
+/// A table of a fault with times.
+pub(super) trait Timed: Default + PartialEq {
+    /// The times at which the fault acts.
+    fn window(&self) -> Window;
+
+    /// The table without its times: what fails at them.
+    fn timeless(&self) -> Self;
+
+    /// What is wrong with the table.
+    fn flaw(&self) -> Option<&'static str>;
+}
+
 /// The ticks at which a fault acts, by the keys `from` and `until` of its table \[s\]. Without them it acts
 /// during the whole flight.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +31,24 @@ impl Window {
     /// Whether the fault acts at a tick.
     pub(super) fn holds(&self, tick: u32) -> bool {
         tick >= self.first() && self.until.is_none_or(|until| tick < whole_ticks(until))
+    }
+
+    /// What keeps a fault that `acts` at these times from it in a flight of so many ticks.
+    pub(super) fn idle(&self, acts: bool, ticks: u32) -> Option<&'static str> {
+        let given = self.from.is_some() || self.until.is_some();
+        let first = self.first();
+        if given && !acts {
+            return Some(
+                "nothing fails from `from` until `until`: give what fails, or leave the table out",
+            );
+        }
+        if acts && first >= ticks {
+            return Some(
+                "it begins after the flight: give an earlier `from`, or a longer `duration`",
+            );
+        }
+        let empty = acts && !self.holds(first);
+        empty.then_some("it acts in no tick of 0.01 s: give a later `until`")
     }
 
     /// What is wrong with the two keys.

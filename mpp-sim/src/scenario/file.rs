@@ -138,6 +138,7 @@ impl ScenarioFile {
             (None, Preset::Flight) => aircraft.units().length,
             (None, Preset::Reference | Preset::Paper) => 1.0,
         };
+        check_world_scale(world_scale)?;
         let usual = f64::from(base.ticks / TICKS_PER_SECOND) * world_scale.sqrt();
         let scenario = Scenario {
             obstacles: self
@@ -169,6 +170,9 @@ impl ScenarioFile {
         };
         self.field.check().map_err(ScenarioError::Field)?;
         check(&scenario)?;
+        if let Some((key, advice)) = scenario.faults.idle(scenario.ticks) {
+            return Err(ScenarioError::Value(key, advice.to_owned()));
+        }
         let oracle = self.oracle.unwrap_or(false);
         let advice = "only preset flight has an oracle";
         ensure(!oracle || preset == Preset::Flight, "oracle", advice)?;
@@ -214,11 +218,16 @@ fn latency_ticks(latency_ms: u32, replan_ticks: u32) -> Result<u32, ScenarioErro
     Ok(ticks)
 }
 
+/// Whether lengths can be scaled so. The duration depends on it, so it is checked first.
+fn check_world_scale(scale: f64) -> Result<(), ScenarioError> {
+    let sound = (1e-3..=1e3).contains(&scale);
+    ensure(sound, "world_scale", "give 0.001 to 1000")
+}
+
 /// Whether a scenario's values, its times apart, keep to the limits.
 pub(super) fn check(scenario: &Scenario) -> Result<(), ScenarioError> {
     let air_data = &scenario.air_data;
-    let scale = (1e-3..=1e3).contains(&scenario.world_scale);
-    ensure(scale, "world_scale", "give 0.001 to 1000")?;
+    check_world_scale(scenario.world_scale)?;
     ensure(
         scenario.obstacles <= MAX_OBSTACLES,
         "obstacles",

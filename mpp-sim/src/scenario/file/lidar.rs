@@ -3,6 +3,7 @@
 use crate::file_error::{ScenarioError, ensure};
 use crate::lidar::{LidarConfig, LidarRule};
 use mpp_core::config::MAX_BEAMS;
+use mpp_core::settings::Setting;
 use serde::{Deserialize, Serialize};
 
 /// The lidar's keys. An absent key takes the preset's value.
@@ -80,8 +81,10 @@ pub(super) fn check(lidar: &LidarConfig) -> Result<(), ScenarioError> {
         "lidar.field_of_view_deg",
         "give more than 0 and at most 360 deg",
     )?;
-    let range = lidar.range_max > 0.0 && lidar.range_max.is_finite();
-    ensure(range, "lidar.range_max", "give a range above 0 m")?;
+    let [least, most] = Setting::Sight.range();
+    let range = lidar.range_max >= least && lidar.farthest() <= most;
+    let advice = format!("give {least} to {most} m, the core's bounds");
+    ensure(range, "lidar.range_max", advice)?;
     let error = lidar.range_error >= 0.0 && lidar.range_error.is_finite();
     ensure(error, "lidar.range_error", "give 0 or more")
 }

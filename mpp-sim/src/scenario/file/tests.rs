@@ -92,6 +92,9 @@ fn nonsense_is_refused_by_key() {
         ("duration = 2.005", "duration"),
         ("duration = 3600.01", "duration"),
         ("duration = nan", "duration"),
+        ("world_scale = 0.0", "world_scale"),
+        ("world_scale = nan", "world_scale"),
+        ("world_scale = 1e10", "world_scale"),
         ("obstacles = 1001", "obstacles"),
         ("paths = 51", "paths"),
         ("slices_per_tick = 0", "slices_per_tick"),
@@ -102,6 +105,9 @@ fn nonsense_is_refused_by_key() {
             "lidar.field_of_view_deg",
         ),
         ("[lidar]\nrange_max = -1.0", "lidar.range_max"),
+        ("[lidar]\nrange_max = 0.9", "lidar.range_max"),
+        ("[lidar]\nrange_max = 10000.1", "lidar.range_max"),
+        ("[lidar]\nrange_max = nan", "lidar.range_max"),
         ("[lidar]\nrange_error = -0.1", "lidar.range_error"),
         (
             "[air_data]\nairspeed_sigma = inf",
@@ -191,6 +197,27 @@ fn a_bad_table_of_a_fault_is_refused_by_table_and_key() {
         assert!(error.starts_with(&begin), "{error}");
         assert!(error.contains(&format!("`{key}`")), "{error}");
     }
+}
+
+#[test]
+fn a_fault_that_the_flight_does_not_reach_is_refused() {
+    let late = "[faults.scan]\nfrom = 30.0\nuntil = 50.0\nmissing = true";
+    let error = refused(late);
+    assert!(
+        error.starts_with("faults.scan: it begins after the flight"),
+        "{error}"
+    );
+    assert!(parse(&format!("duration = 40\n{late}")).is_ok());
+    let error = refused("[faults.scan]\nfrom = 5.0");
+    assert!(error.starts_with("faults.scan: nothing fails"), "{error}");
+}
+
+#[test]
+fn a_lidars_file_with_a_range_that_the_core_refuses_is_named() {
+    assert!(LidarTable::parse("my.toml", "range_max = 10000.0").is_ok());
+    let error = LidarTable::parse("my.toml", "range_max = 0.5").unwrap_err();
+    let expected = "my.toml: lidar.range_max: give 1 to 10000 m, the core's bounds";
+    assert_eq!(error.to_string(), expected);
 }
 
 /// A second file changes what it names and keeps the rest, also within a table.
