@@ -21,7 +21,7 @@ use crate::sensors::Measurement;
 use crate::world::World;
 pub use error::FlyError;
 use exchange::Exchange;
-use hil_protocol::{ControlMode, HealthReport, PlanReport, SensorStates};
+use hil_protocol::{ControlMode, HealthReport, LidarScan, PlanReport, SensorStates};
 use judge::Judge;
 use mpp_core::estimate::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
@@ -80,6 +80,16 @@ pub fn fly_in(
     let mut flight = Flight::begin(world, scenario, link, ground)?;
     while flight.tick(world, link, ground)? {}
     Ok(flight.log(world))
+}
+
+/// What the aircraft measured in a tick, and the core's answer.
+struct Exchanged {
+    /// The state before the tick.
+    before: VehicleState,
+    measured: Measurement,
+    /// The scan of this tick, unless the link lost it.
+    seen: Option<LidarScan>,
+    answer: Answer,
 }
 
 /// A flight that the caller flies tick by tick. World, link and ground are the same in each call.
@@ -145,10 +155,36 @@ impl Flight {
         link: &mut dyn Link,
         ground: &mut dyn Ground,
     ) -> Result<bool, FlyError> {
-        let flown = self.judge.flown;
-        if self.has_ended() {
+        if self.has_ended() || !self.obey(world, link, ground)? {
             return Ok(false);
         }
+        let exchanged = self.exchange(world, link)?;
+        let (wind, answer) = (world.plant.wind(), &exchanged.answer);
+        let applied = match world.plant.step(control(answer)) {
+            // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
+            Err(PlantError::NonFiniteState) => {
+                self.judge.end = Some(Outcome::FlightPathLimit);
+                return Ok(false);
+            }
+            stepped => stepped.map_err(FlyError::Plant)?,
+        };
+        let tick = Tick {
+            applied,
+            wind,
+            ..logged(self.flown(), &exchanged.before, exchanged.measured, answer)
+        };
+        self.watch(&tick, &exchanged, world, ground);
+        Ok(true)
+    }
+
+    /// Before the tick: moves the field and carries out the ground's orders. Returns whether the tick is flown.
+    fn obey(
+        &mut self,
+        world: &mut World,
+        link: &mut dyn Link,
+        ground: &mut dyn Ground,
+    ) -> Result<bool, FlyError> {
+        let flown = self.flown();
         self.told.tick = flown;
         let mut session = Session {
             told: &mut self.told,
@@ -158,12 +194,19 @@ impl Flight {
         self.steering.obey(&mut session, world, ground)?;
         if self.steering.terminated {
             self.judge.end = Some(Outcome::Terminated);
-            return Ok(false);
-        }
-        if ground.interrupts(flown) {
+        } else if ground.interrupts(flown) {
             self.judge.end = Some(Outcome::Interrupted);
-            return Ok(false);
         }
+        Ok(self.judge.end.is_none())
+    }
+
+    /// Measures, scans, and gets the core's command.
+    fn exchange(&mut self, world: &mut World, link: &mut dyn Link) -> Result<Exchanged, FlyError> {
+        let flown = self.flown();
+        let mut session = Session {
+            told: &mut self.told,
+            link,
+        };
         let World {
             plant,
             field,
@@ -187,24 +230,27 @@ impl Flight {
         let scan = sensing.scan(flown, shown);
         let mut answer = self.exchange.tick(&mut session, passage, scan, frame)?;
         self.steering.limit(&mut answer.command);
-        let wind = plant.wind();
-        let applied = match plant.step(control(&answer)) {
-            // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
-            Err(PlantError::NonFiniteState) => {
-                self.judge.end = Some(Outcome::FlightPathLimit);
-                return Ok(false);
-            }
-            stepped => stepped.map_err(FlyError::Plant)?,
-        };
-        let tick = Tick {
-            applied,
-            wind,
-            ..logged(flown, &before, measured, &answer)
-        };
+        Ok(Exchanged {
+            before,
+            measured,
+            seen,
+            answer,
+        })
+    }
+
+    /// After the tick: judge, ground and log take it.
+    fn watch(
+        &mut self,
+        tick: &Tick,
+        exchanged: &Exchanged,
+        world: &World,
+        ground: &mut dyn Ground,
+    ) {
+        let answer = &exchanged.answer;
         let plan = answer.plan.as_ref().map(plan_entry);
         let moment = Moment {
-            tick: &tick,
-            scan: seen.as_ref(),
+            tick,
+            scan: exchanged.seen.as_ref(),
             plan: plan.as_ref(),
             report: answer.plan.as_ref(),
             trajectory: answer.trajectory.as_ref(),
@@ -212,18 +258,18 @@ impl Flight {
             health: answer.health.as_ref(),
             rejections: &self.told.rejections,
         };
+        let flown = self.judge.flown;
         let holds_trim = answer.command.mode == ControlMode::TrimHold;
-        self.judge
-            .watch(&moment, field.as_ref(), plant.state(), holds_trim);
+        let (field, after) = (world.field.as_ref(), world.plant.state());
+        self.judge.watch(&moment, field, after, holds_trim);
         ground.watch(&moment);
         self.log.note_sensors(&self.trust, &moment.sensors, flown);
         self.trust = moment.sensors;
         if let Some(health) = moment.health {
             self.log.health = counters(health);
         }
-        self.log.ticks.push(&tick);
+        self.log.ticks.push(tick);
         self.log.plans.extend(plan);
-        Ok(true)
     }
 
     /// Ticks flown.
