@@ -4,6 +4,7 @@ use super::faults::{FaultCampaign, FaultJob};
 use super::grid::Cell;
 use super::report::quantile;
 use super::stats::paired;
+use mpp_sim::generator::GeneratorName;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -36,10 +37,19 @@ pub struct FaultReport {
 pub struct FaultRow {
     /// Name of the fault.
     pub name: &'static str,
+    /// Name of the field file; not written without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub field: Option<String>,
+    /// Generator of the random obstacles; not written if it is the paper's.
+    #[serde(skip_serializing_if = "GeneratorName::is_papers")]
+    pub generator: GeneratorName,
     /// Number of random obstacles in the field.
     pub obstacles: usize,
     /// Replanning rate \[Hz\].
     pub replan_hz: f64,
+    /// The kind of the fields, for the table.
+    #[serde(skip)]
+    kind: String,
     /// Number of pairs.
     pub pairs: u32,
     /// Number of strict successes without the fault.
@@ -119,8 +129,11 @@ impl FaultRow {
         let flags = || faulty.iter().filter_map(|flown| flown.flagged);
         Self {
             name,
+            field: cell.field.clone(),
+            generator: cell.generator,
             obstacles: cell.obstacles,
             replan_hz: cell.replan_hz,
+            kind: cell.kind(),
             pairs,
             clean: count(|clean, _| clean),
             faulty: count(|_, faulty| faulty),
@@ -162,10 +175,23 @@ fn listed(told: &Told) -> String {
 
 impl fmt::Display for FaultReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let kinds: BTreeSet<&str> = self.faults.iter().map(|row| row.kind.as_str()).collect();
+        let wide = kinds
+            .iter()
+            .map(|kind| kind.len())
+            .max()
+            .unwrap_or(0)
+            .max(5);
+        // Fields of one kind need no column.
+        let column = |kind: &str| match kinds.len() {
+            0 | 1 => String::new(),
+            _ => format!("{kind:<wide$} "),
+        };
         writeln!(
             f,
-            "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  told / without fault",
+            "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  told / without fault",
             "fault",
+            column("field"),
             "obstacles",
             "Hz",
             "pairs",
@@ -190,8 +216,9 @@ impl fmt::Display for FaultReport {
             };
             writeln!(
                 f,
-                "{:<18} {:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  {} / {}",
+                "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  {} / {}",
                 row.name,
+                column(&row.kind),
                 row.obstacles,
                 row.replan_hz,
                 row.pairs,
@@ -209,5 +236,69 @@ impl fmt::Display for FaultReport {
             )?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::grid::Lists;
+    use super::super::{FaultCampaign, NamedFault};
+    use super::*;
+    use mpp_sim::scenario::ScenarioFile;
+
+    /// The report of flights that all came to the same end.
+    fn report(generators: &[GeneratorName]) -> FaultReport {
+        let lists = Lists {
+            generator: generators.to_vec(),
+            obstacles: vec![20],
+            ..Lists::default()
+        };
+        let faults = NamedFault::of(&["pitch-bias".to_owned()]).unwrap();
+        let campaign = FaultCampaign::new(&ScenarioFile::default(), &lists, 2, Some(1), &faults);
+        let campaign = campaign.unwrap();
+        let end = Flown {
+            strict: true,
+            known_collision: false,
+            flagged: None,
+            told: BTreeSet::new(),
+        };
+        let flown: Vec<_> = campaign
+            .jobs()
+            .into_iter()
+            .map(|job| (job, end.clone()))
+            .collect();
+        FaultReport::new(&campaign, &flown)
+    }
+
+    #[test]
+    fn rows_of_several_kinds_of_fields_say_which_they_are_of() {
+        let both = report(&[GeneratorName::Paper, GeneratorName::Walls]);
+        let json = serde_json::to_value(&both).unwrap();
+        assert_eq!(json["faults"][0].get("generator"), None);
+        assert_eq!(json["faults"][1]["generator"], "walls");
+        assert_eq!(json["faults"][1].get("field"), None);
+        let table = both.to_string();
+        let lines: Vec<&str> = table.lines().collect();
+        assert!(
+            lines[0].starts_with("fault              field obstacles"),
+            "{table}"
+        );
+        assert!(
+            lines[2].starts_with("pitch-bias         walls        20"),
+            "{table}"
+        );
+        // One kind needs no column.
+        let one = report(&[GeneratorName::Walls]).to_string();
+        assert!(
+            one.starts_with("fault              obstacles   Hz"),
+            "{one}"
+        );
+        assert!(
+            one.lines()
+                .nth(1)
+                .unwrap()
+                .starts_with("pitch-bias                20    1"),
+            "{one}"
+        );
     }
 }

@@ -132,13 +132,13 @@ pub struct FaultCampaign {
     pub(super) faults: Vec<Variant>,
 }
 
-/// Obstacles and replanning rate \[Hz\] of the pairs if the lists name none.
+/// Obstacles and replanning rate \[Hz\] of the pairs if neither lists nor scenario say what is flown through.
 const DEFAULT_PAIRS: [(usize, f64); 2] = [(20, 1.0), (40, 4.0)];
 
 impl FaultCampaign {
-    /// A campaign with `trials` pairs for each fault and cell. The cells are those of the lists, or 20
-    /// obstacles at 1 Hz and 40 obstacles at 4 Hz. A fault whose file names obstacles or a rate has these in
-    /// each cell.
+    /// A campaign with `trials` pairs for each fault and cell. The cells are those of lists and scenario. If these
+    /// name no obstacles, no rate, no scene and no field, the cells are 20 obstacles at 1 Hz and 40 obstacles at
+    /// 4 Hz. A fault whose file names obstacles or a rate has these in each cell.
     ///
     /// # Errors
     /// [`ScenarioError`] when the scenario, a fault or a cell is invalid.
@@ -149,7 +149,7 @@ impl FaultCampaign {
         seed: Option<u64>,
         faults: &[NamedFault],
     ) -> Result<Self, ScenarioError> {
-        let given = !lists.obstacles.is_empty() || !lists.replan_hz.is_empty();
+        let given = says_what_is_flown(scenario, lists);
         let clean = Campaign::new(scenario.clone(), lists.clone(), trials, seed)?;
         let mut cells = clean.cells();
         cells.retain(|cell| !cell.oracle);
@@ -187,7 +187,8 @@ impl FaultCampaign {
             };
             for cell in &variant.cells {
                 clean.scenario(cell, clean.seed)?;
-                variant.campaign.scenario(cell, clean.seed)?;
+                let faulty = variant.campaign.scenario(cell, clean.seed);
+                faulty.map_err(|error| ScenarioError::File(name.clone(), Box::new(error)))?;
             }
             Ok(variant)
         };
@@ -250,9 +251,19 @@ impl FaultCampaign {
     }
 }
 
+/// Whether lists or scenario name what is flown through, or how often it is planned.
+fn says_what_is_flown(scenario: &ScenarioFile, lists: &Lists) -> bool {
+    let listed = !(lists.obstacles.is_empty() && lists.replan_hz.is_empty());
+    let placed = !(lists.field.is_empty() && scenario.field.is_empty());
+    let named = scenario.obstacles.is_some() || scenario.replan_hz.is_some();
+    listed || placed || named || scenario.scene.is_some()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::campaign::NamedField;
+    use mpp_sim::field::FieldFile;
 
     fn campaign(names: &[&str], lists: &Lists) -> FaultCampaign {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
@@ -301,6 +312,45 @@ mod tests {
         let dense = campaign(&["elevator-rate-160"], &lists).jobs();
         assert_eq!(dense.len(), 6);
         assert!(dense.iter().all(|job| job.cell.obstacles == 160));
+    }
+
+    #[test]
+    fn the_cells_are_those_of_the_scenario_and_a_scene_or_a_field_stands_alone() {
+        let cells = |scenario: &str, lists: &Lists| -> Vec<(usize, f64)> {
+            let scenario = ScenarioFile::parse("", scenario).unwrap();
+            let faults = NamedFault::of(&["pitch-bias".to_owned()]).unwrap();
+            let campaign = FaultCampaign::new(&scenario, lists, 1, None, &faults).unwrap();
+            let cells = campaign.faults[0].cells.iter();
+            cells.map(|cell| (cell.obstacles, cell.replan_hz)).collect()
+        };
+        let circle = "circle]]\nx = 120.0\nz = 50.0\nradius = 2.0";
+        let none = Lists::default();
+        assert_eq!(cells("seed = 3", &none), DEFAULT_PAIRS);
+        assert_eq!(cells("obstacles = 7", &none), [(7, 1.0)]);
+        assert_eq!(cells("replan_hz = 2.0", &none), [(20, 2.0)]);
+        assert_eq!(cells("scene = \"flytrap\"", &none), [(0, 1.0)]);
+        assert_eq!(cells(&format!("[[field.{circle}"), &none), [(0, 1.0)]);
+        let content = FieldFile::parse("a.toml", &format!("[[{circle}")).unwrap();
+        let name = "a.toml".to_owned();
+        let field = Lists {
+            field: vec![NamedField { name, content }],
+            ..Lists::default()
+        };
+        assert_eq!(cells("", &field), [(0, 1.0)]);
+        let both = Lists {
+            obstacles: vec![5],
+            ..field
+        };
+        assert_eq!(cells("obstacles = 7", &both), [(5, 1.0)]);
+    }
+
+    #[test]
+    fn a_fault_that_the_flight_does_not_reach_is_named() {
+        let scenario = ScenarioFile::parse("", "duration = 4").unwrap();
+        let faults = NamedFault::of(&["lidar-zeros".to_owned()]).unwrap();
+        let error = FaultCampaign::new(&scenario, &Lists::default(), 1, None, &faults).unwrap_err();
+        let expected = "docs/scenarios/faults/lidar-zeros.toml: faults.scan: it begins after";
+        assert!(error.to_string().starts_with(expected), "{error}");
     }
 
     #[test]
