@@ -15,6 +15,8 @@ use std::path::{Path, PathBuf};
 pub enum FileError {
     /// The file cannot be read.
     Read(PathBuf, io::Error),
+    /// There is no aircraft with this name, and no file that can be read.
+    Aircraft(String, io::Error),
     /// The file cannot be written.
     Write(PathBuf, io::Error),
     /// The file is no scenario; the error names the file.
@@ -35,6 +37,13 @@ impl fmt::Display for FileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Read(path, error) => write!(f, "cannot read {}: {error}", path.display()),
+            Self::Aircraft(name, error) => {
+                let known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ");
+                write!(
+                    f,
+                    "there is no aircraft `{name}`, and no such file can be read ({error}): give {known} or a file"
+                )
+            }
             Self::Write(path, error) => write!(f, "cannot write {}: {error}", path.display()),
             Self::Scenario(error) => write!(f, "{error}"),
             Self::Field(error) => write!(f, "{error}"),
@@ -57,7 +66,7 @@ impl fmt::Display for FileError {
 impl std::error::Error for FileError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            Self::Read(_, error) | Self::Write(_, error) => Some(error),
+            Self::Read(_, error) | Self::Aircraft(_, error) | Self::Write(_, error) => Some(error),
             Self::Scenario(error) => Some(error),
             Self::Field(error) => Some(error),
             Self::Log(_, error) => Some(error),
@@ -136,12 +145,13 @@ pub fn read_scenario(path: &Path) -> Result<ScenarioFile, FileError> {
 /// Reads an aircraft: one that comes with the project, by its name, or a file. Checks that it can be flown.
 ///
 /// # Errors
-/// [`FileError::Read`] or [`FileError::Scenario`].
+/// [`FileError::Aircraft`] or [`FileError::Scenario`].
 pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
     if let Some(known) = AircraftFile::known(name_or_path) {
         return Ok(known);
     }
-    let text = read(Path::new(name_or_path), MOST_WRITTEN)?;
+    let text = read_text(Path::new(name_or_path), MOST_WRITTEN)
+        .map_err(|error| FileError::Aircraft(name_or_path.to_owned(), error))?;
     let file = AircraftFile::parse(name_or_path, &text).map_err(FileError::Scenario)?;
     let in_file = |error| ScenarioError::File(name_or_path.to_owned(), Box::new(error));
     AircraftModel::new(file.clone()).map_err(|error| FileError::Scenario(in_file(error)))?;
@@ -181,23 +191,29 @@ pub fn write_field(path: &Path, field: &FieldFile) -> Result<(), FileError> {
 /// # Errors
 /// [`FileError::Read`] or [`FileError::Log`].
 pub fn read_log(path: &Path) -> Result<FlightLog, FileError> {
-    let text = read(path, MOST_RECORDED)?;
-    FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
+    parse_log(path, &read_recorded(path)?)
 }
 
-/// Whether a file is one of a campaign's rows, by how it begins; else it may be a flight's log.
+/// Reads the text of a log or of a row file. A pipe gives it once only.
 ///
 /// # Errors
 /// [`FileError::Read`].
-pub fn is_row_file(path: &Path) -> Result<bool, FileError> {
-    const START: &[u8] = b"{\"rows\":";
-    let failed = |error| FileError::Read(path.to_owned(), error);
-    let mut start = Vec::new();
-    let file = std::fs::File::open(path).map_err(failed)?;
-    file.take(START.len() as u64)
-        .read_to_end(&mut start)
-        .map_err(failed)?;
-    Ok(start == START)
+pub fn read_recorded(path: &Path) -> Result<String, FileError> {
+    read(path, MOST_RECORDED)
+}
+
+/// The flight's log that a text of this file holds.
+///
+/// # Errors
+/// [`FileError::Log`].
+pub fn parse_log(path: &Path, text: &str) -> Result<FlightLog, FileError> {
+    FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
+}
+
+/// Whether a text is that of a campaign's row file, by how it begins; else it may be a flight's log.
+#[must_use]
+pub fn is_row_file(text: &str) -> bool {
+    text.starts_with("{\"rows\":")
 }
 
 /// Writes a flight's log: exactly the bytes that are hashed.

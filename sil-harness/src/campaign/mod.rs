@@ -9,7 +9,7 @@ mod store;
 
 pub use engine::{decide_all, header, run, run_faults};
 pub use error::CampaignError;
-pub use store::{RowFile, Sheet, read};
+pub use store::{RowFile, Sheet, parse_rows, read};
 
 #[cfg(test)]
 mod tests;

@@ -156,8 +156,16 @@ fn known(name: &str, bytes: &[u8], header: &Header) -> Result<(usize, Vec<Row>),
 /// [`CampaignError`].
 pub fn read(path: &Path) -> Result<(Header, Vec<Row>), CampaignError> {
     let name = path.display().to_string();
-    let text =
-        read_text(path, MOST_RECORDED).map_err(|error| CampaignError::File(name.clone(), error))?;
+    let text = read_text(path, MOST_RECORDED).map_err(|error| CampaignError::File(name, error))?;
+    parse_rows(path, &text)
+}
+
+/// The rows that a text of this file holds. An incomplete last line is left out.
+///
+/// # Errors
+/// [`CampaignError`].
+pub fn parse_rows(path: &Path, text: &str) -> Result<(Header, Vec<Row>), CampaignError> {
+    let name = path.display().to_string();
     let whole = text.rfind('\n').map_or(0, |end| end + 1);
     let found = parse(&name, &text[..whole])?;
     found.ok_or_else(|| CampaignError::Line(name, 1, "no header: this is no row file".to_owned()))

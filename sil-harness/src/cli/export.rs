@@ -1,8 +1,8 @@
 //! `export`: makes tables of a flight's log or a campaign's rows, for other programs.
 
 use super::answer::{FAILURE, Failure, USAGE, data_bytes, talk};
-use crate::campaign::read as read_rows;
-use crate::files::{is_row_file, read_log, write_whole};
+use crate::campaign::parse_rows;
+use crate::files::{is_row_file, parse_log, read_recorded, write_whole};
 use clap::ValueEnum;
 use mpp_export::schema::{PLANS, REJECTIONS, SENSORS, Schema, TICKS};
 use mpp_export::table::Table;
@@ -78,7 +78,8 @@ pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
 
 fn bytes(args: &ExportArgs) -> Result<Vec<u8>, Failure> {
     let usage = |why: &str| Failure::new(USAGE, format!("{}: {why}", args.file.display()));
-    if is_row_file(&args.file).map_err(|error| Failure::new(USAGE, error))? {
+    let text = read_recorded(&args.file).map_err(|error| Failure::new(USAGE, error))?;
+    if is_row_file(&text) {
         if args.table.is_some() {
             return Err(usage("a row file has one table: leave --table out"));
         }
@@ -87,9 +88,9 @@ fn bytes(args: &ExportArgs) -> Result<Vec<u8>, Failure> {
                 "a row file has no times: take --format csv or parquet",
             ));
         }
-        return of_table(&row_table(&args.file)?, args.format);
+        return of_table(&row_table(&args.file, &text)?, args.format);
     }
-    let log = read_log(&args.file).map_err(|error| Failure::new(USAGE, error))?;
+    let log = parse_log(&args.file, &text).map_err(|error| Failure::new(USAGE, error))?;
     match (args.format, args.table) {
         (Format::Mcap, Some(_)) => Err(usage("MCAP holds every table: leave --table out")),
         (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),
@@ -101,8 +102,8 @@ fn bytes(args: &ExportArgs) -> Result<Vec<u8>, Failure> {
     }
 }
 
-fn row_table(file: &Path) -> Result<Table, Failure> {
-    let (_, found) = read_rows(file).map_err(|error| Failure::new(USAGE, error))?;
+fn row_table(file: &Path, text: &str) -> Result<Table, Failure> {
+    let (_, found) = parse_rows(file, text).map_err(|error| Failure::new(USAGE, error))?;
     rows::table(&found).map_err(|error| failed(&error))
 }
 

@@ -36,6 +36,34 @@ fn csv_goes_to_the_standard_output_or_into_a_file() {
     std::fs::remove_dir_all(out).unwrap();
 }
 
+/// A pipe gives its bytes once only.
+#[cfg(unix)]
+#[test]
+fn a_log_and_rows_come_through_a_pipe() {
+    let (_, out) = run("piped", &["fly", "--duration", "1"]);
+    let log = out.join("flight-seed1-1s.json");
+    let rows = out.join("rows.jsonl");
+    let campaign = "campaign --trials 1 --duration 1 --out";
+    let mut campaign_of = harness();
+    let flown = campaign_of.args(campaign.split(' ')).arg(&rows).output();
+    assert!(flown.unwrap().status.success());
+    for file in [&log, &rows] {
+        let mut cat = std::process::Command::new("cat");
+        let mut cat = cat
+            .arg(file)
+            .stdout(std::process::Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut harness = harness();
+        let piped = harness.args(["export", "/dev/stdin"]);
+        let piped = piped.stdin(cat.stdout.take().unwrap()).output().unwrap();
+        cat.wait().unwrap();
+        assert!(piped.status.success(), "{piped:?}");
+        assert_eq!(piped.stdout, export(&[], file).stdout);
+    }
+    std::fs::remove_dir_all(out).unwrap();
+}
+
 #[test]
 fn what_cannot_be_exported_is_refused_with_what_to_do() {
     let (_, out) = run("no-export", &["fly", "--duration", "1"]);
