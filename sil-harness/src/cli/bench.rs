@@ -35,9 +35,9 @@ enum What {
 struct CycleArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
-    /// Number of obstacles in the recorded flights
-    #[arg(long, default_value_t = 40)]
-    obstacles: usize,
+    /// Number of random obstacles in the recorded flights [default: the scenario's, else 40]
+    #[arg(long)]
+    obstacles: Option<usize>,
     /// Number of candidate paths of a cycle [default: 25]
     #[arg(long)]
     paths: Option<u16>,
@@ -94,7 +94,11 @@ pub(super) fn run(args: &BenchArgs) -> Result<u8, Failure> {
 
 fn run_cycle_bench(args: &CycleArgs) -> Result<u8, Failure> {
     let mut file = args.scenario.file()?;
-    file.obstacles = Some(args.obstacles);
+    replace(&mut file.obstacles, args.obstacles);
+    // A scene or a field of the scenario stands alone, as in a flight.
+    if file.scene.is_none() && file.field.is_empty() {
+        file.obstacles.get_or_insert(40);
+    }
     replace(&mut file.paths, args.paths);
     replace(&mut file.replan_hz, args.replan_hz);
     replace(&mut file.seed, args.seed);
