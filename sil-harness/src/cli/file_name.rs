@@ -1,13 +1,15 @@
-//! What the files of a flight are called: two flights that differ in their scenario never share one.
+//! What the files of a flight are called: two flights that differ in their scenario or in their orders never share one.
 
 use mpp_sim::field::FieldFile;
 use mpp_sim::generator::Generator;
+use mpp_sim::orders::OrderEntry;
 use mpp_sim::scenario::{Scenario, TICK_MS, TICKS_PER_SECOND};
 
 /// Preset and seed, then whatever differs from that preset's flight: oracle, known map, scene, generator, `o` obstacles, `p` paths,
 /// replanning rate, latency, slices per tick, duration, aircraft; what has no short name (lidar,
-/// sensors, faults, fields, parameters of generators, numbers of another aircraft) as a number that stands for it.
-pub(super) fn file_name(scenario: &Scenario) -> String {
+/// sensors, faults, fields, parameters of generators, numbers of another aircraft) as a number that stands for it,
+/// and so the orders that took effect, parameters among them.
+pub(super) fn file_name(scenario: &Scenario, orders: &[OrderEntry]) -> String {
     let mut usual = Scenario::new(scenario.preset, scenario.seed);
     let mut name = format!("{}-seed{}", scenario.preset, scenario.seed);
     if scenario.oracle {
@@ -61,7 +63,10 @@ pub(super) fn file_name(scenario: &Scenario) -> String {
             name += &format!("-{part}");
         }
     }
-    let (rest, usual) = (rest(scenario), rest(&usual));
+    let (mut rest, usual) = (rest(scenario), rest(&usual));
+    if !orders.is_empty() {
+        rest.extend(serde_json::to_vec(orders).unwrap_or_default());
+    }
     if rest != usual {
         name += &format!("-{:08x}", fnv(&rest));
     }
@@ -97,10 +102,15 @@ fn fnv(bytes: &[u8]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mpp_sim::orders::Order;
     use mpp_sim::scenario::ScenarioFile;
 
+    fn scenario(text: &str) -> Scenario {
+        ScenarioFile::parse("", text).unwrap().build().unwrap()
+    }
+
     fn name(text: &str) -> String {
-        file_name(&ScenarioFile::parse("", text).unwrap().build().unwrap())
+        file_name(&scenario(text), &[])
     }
 
     #[test]
@@ -129,6 +139,25 @@ mod tests {
         ] {
             assert_eq!(name(text), expected, "{text}");
         }
+    }
+
+    #[test]
+    fn a_flight_with_orders_does_not_take_the_place_of_one_without() {
+        let paths = |value, tick| {
+            let name = "MPP_PATHS".to_owned();
+            let order = Order::Parameter { name, value };
+            vec![OrderEntry { tick, order }]
+        };
+        let orders = [vec![], paths(5.0, 0), paths(9.0, 0), paths(5.0, 1)];
+        let named = |orders: &Vec<OrderEntry>| file_name(&scenario(""), orders);
+        let names: std::collections::BTreeSet<String> = orders.iter().map(named).collect();
+        assert_eq!(names.len(), orders.len(), "{names:?}");
+        assert!(
+            names
+                .iter()
+                .all(|name| name == "flight-seed1" || name.len() == "flight-seed1-01234567".len()),
+            "{names:?}"
+        );
     }
 
     #[test]

@@ -62,7 +62,7 @@ pub(super) struct FlyArgs {
     #[arg(long, help_heading = CORE)]
     link: Option<String>,
     /// Seconds to wait for a silent core over TCP [default: 10]
-    #[arg(long, help_heading = CORE, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, help_heading = CORE, value_name = "SECONDS", value_parser = seconds, requires = "link")]
     patience: Option<Duration>,
     #[command(flatten)]
     ground: GroundArgs,
@@ -152,17 +152,21 @@ impl FlyArgs {
     fn connect(&self, scenario: &Scenario) -> Result<Box<dyn Link>, Failure> {
         match self.link.as_deref() {
             None => Ok(Box::new(PipeLink::of(scenario))),
-            Some(text) => connect(text, self.patience.unwrap_or(PATIENCE)),
+            Some(text) => connect(text, self.patience),
         }
     }
 }
 
 /// Connects to a core that runs elsewhere.
-fn connect(text: &str, patience: Duration) -> Result<Box<dyn Link>, Failure> {
+fn connect(text: &str, patience: Option<Duration>) -> Result<Box<dyn Link>, Failure> {
     let failed = |error| Failure::new(LINK, error);
     match text.split_once(':') {
         Some(("tcp", address)) => Ok(Box::new(
-            TcpLink::connect(address, patience).map_err(failed)?,
+            TcpLink::connect(address, patience.unwrap_or(PATIENCE)).map_err(failed)?,
+        )),
+        Some(("fifo", _)) if patience.is_some() => Err(Failure::new(
+            USAGE,
+            "--patience: FIFOs wait as long as it takes: leave it out, or give --link tcp:HOST:PORT",
         )),
         Some(("fifo", directory)) => Ok(Box::new(
             FifoLink::open(Path::new(directory)).map_err(failed)?,
@@ -219,8 +223,10 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
     let result = fly_with(&scenario, link.as_mut(), &mut crew);
     // The files first: nothing that goes wrong at the end of a link costs the log.
-    let name = file_name(&scenario);
-    let kept = result.as_ref().ok().map(|log| keep(&args.out, &name, log));
+    let kept = result.as_ref().ok().map(|log| {
+        let name = file_name(&scenario, &log.orders);
+        keep(&args.out, &name, log)
+    });
     let interrupted = crew.ground.interrupted();
     let ended = crew.ground.end(&result);
     let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;

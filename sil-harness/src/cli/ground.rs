@@ -122,6 +122,11 @@ impl GroundArgs {
             return Err(Failure::new(USAGE, why));
         }
         if !connected && self.tlog.is_none() {
+            if self.instance != 0 {
+                let why =
+                    "--instance: nobody would see the number without --mavlink, --live or --tlog";
+                return Err(Failure::new(USAGE, why));
+            }
             return Ok(None);
         }
         let vehicle = Vehicle::new(&VehicleConfig {
@@ -157,7 +162,7 @@ impl GroundArgs {
             return Ok(usual_addresses(self.instance));
         }
         let mut peers = Vec::new();
-        for text in &self.mavlink {
+        for text in self.mavlink.iter().map(|text| text.trim()) {
             if text == "usual" {
                 peers.extend(usual_addresses(self.instance));
                 continue;
