@@ -13,6 +13,7 @@ use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::Scenario;
 use mpp_sim::witness::Witness;
 use rayon::prelude::*;
+use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
 /// Stack of a thread [bytes]. The core is built on the stack before it moves to its box.
@@ -40,7 +41,7 @@ pub fn run(
     timed: bool,
     keep: impl Fn(Row) -> Result<(), CampaignError> + Sync,
 ) -> Result<(), CampaignError> {
-    let pool = pool(threads)?;
+    let pool = pool(threads, jobs.len())?;
     pool.install(|| {
         // With `par_bridge` the flights start in order, and no flight runs on a stack of half-split
         // lists.
@@ -75,7 +76,8 @@ pub fn run_faults(
         };
         Ok((job, flown))
     };
-    pool(threads)?.install(|| campaign.jobs().into_par_iter().map(fly_one).collect())
+    let jobs = campaign.jobs();
+    pool(threads, jobs.len())?.install(|| jobs.into_par_iter().map(fly_one).collect())
 }
 
 /// Decides about the fields of a cell. `done` is called after each. The result is in the order of the seeds.
@@ -98,16 +100,23 @@ pub fn decide_all(
         Ok((seed, verdict))
     };
     let seeds: Vec<u64> = campaign.seeds().collect();
-    pool(threads)?.install(|| seeds.into_par_iter().map(decide_one).collect())
+    pool(threads, seeds.len())?.install(|| seeds.into_par_iter().map(decide_one).collect())
 }
 
-/// Threads for flights; 0 means as many as there are cores.
-fn pool(threads: usize) -> Result<rayon::ThreadPool, CampaignError> {
-    let builder = rayon::ThreadPoolBuilder::new().num_threads(threads);
+/// Threads for so many flights; 0 means as many as there are cores.
+fn pool(threads: usize, jobs: usize) -> Result<rayon::ThreadPool, CampaignError> {
+    let builder = rayon::ThreadPoolBuilder::new().num_threads(useful(threads, jobs));
     builder
         .stack_size(STACK)
         .build()
         .map_err(CampaignError::Threads)
+}
+
+/// How many of these threads have a job. Each thread takes memory for its stack, with a job or without.
+fn useful(threads: usize, jobs: usize) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = if threads == 0 { cores() } else { threads };
+    threads.min(jobs).max(1)
 }
 
 /// Flies a scenario in this process. Also gives the time for which the core worked.
@@ -155,5 +164,19 @@ impl Link for Stopwatch {
 
     fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
         self.link.receive(awaited)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_thread_is_without_a_job() {
+        assert_eq!(useful(1_000, 3), 3);
+        assert_eq!(useful(2, 3), 2);
+        assert_eq!(useful(4, 0), 1);
+        assert_eq!(useful(0, 1), 1);
+        assert!(useful(0, 1_000_000) >= 1);
     }
 }

@@ -5,7 +5,7 @@ use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{preset, seed};
+use super::values::{Item, number, preset, seed, threads};
 use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
@@ -16,6 +16,32 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
+/// The flags that say what is flown, and how it is kept. Row files say it themselves.
+const FLOWN: [&str; 22] = [
+    "scenario",
+    "scene",
+    "aircraft",
+    "world_scale",
+    "lidar",
+    "navigation",
+    "duration",
+    "field",
+    "generator",
+    "obstacles",
+    "paths",
+    "preset",
+    "replan_hz",
+    "latency_ms",
+    "slices_per_tick",
+    "oracle",
+    "trials",
+    "seed",
+    "shard",
+    "timing",
+    "out",
+    "faults",
+];
+
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = super::help::CAMPAIGN)]
 pub(super) struct CampaignArgs {
@@ -24,13 +50,13 @@ pub(super) struct CampaignArgs {
     #[command(flatten)]
     field: FieldArgs,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(clap::value_parser!(u16)))]
     pub(super) paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = preset())]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',')]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = number::<f64>())]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies. With --faults it flies with the faults
@@ -41,13 +67,14 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = RUN)]
     ceiling: bool,
     /// Fly pairs of flights without and with faults instead: the named faults, a list, or all. The cells are
-    /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless --obstacles or --replan-hz is given. Such a
-    /// campaign keeps no row file
+    /// 20 obstacles at 1 Hz and 40 obstacles at 4 Hz, unless flags or scenario name obstacles, a rate, a scene or
+    /// a field. Such a campaign keeps no row file
     #[arg(
         long,
         help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
+        value_parser = number::<String>(),
         conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
@@ -57,8 +84,8 @@ pub(super) struct CampaignArgs {
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
     #[arg(long, help_heading = RUN, value_parser = seed, allow_negative_numbers = true)]
     pub(super) seed: Option<u64>,
-    /// Number of threads; 0 takes every core
-    #[arg(long, help_heading = RUN, default_value_t = 0)]
+    /// Number of threads, at most 1024 and no more than there is work for; 0 takes every core
+    #[arg(long, help_heading = RUN, default_value_t = 0, value_parser = threads())]
     pub(super) threads: usize,
     /// Fly only the i-th of n parts, such as 2/8
     #[arg(long, help_heading = RUN, default_value = "1/1")]
@@ -70,7 +97,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = RUN)]
     timing: bool,
     /// Fly nothing; report the rows of these files, which are shards of one campaign
-    #[arg(long, help_heading = OUTPUT, value_name = "FILE", num_args = 1.., conflicts_with_all = ["out", "timing"])]
+    #[arg(long, help_heading = OUTPUT, value_name = "FILE", num_args = 1.., conflicts_with_all = FLOWN)]
     report: Vec<PathBuf>,
     /// Also print the causes of failures for each cell, the most frequent cause first; the JSON
     /// report always holds them
@@ -85,6 +112,10 @@ pub(super) struct CampaignArgs {
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     args.loudness.set();
+    if !args.report.is_empty() && !args.ceiling && args.threads > 0 {
+        let why = "--report flies nothing: leave --threads out, or give --ceiling";
+        return Err(Failure::new(USAGE, why));
+    }
     let (campaign, rows) = if args.report.is_empty() {
         flown(args)
     } else {

@@ -3,7 +3,7 @@
 
 use super::answer::{Failure, USAGE};
 use super::help::{PLANNER, WORLD};
-use super::values::{generator, navigation, scene};
+use super::values::{Item, generator, navigation, number, scene};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
 use mpp_analysis::campaign::{Lists, NamedField};
 use mpp_sim::generator::GeneratorName;
@@ -125,10 +125,10 @@ pub(super) struct FieldArgs {
     #[arg(long, help_heading = WORLD, value_name = "FILE")]
     field: Vec<PathBuf>,
     /// Generators of random obstacles, a list [default: the scenario's, else paper]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = generator())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(generator()))]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',')]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = number::<usize>())]
     obstacles: Vec<usize>,
 }
 

@@ -1,10 +1,12 @@
 //! Named values of flags: their help texts and their parsers.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Command};
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use std::error::Error;
+use std::ffi::OsStr;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -14,6 +16,46 @@ where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
     PossibleValuesParser::new(names).try_map(|name| name.parse())
+}
+
+/// Reads an item of a list, which may have spaces around it.
+#[derive(Clone, Debug)]
+pub(super) struct Item<P>(pub(super) P);
+
+impl<P: TypedValueParser> TypedValueParser for Item<P> {
+    type Value = P::Value;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        argument: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<P::Value, clap::Error> {
+        let text = value.to_str().map(|text| OsStr::new(text.trim()));
+        self.0.parse_ref(command, argument, text.unwrap_or(value))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        self.0.possible_values()
+    }
+}
+
+/// Reads a number of a list.
+pub(super) fn number<T>() -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    Item(|text: &str| text.parse::<T>())
+}
+
+/// Most threads that a command starts. Each has a stack of 8 MB.
+const MOST_THREADS: i64 = 1024;
+
+/// Reads a number of threads.
+pub(super) fn threads() -> impl TypedValueParser<Value = usize> {
+    clap::value_parser!(u16)
+        .range(..=MOST_THREADS)
+        .map(usize::from)
 }
 
 /// Reads a seed.
