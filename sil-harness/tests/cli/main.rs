@@ -3,8 +3,10 @@
 mod aircraft;
 mod ceiling;
 mod export;
+mod json;
 mod pages;
 mod peers;
+mod refused;
 mod speech;
 
 use serde_json::Value;

@@ -1,0 +1,187 @@
+//! What is refused before anything is flown, and with which sentence.
+
+use super::{harness, run, scratch};
+use serde_json::Value;
+use std::path::Path;
+
+/// What a command that must be refused says.
+#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+fn refused(command: &str) -> String {
+    let output = harness().args(command.split(' ')).output().unwrap();
+    let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(2), "{command}: {talk}");
+    assert!(output.stdout.is_empty(), "{command}");
+    talk
+}
+
+#[test]
+fn more_threads_than_a_machine_can_have_are_refused() {
+    for command in [
+        "campaign --trials 1 --threads 1000000",
+        "ceiling --fields 1 --threads 1025",
+        "aircraft zagi --flights 1 --threads 1025",
+    ] {
+        let talk = refused(command);
+        assert!(talk.contains("is not in 0..=1024"), "{talk}");
+    }
+    // One flight takes one thread, however many are allowed.
+    let command = "campaign --trials 1 --duration 1 --threads 1024";
+    let output = harness().args(command.split(' ')).output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+}
+
+#[test]
+fn a_report_takes_no_flag_that_says_what_is_flown() {
+    for flag in [
+        "--obstacles 20",
+        "--scene flytrap",
+        "--aircraft zagi",
+        "--duration 3",
+        "--paths 5",
+        "--latency-ms 20",
+        "--oracle",
+        "--trials 3",
+        "--seed 3",
+        "--shard 1/2",
+        "--timing",
+    ] {
+        let talk = refused(&format!("campaign {flag} --report rows.jsonl"));
+        assert!(talk.contains("cannot be used with"), "{talk}");
+    }
+    let talk = refused("campaign --threads 2 --report rows.jsonl");
+    assert!(
+        talk.contains("leave --threads out, or give --ceiling"),
+        "{talk}"
+    );
+}
+
+#[test]
+fn an_unknown_aircraft_is_refused_with_the_known_ones() {
+    for command in ["aircraft nosuch", "fly --aircraft nosuch"] {
+        let talk = refused(command);
+        let hint = "give reference, paper, example, aerosonde, zagi, cessna182 or a file";
+        assert!(talk.contains("no aircraft `nosuch`"), "{talk}");
+        assert!(talk.contains(hint), "{talk}");
+    }
+}
+
+#[test]
+fn a_flag_that_nothing_would_read_is_refused() {
+    for (command, hint) in [
+        ("fly --instance 3", "without --mavlink, --live or --tlog"),
+        ("fly --patience 3", "--link"),
+        ("fly --patience 3 --link fifo:none", "leave it out"),
+    ] {
+        let talk = refused(command);
+        assert!(talk.contains(hint), "{talk}");
+    }
+}
+
+#[test]
+fn files_that_would_fly_something_else_are_refused_by_name() {
+    let directory = scratch("refused");
+    std::fs::create_dir_all(&directory).unwrap();
+    let write = |name: &str, text: &str| {
+        let path = directory.join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let field = write("empty.toml", "# nothing\n");
+    let example = include_str!("../../../aircraft/example.toml");
+    let named = example.replacen("\"example\"", "\"a/b\"", 1);
+    let aircraft = write("named.toml", &named);
+    let lidar = write("lidar.toml", "range_max = 0.5\n");
+    let late = "[faults.scan]\nfrom = 30.0\nuntil = 50.0\nmissing = true\n";
+    let late = write("late.toml", late);
+    for (command, hint) in [
+        (format!("fly --field {field}"), "holds no obstacle"),
+        (format!("campaign --field {field}"), "empty.toml holds no"),
+        (
+            format!("fly --aircraft {aircraft}"),
+            "named.toml: aircraft.name: give",
+        ),
+        (
+            format!("aircraft {aircraft}"),
+            "aircraft.name: give 1 to 64",
+        ),
+        (
+            format!("fly --lidar {lidar}"),
+            "lidar.toml: lidar.range_max: give 1 to",
+        ),
+        (
+            format!("fly --scenario {late}"),
+            "faults.scan: it begins after",
+        ),
+        (
+            "fly --world-scale nan".to_owned(),
+            "world_scale: give 0.001",
+        ),
+        (
+            "fly --world-scale 1e10".to_owned(),
+            "world_scale: give 0.001",
+        ),
+    ] {
+        let talk = refused(&command);
+        assert!(talk.contains(hint), "{command}: {talk}");
+    }
+    std::fs::remove_dir_all(directory).unwrap();
+}
+
+#[test]
+fn items_of_a_list_may_have_spaces_around_them() {
+    let flags = [
+        ["campaign", "--trials", "1"],
+        ["--duration", "1", "--json"],
+        ["--obstacles", "20, 40", "--generator"],
+    ];
+    let mut harness = harness();
+    let output = harness.args(flags.concat()).arg("paper, walls").output();
+    let output = output.unwrap();
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(report["cells"].as_array().unwrap().len(), 4);
+}
+
+/// The log of a flight with other parameters does not take the place of the plain flight's.
+#[test]
+fn a_flight_with_parameters_has_files_of_its_own() {
+    let parameters = scratch("own.params");
+    std::fs::write(&parameters, "MPP_PATHS,5\n").unwrap();
+    let log = |flags: &[&str]| {
+        let (output, _) = run(
+            "own",
+            &[&["fly", "--duration", "1", "--json"], flags].concat(),
+        );
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        result["log"].as_str().unwrap().to_owned()
+    };
+    let plain = log(&[]);
+    let before = std::fs::read(&plain).unwrap();
+    let tuned = log(&["--params", parameters.to_str().unwrap()]);
+    assert_ne!(plain, tuned);
+    assert_eq!(std::fs::read(&plain).unwrap(), before);
+    // The same orders again are the same flight, with the same name.
+    assert_eq!(log(&["--orders", &tuned]), tuned);
+    std::fs::remove_dir_all(Path::new(&plain).parent().unwrap()).unwrap();
+    std::fs::remove_file(parameters).unwrap();
+}
+
+#[test]
+fn a_bench_takes_the_obstacles_of_its_scenario() {
+    let scenario = scratch("bench.toml");
+    let obstacles = |text: &str, flags: &str| {
+        std::fs::write(&scenario, text).unwrap();
+        let command = format!("bench cycle --flights 1 --runs 1 --duration 1 --json{flags}");
+        let mut harness = harness();
+        let output = harness
+            .args(command.split(' '))
+            .arg("--scenario")
+            .arg(&scenario);
+        let output = output.output().unwrap();
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        report["obstacles"].clone()
+    };
+    assert_eq!(obstacles("obstacles = 7", ""), 7);
+    assert_eq!(obstacles("obstacles = 7", " --obstacles 9"), 9);
+    assert_eq!(obstacles("scene = \"flytrap\"", ""), 0);
+    std::fs::remove_file(scenario).unwrap();
+}
