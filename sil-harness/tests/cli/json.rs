@@ -29,6 +29,11 @@ fn paths(value: &Value, path: &str, found: &mut BTreeSet<String>) {
 }
 
 /// The paths of what these commands print.
+#[expect(
+    clippy::panic,
+    clippy::unwrap_used,
+    reason = "the helpers of tests fail as tests do"
+)]
 fn printed(directory: &Path, commands: &[&str]) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     for command in commands {
@@ -47,6 +52,7 @@ fn printed(directory: &Path, commands: &[&str]) -> BTreeSet<String> {
 }
 
 /// The names in the table of a command.
+#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn documented(command: &str) -> Vec<&'static str> {
     let page = include_str!("../../../docs/logs.md");
     let (_, section) = page.split_once(&format!("### `{command}`\n")).unwrap();
