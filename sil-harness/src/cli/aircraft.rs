@@ -4,7 +4,7 @@ use super::answer::{FAILURE, Failure, USAGE, data};
 use super::campaign::failure;
 use super::loudness::progress_bar;
 use super::signals::Signals;
-use super::values::{navigation, number, seed, threads};
+use super::values::{item, navigation, seed, threads};
 use crate::campaign::{CampaignError, run as fly_all};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
@@ -24,7 +24,7 @@ pub(super) struct AircraftArgs {
     #[arg(long, default_value_t = 0)]
     flights: u32,
     /// Numbers of obstacles to fly past, a list
-    #[arg(long, value_delimiter = ',', default_values_t = [20, 40], value_parser = number::<usize>())]
+    #[arg(long, value_delimiter = ',', default_values_t = [20, 40], value_parser = item::<usize>())]
     obstacles: Vec<usize>,
     /// Fly the aircraft with its elevator's command in five units
     #[arg(long, conflicts_with = "sizes", requires = "flights")]

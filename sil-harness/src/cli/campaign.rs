@@ -5,7 +5,7 @@ use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{Item, number, preset, seed, threads};
+use super::values::{Item, item, preset, seed, threads};
 use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
@@ -56,7 +56,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = number::<f64>())]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>())]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies. With --faults it flies with the faults
@@ -74,7 +74,7 @@ pub(super) struct CampaignArgs {
         help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
-        value_parser = number::<String>(),
+        value_parser = item::<String>(),
         conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,

@@ -3,7 +3,7 @@
 
 use super::answer::{Failure, USAGE};
 use super::help::{PLANNER, WORLD};
-use super::values::{Item, generator, navigation, number, scene};
+use super::values::{Item, generator, item, navigation, scene};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
 use mpp_analysis::campaign::{Lists, NamedField};
 use mpp_sim::generator::GeneratorName;
@@ -128,7 +128,7 @@ pub(super) struct FieldArgs {
     #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(generator()))]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = number::<usize>())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<usize>())]
     obstacles: Vec<usize>,
 }
 

@@ -18,7 +18,7 @@ where
     PossibleValuesParser::new(names).try_map(|name| name.parse())
 }
 
-/// Reads an item of a list, which may have spaces around it.
+/// A parser of an item of a list, which may have spaces around it.
 #[derive(Clone, Debug)]
 pub(super) struct Item<P>(pub(super) P);
 
@@ -40,8 +40,8 @@ impl<P: TypedValueParser> TypedValueParser for Item<P> {
     }
 }
 
-/// Reads a number of a list.
-pub(super) fn number<T>() -> impl TypedValueParser<Value = T>
+/// Reads an item of a list.
+pub(super) fn item<T>() -> impl TypedValueParser<Value = T>
 where
     T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
 {
