@@ -13,7 +13,6 @@ use common::pose::pose;
 use mpp_core::map::{ClearanceField, MemoryMap};
 use mpp_core::paths::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::sense::LidarScan;
-use mpp_core::tuning::UNKNOWN_AHEAD;
 use std::collections::BTreeMap;
 
 /// Distance between heights \[m\], half the number of heights on either side, and slopes in each
@@ -32,6 +31,7 @@ const TASK: LatticeTask = LatticeTask {
     curvature: 1.0 / 18.0,
     room: 2.0,
     room_price: 0.0,
+    unknown_ahead: 26.0,
 };
 
 fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) {
@@ -102,8 +102,8 @@ impl Costs<'_> {
             let lack = (1.2 - distance).max(0.0) + outside;
             let crowded = (self.task.room - distance).max(0.0);
             let mut price = 10.0 * lack * lack + self.task.room_price * crowded * crowded;
-            if ahead < UNKNOWN_AHEAD && self.field.is_unknown(x, z) {
-                price += 5.0 * (1.0 - ahead / UNKNOWN_AHEAD);
+            if ahead < self.task.unknown_ahead && self.field.is_unknown(x, z) {
+                price += 5.0 * (1.0 - ahead / self.task.unknown_ahead);
             }
             price += if quarter == 4 { 0.01 * off * off } else { 0.0 };
             cost += (16.0 * price) as u32;
@@ -155,6 +155,7 @@ fn tasks(draw: &mut Draw) -> LatticeTask {
         curvature: draw.between(0.005, 0.1),
         room: draw.between(1.0, 3.0),
         room_price: draw.between(-1.0, 2.0).max(0.0),
+        unknown_ahead: draw.between(20.0, 50.0),
         ..TASK
     }
 }

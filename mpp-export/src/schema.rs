@@ -102,7 +102,7 @@ pub const TICKS: Schema = Schema {
 pub const PLANS: Schema = Schema {
     name: "plans",
     columns: &[
-        column("tick", Kind::Whole, "tick", "", "tick of the scan from which the plan was made; a tick is 0.01 s"),
+        column("tick", Kind::Whole, "tick", "", "tick of the scan from which the plan was made, or of the start of a cycle without a scan; a tick is 0.01 s"),
         column("used_from_tick", Kind::Whole, "tick", "", "first tick that flew the plan; null if no tick did"),
         column("outcome", Kind::Text, "", "", "verdict of the planner"),
         column("candidates", Kind::Whole, "1", "", "refined candidates"),

@@ -137,7 +137,7 @@ impl Columns {
 /// One plan that the core delivered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanEntry {
-    /// Tick of the scan from which the core made the plan.
+    /// Tick of the scan from which the core made the plan, or of the start of a cycle without a scan.
     pub tick: u64,
     /// First tick that flew the plan; null if no tick did.
     pub used_from_tick: Option<u64>,

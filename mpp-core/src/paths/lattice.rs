@@ -11,10 +11,10 @@ mod cost_to_go;
 mod edges;
 
 use crate::map::{ClearanceField, Height};
+use crate::tuning::UNKNOWN_PRICE;
 use crate::tuning::lattice::{
     AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, MARGIN, MARGIN_PRICE, RISE, SPACING, STRETCH,
 };
-use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 use core::ops::Range;
 pub use cost_to_go::CostToGo;
 use edges::{
@@ -55,6 +55,8 @@ pub struct LatticeTask {
     pub room: f64,
     /// Price of the squared lack of it [1/m^2].
     pub room_price: f64,
+    /// Distance ahead beyond which an unknown point has no price \[m\].
+    pub unknown_ahead: f64,
 }
 
 /// The search and its tables.
@@ -94,6 +96,7 @@ impl Lattice {
                 curvature: 0.0,
                 room: 0.0,
                 room_price: 0.0,
+                unknown_ahead: 0.0,
             },
             spacing: SPACING,
             slope_step: 0.0,
@@ -231,8 +234,8 @@ impl Lattice {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
             let ahead = self.spacing * (station as f64 + share);
             let column = field.column(task.x + ahead);
-            let unknown = if ahead < UNKNOWN_AHEAD {
-                UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD)
+            let unknown = if ahead < task.unknown_ahead {
+                UNKNOWN_PRICE * (1.0 - ahead / task.unknown_ahead)
             } else {
                 0.0
             };

@@ -33,7 +33,7 @@ pub(super) struct ScenarioArgs {
     /// Source of positions: their rate, errors and delay [default: rtk; of presets paper and reference: ideal]
     #[arg(long, help_heading = WORLD, value_parser = navigation())]
     navigation: Option<NavigationSource>,
-    /// Simulated time from a scan until its plan is flown [ms], a multiple of 10 [default: 10]
+    /// Simulated time from the start of a planning cycle until its plan is flown [ms], a multiple of 10 [default: 10]
     #[arg(long, help_heading = PLANNER)]
     latency_ms: Option<u32>,
     /// Planner slices that run between two ticks [default: all that the cycle needs]

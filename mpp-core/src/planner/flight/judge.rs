@@ -4,8 +4,8 @@
 use super::FlightPlanner;
 use crate::config::{KNOTS, STAGES};
 use crate::trajectory::RollOut;
+use crate::tuning::UNKNOWN_PRICE;
 use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
-use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_PRICE};
 
 /// The price of a roll-out by its parts, and what it lacks of clearance. The parts add up to the price, up to
 /// rounding.
@@ -63,6 +63,7 @@ impl FlightPlanner {
     fn add_up(&self, flown: &RollOut, mut note: impl FnMut(Part, f64)) -> Judgement {
         let (field, cost_to_go, own) = (&self.field, &self.cost_to_go, &self.settings);
         let via = cost_to_go.via();
+        let unknown_ahead = self.limits.unknown_ahead;
         let (mut lack, mut price) = (0.0_f64, 0.0);
         let mut add = |part, summand: f64| {
             price += summand;
@@ -91,8 +92,8 @@ impl FlightPlanner {
                 let crowding = weight * self.limits.room_price * discount * crowded * crowded;
                 add(Part::Clearance, crowding);
                 let ahead = x - self.state.x;
-                if ahead < UNKNOWN_AHEAD && field.is_unknown(x, z) {
-                    let hidden = weight * UNKNOWN_PRICE * (1.0 - ahead / UNKNOWN_AHEAD);
+                if ahead < unknown_ahead && field.is_unknown(x, z) {
+                    let hidden = weight * UNKNOWN_PRICE * (1.0 - ahead / unknown_ahead);
                     add(Part::Unknown, hidden);
                 }
             }

@@ -1,7 +1,7 @@
 //! Limits of the plans of one cycle.
 
 use crate::settings::FlightSettings;
-use crate::tuning::{ROOM, faces, judgement, limits, open};
+use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_STRETCH, faces, judgement, limits, open};
 use crate::units::REFERENCE_CRUISE;
 use crate::vehicle::{ActuatorLimits, Airframe};
 
@@ -23,6 +23,8 @@ pub(super) struct Limits {
     pub(super) thrust_max: f64,
     /// Greatest curvature of a path in level flight at cruise [1/m].
     pub(super) curvature: f64,
+    /// Distance ahead beyond which an unknown point has no price \[m\].
+    pub(super) unknown_ahead: f64,
     /// Clearance whose lack has a price \[m\].
     pub(super) wanted_room: f64,
     /// Price of the squared lack of it [1/m^2].
@@ -40,6 +42,7 @@ impl Limits {
         flight_path: 0.0,
         thrust_max: 0.0,
         curvature: 0.0,
+        unknown_ahead: UNKNOWN_AHEAD,
         wanted_room: ROOM,
         room_price: 0.0,
         room: 0.0,
@@ -59,6 +62,9 @@ impl Limits {
             let soft = limits::SOFT_SHARE * angle_of_attack[side] + limits::SOFT_EXTRA;
             soft.min(held[side]).min(stall[side])
         };
+        // A turn that dodges an obstacle is longer by this factor, because its length is the root of twice the distance
+        // to the side over the curvature.
+        let farther = libm::sqrt(1.0 / agility).min(UNKNOWN_STRETCH);
         Self {
             angle_of_attack,
             held_by_elevator: angle_of_attack.map(|limit| limit < allowed),
@@ -70,6 +76,7 @@ impl Limits {
                 .min(actuators.thrust_max.unwrap_or(f64::INFINITY)),
             curvature: 0.5 * a.air_density * a.wing_area * a.lift_alpha * down.min(up) / a.mass
                 * a.turn_gain(REFERENCE_CRUISE),
+            unknown_ahead: UNKNOWN_AHEAD * farther,
             wanted_room: ROOM,
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.

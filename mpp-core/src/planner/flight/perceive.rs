@@ -51,6 +51,7 @@ impl FlightPlanner {
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
             room_price: self.limits.room_price,
+            unknown_ahead: self.limits.unknown_ahead,
         };
         self.workspace = Workspace::Lattice(Lattice::new());
         if let Workspace::Lattice(lattice) = &mut self.workspace {
