@@ -7,6 +7,7 @@
 use super::channels::Channel;
 use super::metadata::is_whole;
 use super::vehicle::{Severity, Vehicle, Waiting};
+use hil_protocol::ParameterVerdict;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{CharArray, text};
 use mpp_node::parameters::{self, PARAMETERS, Tuning};
@@ -20,9 +21,23 @@ const INT16: u8 = 4;
 const UINT32: u8 = 5;
 const INT32: u8 = 6;
 const REAL32: u8 = 9;
-/// MAV_PARAM_ERROR_DOES_NOT_EXIST and MAV_PARAM_ERROR_VALUE_OUT_OF_RANGE.
+/// MAV_PARAM_ERROR_DOES_NOT_EXIST, _VALUE_OUT_OF_RANGE and _PERMISSION_DENIED.
 const UNKNOWN: u8 = 1;
 const OUT_OF_RANGE: u8 = 2;
+const NOT_NOW: u8 = 3;
+
+/// Why a write is refused, as MAVLink says it. `NOT_NOW` says that another value would be refused too.
+fn code(refused: Refused) -> u8 {
+    match refused {
+        Refused::Parameter(
+            ParameterVerdict::InFlight
+            | ParameterVerdict::PathsInFlight
+            | ParameterVerdict::CruiseFixed,
+        ) => NOT_NOW,
+        Refused::UnknownParameter | Refused::Parameter(ParameterVerdict::Unknown) => UNKNOWN,
+        _ => OUT_OF_RANGE,
+    }
+}
 
 impl Vehicle {
     /// Answers a request for the whole list.
@@ -68,7 +83,7 @@ impl Vehicle {
         self.send_parameter(number);
         if let (Err(refused), Some(parameter)) = (result, PARAMETERS.get(usize::from(number))) {
             self.say(Severity::Warning, &format!("{}: {refused}", parameter.name));
-            self.refuse_parameter(text(parameter.name), -1, OUT_OF_RANGE);
+            self.refuse_parameter(text(parameter.name), -1, code(refused));
         }
     }
 

@@ -30,6 +30,10 @@ impl Stations {
     }
 
     /// Sets another patience, which begins at this tick.
+    pub(super) fn patience(&self) -> Option<u32> {
+        self.patience
+    }
+
     pub(super) fn set_patience(&mut self, patience: Option<u32>, tick: u32) {
         self.patience = patience;
         for station in &mut self.heard {

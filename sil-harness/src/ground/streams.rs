@@ -71,7 +71,7 @@ impl Streams {
     /// message.
     pub(super) fn interval(&self, id: u32) -> i32 {
         match self.0.iter().find(|(own, _)| *own == id) {
-            Some((_, Rate::Every(ticks))) => (*ticks * TICK_US) as i32,
+            Some((_, Rate::Every(ticks))) => ticks.saturating_mul(TICK_US).cast_signed(),
             // An interval of 1 us stands for each event.
             Some((_, Rate::Event)) => 1,
             Some((_, Rate::Never)) => -1,
@@ -99,7 +99,9 @@ impl Streams {
         } else if *usual == Rate::Event {
             Rate::Event
         } else {
-            Rate::Every(((interval / TICK_US as f32).round() as u32).max(1))
+            // A longer one would not fit the answer to a question for it.
+            let most = i32::MAX.cast_unsigned() / TICK_US;
+            Rate::Every(((interval / TICK_US as f32).round() as u32).clamp(1, most))
         };
         true
     }

@@ -71,10 +71,10 @@ impl Transport {
     /// A vehicle without a connection. `report` gets the lines for the person who started it.
     pub fn new(vehicle: Vehicle, report: impl FnMut(&str) + 'static) -> Self {
         Self {
+            guests: Guests::new(vehicle.patience()),
             vehicle,
             socket: None,
             peers: Vec::new(),
-            guests: Guests::default(),
             memory: None,
             tlog: None,
             tlog_error: None,
@@ -88,6 +88,10 @@ impl Transport {
     /// # Errors
     /// An error when no socket can be opened.
     pub fn connect(&mut self, peers: Vec<SocketAddr>) -> io::Result<()> {
+        if peers.iter().any(|peer| peer.is_ipv4()) && peers.iter().any(|peer| peer.is_ipv6()) {
+            let why = "one socket serves either IPv4 or IPv6: give addresses of one kind";
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, why));
+        }
         let local = peers.iter().all(|peer| peer.ip().is_loopback());
         let host = match (peers.first(), local) {
             (Some(SocketAddr::V6(_)), true) => "[::1]:0",
@@ -157,6 +161,7 @@ impl Transport {
 
     /// Sets another number of ticks of silence after which a station is lost; `None` means never.
     pub fn set_patience(&mut self, patience: Option<u32>) {
+        self.guests.set_patience(patience);
         self.vehicle.set_patience(patience);
     }
 
@@ -202,6 +207,8 @@ impl Transport {
                 self.write(since_start, &frame);
             }
         }
+        // Before a station hears that its signed command was obeyed.
+        self.memorise();
         self.deliver(since_start);
     }
 
@@ -252,11 +259,7 @@ impl Ground for Transport {
 
     fn orders(&mut self, _: u32) -> Vec<Order> {
         self.listen();
-        let orders = self.vehicle.take_orders();
-        if !orders.is_empty() {
-            self.memorise();
-        }
-        orders
+        self.vehicle.take_orders()
     }
 
     fn settled(&mut self, order: &Order, result: Result<(), Refused>, tuning: &Tuning) {

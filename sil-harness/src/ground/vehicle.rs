@@ -184,6 +184,12 @@ impl Vehicle {
         self.security.set_time(time);
     }
 
+    /// Number of silent ticks after which a station is lost; `None` means never.
+    #[must_use]
+    pub fn patience(&self) -> Option<u32> {
+        self.stations.patience()
+    }
+
     /// Sets another number of ticks of silence, from now on, after which a station is lost.
     pub fn set_patience(&mut self, patience: Option<u32>) {
         self.stations.set_patience(patience, self.now);
@@ -262,7 +268,8 @@ impl Vehicle {
     /// Takes one tick of the flight.
     pub fn observe(&mut self, moment: &Moment<'_>) {
         self.flying = true;
-        self.state = moment.tick.state;
+        // A station sees what the aircraft believes, as it would from a real one.
+        self.state = moment.tick.estimate;
         self.estimate = moment.tick.estimate.air;
         self.thrust = moment.tick.control.thrust;
         self.wind = moment.tick.conditions.wind;

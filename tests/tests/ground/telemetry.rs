@@ -138,7 +138,7 @@ fn motion_is_that_of_the_log() {
         assert_eq!(told.time_boot_ms, 10 * tick);
         assert_eq!(
             (told.x, told.z),
-            (log.ticks.x[row] as f32, -log.ticks.z[row] as f32)
+            (log.ticks.est_x[row] as f32, -log.ticks.est_z[row] as f32)
         );
         // The velocity through the air and the estimated wind.
         let (up, ahead) = libm::sincos(log.ticks.est_flight_path[row]);
