@@ -203,6 +203,85 @@ def test_keys_settings_and_bad_links(open_page):
     page.wait_for_function("document.getElementById('state').textContent.includes('damaged')")
 
 
+def told(page, text):
+    """Waits until the page tells of a failure."""
+    page.wait_for_function(f"document.getElementById('state').textContent.includes({json.dumps(text)})")
+    assert page.get_attribute("#state", "class") == "over"
+
+
+def same_from_link(open_page, page):
+    """The page's link and its address lead to the moment and the hash that the page shows."""
+    hash_, link = page.inner_text("#hash"), page.get_attribute("#link", "href")
+    assert page.evaluate("location.hash") == link
+    other = open_page(PAGE.as_uri() + link)
+    other.wait_for_function(f"target === null && flight.ticks.t.length === {page.evaluate('flight.ticks.t.length')}")
+    stands(other)
+    assert other.inner_text("#hash") == hash_ and other.inner_text("#title") == page.inner_text("#title")
+
+
+@pytest.mark.parametrize("seed", ["-1", "1.5"])
+def test_a_seed_that_cannot_be_leaves_the_flight_as_it_is(open_page, seed):
+    page = open_page(PAGE.as_uri() + "#obstacles=20&t=120")
+    to_tick(page, 120)
+    hash_ = page.inner_text("#hash")
+    page.fill("#seed", seed)
+    page.keyboard.press("Tab")
+    told(page, "u64")
+    assert page.input_value("#seed") == "1" and page.inner_text("#hash") == hash_
+    # A look at the picture does not hide why.
+    page.hover("#view")
+    page.set_viewport_size(PHONE)
+    assert page.get_attribute("#state", "class") == "over"
+    same_from_link(open_page, page)
+    page.click("#step")
+    assert page.get_attribute("#state", "class") == "" and page.evaluate("flight.ticks.t.length") == 121
+    same_from_link(open_page, page)
+
+
+def test_a_sight_that_cannot_be_leaves_the_flight_as_it_is(open_page):
+    page = open_page(PAGE.as_uri() + "#obstacles=20&sight=60&t=120")
+    to_tick(page, 120)
+    page.evaluate("location.hash = '#seed=7&sight=-5'")
+    told(page, "range")
+    assert page.input_value("#sight") == "60" and page.input_value("#seed") == "1"
+    page.click("#step")
+    assert page.evaluate("flight.ticks.t.length") == 121
+    same_from_link(open_page, page)
+
+
+@pytest.mark.parametrize(("link", "why"), [("aircraft=foo", "foo"), ("seed=3&orders=[", "damaged"), ("sight=-5", "range"),
+                                           ("seed=foo", "seed"), ("hz=0.37&t=50", "replan_hz")])
+def test_a_link_that_cannot_be_flown_shows_the_usual_flight(open_page, tmp_path, link, why):
+    page = open_page(PAGE.as_uri() + "#" + link)
+    told(page, why)
+    assert page.input_value("#aircraft") == "reference" and page.input_value("#seed") == "1"
+    assert page.evaluate("location.hash") == "#t=1"
+    page.click("#step")
+    page.click("#next")
+    same_from_link(open_page, page)
+    page.check("#wind")
+    with page.expect_download() as saved:
+        page.click("#save")
+    saved.value.save_as(tmp_path / "web.json")
+    assert json.loads((tmp_path / "web.json").read_text())["header"]["seed"] == 1
+    page.click("#play")
+    page.wait_for_function("flight.orders.length === 1 && pending.length === 0")
+
+
+def test_without_a_flight_buttons_do_nothing_and_no_error_is_saved(open_page):
+    page = open_page(PAGE.as_uri())
+    pause(page)
+    # Nothing but this test takes the flight away.
+    page.evaluate("[flight, module] = [null, gauge]")
+    for button in ("#play", "#step", "#next", "#wind"):
+        page.click(button)
+    address = page.url
+    page.on("download", lambda _: pytest.fail("an error was saved"))
+    page.click("#save")
+    told(page, "no flight has begun")
+    assert page.url == address
+
+
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("size", ["wide", "phone"])
 def test_how_it_looks(open_page, shot, scheme, size):

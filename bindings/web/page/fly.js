@@ -10,26 +10,29 @@ const HURRY = 12, LOOK = 100;
 const WINDOW = 2000;
 const WIND = 1.5, DROPOUTS = 0.3;
 
-let module = null, settings = { ...USUAL }, flight = null, now = 0;
-let playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null;
+// `gauge` is the module once more: it is asked for a lidar's range while `module` holds the flight. `good` are the
+// settings of the last flight that began.
+let module = null, gauge = null, settings = { ...USUAL }, good = null, flight = null, now = 0;
+let failed = false, playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null;
 let pending = [], planning = [], placeOf = null, drag = null, heard = false;
 const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])), window: null, hover: null,
   cursor: null, marked: null, note: text => { $("occupancy").textContent = text; } };
 
 // Asks the module and returns the bytes of its answer.
-function askBytes(question) {
+function askBytes(question, whom = module) {
   const bytes = new TextEncoder().encode(JSON.stringify(question));
-  const at = module.question(bytes.length);
-  new Uint8Array(module.memory.buffer, at, bytes.length).set(bytes);
-  const length = module.ask();
-  return new Uint8Array(module.memory.buffer, module.answer(), length).slice();
-}
-
-function ask(question) {
-  const answer = JSON.parse(new TextDecoder().decode(askBytes(question)));
-  if (answer.error) throw new Error(answer.error);
+  const at = whom.question(bytes.length);
+  new Uint8Array(whom.memory.buffer, at, bytes.length).set(bytes);
+  const length = whom.ask();
+  const answer = new Uint8Array(whom.memory.buffer, whom.answer(), length).slice();
+  // Nothing else begins with this key.
+  if (textOf(answer.subarray(0, 9)) === '{"error":') throw new Error(JSON.parse(textOf(answer)).error);
   return answer;
 }
+
+function textOf(bytes) { return new TextDecoder().decode(bytes); }
+
+function ask(question, whom = module) { return JSON.parse(textOf(askBytes(question, whom))); }
 
 // The settings as a scenario file has them. What is usual is left out.
 function scenario() {
@@ -38,7 +41,7 @@ function scenario() {
   if (field !== "paper") asked.generator = { name: field };
   if (aircraft !== "reference") asked.aircraft = aircraft;
   if (settings.sight !== 100) {
-    const usual = ask({ ask: "begin", scenario: asked }).header.lidar.range_max;
+    const usual = ask({ ask: "begin", scenario: asked }, gauge).header.lidar.range_max;
     asked.lidar = { range_max: usual * settings.sight / 100 };
   }
   return asked;
@@ -46,12 +49,16 @@ function scenario() {
 
 // Begins a flight with these orders, up to a tick if one is given.
 function begin(orders = [], until = null) {
-  let begun;
   try {
-    begun = ask({ ask: "begin", scenario: scenario(), orders, details: true });
+    take(orders, until);
   } catch (error) {
-    return fail(error);
+    refuse(error);
   }
+}
+
+function take(orders, until) {
+  const begun = ask({ ask: "begin", scenario: scenario(), orders, details: true });
+  good = { ...settings };
   // The listeners of the charts hold this object.
   flight = Object.assign(flight || { id: "", first: 0 }, { header: begun.header, plans: [], orders: [], details: new Map(),
     ticks: Object.fromEntries(columns.map(name => [name, []])), far: undefined, summary: null });
@@ -70,10 +77,24 @@ function begin(orders = [], until = null) {
 // Draws anew after the pointer moved. While it flies, the next frame does so anyway.
 function stir() { if (!playing && target === null && !drag) show(); }
 
+// Tells why a flight did not begin. The one before stays as it was; if there is none, the usual one begins.
+function refuse(error) {
+  settings = { ...(good || USUAL) };
+  attempt(() => { if (flight) showSettings(); else take([], null); });
+  fail(error);
+}
+
+// Does what can fail, and tells if it did. Returns whether it did not.
+function attempt(what) {
+  try { what(); return true; } catch (error) { fail(error); return false; }
+}
+
+// Stands, and tells why until something else is done.
 function fail(error) {
-  setPlaying(false);
-  $("state").textContent = error.message || String(error);
-  $("state").className = "over";
+  target = null;
+  try { setPlaying(false); } catch { /* What is told below came first. */ }
+  failed = true;
+  say(error.message || String(error), true);
 }
 
 // Flies so many ticks, with the orders that wait.
@@ -116,7 +137,7 @@ function goOn() {
 
 // Gives an order for the next tick.
 function order(given) {
-  if (ended) return;
+  if (!flight || ended) return;
   const entry = { tick: flight.ticks.t.length, ...given };
   pending.push(entry);
   flight.orders.push(entry);
@@ -130,7 +151,7 @@ function frame(time) {
   const before = flight.ticks.t.length, since = last === null ? 0 : Math.min(time - last, 250);
   last = time;
   const speed = $("speed").value;
-  try {
+  if (!attempt(() => {
     if (target !== null || speed === "max") hurry();
     else {
       due += since / 10 * Number(speed);
@@ -138,9 +159,7 @@ function frame(time) {
       due -= Math.floor(due);
     }
     if (ended && playing) goOn();
-  } catch (error) {
-    return fail(error);
-  }
+  })) return;
   if (since > 0) {
     const measured = (flight.ticks.t.length - before) * 10 / since;
     pace = pace === null ? measured : pace + 0.05 * (measured - pace);
@@ -179,7 +198,7 @@ function show(time = null) {
   showWhy(flight, now, look, stir);
   look.window = [Math.max(0, now - WINDOW), Math.max(now, 1)];
   drawCharts(flight, now, look);
-  if (!ended) say(`${T.t[now].toFixed(2)} s, ${playing ? "flying" : target === null ? "paused" : "going to the moment"}`);
+  if (!ended && !failed) say(`${T.t[now].toFixed(2)} s, ${playing ? "flying" : target === null ? "paused" : "going to the moment"}`);
 }
 
 function say(text, over = false) {
@@ -215,19 +234,23 @@ function fromLink() {
     const text = link.get(name);
     if (text === null) continue;
     settings[name] = typeof usual === "number" ? Number(text) : text;
+    // JSON has no such numbers: the module would take them for numbers that are not given.
+    if (typeof usual === "number" && !Number.isFinite(settings[name]))
+      return refuse(new Error(`${name} is not a number: ${text}`));
   }
   let orders = [];
   try {
     orders = JSON.parse(link.get("orders") || "[]");
   } catch {
-    return fail(new Error("the link's orders are damaged: open the page without them"));
+    return refuse(new Error("the link's orders are damaged"));
   }
-  const until = Number(link.get("t"));
+  const until = Math.floor(Number(link.get("t")));
   begin(orders, link.has("t") && until > 0 ? until : null);
 }
 
 function setPlaying(value) {
   playing = value;
+  failed = false;
   last = pace = null;
   $("play").textContent = playing ? "Pause" : "Play";
   $("play").disabled = $("step").disabled = $("next").disabled = ended;
@@ -318,16 +341,23 @@ for (const id of ["obstacles", "sight", "hz", "seed"])
   $(id).onchange = event => { settings[id] = Number(event.target.value); begin(); };
 for (const id of ["aircraft", "field"]) $(id).onchange = event => { settings[id] = event.target.value; begin(); };
 for (const id of ["obstacles", "sight"]) $(id).oninput = showRanges;
-$("play").onclick = () => setPlaying(!playing);
-$("step").onclick = () => { playing = false; fly(1); setPlaying(false); };
-$("next").onclick = toNextPlan;
+const steer = what => () => { if (flight) attempt(what); };
+$("play").onclick = steer(() => setPlaying(!playing));
+$("step").onclick = steer(() => { playing = false; fly(1); setPlaying(false); });
+$("next").onclick = steer(toNextPlan);
 $("again").onclick = () => begin();
 $("other").onclick = () => { settings.seed++; begin(); };
 $("follow").onchange = () => show();
 $("speed").onchange = () => { due = 0; pace = null; };
 $("save").onclick = event => {
-  event.target.download = `flight-seed${settings.seed}-web.json`;
-  event.target.href = URL.createObjectURL(new Blob([askBytes({ ask: "bytes" })], { type: "application/json" }));
+  const made = attempt(() => {
+    const url = URL.createObjectURL(new Blob([askBytes({ ask: "bytes" })], { type: "application/json" }));
+    event.target.download = `flight-seed${settings.seed}-web.json`;
+    event.target.href = url;
+    // By then the browser has it.
+    setTimeout(() => URL.revokeObjectURL(url), 10000);
+  });
+  if (!made) event.preventDefault();
 };
 addEventListener("resize", () => show());
 addEventListener("hashchange", fromLink);
@@ -352,8 +382,10 @@ async function start(packed) {
     const bytes = Uint8Array.from(atob(packed), letter => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
     const source = await new Response(stream).arrayBuffer();
-    const { instance } = await WebAssembly.instantiate(source, { env: { clock: () => performance.now() } });
-    module = instance.exports;
+    const given = { env: { clock: () => performance.now() } };
+    const made = await WebAssembly.instantiate(source, given);
+    module = made.instance.exports;
+    gauge = (await WebAssembly.instantiate(made.module, given)).exports;
   } catch (error) {
     return fail(new Error("this browser cannot run the flight: " + error.message));
   }
