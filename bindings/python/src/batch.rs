@@ -15,7 +15,7 @@ use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
 
 /// Greatest number of flights side by side. Each takes some 10 kB, and 16 bytes a tick.
-const MOST_FLIGHTS: usize = 100_000;
+const MOST_FLIGHTS: i128 = 100_000;
 
 /// Flights of one scenario with different seeds. `python/mpp/environments.py` makes environments of them.
 #[pyclass(frozen, module = "mpp._native")]
@@ -60,10 +60,10 @@ impl Batch {
     /// `count` flights of the scenario with these keys, each with a scan `lidar_hz` times a second.
     #[new]
     #[pyo3(signature = (keys, count, lidar_hz = 10.0))]
-    fn new(keys: &Bound<'_, PyDict>, count: usize, lidar_hz: f64) -> PyResult<Self> {
+    fn new(keys: &Bound<'_, PyDict>, count: i128, lidar_hz: f64) -> PyResult<Self> {
         if !(1..=MOST_FLIGHTS).contains(&count) {
             return Err(input(format!(
-                "count: give 1 to {MOST_FLIGHTS} flights, not {count}"
+                "num_envs: give 1 to {MOST_FLIGHTS} flights, not {count}"
             )));
         }
         let plan = Arc::new(Flights::new(scenario::file(keys)?, lidar_hz)?);

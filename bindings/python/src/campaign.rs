@@ -3,6 +3,7 @@
 use crate::aside::aside;
 use crate::errors::{self, input};
 use crate::field::Field;
+use crate::input::whole;
 use crate::scenario;
 use mpp_analysis::campaign::{Campaign as Grid, Cell, Lists, NamedField, Row, Shard};
 use mpp_analysis::rows::Header;
@@ -44,12 +45,12 @@ impl Campaign {
     fn new(
         py: Python<'_>,
         keys: &Bound<'_, PyDict>,
-        trials: u32,
-        seed: Option<u64>,
+        trials: i128,
+        seed: Option<i128>,
         preset: Vec<String>,
         generator: Vec<String>,
-        obstacles: Vec<usize>,
-        paths: Vec<u16>,
+        obstacles: Vec<i128>,
+        paths: Vec<i128>,
         replan_hz: Vec<f64>,
         fields: Option<BTreeMap<String, Py<Field>>>,
     ) -> PyResult<Self> {
@@ -65,10 +66,12 @@ impl Campaign {
             preset: parsed(&preset)?,
             field: field.collect(),
             generator: parsed(&generator)?,
-            obstacles,
-            paths,
+            obstacles: wholes("obstacles", &obstacles)?,
+            paths: wholes("paths", &paths)?,
             replan_hz,
         };
+        let trials = whole("trials", trials)?;
+        let seed = seed.map(|seed| whole("seed", seed)).transpose()?;
         let campaign = py.detach(|| Grid::new(scenario, lists, trials, seed));
         campaign.map(Self::of).map_err(errors::scenario)
     }
@@ -126,6 +129,10 @@ fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let log = fly(&scenario, &mut link, |moment| witness.watch(moment)).map_err(errors::flight)?;
     let hash = log.hash().map_err(input)?;
     Ok(Row::new(cell.clone(), &log, &witness, hash, None))
+}
+
+fn wholes<T: TryFrom<i128>>(name: &str, values: &[i128]) -> PyResult<Vec<T>> {
+    values.iter().map(|value| whole(name, *value)).collect()
 }
 
 fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(names: &[String]) -> PyResult<Vec<T>> {

@@ -2,7 +2,7 @@
 
 use crate::aside::aside;
 use crate::errors::{self, FlightError, alone, input, state};
-use crate::input::finite;
+use crate::input::{finite, whole};
 use crate::planner::scan;
 use crate::{look, scenario};
 use hil_protocol::{
@@ -16,6 +16,7 @@ use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, TICK_US};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::VecDeque;
 use std::sync::Mutex;
 
 /// The flight core, set up by the keys of a scenario: preset, aircraft, paths, replan_hz, latency_ms,
@@ -31,8 +32,12 @@ struct Stepped {
     link: PipeLink,
     tick: u32,
     answer: Option<(ActuatorCommand, StepReport)>,
-    refused: Vec<(u32, String)>,
+    refused: VecDeque<(u32, String)>,
+    refusals: u64,
 }
+
+/// Number of refused inputs that a core keeps.
+const MOST_REFUSED: usize = 1000;
 
 /// What a step gets.
 type Inputs = (SensorFrame, Option<hil_protocol::LidarScan>);
@@ -43,21 +48,14 @@ impl Core {
     #[pyo3(signature = (**keys))]
     fn new(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let none = PyDict::new(py);
-        let scenario = scenario::build(keys.unwrap_or(&none))?;
-        if scenario.oracle {
-            return Err(input("oracle: it needs the truth; fly(oracle=True) has it"));
-        }
-        if scenario.known_map {
-            return Err(input(
-                "known_map: it needs the field; fly(known_map=True) has it",
-            ));
-        }
+        let scenario = scenario::sensed(keys.unwrap_or(&none))?;
         let link = aside(py, |_| configured(&scenario))?.map_err(errors::flight)?;
         let guarded = Mutex::new(Stepped {
             link,
             tick: 0,
             answer: None,
-            refused: Vec::new(),
+            refused: VecDeque::new(),
+            refusals: 0,
         });
         Ok(Self { scenario, guarded })
     }
@@ -76,11 +74,11 @@ impl Core {
         py: Python<'_>,
         airspeed: Option<f64>,
         pitch: Option<f64>,
-        air_age: u32,
+        air_age: i128,
         x: Option<f64>,
         z: Option<f64>,
         sigma: f64,
-        position_age: u32,
+        position_age: i128,
         velocity: Option<(f64, f64, f64)>,
         scan: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<(f64, f64)> {
@@ -93,8 +91,15 @@ impl Core {
         }
         let speeds = velocity.map(|(x, z, sigma)| [x, z, sigma]);
         for speed in speeds.iter().flatten() {
-            finite("velocity", *speed)?;
+            finite("velocity", f64::from(*speed as f32))?;
         }
+        if let Some((_, _, sigma)) = velocity.filter(|(_, _, sigma)| *sigma < 0.0) {
+            return Err(input(format!(
+                "velocity: give a sigma of 0 or more, not {sigma}"
+            )));
+        }
+        let air_age = whole("air_age", air_age)?;
+        let position_age = whole("position_age", position_age)?;
         let frame = SensorFrame {
             tick,
             air: air.map(|(airspeed, pitch)| AirData {
@@ -169,10 +174,20 @@ impl Core {
         Ok(dict)
     }
 
-    /// Every input that the core refused: tick and cause.
+    /// The last 1000 inputs that the core refused: tick and cause. `refusals` counts all of them.
     #[getter]
     fn refused(&self) -> PyResult<Vec<(u32, String)>> {
-        Ok(alone(&self.guarded, "core")?.refused.clone())
+        Ok(alone(&self.guarded, "core")?
+            .refused
+            .iter()
+            .cloned()
+            .collect())
+    }
+
+    /// Number of inputs that the core refused so far.
+    #[getter]
+    fn refusals(&self) -> PyResult<u64> {
+        Ok(alone(&self.guarded, "core")?.refusals)
     }
 
     /// The plan of the last cycle, one column a quantity, one row a knot; SI units.
@@ -221,7 +236,12 @@ impl Stepped {
             match self.link.receive("the actuator command")? {
                 Message::StepReport(step) => report = Some(step),
                 Message::Rejection(refused) => {
-                    self.refused.push((refused.tick, refused.cause.to_string()));
+                    self.refusals += 1;
+                    if self.refused.len() == MOST_REFUSED {
+                        self.refused.pop_front();
+                    }
+                    let told = (refused.tick, refused.cause.to_string());
+                    self.refused.push_back(told);
                 }
                 Message::ActuatorCommand(command) => {
                     self.tick += 1;

@@ -1,7 +1,7 @@
 //! Fields of obstacles.
 
 use crate::errors::{input, scenario};
-use crate::input::{finite, rows, table, text, vector};
+use crate::input::{finite, rows, table, text, vector, whole};
 use crate::output::plain;
 use mpp_sim::field::{Circle, Field as _, FieldFile, Line, ObstacleField, Polygon, Shape};
 use mpp_sim::scenario::ScenarioFile;
@@ -48,9 +48,9 @@ impl Field {
     fn generate(
         py: Python<'_>,
         generator: &str,
-        obstacles: usize,
-        seed: u64,
-        duration: Option<u32>,
+        obstacles: i128,
+        seed: i128,
+        duration: Option<i128>,
         world_scale: f64,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
@@ -58,9 +58,9 @@ impl Field {
         keys.set_item("name", generator)?;
         let file = ScenarioFile {
             generator: table("generator", &keys)?,
-            obstacles: Some(obstacles),
-            seed: Some(seed),
-            duration: duration.map(f64::from),
+            obstacles: Some(whole("obstacles", obstacles)?),
+            seed: Some(whole("seed", seed)?),
+            duration: duration.map(|value| value as f64),
             world_scale: Some(world_scale),
             ..ScenarioFile::default()
         };
@@ -152,6 +152,9 @@ impl Field {
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (py, time) = (points.py(), finite("time", time)?);
         let points = rows::<2>("points", points)?;
+        for value in points.iter().flatten() {
+            finite("points", *value)?;
+        }
         let clearance = |[x, z]: [f64; 2]| {
             let apart = self
                 .field
@@ -183,7 +186,9 @@ impl Field {
             let (up, ahead) = libm::sincos(angle);
             field.range(from, (ahead, up)).unwrap_or(f64::INFINITY)
         };
-        let ranges = vector("angles", angles)?.into_iter().map(range).collect();
+        let ranges = (vector("angles", angles)?.into_iter())
+            .map(|angle| finite("angles", angle).map(range))
+            .collect::<PyResult<_>>()?;
         Ok(PyArray1::from_vec(angles.py(), ranges))
     }
 

@@ -81,6 +81,15 @@ pub(crate) fn rows<const COLUMNS: usize>(
         .collect())
 }
 
+/// A whole number that is not negative and fits.
+pub(crate) fn whole<T: TryFrom<i128>>(name: &str, value: i128) -> PyResult<T> {
+    T::try_from(value).map_err(|_| {
+        let bits = 8 * size_of::<T>();
+        let advice = format!("{name}: give a whole number from 0 to 2**{bits} - 1, not {value}");
+        input(advice)
+    })
+}
+
 /// A finite number.
 pub(crate) fn finite(name: &str, value: f64) -> PyResult<f64> {
     if value.is_finite() {

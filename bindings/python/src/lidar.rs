@@ -2,7 +2,7 @@
 
 use crate::errors::scenario;
 use crate::field::Field;
-use crate::input::{finite, table, text};
+use crate::input::{finite, table, text, whole};
 use crate::output::plain;
 use mpp_core::vehicle::VehicleState;
 use mpp_sim::lidar::{FanLidar, Lidar as _, LidarConfig};
@@ -70,11 +70,12 @@ impl Lidar {
         x: f64,
         z: f64,
         pitch: f64,
-        seed: Option<u64>,
+        seed: Option<i128>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         for (name, value) in [("x", x), ("z", z), ("pitch", pitch)] {
             finite(name, value)?;
         }
+        let seed = seed.map(|seed| whole("seed", seed)).transpose()?;
         let mut state = VehicleState {
             x,
             z,

@@ -30,7 +30,7 @@ impl Planner {
     #[pyo3(signature = (**keys))]
     fn new(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let none = PyDict::new(py);
-        let scenario = scenario::build(keys.unwrap_or(&none))?;
+        let scenario = scenario::sensed(keys.unwrap_or(&none))?;
         let planner = aside(py, |_| {
             recording::settings(&scenario).and_then(|settings| recording::planner(&settings))
         })?;
@@ -41,8 +41,9 @@ impl Planner {
     }
 
     /// One cycle at a time \[s\] on the ranges of a scan \[m\], 0 where nothing came back, from a state: position
-    /// \[m\], airspeed [m/s] and angles \[rad\], by default those of level flight; in a wind [m/s]. Gives the
-    /// verdict, "feasible", "least-violating" or "nothing", and the totals of the cycle.
+    /// \[m\], airspeed [m/s] and angles \[rad\], by default those of level flight; in a wind [m/s]. `pitch` must
+    /// be that at which the scan was taken. Gives the verdict, "feasible", "least-violating" or "nothing", and the
+    /// totals of the cycle.
     #[pyo3(signature = (
         ranges, *, time = 0.0, x = 0.0, z = ALTITUDE, airspeed = None, pitch = None, pitch_rate = 0.0,
         flight_path = 0.0, wind = (0.0, 0.0)
@@ -84,6 +85,10 @@ impl Planner {
         ];
         for (name, value) in given {
             finite(name, value)?;
+        }
+        if air.airspeed <= 0.0 {
+            let advice = format!("airspeed: give more than 0 m/s, not {}", air.airspeed);
+            return Err(input(advice));
         }
         let conditions = Conditions {
             wind: Wind {

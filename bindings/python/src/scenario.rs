@@ -19,6 +19,20 @@ pub(crate) fn build(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
     keys.py().detach(|| file.build()).map_err(scenario)
 }
 
+/// The scenario that the keys describe, for something that gets no more than sensors tell.
+pub(crate) fn sensed(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
+    let scenario = build(keys)?;
+    if scenario.oracle {
+        return Err(input("oracle: it needs the truth; fly(oracle=True) has it"));
+    }
+    if scenario.known_map {
+        return Err(input(
+            "known_map: it needs the field; fly(known_map=True) has it",
+        ));
+    }
+    Ok(scenario)
+}
+
 /// The scenario file that the keys describe. `scenario` names a file; the other keys take precedence over it.
 pub(crate) fn file(keys: &Bound<'_, PyDict>) -> PyResult<ScenarioFile> {
     let py = keys.py();

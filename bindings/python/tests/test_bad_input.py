@@ -104,10 +104,54 @@ def test_states_that_are_no_numbers(planner):
         core.step(12.0)
     with pytest.raises(mpp.InputError, match="sigma: give 0 or more"):
         core.step(x=0.0, z=50.0, sigma=-1.0)
+    for velocity in ((0.0, 0.0, -1.0), (0.0, 0.0, NAN), (1e300, 0.0, 0.1)):
+        with pytest.raises(mpp.InputError, match="velocity: give"):
+            core.step(x=0.0, z=50.0, velocity=velocity)
+    for speed in (0.0, -5.0):
+        with pytest.raises(mpp.InputError, match="airspeed: give more than 0"):
+            planner.plan(np.zeros(100), airspeed=speed)
+    field = mpp.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
+    with pytest.raises(mpp.InputError, match="angles: give a finite number"):
+        field.ranges(0.0, 50.0, [0.0, NAN])
+    with pytest.raises(mpp.InputError, match="points: give a finite number"):
+        field.clearance([[NAN, 50.0]])
     world = mpp.World(seed=1)
     world.measure()
     with pytest.raises(mpp.InputError, match="thrust: give a finite number"):
         world.step(NAN, 3.7)
+
+
+def test_whole_numbers_that_are_negative_or_too_large():
+    field = mpp.Field.generate(seed=np.int64(3), obstacles=np.uint8(5))
+    assert field.table == mpp.Field.generate(seed=3, obstacles=5).table
+    core, lidar = mpp.Core(), mpp.Lidar()
+    uses = {
+        "seed": (mpp.Field.generate, lambda seed: lidar.scan(field, 0.0, 50.0, seed=seed)),
+        "obstacles": (mpp.Field.generate, lambda obstacles: mpp.campaign(trials=1, obstacles=obstacles)),
+        "trials": (mpp.campaign,),
+        "position_age": (core.step,),
+        "air_age": (core.step,),
+    }
+    for name, calls in uses.items():
+        for call in calls:
+            for value in (-1, 2**64):
+                with pytest.raises(mpp.InputError, match=f"{name}: give a whole number from 0 to"):
+                    call(value) if call.__name__ == "<lambda>" else call(**{name: value})
+
+
+def test_a_planner_has_no_truth():
+    for use in (mpp.Core, mpp.Planner):
+        for key in ("oracle", "known_map"):
+            with pytest.raises(mpp.InputError, match=f"{key}: it needs the"):
+                use(**{key: True})
+
+
+def test_a_core_keeps_the_last_inputs_that_it_refused():
+    core, trim = mpp.Core(), mpp.Aircraft().trim
+    for tick in range(2010):
+        core.step(trim["airspeed"] if tick % 2 else 1e6, trim["pitch"], x=0.12 * tick, z=50.0)
+    assert core.refusals == 1005 and len(core.refused) == 1000
+    assert core.refused[0][0] == 10 and core.refused[-1][0] == 2008
 
 
 def test_too_early_and_too_late():

@@ -6,6 +6,7 @@ import pickle
 import subprocess
 
 import mpp
+import numpy as np
 import pytest
 
 GRID = {"obstacles": [10, 30], "paths": [5, 25], "trials": 3, "seed": 70, "duration": 6}
@@ -50,6 +51,12 @@ def test_rows_are_those_of_the_command_line(rows, tmp_path):
     assert [one["flown"] for one in told] == [11, 12]
     subprocess.run([*command[:-1], own], check=True, capture_output=True)
     assert json.loads(subprocess.check_output([*report, own])) == told[1]
+
+
+def test_a_number_of_numpy_is_a_single_value():
+    keys = {"trials": np.int64(1), "seed": 3, "duration": 1}
+    one = mpp.campaign(**keys, obstacles=np.int64(10), replan_hz=np.float64(10.0))
+    assert one == mpp.campaign(**keys, obstacles=10, replan_hz=10.0)
 
 
 def test_progress_is_told(rows):

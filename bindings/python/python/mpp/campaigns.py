@@ -114,7 +114,8 @@ def campaign(
 
 
 def _listed(value: Any) -> list[Any]:
-    return [value] if isinstance(value, (str, int, float)) else list(value)
+    # NumPy's numbers are single values too.
+    return [value] if isinstance(value, str) or not isinstance(value, Iterable) else list(value)
 
 
 def _sorted(lines: dict[int, str], flights: Campaign) -> Rows:
