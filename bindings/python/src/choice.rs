@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex};
 #[pyclass(frozen, module = "mpp._native")]
 pub(crate) struct Choice {
     plan: Arc<Plan>,
-    guarded: Mutex<Option<Run>>,
+    guarded: Mutex<Option<Box<Run>>>,
 }
 
 /// What every flight of an environment has in common.
@@ -32,7 +32,8 @@ struct Plan {
     base: Scenario,
 }
 
-/// A flight between a scan and the choice of its plan.
+/// A flight between a scan and the choice of its plan. It is large: it is made, copied and flown on a stack of our own
+/// (`aside`), and stays in its box.
 #[derive(Clone)]
 struct Run {
     episode: Episode,
@@ -53,7 +54,7 @@ struct Run {
 #[pyclass(frozen, module = "mpp._native")]
 pub(crate) struct Fork {
     plan: Arc<Plan>,
-    run: Run,
+    run: Box<Run>,
 }
 
 #[pymethods]
@@ -90,7 +91,7 @@ impl Choice {
     fn step(&self, py: Python<'_>, action: usize) -> PyResult<(f64, bool, bool)> {
         let mut run = alone(&self.guarded, "environment")?;
         let run = run.as_mut().ok_or_else(unset)?;
-        py.detach(|| run.fly(&self.plan, action))
+        aside(py, |_| run.fly(&self.plan, action))?
     }
 
     /// What the agent knows: the scan [m]; airspeed [m/s], pitch and flight path angle \[rad\] and height above the
@@ -141,19 +142,21 @@ impl Choice {
     }
 
     /// A copy of the flight as it is now.
-    fn save(&self) -> PyResult<Fork> {
+    fn save(&self, py: Python<'_>) -> PyResult<Fork> {
         let run = alone(&self.guarded, "environment")?;
-        let run = run.as_ref().ok_or_else(unset)?.clone();
+        let run = run.as_ref().ok_or_else(unset)?;
+        let run = aside(py, |_| run.clone())?;
         let plan = Arc::clone(&self.plan);
         Ok(Fork { plan, run })
     }
 
     /// Goes on from a copy.
-    fn restore(&self, fork: &Fork) -> PyResult<()> {
+    fn restore(&self, py: Python<'_>, fork: &Fork) -> PyResult<()> {
         if fork.plan.file != self.plan.file {
             return Err(input("fork: it is of an environment with other keys"));
         }
-        *alone(&self.guarded, "environment")? = Some(fork.run.clone());
+        let mut run = alone(&self.guarded, "environment")?;
+        *run = Some(aside(py, |_| fork.run.clone())?);
         Ok(())
     }
 }
@@ -201,18 +204,32 @@ impl Plan {
         if base.known_map {
             return Err(input("known_map: only fly and campaign have it"));
         }
+        // A cycle here starts from the scan of its tick and ends at once. The core plans without a scan, too.
+        let scan = &base.faults.scan;
+        let odd = [
+            (file.slices_per_tick.is_some(), "slices_per_tick"),
+            (scan.delay_ms.is_some(), "faults.scan.delay_ms"),
+            (scan.missing, "faults.scan.missing"),
+            (scan.one_late, "faults.scan.one_late"),
+            (scan.show.is_some(), "faults.scan.show"),
+        ];
+        if let Some((_, key)) = odd.iter().find(|(given, _)| *given) {
+            return Err(input(format!(
+                "{key}: leave it out, choices cannot fly it as fly does"
+            )));
+        }
         Ok(Self { file, base })
     }
 }
 
 impl Run {
-    fn new(plan: &Plan, seed: u64) -> PyResult<Self> {
+    fn new(plan: &Plan, seed: u64) -> PyResult<Box<Self>> {
         let scenario = Scenario {
             seed,
             ..plan.base.clone()
         };
         let settings: Settings = recording::settings(&scenario).map_err(errors::flight)?;
-        let mut run = Self {
+        let mut run = Box::new(Self {
             scan: vec![0.0; scenario.lidar.beams],
             flight: FlightLoop::new(&settings).map_err(errors::set_up)?,
             planner: recording::planner(&settings).map_err(errors::flight)?,
@@ -222,7 +239,7 @@ impl Run {
             chosen: None,
             seed,
             actions: Vec::new(),
-        };
+        });
         run.tick(plan)?;
         Ok(run)
     }

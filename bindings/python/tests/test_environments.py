@@ -171,8 +171,8 @@ def test_actions_that_make_no_sense():
     with pytest.raises(mpp.InputError, match="give -1 to 1"):
         many.step(np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0]]))
     assert many.unwrapped._batch.truth(0) == before
-    for count in (0, 10**12):
-        with pytest.raises(mpp.InputError, match="count: give 1 to"):
+    for count in (-1, 0, 10**12):
+        with pytest.raises(mpp.InputError, match="num_envs: give 1 to"):
             gymnasium.make_vec("mpp/Control-v0", num_envs=count)
     with pytest.raises(mpp.InputError, match="lidar_hz"):
         gymnasium.make("mpp/Control-v0", lidar_hz=7.0)
@@ -180,6 +180,81 @@ def test_actions_that_make_no_sense():
         gymnasium.make("mpp/Control-v0", faults={"link": {"loss": 0.1}}).reset(seed=1)
     with pytest.raises(mpp.InputError, match="only flight has candidates"):
         gymnasium.make("mpp/Choice-v0", preset="paper")
+    env = gymnasium.make("mpp/Choice-v0").unwrapped
+    env.reset(seed=np.int64(1))
+    most = env.action_space.n - 1
+    for action in (-1, most + 1, 2**70, 0.5, "a", None, [1]):
+        with pytest.raises(mpp.InputError, match=f"action: give 0 to {most}, not"):
+            env.step(action)
+    env.step(np.int64(most))
+    env.step(np.array(0))
+
+
+@pytest.mark.parametrize(
+    ("key", "keys"),
+    [
+        ("slices_per_tick", {"slices_per_tick": 1000}),
+        ("faults.scan.delay_ms", {"faults": {"scan": {"delay_ms": 20}}}),
+        ("faults.scan.show", {"faults": {"scan": {"show": "zeros"}}}),
+        ("faults.scan.missing", {"faults": {"scan": {"missing": True, "from": 3.0}}}),
+        ("faults.scan.one_late", {"faults": {"scan": {"one_late": True}}}),
+        ("known_map", {"known_map": True}),
+    ],
+)
+def test_what_a_choice_could_not_fly_as_fly_does_is_refused(key, keys):
+    with pytest.raises(mpp.InputError, match=key):
+        gymnasium.make("mpp/Choice-v0", **keys)
+
+
+def starts(many, seed, steps=200):
+    """Seeds of the flights of some steps, also of those that start anew."""
+    many.reset(seed=seed)
+    seeds = []
+    for _ in range(steps):
+        many.step(np.ones((many.num_envs, 2)))
+        seeds.append([many.unwrapped._batch.truth(index)["seed"] for index in range(many.num_envs)])
+    return seeds
+
+
+def test_a_seed_or_a_list_of_seeds_also_gives_the_flights_that_start_anew():
+    one, other = (gymnasium.make_vec("mpp/Control-v0", num_envs=2, duration=1) for _ in range(2))
+    first = starts(one, [7, 9])
+    assert first[0] == [7, 9] != first[-1]
+    assert first == starts(other, np.array([7, 9])) != starts(other, [7, 10])
+    assert starts(one, 7)[0] == [7, 8] and starts(one, 7) == starts(other, np.int64(7))
+    assert starts(one, [None, 5], 1)[0][1] == 5
+
+
+@pytest.mark.parametrize("seed", [[], [1], [1, 2, 3], [1, -2], -1, 2**64, 2**64 - 1, 1.5, "ab", [1, 2.5]])
+def test_seeds_that_make_no_sense(seed):
+    with pytest.raises(mpp.InputError, match="seed: give a whole number"):
+        gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(seed=seed)
+    for name in NAMES:
+        if seed != 2**64 - 1:
+            with pytest.raises(mpp.InputError, match="seed: give a whole number"):
+                gymnasium.make(name).reset(seed=seed)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_small_stack_is_enough(name):
+    def flight():
+        env = gymnasium.make(name, duration=2).unwrapped
+        env.reset(seed=1)
+        state = env.save()
+        first = env.step(env.action_space.sample() * 0)
+        env.restore(pickle.loads(pickle.dumps(state)))
+        again = env.step(env.action_space.sample() * 0)
+        same.append(equal(first[0], again[0]))
+
+    same = []
+    size = threading.stack_size(256 * 1024)
+    try:
+        thread = threading.Thread(target=flight)
+        thread.start()
+        thread.join()
+    finally:
+        threading.stack_size(size)
+    assert same == [True]
 
 
 def test_the_second_thread_on_one_environment_gets_an_exception():

@@ -10,6 +10,8 @@ Further arguments of `gymnasium.make` are keys of a scenario, for example `obsta
 
 from __future__ import annotations
 
+import operator
+from collections.abc import Sized
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -21,7 +23,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._native import Batch, Choice, Fork, Moment
-from .errors import StateError
+from .errors import InputError, StateError
 
 # Arrays by name.
 Observation = dict[str, Any]
@@ -43,6 +45,30 @@ def _box(shape: tuple[int, ...], low: float = -numpy.inf, high: float = numpy.in
 
 def _drawn(random: numpy.random.Generator) -> int:
     return int(random.integers(2**32))
+
+
+def _seed(value: Any) -> int:
+    """A seed, also one of NumPy's integers."""
+    try:
+        seed = operator.index(value)
+    except TypeError:
+        seed = -1
+    if not 0 <= seed < 2**64:
+        raise InputError(f"seed: give a whole number from 0 to 2**64 - 1, not {value!r}")
+    return seed
+
+
+def _seeds(value: Any, count: int) -> list[int | None]:
+    """A seed for each flight: numbers from a first one on, or those of a list."""
+    if value is None:
+        return [None] * count
+    try:
+        first = operator.index(value)
+    except TypeError:
+        if not isinstance(value, (list, tuple, numpy.ndarray)) or len(value) != count:
+            raise InputError(f"seed: give a whole number or a list of {count}, not {value!r}") from None
+        return [None if one is None else _seed(one) for one in value]
+    return [_seed(first + index) for index in range(count)]
 
 
 def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
@@ -79,6 +105,7 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
+        seed = None if seed is None else _seed(seed)
         super().reset(seed=seed)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if seed is None else seed])
@@ -103,7 +130,7 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
 
 
 class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
-    """Many flights of `ControlEnv` side by side, all in one call of native code."""
+    """Many flights of `ControlEnv` side by side, all in one call of native code. After its end a flight starts anew."""
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
@@ -118,11 +145,15 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        super().reset(seed=seed if isinstance(seed, int) else None)
-        if isinstance(seed, int):
-            seeds: list[int | None] = [seed + index for index in range(self.num_envs)]
-        else:
-            seeds = seed or [None] * self.num_envs
+        """With a seed, flight k gets the k-th number from it on; with a list, each gets its own, or a drawn one for
+        None. Flights that start anew later draw theirs from a generator that a seed, or a list without None, sets.
+        """
+        seeds = _seeds(seed, self.num_envs)
+        listed = isinstance(seed, Sized)
+        super().reset(seed=None if listed else seeds[0])
+        given = [one for one in seeds if one is not None]
+        if listed and len(given) == self.num_envs:
+            self.np_random = numpy.random.default_rng(given)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if one is None else one for one in seeds])
         self._done[:] = False
@@ -174,14 +205,21 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
+        seed = None if seed is None else _seed(seed)
         super().reset(seed=seed)
         choice = _of(self._choice)
         choice.reset(_drawn(self.np_random) if seed is None else seed)
         return choice.observe(), choice.truth()
 
     def step(self, action: numpy.int64) -> Step:
-        choice = _of(self._choice)
-        reward, failed, ended = choice.step(int(action))
+        choice, (most, _) = _of(self._choice), Choice.SHAPE
+        try:
+            number = operator.index(action)
+        except TypeError:
+            number = -1
+        if not 0 <= number <= most:
+            raise InputError(f"action: give 0 to {most}, not {action!r}")
+        reward, failed, ended = choice.step(number)
         return choice.observe(), reward, failed, ended, choice.truth()
 
     def save(self) -> State[Fork]:
