@@ -96,7 +96,8 @@ impl Campaign {
 
     /// Flies one flight: cells one after the other, each seed by seed. Gives its row: the line that
     /// `sil-harness campaign --out` writes, without its end.
-    fn fly(&self, py: Python<'_>, index: usize) -> PyResult<String> {
+    fn fly(&self, py: Python<'_>, index: i128) -> PyResult<String> {
+        let index = whole::<usize>("index", index)?;
         let trials = (self.campaign.trials as usize).max(1);
         let Some(cell) = self.cells.get(index / trials) else {
             let last = self.__len__().saturating_sub(1);

@@ -93,5 +93,9 @@ def test_a_campaign_that_makes_no_sense():
         mpp.campaign(trials=1, replan_hz=3.0)
     with pytest.raises(mpp.InputError, match="preset"):
         mpp.campaign(trials=1, preset="best")
+    with pytest.raises(mpp.InputError, match="workers: give 1 or more"):
+        mpp.campaign(trials=1, workers=-1)
+    with pytest.raises(mpp.InputError, match="index: give"):
+        mpp.Campaign({}, trials=1).fly(-1)
     with pytest.raises(mpp.InputError, match="no_key"):
         mpp.campaign(trials=1, no_key=1)

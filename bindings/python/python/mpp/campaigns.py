@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from ._native import Campaign, Field
-from .errors import Interrupted
+from .errors import InputError, Interrupted
 
 if TYPE_CHECKING:
     import pandas
@@ -88,6 +88,8 @@ def campaign(
     if isinstance(generator, dict):
         # A generator with parameters is that of every cell.
         scenario["generator"], generator = generator, ()
+    if workers is not None and workers < 0:
+        raise InputError(f"workers: give 1 or more, not {workers}")
     flights = Campaign(
         scenario,
         trials=trials,
