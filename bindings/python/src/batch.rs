@@ -263,7 +263,7 @@ fn unset() -> PyErr {
 
 impl Flights {
     fn new(file: ScenarioFile, lidar_hz: f64) -> PyResult<Self> {
-        let base = file.build().map_err(errors::scenario)?;
+        let base = scenario::of_sensors(file.build().map_err(errors::scenario)?)?;
         let scan_ticks = f64::from(TICKS_PER_SECOND) / lidar_hz;
         let whole =
             (1.0..=1e6).contains(&scan_ticks) && (scan_ticks - scan_ticks.round()).abs() < 1e-9;

@@ -195,14 +195,9 @@ fn unset() -> PyErr {
 
 impl Plan {
     fn new(file: ScenarioFile) -> PyResult<Self> {
-        let base = file.build().map_err(errors::scenario)?;
-        if base.preset != mpp_sim::scenario::Preset::Flight || base.oracle {
-            return Err(input(
-                "preset: only flight has candidates, and no oracle has",
-            ));
-        }
-        if base.known_map {
-            return Err(input("known_map: only fly and campaign have it"));
+        let base = scenario::of_sensors(file.build().map_err(errors::scenario)?)?;
+        if base.preset != mpp_sim::scenario::Preset::Flight {
+            return Err(input("preset: only flight has candidates"));
         }
         // A cycle here starts from the scan of its tick and ends at once. The core plans without a scan, too.
         let scan = &base.faults.scan;

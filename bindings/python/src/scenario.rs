@@ -21,7 +21,11 @@ pub(crate) fn build(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
 
 /// The scenario that the keys describe, for something that gets no more than sensors tell.
 pub(crate) fn sensed(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
-    let scenario = build(keys)?;
+    of_sensors(build(keys)?)
+}
+
+/// A scenario without an oracle and without a known map.
+pub(crate) fn of_sensors(scenario: Scenario) -> PyResult<Scenario> {
     if scenario.oracle {
         return Err(input("oracle: it needs the truth; fly(oracle=True) has it"));
     }

@@ -30,7 +30,7 @@ impl World {
     #[pyo3(signature = (**keys))]
     fn new(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let none = PyDict::new(py);
-        let scenario = scenario::build(keys.unwrap_or(&none))?;
+        let scenario = scenario::sensed(keys.unwrap_or(&none))?;
         let scan_ticks = scenario.replan_ticks;
         let guarded = Mutex::new(Stage {
             episode: Episode::new(scenario, scan_ticks)?,

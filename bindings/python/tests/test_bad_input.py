@@ -139,8 +139,8 @@ def test_whole_numbers_that_are_negative_or_too_large():
                     call(value) if call.__name__ == "<lambda>" else call(**{name: value})
 
 
-def test_a_planner_has_no_truth():
-    for use in (mpp.Core, mpp.Planner):
+def test_what_has_sensors_alone_has_no_truth():
+    for use in (mpp.Core, mpp.Planner, mpp.World):
         for key in ("oracle", "known_map"):
             with pytest.raises(mpp.InputError, match=f"{key}: it needs the"):
                 use(**{key: True})

@@ -199,11 +199,18 @@ def test_actions_that_make_no_sense():
         ("faults.scan.missing", {"faults": {"scan": {"missing": True, "from": 3.0}}}),
         ("faults.scan.one_late", {"faults": {"scan": {"one_late": True}}}),
         ("known_map", {"known_map": True}),
+        ("oracle", {"oracle": True}),
     ],
 )
 def test_what_a_choice_could_not_fly_as_fly_does_is_refused(key, keys):
     with pytest.raises(mpp.InputError, match=key):
         gymnasium.make("mpp/Choice-v0", **keys)
+
+
+@pytest.mark.parametrize("key", ["oracle", "known_map"])
+def test_a_controlled_flight_has_no_truth(key):
+    with pytest.raises(mpp.InputError, match=f"{key}: it needs the"):
+        gymnasium.make("mpp/Control-v0", **{key: True})
 
 
 def starts(many, seed, steps=200):
