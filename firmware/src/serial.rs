@@ -113,7 +113,10 @@ pub fn interrupt<L: Line>() {
         }
     }
     for _ in 0..PLACES {
-        let Some(byte) = L::has_room().then(|| TO_SEND.pop()).flatten() else {
+        if !L::has_room() {
+            break;
+        }
+        let Some(byte) = TO_SEND.pop() else {
             break;
         };
         L::put(byte);

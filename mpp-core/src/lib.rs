@@ -50,9 +50,9 @@
 //! // A scan of a lidar with 100 beams and a range of 45 m. No beam came back.
 //! let mut scan = LidarScan::new();
 //! (scan.angle_min, scan.angle_increment) = (-0.5, 0.01);
-//! scan.ranges.resize(100, 0.0).expect("there is room for 128 beams");
+//! let fits = scan.ranges.resize(100, 0.0).is_ok();
 //! // The planner takes only checked scans.
-//! if scan.check(100, 45.0).is_ok() {
+//! if fits && scan.check(100, 45.0).is_ok() {
 //!     planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
 //! }
 //! // The flight step may run between any two slices.

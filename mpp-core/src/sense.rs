@@ -112,6 +112,15 @@ impl LidarScan {
         }
         Ok(())
     }
+
+    /// Whether these ranges of the next scan repeat those of this one to the last bit, returns among them: the lidar is frozen.
+    #[must_use]
+    pub fn is_repeated_by(&self, ranges: &[f32]) -> bool {
+        let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
+        self.ranges.len() == ranges.len()
+            && ranges.iter().any(|range| *range > 0.0)
+            && self.ranges.iter().zip(ranges).all(same)
+    }
 }
 
 impl Default for LidarScan {

@@ -156,8 +156,14 @@ proptest! {
         // Four standard errors of the mean of chi-square values with two degrees of freedom.
         let doubt = 4.0 / f64::sqrt(count);
         // Late measurements share the noise of the wind with the estimate, which the filter does not know: it
-        // is then careful, and most so where the delay is long and the position exact.
-        let careful = if delay == 0 { 0.95 } else { 0.01 };
+        // is then careful, and most so where the white error is a small part of what it reckons with.
+        let late = f64::from(delay) * TICK_PERIOD;
+        let shared = CHANGE * CHANGE * late * late * late / 3.0;
+        let careful = match (delay, with_velocity) {
+            (0, _) => 0.95,
+            (_, true) => 0.1,
+            (_, false) => (sigma * sigma / (sigma * sigma + shared)).min(0.1),
+        };
         prop_assert!(mean < 1.05 + doubt && mean > careful - doubt, "{mean} of {count}");
     }
 }

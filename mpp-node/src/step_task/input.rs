@@ -3,7 +3,6 @@
 use super::StepTask;
 use crate::{convert, ticks};
 use hil_protocol::{DecodeError, LidarScan as WireScan, RejectionCause, SensorFrame as WireFrame};
-use mpp_core::sense::LidarScan;
 
 /// Old ticks in a row after which the sender counts anew: 0.2 s. A frame that comes twice, or late, is alone.
 const ANEW_AFTER: u32 = 20;
@@ -29,7 +28,7 @@ impl StepTask {
             let configure = &flight.tuning.configure;
             (configure.beams, configure.range_max)
         };
-        let frozen = repeats(&self.scan, wire);
+        let frozen = self.scan.is_repeated_by(&wire.ranges);
         convert::scan(wire, &mut self.scan);
         if frozen {
             flight.scan_tick = None;
@@ -96,12 +95,4 @@ impl StepTask {
         self.plan = None;
         true
     }
-}
-
-/// Whether a scan has returns and repeats the ranges of the one before to the last bit.
-fn repeats(before: &LidarScan, wire: &WireScan) -> bool {
-    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
-    before.ranges.len() == wire.ranges.len()
-        && wire.ranges.iter().any(|range| *range > 0.0)
-        && before.ranges.iter().zip(&wire.ranges).all(same)
 }

@@ -66,7 +66,8 @@ struct Flight {
     last_scan: Option<u32>,
     /// Ticks between the last two scans that started cycles. A lidar may be slower than the planner.
     scan_interval: Option<u32>,
-    /// The tick from which the planner does without a scan, if none comes before.
+    /// The tick from which the planner does without a scan, if none comes before. It follows from the values above when a
+    /// cycle starts, because each tick asks for it.
     blind_from: Option<u32>,
     /// The tick of the scan from which the present trajectory was planned. If its cycle had no scan, this is the tick
     /// at which the cycle started.

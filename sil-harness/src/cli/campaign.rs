@@ -16,23 +16,14 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-/// The flags that say what is flown, and how it is kept. Row files say it themselves.
-const FLOWN: [&str; 22] = [
-    "scenario",
-    "scene",
-    "aircraft",
-    "world_scale",
-    "lidar",
-    "navigation",
-    "duration",
-    "field",
-    "generator",
-    "obstacles",
+/// The flags that say what is flown, and how it is kept; the first two are all flags of their groups. Row files say it
+/// themselves.
+const FLOWN: [&str; 12] = [
+    "ScenarioArgs",
+    "FieldArgs",
     "paths",
     "preset",
     "replan_hz",
-    "latency_ms",
-    "slices_per_tick",
     "oracle",
     "trials",
     "seed",

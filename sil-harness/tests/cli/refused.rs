@@ -37,6 +37,8 @@ fn a_report_takes_no_flag_that_says_what_is_flown() {
         "--scene flytrap",
         "--aircraft zagi",
         "--duration 3",
+        "--field a.toml",
+        "--world-scale 2",
         "--paths 5",
         "--latency-ms 20",
         "--oracle",

@@ -52,8 +52,15 @@ fn vehicle(state: &Path) -> (Transport, UdpSocket) {
     (transport, station)
 }
 
-/// Whether the vehicle is armed after it got this datagram.
+/// Whether the vehicle is armed after it got this datagram. It then ends its flight.
 fn obeys(state: &Path, datagram: &[u8]) -> bool {
+    let (transport, armed) = hears(state, datagram);
+    transport.end("here").unwrap();
+    armed
+}
+
+/// A vehicle that got this datagram, and whether it is armed.
+fn hears(state: &Path, datagram: &[u8]) -> (Transport, bool) {
     use mpp_sim::orders::Ground;
     let (mut transport, station) = vehicle(state);
     // It speaks first, so that the station knows where it is.
@@ -62,8 +69,7 @@ fn obeys(state: &Path, datagram: &[u8]) -> bool {
     station.send_to(datagram, vehicle).unwrap();
     transport.orders(0);
     let armed = transport.ready();
-    transport.end("here").unwrap();
-    armed
+    (transport, armed)
 }
 
 #[test]
@@ -81,5 +87,31 @@ fn what_was_recorded_in_one_flight_is_not_obeyed_in_the_next() {
     assert!(obeys(&state, recorded.as_bytes()));
     assert!(!obeys(&state, recorded.as_bytes()));
     assert!(obeys(&state, arm().as_bytes()));
+    // A vehicle that crashed has not ended its flight.
+    let recorded = arm();
+    let (crashed, armed) = hears(&state, recorded.as_bytes());
+    drop(crashed);
+    assert!(armed && !obeys(&state, recorded.as_bytes()));
     std::fs::remove_dir_all(directory).unwrap();
+}
+
+/// One socket serves one kind of addresses. The other station would never hear a word.
+#[test]
+fn addresses_of_two_kinds_are_refused() {
+    let output = run_in(
+        &scratch("kinds"),
+        &[
+            "fly",
+            "--duration",
+            "1",
+            "--mavlink",
+            "udp:127.0.0.1:9,udp:[::1]:9",
+        ],
+    );
+    assert!(!output.status.success());
+    assert!(
+        talk(&output).contains("give addresses of one kind"),
+        "{}",
+        talk(&output)
+    );
 }

@@ -49,7 +49,10 @@ fn an_interval_is_told_in_both_ways() {
         .at(50, &command(511, 30.0, -1.0))
         .at(60, &command(512, 244.0, 30.0))
         .at(70, &command(511, 30.0, 0.0))
-        .at(80, &command(512, 244.0, 30.0));
+        .at(80, &command(512, 244.0, 30.0))
+        // More than the answer can tell.
+        .at(90, &command(511, 30.0, 3e9))
+        .at(95, &command(512, 244.0, 30.0));
     radio.fly(&short());
     let told = radio.all(|message| match message {
         MavMessage::MESSAGE_INTERVAL(told) => Some((told.message_id, told.interval_us)),
@@ -62,6 +65,7 @@ fn an_interval_is_told_in_both_ways() {
         (9999, 0),
         (30, -1),
         (30, 100_000),
+        (30, 2_147_480_000),
     ];
     assert_eq!(told, expected);
     assert_eq!(radio.acks()[3], (512, 2));

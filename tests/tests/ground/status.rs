@@ -175,7 +175,8 @@ fn what_a_parameter_lacks_is_told_by_its_name() {
     radio
         .at(10, &read)
         .at(20, &write("NO_SUCH_THING", 1.0))
-        .at(30, &write("MPP_PATHS", 99.0));
+        .at(30, &write("MPP_PATHS", 99.0))
+        .at(40, &write("MPP_CRUISE_MS", 15.0));
     radio.fly(&short());
     let errors = radio.all(|message| match message {
         MavMessage::PARAM_ERROR(error) => {
@@ -190,7 +191,8 @@ fn what_a_parameter_lacks_is_told_by_its_name() {
         [
             named("NO_SUCH_THING", 1),
             named("NO_SUCH_THING", 1),
-            named("MPP_PATHS", 2)
+            named("MPP_PATHS", 2),
+            named("MPP_CRUISE_MS", 3)
         ]
     );
 }

@@ -168,7 +168,7 @@ impl MppCore {
         let scan = flight.checked(angles, ranges)?;
         let taken = time - f64::from(age) * TICK_PERIOD;
         let is_newer = (flight.seen).is_none_or(|seen| taken - seen > 0.5 * TICK_PERIOD);
-        if !is_newer || repeats(&self.scan, &scan) {
+        if !is_newer || self.scan.is_repeated_by(&scan.ranges) {
             return Err(MppStatus::ScanRepeated);
         }
         flight.seen = Some(taken);
@@ -259,14 +259,6 @@ fn of_set_up(error: SetupError) -> (MppStatus, Option<Setting>) {
         _ => None,
     };
     (MppStatus::of_set_up(error), number)
-}
-
-/// Whether a scan has returns and repeats the ranges of the one before to the last bit: the lidar is frozen.
-fn repeats(before: &LidarScan, now: &LidarScan) -> bool {
-    let same = |(before, now): (&f32, &f32)| before.to_bits() == now.to_bits();
-    before.ranges.len() == now.ranges.len()
-        && now.ranges.iter().any(|range| *range > 0.0)
-        && before.ranges.iter().zip(&now.ranges).all(same)
 }
 
 fn code(trust: Trust) -> u8 {
