@@ -6,6 +6,7 @@
 
 mod aarch64;
 mod budget;
+mod budget_table;
 mod c;
 mod contents;
 mod counts;
@@ -22,7 +23,6 @@ mod limits;
 mod nucleo;
 mod pil;
 mod qemu;
-mod readme;
 mod reproduce;
 mod stack;
 mod talk;
