@@ -1,10 +1,12 @@
-//! The README's table of budgets.
+//! The table of budgets in docs/validation/firmware.md.
 
 use crate::folders::root;
 use crate::limits::{budget, worst};
 use anyhow::{Context, Result, ensure};
 use toml_edit::DocumentMut;
 
+/// The page that holds the table.
+const PAGE: &str = "docs/validation/firmware.md";
 const BEGIN: &str = "<!-- budgets: written by `cargo xtask budget --save` -->\n";
 const END: &str = "<!-- end of budgets -->\n";
 
@@ -68,20 +70,20 @@ fn grouped(value: u64) -> String {
     text
 }
 
-/// The README's parts before, within and after the table.
+/// The page's parts before, within and after the table.
 fn parts(text: &str) -> Result<(&str, &str, &str)> {
     let (before, rest) = text
         .split_once(BEGIN)
-        .context("README.md has no place for budgets")?;
+        .with_context(|| format!("{PAGE} has no place for budgets"))?;
     let (within, after) = rest
         .split_once(END)
-        .context("README.md: the budgets have no end")?;
+        .with_context(|| format!("{PAGE}: the budgets have no end"))?;
     Ok((before, within, after))
 }
 
-/// Writes the table to the README.
+/// Writes the table to the page.
 pub(crate) fn write(document: &DocumentMut) -> Result<()> {
-    let path = root().join("README.md");
+    let path = root().join(PAGE);
     let text = std::fs::read_to_string(&path)?;
     let (before, _, after) = parts(&text)?;
     let table = table(document)?;
@@ -89,20 +91,20 @@ pub(crate) fn write(document: &DocumentMut) -> Result<()> {
     Ok(())
 }
 
-/// Checks that the README's table shows the budgets of docs/budgets.toml.
+/// Checks that the page's table shows the budgets of docs/budgets.toml.
 pub(crate) fn check(document: &DocumentMut) -> Result<()> {
-    let text = std::fs::read_to_string(root().join("README.md"))?;
+    let text = std::fs::read_to_string(root().join(PAGE))?;
     let (_, within, _) = parts(&text)?;
     ensure!(
         within == table(document)?,
-        "README.md's budgets are not those of docs/budgets.toml: cargo xtask budget --save"
+        "the budgets of {PAGE} are not those of docs/budgets.toml: cargo xtask budget --save"
     );
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{grouped, parts};
+    use super::{check, grouped, parts};
 
     #[test]
     fn thousands_are_grouped() {
@@ -113,7 +115,16 @@ mod tests {
     }
 
     #[test]
-    fn a_readme_without_a_place_is_an_error() {
+    fn a_page_without_a_place_is_an_error() {
         assert!(parts("no table").is_err());
+    }
+
+    #[test]
+    fn the_page_shows_the_budgets_of_the_file() -> anyhow::Result<()> {
+        let mut document = crate::limits::read()?;
+        check(&document)?;
+        document["firmware"]["bytes"]["flash"] = toml_edit::value(1_000_000);
+        assert!(check(&document).is_err());
+        Ok(())
     }
 }
