@@ -370,7 +370,7 @@ fn the_elevator_of_level_trim_is_what_the_pages_say() {
         "docs/notation.md",
         "docs/planner.md",
         "docs/scenarios/example.toml",
-        "mpp-core/src/vehicle/airframe.rs",
+        "mpp-data/src/airframe.rs",
     ] {
         assert!(
             read(&root().join(page)).contains(&reference),

@@ -44,6 +44,7 @@ fn every_published_crate_says_what_it_is_and_brings_its_licences() {
     assert_eq!(
         names,
         [
+            "mpp-data",
             "mpp-core",
             "hil-protocol",
             "mpp-node",

@@ -1,7 +1,7 @@
 //! The core's verdicts on a configuration and on the value of a parameter.
 
-use super::setting::Setting;
 use core::fmt;
+use mpp_data::{OutOfRange, Setting};
 use serde::{Deserialize, Serialize};
 
 /// The core's verdict on a [`Configure`](crate::Configure). Every verdict other than `Accepted` leaves the
@@ -89,6 +89,26 @@ pub enum ConfigureVerdict {
     ImageDamaged,
 }
 
+impl ConfigureVerdict {
+    /// The verdict on a number that is outside of its range. Some numbers have a verdict of their own.
+    #[must_use]
+    pub const fn out_of_range(setting: Setting) -> Self {
+        match setting {
+            Setting::Altitude => Self::NonFinite,
+            Setting::Sight => Self::RangeMax,
+            Setting::CruiseAirspeed => Self::CruiseAirspeed,
+            Setting::PenaltyLinear => Self::Penalty,
+            Setting::Margin => Self::Margin,
+            Setting::Band => Self::Band,
+            Setting::PlanThrust => Self::PlanThrust,
+            Setting::WindChange => Self::WindChange,
+            Setting::AngleOfAttackLimit => Self::AngleOfAttackLimit,
+            Setting::FlightPathLimit => Self::FlightPathLimit,
+            setting => Self::OutOfRange(setting),
+        }
+    }
+}
+
 impl fmt::Display for ConfigureVerdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
@@ -110,16 +130,10 @@ impl fmt::Display for ConfigureVerdict {
                     "the core cannot take that number of beams: configure a lidar with 1 to {max}"
                 );
             }
-            Self::NonFinite => {
-                "the altitude is out of range or not a finite number: give -1000 to 20000 metres"
-            }
             Self::NotTrimmable => {
                 "no level flight was found at the cruise airspeed: check cruise and airframe"
             }
             Self::SlicesPerTick => "a tick has no planning work: ask for at least one slice",
-            Self::RangeMax => {
-                "the lidar's range is out of range or not a finite number: give 1 to 10000 metres"
-            }
             Self::AlreadyConfigured => {
                 "a flight is configured and goes on as it was: say hello to start another"
             }
@@ -136,10 +150,6 @@ impl fmt::Display for ConfigureVerdict {
             }
             Self::ThrustTooLow => {
                 "the greatest thrust does not carry level flight: raise it, or check cruise and \
-                 airframe"
-            }
-            Self::CruiseAirspeed => {
-                "the airspeed of level flight is out of range or not a finite number: check cruise and \
                  airframe"
             }
             Self::AirframeNotFinite => {
@@ -174,35 +184,8 @@ impl fmt::Display for ConfigureVerdict {
                 "the plan's cost has no single optimum: give the controls positive weights, and the \
                  terminal state one that is not negative"
             }
-            Self::Penalty => {
-                "the linear price of the soft rows is out of range: give 1e-6 to 1e12 per metre"
-            }
-            Self::Margin => {
-                "the distance to keep from obstacles is out of range: give 0.001 to 500 metres"
-            }
-            Self::Band => {
-                "the band about the altitude is out of range: give 0.1 to 10000 metres"
-            }
-            Self::PlanThrust => {
-                "the greatest thrust of a plan is out of range: give 0.1 to 1e6 newtons"
-            }
-            Self::WindChange => {
-                "the change of the wind is out of range: give 0.001 to 100 metres per second"
-            }
-            Self::AngleOfAttackLimit => {
-                "the limit of the angle of attack is out of range: give 0.001 to 1.5 radians"
-            }
-            Self::FlightPathLimit => {
-                "the limit of the flight path angle is out of range: give 0.001 to 1.5 radians"
-            }
             Self::OtherPreset => {
                 "the planner cannot change its method in flight: say hello and configure it anew"
-            }
-            Self::OutOfRange(setting) => {
-                return write!(
-                    f,
-                    "{setting} is not finite, or is far from that of any aircraft: correct it"
-                );
             }
             Self::Unstable => {
                 "the regulator is too firm or too soft for a tick of 10 ms: bring its weights and gains \
@@ -211,6 +194,17 @@ impl fmt::Display for ConfigureVerdict {
             Self::ImageDamaged => {
                 "the program in the flight computer's memory is not as it was built: load it again"
             }
+            Self::NonFinite => return OutOfRange(Setting::Altitude).fmt(f),
+            Self::RangeMax => return OutOfRange(Setting::Sight).fmt(f),
+            Self::CruiseAirspeed => return OutOfRange(Setting::CruiseAirspeed).fmt(f),
+            Self::Penalty => return OutOfRange(Setting::PenaltyLinear).fmt(f),
+            Self::Margin => return OutOfRange(Setting::Margin).fmt(f),
+            Self::Band => return OutOfRange(Setting::Band).fmt(f),
+            Self::PlanThrust => return OutOfRange(Setting::PlanThrust).fmt(f),
+            Self::WindChange => return OutOfRange(Setting::WindChange).fmt(f),
+            Self::AngleOfAttackLimit => return OutOfRange(Setting::AngleOfAttackLimit).fmt(f),
+            Self::FlightPathLimit => return OutOfRange(Setting::FlightPathLimit).fmt(f),
+            Self::OutOfRange(setting) => return OutOfRange(*setting).fmt(f),
         })
     }
 }

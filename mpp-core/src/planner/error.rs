@@ -3,7 +3,7 @@
 use crate::config::MAX_PATHS;
 use crate::control::RiccatiError;
 use crate::qp::CondenseError;
-use crate::settings::{PlannerSettings, Setting, Settings};
+use crate::settings::{OutOfRange, PlannerSettings, Setting, Settings};
 use crate::vehicle::{Trim, TrimError};
 use core::fmt;
 
@@ -52,12 +52,7 @@ impl fmt::Display for SetupError {
                 );
             }
             Self::OutOfRange(setting) => {
-                let ([least, most], unit) = (setting.range(), setting.unit());
-                return write!(
-                    f,
-                    "the setting {setting} is out of range: give a number from {least} to {most}, \
-                     unit {unit}"
-                );
+                return OutOfRange(*setting).fmt(f);
             }
             Self::ThrustTooLow => {
                 "the greatest thrust does not carry level flight: raise it, or check cruise and \

@@ -18,7 +18,7 @@ use core::fmt;
 use core::str::FromStr;
 use hil_protocol::Configure;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::settings::Settings;
+use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::vehicle::{ActuatorLimits, Trim, TrimError, VehicleState};
 use serde::{Deserialize, Serialize};
 
@@ -220,7 +220,7 @@ impl Scenario {
     /// The limits of the actuators: those of the aircraft, or the narrower ones among the scenario's faults.
     #[must_use]
     pub fn limits(&self) -> ActuatorLimits {
-        let own = self.aircraft.known.actuators;
+        let own = self.aircraft.actuators;
         let more = self.faults.actuators.limits();
         let least = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::min);
         ActuatorLimits {
@@ -292,9 +292,9 @@ impl Scenario {
                 Preset::Paper => hil_protocol::Preset::Paper,
                 Preset::Flight => hil_protocol::Preset::Flight,
             },
-            aircraft: hil_protocol::Aircraft {
+            aircraft: Aircraft {
                 body_radius: self.body_radius,
-                ..self.aircraft.told()
+                ..self.aircraft.known
             },
             paths: self.paths,
             replan_period_ticks: self.replan_ticks,
@@ -304,7 +304,7 @@ impl Scenario {
             beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
             range_max: self.lidar.farthest() as f32,
             altitude: ALTITUDE,
-            actuators: told(self.limits()),
+            actuators: self.limits(),
         }
     }
 
@@ -318,23 +318,5 @@ impl Scenario {
     #[must_use]
     pub fn time(tick: u32) -> f64 {
         f64::from(tick) * TICK_PERIOD
-    }
-}
-
-/// Limits in the form that goes to the core.
-fn told(limits: ActuatorLimits) -> hil_protocol::ActuatorLimits {
-    let ActuatorLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
-    } = limits;
-    hil_protocol::ActuatorLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
     }
 }

@@ -31,15 +31,20 @@ const HOST: &[&str] = &[
 
 /// One entry for each crate of the workspace, the lowest first. An entry may exist before its
 /// crate.
-const RULES: [Rule; 13] = [
+const RULES: [Rule; 14] = [
     Rule {
-        name: "mpp-core",
+        name: "mpp-data",
         ours: &[],
         not: HOST,
     },
     Rule {
+        name: "mpp-core",
+        ours: &["mpp-data"],
+        not: HOST,
+    },
+    Rule {
         name: "hil-protocol",
-        ours: &[],
+        ours: &["mpp-data"],
         not: HOST,
     },
     Rule {
@@ -223,7 +228,8 @@ fn a_forbidden_dependency_and_a_crate_without_a_rule_are_found() {
 }
 
 /// The crates whose files must not import each other in a circle, with their first file.
-const COVERED: [(&str, &str); 9] = [
+const COVERED: [(&str, &str); 10] = [
+    ("mpp-data", "lib.rs"),
     ("hil-protocol", "lib.rs"),
     ("mpp-core", "lib.rs"),
     ("mpp-node", "lib.rs"),
@@ -244,7 +250,7 @@ fn no_files_import_each_other_in_a_circle() {
             .join("src");
         let read = |file: &str| std::fs::read_to_string(source.join(file)).ok();
         let edges = edges(first, &read);
-        assert!(edges.len() > 5, "{name} was not read");
+        assert!(edges.len() > 2, "{name} was not read");
         let circles = circles(&edges);
         assert!(
             circles.is_empty(),
