@@ -16,9 +16,8 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 FILES = [
     "mpp-core/src/estimate/**",
-    "mpp-core/src/flight.rs",
+    "mpp-core/src/flight/**",
     "mpp-core/src/qp/solve/**",
-    "hil-protocol/src/frame*",
     "hil-protocol/src/frame/**",
     "hil-protocol/src/mavlink/**",
 ]

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every figure of docs/validation/beyond.md: success, the oracle's beside it, causes of failure, cost.
+# The figures of docs/validation/beyond.md: success, the oracle's beside it, causes of failure.
 # A killed run goes on where it was: rows are kept in OUT (default out/beyond). TRIALS scales the flights
 # of every table for a quick look (percent, default 100); THREADS is that of `campaign` (0: every core).
 set -euo pipefail
@@ -29,6 +29,3 @@ for scene in flytrap dynamics long-way; do
   fly "$scene" 100 --scene "$scene" --obstacles 0 --replan-hz 1,4
 done
 "$harness" figures --out "$out/figures" --rows "$out/dense.jsonl"
-
-printf '\n== cost of a cycle\n'
-"$harness" bench cycle --obstacles 40 --flights 10 --seed "$seed" | tee "$out/cycle.txt"

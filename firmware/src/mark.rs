@@ -43,15 +43,15 @@ impl Region {
     /// The region that the next slice of the planner belongs to.
     #[must_use]
     pub fn of(phase: Phase) -> Self {
-        use mpp_core::planner::flight::Phase as Flight;
+        use mpp_core::planner::plane::Phase as Flight;
         #[cfg(feature = "paper")]
-        use mpp_core::planner::paper::Phase as Paper;
+        use mpp_core::paper::Phase as Paper;
         match phase {
-            Phase::Flight(Flight::Map) => Self::Remember,
-            Phase::Flight(Flight::Lattice) => Self::Lattice,
-            Phase::Flight(Flight::Faces) => Self::Corridor,
-            Phase::Flight(Flight::Linearise) => Self::Linearise,
-            Phase::Flight(Flight::Improve | Flight::Idle | Flight::Done) => Self::Improve,
+            Phase::Plane(Flight::Map) => Self::Remember,
+            Phase::Plane(Flight::Lattice) => Self::Lattice,
+            Phase::Plane(Flight::Faces) => Self::Corridor,
+            Phase::Plane(Flight::Linearise) => Self::Linearise,
+            Phase::Plane(Flight::Improve | Flight::Idle | Flight::Done) => Self::Improve,
             #[cfg(feature = "paper")]
             Phase::Paper(Paper::Map) => Self::Map,
             #[cfg(feature = "paper")]

@@ -1,9 +1,9 @@
 //! A recording of a flight's planning cycles, made from outside, and a planner to plan them again.
 
-use mpp_core::estimate::Conditions;
 use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::{FlyError, fly};

@@ -8,7 +8,7 @@
 //! 100 Hz  SensorFrame -> Ekf -> AirState -> Lqr -> Control                       flight
 //!                                | snapshot   ^ Trajectory::sample(t)
 //!                                v            |
-//! replan  LidarScan -> MemoryMap -> LatticePath, Path -> Corridor -> Solution -> roll-out   planner::flight
+//! replan  LidarScan -> RollingGrid -> LatticePath, Path -> Corridor -> Solution -> roll-out   planner::plane
 //!         sense        map          paths                corridor    qp
 //! ```
 //!
@@ -24,7 +24,7 @@
 //! # Example
 //!
 //! ```
-//! use mpp_core::estimate::Measurement;
+//! use mpp_core::sense::Measurement;
 //! use mpp_core::flight::FlightLoop;
 //! use mpp_core::planner::{Planner, SetupError};
 //! use mpp_core::sense::{AirData, LidarScan, SensorFrame};
@@ -32,7 +32,7 @@
 //!
 //! # fn main() -> Result<(), SetupError> {
 //! let mut settings = Settings::flight();
-//! if let Some(own) = settings.planner.flight_mut() {
+//! if let Some(own) = settings.planner.plane_mut() {
 //!     // The loop takes a plan over one tick after its cycle has begun.
 //!     own.latency = 0.01;
 //! }
@@ -76,8 +76,10 @@ pub mod estimate;
 pub mod flight;
 pub mod health;
 mod inverse;
+pub mod lattice;
 pub mod map;
-pub mod paths;
+#[cfg(feature = "paper")]
+pub mod paper;
 pub mod planner;
 pub mod qp;
 pub mod sense;
@@ -86,26 +88,3 @@ pub mod trajectory;
 pub mod tuning;
 pub mod units;
 pub mod vehicle;
-
-/// The rules of the grid, the tree and the raytracing: the authors' or the corrected ones.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rules {
-    /// The rules of the authors' code with its faults, for comparison. The tree does not check its edges,
-    /// it does not update costs when it rewires nodes, and rays see a window that wraps around.
-    #[cfg(feature = "paper")]
-    Authors,
-    /// The rules that the paper's text means.
-    Corrected,
-}
-
-impl Rules {
-    /// Whether these are the authors' rules. They exist only with the feature `paper`.
-    #[must_use]
-    pub const fn are_authors(self) -> bool {
-        match self {
-            #[cfg(feature = "paper")]
-            Self::Authors => true,
-            Self::Corrected => false,
-        }
-    }
-}

@@ -1,7 +1,6 @@
 //! The data of the sensors: the inputs of the flight loop and of the map.
 
 use crate::config::MAX_BEAMS;
-use crate::estimate::Measurement;
 use core::fmt;
 
 /// The measurements that arrived in one tick.
@@ -20,6 +19,15 @@ pub struct AirData {
     pub age: u32,
     /// The measured values.
     pub measurement: Measurement,
+}
+
+/// Measured airspeed and pitch. Their errors are independent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// Airspeed [m/s].
+    pub airspeed: f64,
+    /// Pitch \[rad\].
+    pub pitch: f64,
 }
 
 /// A position from the navigation source.

@@ -7,11 +7,10 @@
 //! Source: Buckingham's theorem and Froude scaling, for example Wolowicz, Bowman and Gilbert, "Similitude
 //! requirements and scaling relationships as applied to model testing", NASA TP-1435, table I.
 
-use crate::estimate::Conditions;
-use crate::map::Pose;
-use crate::settings::FlightSettings;
+use crate::settings::PlaneSettings;
 use crate::vehicle::{
-    ActuatorLimits, AirState, Airframe, Control, PathControl, PathState, Trim, VehicleState, Wind,
+    ActuatorLimits, AirState, Airframe, Conditions, Control, PathControl, PathState, Pose, Trim,
+    VehicleState, Wind,
 };
 
 /// Airspeed of level flight for which the planner's numbers were tuned [m/s] (paper, section IV).
@@ -141,10 +140,10 @@ impl Units {
         }
     }
 
-    /// Settings of the flight planner in own units. Prices and limits of angles are in own units already.
+    /// Settings of the plane planner in own units. Prices and limits of angles are in own units already.
     #[must_use]
-    pub fn own_settings(&self, settings: &FlightSettings) -> FlightSettings {
-        FlightSettings {
+    pub fn own_settings(&self, settings: &PlaneSettings) -> PlaneSettings {
+        PlaneSettings {
             sight: settings.sight / self.length,
             latency: settings.latency / self.time,
             margin: settings.margin / self.length,

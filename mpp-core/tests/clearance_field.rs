@@ -12,12 +12,12 @@ use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::completed::Cells;
 use common::draw::Draw;
 use common::memory::{field, random_map};
-use mpp_core::map::{ClearanceField, FAR, MemoryMap};
+use mpp_core::map::{DistanceField, FAR, RollingGrid};
 
 /// Distances are kept in 64ths of a metre, rounded down.
 const ROUNDED: f64 = 1.0 / 64.0;
 
-fn rounds() -> impl Iterator<Item = (Draw, MemoryMap)> {
+fn rounds() -> impl Iterator<Item = (Draw, RollingGrid)> {
     (0..12).map(|seed| {
         let mut draw = Draw::new(seed);
         let x = draw.between(-300.0, 3000.0);
@@ -176,7 +176,7 @@ fn a_box_outside_of_the_window_has_no_surface() {
 #[test]
 fn an_empty_field_is_far_from_everything_and_no_number_is_too_wild() {
     let map = random_map(&mut Draw::new(4), 100.0, 3);
-    let empty = ClearanceField::new();
+    let empty = DistanceField::new();
     let full = field(&map);
     for wild in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300, -1e300] {
         for (x, z) in [(wild, 50.0), (100.0, wild), (wild, wild)] {

@@ -11,7 +11,7 @@ use common::draw::Draw;
 use common::memory::{field, random_map};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS, Keep};
-use mpp_core::map::ClearanceField;
+use mpp_core::map::DistanceField;
 use mpp_core::vehicle::PathState;
 
 const CRUISE: f64 = 12.0;
@@ -43,7 +43,7 @@ fn knots(draw: &mut Draw) -> Knots {
 }
 
 /// Fields with a trajectory each, and a generator for further numbers.
-fn scenes() -> impl Iterator<Item = (Draw, ClearanceField, Knots)> {
+fn scenes() -> impl Iterator<Item = (Draw, DistanceField, Knots)> {
     (0..60).map(|seed| {
         let mut draw = Draw::new(seed);
         let field = field(&random_map(&mut draw, 100.0, 1));
@@ -61,7 +61,7 @@ fn slack(corridor: &Corridor, knots: &Knots, stage: usize, (x, z): (f64, f64)) -
         .fold(f64::INFINITY, f64::min)
 }
 
-fn separated(field: &ClearanceField, knots: &Knots, keep: &Keep) -> Corridor {
+fn separated(field: &DistanceField, knots: &Knots, keep: &Keep) -> Corridor {
     let mut corridor = Corridor::new();
     corridor.separate(field, knots, CRUISE, keep);
     corridor
@@ -76,7 +76,7 @@ fn distance(cells: &[(f64, f64)], x: f64, z: f64) -> f64 {
 }
 
 /// The surface cells near a segment.
-fn about(field: &ClearanceField, from: &PathState, to: &PathState) -> Vec<(f64, f64)> {
+fn about(field: &DistanceField, from: &PathState, to: &PathState) -> Vec<(f64, f64)> {
     let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
     let mut cells = Vec::new();
     field.surface(range(from.x, to.x), range(from.z, to.z), |x, z| {
@@ -192,7 +192,7 @@ fn a_trajectory_well_away_from_everything_keeps_its_own_faces() {
 #[test]
 fn floor_and_ceiling_bound_the_height_of_every_stage_and_nothing_else_does() {
     let knots = knots(&mut Draw::new(1));
-    let corridor = separated(&ClearanceField::new(), &knots, &KEEP);
+    let corridor = separated(&DistanceField::new(), &knots, &KEEP);
     for (stage, knot) in knots.iter().enumerate() {
         let slack = |z: f64| slack(&corridor, &knots, stage, (knot.x, z));
         for inside in [KEEP.floor + 1e-6, KEEP.ceiling - 1e-6] {

@@ -9,11 +9,13 @@ mod common {
 use common::sensors::frame;
 use common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
-use mpp_core::estimate::{Conditions, Ekf, Measurement};
+use mpp_core::estimate::Ekf;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError, Verdict};
+use mpp_core::sense::Measurement;
 use mpp_core::settings::{Setting, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
 use proptest::prelude::*;
 

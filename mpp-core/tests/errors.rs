@@ -3,7 +3,7 @@
 use mpp_core::control::RiccatiError;
 use mpp_core::estimate::Diverged;
 use mpp_core::planner::SetupError;
-use mpp_core::qp::{CondenseError, ModelError};
+use mpp_core::qp::CondenseError;
 use mpp_core::sense::ScanError;
 use mpp_core::settings::Setting;
 use mpp_core::vehicle::TrimError;
@@ -42,7 +42,6 @@ const RICCATI: [RiccatiError; 4] = [
 fn every_error_speaks() {
     check(&TRIM);
     check(&RICCATI);
-    check(&[ModelError]);
     check(&[CondenseError]);
     check(&[Diverged]);
     check(&[
@@ -59,7 +58,7 @@ fn every_error_speaks() {
 #[test]
 fn a_failed_set_up_speaks_as_its_cause() {
     let mut errors = vec![
-        SetupError::Model(ModelError),
+        SetupError::NoSteadyState,
         SetupError::Condense(CondenseError),
         SetupError::Unstable,
         SetupError::TooManyPaths,

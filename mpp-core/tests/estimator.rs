@@ -6,7 +6,8 @@ mod common {
 }
 
 use common::draw::Draw;
-use mpp_core::estimate::{Diverged, Ekf, EkfTuning, Measurement, Verdict};
+use mpp_core::estimate::{Diverged, Ekf, EkfTuning, MeasurementStatus};
+use mpp_core::sense::Measurement;
 use mpp_core::vehicle::{AirState, Airframe, Control, JacobianForm, Trim, air_rate};
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 
@@ -209,16 +210,25 @@ fn a_spike_is_gated_and_changes_nothing() {
             pitch: 2.5,
         };
         let verdicts = ekf.update(&spike);
-        assert_eq!([verdicts.airspeed, verdicts.pitch], [Verdict::Gated; 2]);
+        assert_eq!(
+            [verdicts.airspeed, verdicts.pitch],
+            [MeasurementStatus::Gated; 2]
+        );
         assert_eq!((*ekf.estimate(), *ekf.covariance()), (state, covariance));
         let verdicts = ekf.update(&at_trim());
-        assert_eq!([verdicts.airspeed, verdicts.pitch], [Verdict::Accepted; 2]);
+        assert_eq!(
+            [verdicts.airspeed, verdicts.pitch],
+            [MeasurementStatus::Accepted; 2]
+        );
     }
 }
 
 #[test]
 fn the_gate_stands_where_the_tuning_puts_it() {
-    for (factor, expected) in [(0.999, Verdict::Accepted), (1.001, Verdict::Gated)] {
+    for (factor, expected) in [
+        (0.999, MeasurementStatus::Accepted),
+        (1.001, MeasurementStatus::Gated),
+    ] {
         for sign in [-1.0, 1.0] {
             let mut ekf = settled(CALM);
             let sigma = libm::sqrt(ekf.covariance()[(0, 0)] + CALM.airspeed_variance);
@@ -241,7 +251,7 @@ fn a_lasting_change_is_taken_in_after_a_while() {
     let mut gated = 0;
     for _ in 0..500 {
         ekf.predict(trim().control, PERIOD).unwrap();
-        gated += usize::from(ekf.update(&changed).airspeed == Verdict::Gated);
+        gated += usize::from(ekf.update(&changed).airspeed == MeasurementStatus::Gated);
     }
     assert!((1..300).contains(&gated), "{gated} values were gated");
     let rest = ekf.estimate().airspeed - changed.airspeed;
@@ -258,7 +268,10 @@ fn values_that_are_none_are_told_apart_and_change_nothing() {
             airspeed: bad,
             pitch: bad,
         });
-        assert_eq!([verdicts.airspeed, verdicts.pitch], [Verdict::NotFinite; 2]);
+        assert_eq!(
+            [verdicts.airspeed, verdicts.pitch],
+            [MeasurementStatus::NotFinite; 2]
+        );
         assert_eq!((*ekf.estimate(), *ekf.covariance()), (state, covariance));
 
         let verdicts = ekf.update(&Measurement {
@@ -267,7 +280,7 @@ fn values_that_are_none_are_told_apart_and_change_nothing() {
         });
         assert_eq!(
             (verdicts.airspeed, verdicts.pitch),
-            (Verdict::NotFinite, Verdict::Accepted)
+            (MeasurementStatus::NotFinite, MeasurementStatus::Accepted)
         );
         assert_ne!(*ekf.covariance(), covariance, "the pitch was used");
     }

@@ -13,7 +13,7 @@ use common::lively::lively;
 use common::sensors::frame;
 use common::trajectories::trajectory;
 use mpp_core::config::{KNOTS, TICK_PERIOD};
-use mpp_core::estimate::{PositionVerdict, Verdict as MeasurementVerdict};
+use mpp_core::estimate::{MeasurementStatus, PositionVerdict};
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
 use mpp_core::health::Health;
 use mpp_core::planner::{SetupError, Verdict};
@@ -138,7 +138,7 @@ fn frames_that_are_not_finite_are_counted_and_survived() {
         let out = flight.step(f64::from(tick) * TICK_PERIOD, &bad);
         assert!(out.control.thrust.is_finite() && out.control.elevator.is_finite());
         assert_eq!(out.position, Some(PositionVerdict::NotFinite));
-        assert_eq!(out.innovation.airspeed, MeasurementVerdict::NotFinite);
+        assert_eq!(out.innovation.airspeed, MeasurementStatus::NotFinite);
     }
     let expected = Health {
         measurements_not_finite: 100,
@@ -211,7 +211,7 @@ fn frozen_values_are_not_used() {
                 .step(f64::from(tick) * TICK_PERIOD, &frame)
                 .innovation;
             let verdict = [verdicts.airspeed, verdicts.pitch][frozen];
-            if verdict == MeasurementVerdict::Frozen {
+            if verdict == MeasurementStatus::Frozen {
                 first_flag.get_or_insert(tick);
             }
         }

@@ -10,9 +10,9 @@ mod common {
 use common::planning::{level, plan, planner};
 use common::world::scan;
 use mpp_core::config::STAGE_PERIOD;
-use mpp_core::estimate::Conditions;
 use mpp_core::qp::{Condensed, RowKind, Solution, Solver, Status};
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
 
 /// The states of a program are `(x, z, v, theta, thrust, gamma)`.
 #[test]
@@ -30,7 +30,7 @@ fn programs_know_path_and_thrust() {
             continue;
         };
         assert!(problem.initial[4].abs() + problem.target[4].abs() == 0.0);
-        for stage in planner.flight().unwrap().stages().unwrap() {
+        for stage in planner.plane().unwrap().stages().unwrap() {
             let (a, b) = (stage.a(), stage.b);
             // Nothing but its command changes the thrust.
             assert!((a[(4, 4)] - remains).abs() < 1e-12);
@@ -65,7 +65,7 @@ fn asked_at_most(settings: &Settings) -> (f64, f64) {
         let Some((_, problem)) = planner.candidate() else {
             continue;
         };
-        let stages = planner.flight().unwrap().stages().unwrap();
+        let stages = planner.plane().unwrap().stages().unwrap();
         shared
             .condense_varying(&settings.planner.weights, |own| *own = *stages)
             .unwrap();

@@ -3,7 +3,8 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{Ekf, EkfTuning, Innovation, LaggedEkf, Measurement, Taken, Verdict};
+use mpp_core::estimate::{Ekf, EkfTuning, Innovation, LaggedEkf, MeasurementStatus, Taken};
+use mpp_core::sense::Measurement;
 use mpp_core::vehicle::{AirState, Airframe, Control, Trim, air_rate};
 use proptest::prelude::*;
 
@@ -119,8 +120,8 @@ fn the_lag_follows_the_measurements() {
         let used = matches!(
             taken,
             Taken::Measured(Innovation {
-                airspeed: Verdict::Accepted,
-                pitch: Verdict::Accepted
+                airspeed: MeasurementStatus::Accepted,
+                pitch: MeasurementStatus::Accepted
             })
         );
         let expected = match tick {

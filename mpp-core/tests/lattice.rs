@@ -10,8 +10,8 @@ mod common {
 use common::draw::Draw;
 use common::memory::{field, random_map};
 use common::pose::pose;
-use mpp_core::map::{ClearanceField, MemoryMap};
-use mpp_core::paths::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
+use mpp_core::lattice::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
+use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ const TASK: LatticeTask = LatticeTask {
     unknown_ahead: 26.0,
 };
 
-fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) {
+fn paths(field: &DistanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) {
     let mut lattice = Box::new(Lattice::new());
     lattice.start(task, field);
     let mut slices = 1;
@@ -49,8 +49,8 @@ fn paths(field: &ClearanceField, task: &LatticeTask) -> (f64, Vec<LatticePath>) 
 }
 
 /// The field of points that beams from `(100, 50)` hit twice, with free space about.
-fn discs(discs: &[(f64, f64)]) -> ClearanceField {
-    let mut map = MemoryMap::new();
+fn discs(discs: &[(f64, f64)]) -> DistanceField {
+    let mut map = RollingGrid::new();
     map.roll(100.0, 50.0);
     let mut fan = LidarScan::new();
     (fan.angle_min, fan.angle_increment) = (-0.9, 0.018);
@@ -81,7 +81,7 @@ fn slopes(path: &LatticePath, first: i32) -> Vec<i32> {
 
 /// The search's cost, from its definition.
 struct Costs<'a> {
-    field: &'a ClearanceField,
+    field: &'a DistanceField,
     task: LatticeTask,
     spacing: f64,
 }
@@ -249,7 +249,7 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
 
 #[test]
 fn nothing_in_the_way_is_flown_straight_on_and_back_to_the_altitude() {
-    let empty = ClearanceField::new();
+    let empty = DistanceField::new();
     let (_, level) = paths(&empty, &TASK);
     assert!(level[0].iter().all(|z| (z - 50.0).abs() < 1e-12));
     for off in [-8.0, 8.0] {

@@ -9,10 +9,11 @@ mod common {
 use common::sensors::frame;
 use common::world::scan;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{Conditions, LiftEstimator};
+use mpp_core::estimate::LiftEstimator;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::Planner;
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{
     ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, vehicle_rate,
 };

@@ -8,9 +8,10 @@ mod common {
 
 use common::draw::Draw;
 use common::grids::grid;
-use mpp_core::Rules;
-use mpp_core::config::{GRID_COLS, GRID_ROWS, MAX_BEAMS, ORIGIN_COL, ORIGIN_ROW};
-use mpp_core::map::OccupancyGrid;
+use mpp_core::config::MAX_BEAMS;
+use mpp_core::paper::OccupancyGrid;
+use mpp_core::paper::Rules;
+use mpp_core::paper::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
 use mpp_core::sense::{LidarScan, ScanError};
 
 const ROWS: i32 = GRID_ROWS as i32;

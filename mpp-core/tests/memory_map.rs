@@ -11,7 +11,7 @@ use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::draw::Draw;
 use common::memory::{field, noise, random_map};
 use common::pose::pose;
-use mpp_core::map::MemoryMap;
+use mpp_core::map::RollingGrid;
 use mpp_core::sense::LidarScan;
 
 /// One beam along the body axis. Range 0 means a beam that did not return.
@@ -22,19 +22,19 @@ fn beam(range: f32) -> LidarScan {
 }
 
 /// A map about `(100, 50)`.
-fn started() -> MemoryMap {
-    let mut map = MemoryMap::new();
+fn started() -> RollingGrid {
+    let mut map = RollingGrid::new();
     map.roll(100.0, 50.0);
     map
 }
 
 /// All rows of the map that a reader can see.
-fn rows(map: &MemoryMap) -> Vec<(u128, u128)> {
+fn rows(map: &RollingGrid) -> Vec<(u128, u128)> {
     (0..ROWS).map(|row| map.row(row)).collect()
 }
 
 /// Centres of the occupied cells, by row and column.
-fn centres(map: &MemoryMap) -> Vec<(f64, f64)> {
+fn centres(map: &RollingGrid) -> Vec<(f64, f64)> {
     let mut centres = Vec::new();
     for row in 0..ROWS as i32 {
         for col in (0..COLS as i32).filter(|col| occupied(map, row, *col)) {
@@ -199,7 +199,7 @@ fn an_aircraft_behind_its_window_gets_a_new_one() {
 #[test]
 fn the_window_follows_the_altitude() {
     for altitude in [50.1, 55.0, 43.5, 61.0, 90.0, -500.0, 1e9] {
-        let mut map = MemoryMap::new();
+        let mut map = RollingGrid::new();
         map.roll(100.0, 50.0);
         for height in [40.2, 50.2, 60.2] {
             map.insert(&beam(20.1), 45.0, &pose(100.2, height, 0.0));
@@ -223,7 +223,7 @@ fn the_window_follows_the_altitude() {
 fn a_cleared_map_is_as_new_wherever_it_starts_again() {
     let mut map = random_map(&mut Draw::new(7), 900.0, 3);
     map.clear();
-    let mut new = MemoryMap::new();
+    let mut new = RollingGrid::new();
     for map in [&mut map, &mut new] {
         map.roll(30.0, 80.0);
     }
@@ -250,7 +250,7 @@ fn no_number_is_too_wild() {
     ];
     for first in wild {
         for second in wild {
-            let mut map = MemoryMap::new();
+            let mut map = RollingGrid::new();
             map.roll(first, 50.0);
             map.insert(&noise(&mut draw), 45.0, &pose(second, first, 0.0));
             map.roll(second, 50.0);
@@ -264,7 +264,7 @@ fn no_number_is_too_wild() {
 #[test]
 fn what_is_known_leaves_nothing_unknown() {
     for x in [0.0, 37.3, 1000.1] {
-        let mut map = MemoryMap::new();
+        let mut map = RollingGrid::new();
         map.roll(x, 50.0);
         map.insert(&beam(5.0), 45.0, &pose(x, 50.0, 0.0));
         let wall = |at: f64, z: f64| at > x + 20.0 && z < 45.0;
@@ -281,7 +281,7 @@ fn what_is_known_leaves_nothing_unknown() {
 /// there: a pole fills a part of its cell. A later scan without the hit does.
 #[test]
 fn beams_of_the_same_scan_do_not_unlearn_a_hit() {
-    let mut map = MemoryMap::new();
+    let mut map = RollingGrid::new();
     map.roll(100.2, 50.0);
     // The middle beam ends in a cell that the four others pass, within 0.01 rad of it.
     let fan = |middle: f32| {
@@ -292,7 +292,7 @@ fn beams_of_the_same_scan_do_not_unlearn_a_hit() {
         }
         scan
     };
-    let known = |map: &MemoryMap| {
+    let known = |map: &RollingGrid| {
         let row = ((50.2 - map.floor()) / CELL) as i32;
         let col = ((110.3 - map.first_x()) / CELL) as i32;
         occupied(map, row, col)

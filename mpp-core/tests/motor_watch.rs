@@ -6,8 +6,9 @@ mod common {
 
 use common::gaussian::gaussian;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{Measurement, MotorWatch, Progress, Trust};
+use mpp_core::estimate::{MotorWatch, Progress, Trust};
 use mpp_core::flight::FlightLoop;
+use mpp_core::sense::Measurement;
 use mpp_core::sense::{AirData, Position, SensorFrame};
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, Airframe, Control, Trim, air_rate};

@@ -2,11 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
-use mpp_core::estimate::Conditions;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{ActuatorLimits, Airframe, VehicleState, Wind};
 
 /// The reference aircraft with limits, a body and an elevator with lift, and lengths `scale` times as long.
@@ -61,7 +61,7 @@ fn scan(pitch: f64, scale: f64) -> LidarScan {
 fn plan(scale: f64) -> Trajectory {
     let mut settings = Settings::flight_of(&aircraft(scale));
     settings.planner.altitude = 50.0 * scale;
-    let own = settings.planner.flight_mut().unwrap();
+    let own = settings.planner.plane_mut().unwrap();
     own.sight = 45.0 * scale;
     own.latency = 0.2 * scale.sqrt();
     let mut planner = Box::new(Planner::new());
@@ -139,7 +139,7 @@ fn the_reference_aircraft_has_the_settings_of_the_preset() {
 fn a_body_keeps_its_radius_and_the_margin() {
     let clearance = |body_radius: f64| {
         let mut settings = Settings::flight();
-        let own = settings.planner.flight_mut().unwrap();
+        let own = settings.planner.plane_mut().unwrap();
         own.body_radius = body_radius;
         let mut planner = Box::new(Planner::new());
         planner.set_up(&settings).unwrap();

@@ -6,12 +6,12 @@ mod common {
 }
 
 use common::draw::Draw;
-use mpp_core::Rules;
-use mpp_core::config::{
+use mpp_core::paper::Rules;
+use mpp_core::paper::config::{
     PATH_POINTS, SEARCH_COLS, SEARCH_ROW, SEARCH_ROWS, TREE_NODES, TREE_SAMPLES,
 };
-use mpp_core::map::{GridPoint, OccupancyGrid};
-use mpp_core::paths::{Extension, GOALS, Path, Search};
+use mpp_core::paper::{Extension, GOALS, Path, Search};
+use mpp_core::paper::{GridPoint, OccupancyGrid};
 
 /// A grid with this many random obstacles ahead, padded.
 fn field(draw: &mut Draw, obstacles: usize) -> OccupancyGrid {

@@ -15,13 +15,14 @@ use common::scattered::{FEASIBLE, SCATTERED};
 use common::sensors::frame;
 use common::with_planner::with_planner;
 use common::world::{Disc, scan};
-use mpp_core::config::{MAX_PATHS, TREE_RUNS, TREE_SAMPLES};
-use mpp_core::estimate::Conditions;
+use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
+use mpp_core::paper::config::{TREE_RUNS, TREE_SAMPLES};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Weights};
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::VehicleState;
 
 /// One slice for the map, the trees of a cycle at 10 samples a slice, and each path's corridor and
@@ -32,7 +33,7 @@ const MOST_SLICES: usize =
 /// What the planner ranks trajectories by: the price, or, in the paper's method, violation and cost.
 fn rank(planner: &Planner) -> (f64, f64) {
     let summary = planner.summary();
-    match planner.flight() {
+    match planner.plane() {
         Some(flight) => (FEASIBLE, flight.price()),
         None => (summary.violation.max(FEASIBLE), summary.cost),
     }

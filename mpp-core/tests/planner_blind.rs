@@ -7,11 +7,11 @@ mod common {
 
 use common::planning::{level, plan, planner};
 use common::world::{Disc, scan};
-use mpp_core::estimate::Conditions;
-use mpp_core::map::Pose;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
+use mpp_core::vehicle::Pose;
 use mpp_core::vehicle::{ActuatorLimits, VehicleState};
 
 /// Plans one cycle, from a scan if there is one.

@@ -17,12 +17,12 @@ use common::planning::{level, plan, planner};
 use common::scattered::{FEASIBLE, SCATTERED};
 use common::world::scan;
 use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
-use mpp_core::estimate::Conditions;
-use mpp_core::paths::{MAX_LATTICE_PATHS, STATIONS};
+use mpp_core::lattice::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty};
-use mpp_core::settings::{FlightSettings, Settings};
+use mpp_core::settings::{PlaneSettings, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{PathControl, PathState, VehicleState};
 
 /// The previous plan and the lattice's paths.
@@ -37,9 +37,9 @@ fn rank(summary: &PlanSummary) -> (f64, f64) {
     (summary.violation.max(FEASIBLE), summary.cost)
 }
 
-fn with_own(change: impl FnOnce(&mut FlightSettings)) -> Settings {
+fn with_own(change: impl FnOnce(&mut PlaneSettings)) -> Settings {
     let mut settings = Settings::flight();
-    change(settings.planner.flight_mut().unwrap());
+    change(settings.planner.plane_mut().unwrap());
     settings
 }
 
@@ -86,7 +86,7 @@ fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
     planner.begin(3.0, &state, &Conditions::STILL, &scan(&discs, &state));
     let (mut least, mut effort, mut priced) = (f64::INFINITY, f64::NAN, 0);
     while planner.advance() {
-        let own = planner.flight().unwrap();
+        let own = planner.plane().unwrap();
         let Some((price, parts)) = own.price_parts(own.at_hand()) else {
             continue;
         };
@@ -98,7 +98,7 @@ fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
         priced += 1;
     }
     assert!(priced > 3);
-    let own = planner.flight().unwrap();
+    let own = planner.plane().unwrap();
     assert_eq!(own.price().to_bits(), least.to_bits());
     assert_eq!(planner.summary().cost.to_bits(), effort.to_bits());
     assert!(own.price_parts(own.offers()).is_none());

@@ -11,16 +11,16 @@ use common::dense::dense;
 use common::planning::{level, plan, planner};
 use common::world::scan;
 use mpp_core::config::STAGE_PERIOD;
-use mpp_core::estimate::Conditions;
 use mpp_core::planner::Verdict;
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
 
 /// A plan starts where the step takes it over: on the last plan, with the present distance from it. The scan
 /// keeps the place where it was made.
 #[test]
 fn a_plan_starts_where_it_is_taken_over() {
     let mut latent = Settings::flight();
-    latent.planner.flight_mut().unwrap().latency = 0.3;
+    latent.planner.plane_mut().unwrap().latency = 0.3;
     let wall = [(128.0, 50.0, 3.0)];
     let mut planner = planner(&latent);
     let state = level(&planner);
@@ -30,7 +30,7 @@ fn a_plan_starts_where_it_is_taken_over() {
     assert!((first.start - 3.3).abs() < 1e-12);
     assert!((first.knots[0].state.x - state.x - 0.3 * state.air.airspeed).abs() < 0.01);
     assert!((first.knots[0].state.z - state.z).abs() < 0.01);
-    let field = planner.flight().unwrap().clearance();
+    let field = planner.plane().unwrap().clearance();
     assert!(field.is_occupied(125.1, 50.2) && !field.is_occupied(121.0, 50.2));
 
     // One second later it is beside its plan.
@@ -83,7 +83,7 @@ fn plans_keep_to_the_elevators_rate() {
 fn a_late_plan_returns_to_the_altitude() {
     let end = |latency: f64| {
         let mut settings = Settings::flight();
-        settings.planner.flight_mut().unwrap().latency = latency;
+        settings.planner.plane_mut().unwrap().latency = latency;
         let mut planner = planner(&settings);
         let mut state = level(&planner);
         state.air.flight_path = 0.3;

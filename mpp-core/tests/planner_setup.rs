@@ -9,14 +9,14 @@ use common::presets::presets;
 use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};
-use mpp_core::settings::{Cruise, FlightSettings, Setting, Settings};
+use mpp_core::settings::{Cruise, PlaneSettings, Setting, Settings};
 use mpp_core::vehicle::TrimError;
 
 /// A number: its name, how to set it, and two absurd values below and above its range.
 type Row = (Setting, fn(&mut Settings, f64), [f64; 2]);
 
-fn own(settings: &mut Settings) -> &mut FlightSettings {
-    settings.planner.flight_mut().unwrap()
+fn own(settings: &mut Settings) -> &mut PlaneSettings {
+    settings.planner.plane_mut().unwrap()
 }
 
 /// The numbers of all presets.
@@ -201,8 +201,16 @@ const FLIGHT: [Row; 13] = {
         (Band, |s, n| own(s).band = n, [-10.0, 1e6]),
         (PlanThrust, |s, n| own(s).thrust_max = n, [0.0, 1e9]),
         // These two are whole numbers, so that each value here stands for the nearest one.
-        (Rounds, |s, n| own(s).rounds = n as u8, [0.0, 255.0]),
-        (Deepened, |s, n| own(s).deepened = n as usize, [51.0, 1e9]),
+        (
+            SqpIterations,
+            |s, n| own(s).sqp_iterations = n as u8,
+            [0.0, 255.0],
+        ),
+        (
+            RefinedCandidates,
+            |s, n| own(s).refined_candidates = n as usize,
+            [51.0, 1e9],
+        ),
     ]
 };
 
@@ -244,7 +252,7 @@ fn refused(settings: &Settings) -> SetupError {
 fn every_absurd_number_is_refused_by_its_name() {
     for (preset, rows) in methods() {
         for (setting, set, absurd) in rows {
-            let whole = matches!(setting, Setting::Rounds | Setting::Deepened);
+            let whole = matches!(setting, Setting::SqpIterations | Setting::RefinedCandidates);
             let infinite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
             for number in absurd.iter().chain(infinite.iter().filter(|_| !whole)) {
                 let mut settings = preset;

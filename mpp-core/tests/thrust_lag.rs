@@ -11,10 +11,10 @@ use common::dense::dense;
 use common::planning::{level, plan, planner};
 use common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, STAGES};
-use mpp_core::estimate::Conditions;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{ActuatorLimits, Control, PathControl, PathState, ThrustLag, VehicleState};
 use proptest::prelude::*;
 

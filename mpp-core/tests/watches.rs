@@ -8,7 +8,9 @@ mod common {
 use common::gaussian::gaussian;
 use common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{AirspeedBias, Before, Biases, Estimator, PitchBias, Trust, Watch};
+use mpp_core::estimate::{
+    AirspeedBias, Before, Biases, Estimator, PitchBias, SensorMonitor, Trust,
+};
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, Trim, VehicleState};
@@ -189,7 +191,7 @@ fn a_frozen_sensor_is_excluded_and_recovers_by_rule() {
 /// A sensor that falls silent while it recovers is excluded again, however long it is silent.
 #[test]
 fn a_sensor_must_deliver_good_values_all_through_its_recovery() {
-    let mut watch = Watch::new(10);
+    let mut watch = SensorMonitor::new(10);
     for _ in 0..60 {
         watch.tick(None);
     }

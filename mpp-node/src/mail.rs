@@ -1,11 +1,11 @@
 //! The messages between step and planner.
 
-use mpp_core::estimate::Conditions;
-use mpp_core::map::Pose;
 use mpp_core::planner::{PlanSummary, SetupError, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
+use mpp_core::vehicle::Conditions;
+use mpp_core::vehicle::Pose;
 use mpp_core::vehicle::VehicleState;
 
 /// A message from the step to the planner.

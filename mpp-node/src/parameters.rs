@@ -7,8 +7,8 @@
 use crate::convert;
 use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict, Preset};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::corridor::Padding;
-use mpp_core::settings::{Cruise, FlightSettings, Settings};
+use mpp_core::paper::Padding;
+use mpp_core::settings::{Cruise, PlaneSettings, Settings};
 
 /// A configuration, and the settings that follow from it and from later changes of parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -82,7 +82,7 @@ impl Tuning {
         let cruise = self.settings.cruise;
         set(parameter.which, self, value);
         let planner = &self.settings.planner;
-        if planner.paths == 0 && planner.flight().is_some() {
+        if planner.paths == 0 && planner.plane().is_some() {
             return Err(ParameterVerdict::SetUp(ConfigureVerdict::PathsZero));
         }
         // A cycle that tracks a path differs from a cycle that refines paths, so the number of paths
@@ -191,12 +191,12 @@ fn whole_ticks(seconds: f64) -> u32 {
 }
 
 /// A value from the settings of the flight planner, if it is the chosen method.
-fn flight(tuning: &Tuning, get: impl FnOnce(&FlightSettings) -> f64) -> Option<f64> {
-    tuning.settings.planner.flight().map(get)
+fn flight(tuning: &Tuning, get: impl FnOnce(&PlaneSettings) -> f64) -> Option<f64> {
+    tuning.settings.planner.plane().map(get)
 }
 
-fn set_flight(tuning: &mut Tuning, set: impl FnOnce(&mut FlightSettings)) {
-    if let Some(own) = tuning.settings.planner.flight_mut() {
+fn set_flight(tuning: &mut Tuning, set: impl FnOnce(&mut PlaneSettings)) {
+    if let Some(own) = tuning.settings.planner.plane_mut() {
         set(own);
     }
 }
@@ -334,12 +334,12 @@ parameters! { 41:
     LqrCrossTrack = "LQR_CROSS_TRACK", "rad/m", [0.0, 1.0], None, BEFORE,
         |tuning| Some(tuning.settings.cross_track),
         |tuning, value| tuning.settings.cross_track = value;
-    MppRounds = "MPP_ROUNDS", "rounds of linearisation", [1.0, 20.0], Some(1.0), BEFORE,
-        |tuning| flight(tuning, |own| f64::from(own.rounds)),
-        |tuning, value| set_flight(tuning, |own| own.rounds = value as u8);
+    MppRounds = "MPP_ROUNDS", "SQP iterations", [1.0, 20.0], Some(1.0), BEFORE,
+        |tuning| flight(tuning, |own| f64::from(own.sqp_iterations)),
+        |tuning, value| set_flight(tuning, |own| own.sqp_iterations = value as u8);
     MppDeepened = "MPP_DEEPENED", "candidates", [0.0, mpp_core::config::MAX_PATHS as f64], Some(1.0), BEFORE,
-        |tuning| flight(tuning, |own| own.deepened as f64),
-        |tuning, value| set_flight(tuning, |own| own.deepened = value as usize);
+        |tuning| flight(tuning, |own| own.refined_candidates as f64),
+        |tuning, value| set_flight(tuning, |own| own.refined_candidates = value as usize);
     MppMarginM = "MPP_MARGIN_M", "m", [0.1, 5.0], None, BEFORE,
         |tuning| flight(tuning, |own| own.margin),
         |tuning, value| set_flight(tuning, |own| own.margin = value);

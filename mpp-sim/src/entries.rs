@@ -4,7 +4,7 @@
 //! holds `null`.
 
 use crate::sensors::Measurement;
-use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{Control, VehicleState};
 use serde::{Deserialize, Serialize};
 

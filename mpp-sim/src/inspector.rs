@@ -4,10 +4,11 @@
 //! goes through the same candidates, one slice at a time.
 
 use crate::moment::Moment;
-use mpp_core::config::{DIRECTIONS, GRID_COLS, GRID_ROWS, KNOTS, STAGE_PERIOD};
+use mpp_core::config::{DIRECTIONS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
-use mpp_core::map::GridPoint;
-use mpp_core::planner::flight::FlightPlanner;
+use mpp_core::paper::GridPoint;
+use mpp_core::paper::config::{GRID_COLS, GRID_ROWS};
+use mpp_core::planner::plane::PlanePlanner;
 use mpp_core::planner::{PlanSummary, Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::VehicleState;
@@ -129,7 +130,7 @@ impl Inspector {
             ..PlanDetail::default()
         };
         // The planner reckons in units of its own.
-        let length = planner.flight().map_or(1.0, |own| own.units().length);
+        let length = planner.plane().map_or(1.0, |own| own.units().length);
         let mut corridor = None;
         let mut best = f64::INFINITY;
         let mut best_violation = f64::INFINITY;
@@ -177,7 +178,7 @@ impl Inspector {
 fn judged(planner: &Planner, before: &PlanSummary, length: f64) -> Judged {
     let now = planner.summary();
     let feasible = now.feasible > before.feasible;
-    let Some(own) = planner.flight() else {
+    let Some(own) = planner.plane() else {
         let better = (now.cost, now.violation) != (before.cost, before.violation);
         return Judged {
             candidate: before.candidates,
@@ -243,7 +244,7 @@ fn map(planner: &Planner, state: &VehicleState, altitude: f64, length: f64) -> M
             unknown: Vec::new(),
         };
     }
-    let Some(known) = planner.flight().map(FlightPlanner::clearance) else {
+    let Some(known) = planner.plane().map(PlanePlanner::clearance) else {
         return Map::default();
     };
     // The window in units of the planner.

@@ -93,9 +93,9 @@ impl Oracle {
         match order {
             Order::SetUp { settings, .. } => {
                 if matches!(self.knowledge, Knowledge::All)
-                    && let Some(own) = settings.planner.flight_mut()
+                    && let Some(own) = settings.planner.plane_mut()
                 {
-                    own.deepened = MAX_PATHS;
+                    own.refined_candidates = MAX_PATHS;
                 }
             }
             Order::Begin {
@@ -121,7 +121,7 @@ impl Oracle {
                 }
                 // Beams would clear occupied cells that they graze. Without a scan the planner would believe that it is blind.
                 *scan = Some(LidarScan::new());
-                let length = planner.flight().map_or(1.0, |own| own.units().length);
+                let length = planner.plane().map_or(1.0, |own| own.units().length);
                 let place = (state.x, state.z);
                 let reach = match self.knowledge {
                     Knowledge::All => REACH * length,
@@ -129,7 +129,7 @@ impl Oracle {
                 };
                 let near = |one: &&Obstacle| one.clearance(place, *time) < reach;
                 let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
-                if let Some(planner) = planner.flight_mut() {
+                if let Some(planner) = planner.plane_mut() {
                     let map = planner.map_mut();
                     map.roll(state.x / length, settings.altitude / length);
                     map.know(|x, z| {

@@ -1,9 +1,9 @@
 //! Cross-crate tests, which stand in `tests/`. The library holds the golden flights and the hostile
-//! frames, and compiles the README's example.
+//! frames, and compiles the example of docs/embed.md.
 
 pub mod fuzz;
 pub mod golden;
 
-#[doc = include_str!("../../README.md")]
+#[doc = include_str!("../../docs/embed.md")]
 #[cfg(doctest)]
-pub struct Readme;
+pub struct Embed;

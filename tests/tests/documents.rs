@@ -9,7 +9,7 @@
 use mpp_core::control::LqrWeights;
 use mpp_core::estimate::EkfTuning;
 use mpp_core::qp::{Penalty, Weights};
-use mpp_core::settings::{AttitudeLimits, Cruise, FlightSettings, PlannerSettings, Settings};
+use mpp_core::settings::{AttitudeLimits, Cruise, PlaneSettings, PlannerSettings, Settings};
 use mpp_core::units::Units;
 use mpp_core::vehicle::{Airframe, Trim};
 use std::collections::BTreeMap;
@@ -280,7 +280,7 @@ fn the_table_of_settings_is_that_of_preset_flight() {
         jacobian: _,
     } = estimator;
     let LqrWeights { state, elevator } = regulator;
-    let own = *planner.flight().unwrap();
+    let own = *planner.plane().unwrap();
     let PlannerSettings {
         paths,
         altitude,
@@ -291,7 +291,7 @@ fn the_table_of_settings_is_that_of_preset_flight() {
     else {
         panic!("preset flight has another seed than the table says");
     };
-    let FlightSettings {
+    let PlaneSettings {
         sight,
         latency,
         penalty: Penalty { linear, quadratic },
@@ -301,8 +301,8 @@ fn the_table_of_settings_is_that_of_preset_flight() {
             angle_of_attack,
             flight_path,
         },
-        rounds,
-        deepened,
+        sqp_iterations,
+        refined_candidates,
         margin,
         band,
         thrust_max,
@@ -337,8 +337,8 @@ fn the_table_of_settings_is_that_of_preset_flight() {
         ("penalty.quadratic", quadratic),
         ("attitude.angle_of_attack", angle_of_attack),
         ("attitude.flight_path", flight_path),
-        ("rounds", f64::from(rounds)),
-        ("deepened", deepened as f64),
+        ("sqp_iterations", f64::from(sqp_iterations)),
+        ("refined_candidates", refined_candidates as f64),
         ("margin", margin),
         ("band", band),
         ("thrust_max", thrust_max),

@@ -121,7 +121,7 @@ fn steepest() -> f64 {
     let settings = Preset::Flight.settings();
     let limits = settings
         .planner
-        .flight()
+        .plane()
         .expect("it is preset flight")
         .attitude;
     let trim = settings.cruise.trim(&settings.airframe).expect("it flies");

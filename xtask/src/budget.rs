@@ -7,7 +7,7 @@ use crate::folders::work;
 use crate::limits::{self, budget};
 use crate::qemu::{Emulator, Report, Run};
 use crate::talk::{CONFIGURE, await_message, level, send};
-use crate::{readme, stack};
+use crate::{budget_table, stack};
 use anyhow::{Result, bail, ensure};
 use hil_protocol::Message;
 use object::{Object, ObjectSection};
@@ -15,7 +15,7 @@ use std::fs::File;
 
 #[derive(Clone, Debug, clap::Args)]
 pub(crate) struct BudgetArgs {
-    /// Write the figures to docs/budgets.toml with a small margin, and the table to the README
+    /// Write the figures to docs/budgets.toml with a small margin, and the table to docs/validation/firmware.md
     #[arg(long)]
     save: bool,
 }
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
             document["firmware"][figure.table][figure.name] = toml_edit::value(budget);
         }
         limits::write(&document)?;
-        readme::write(&document)?;
+        budget_table::write(&document)?;
     }
     let mut over = 0;
     for figure in &figures {
@@ -56,7 +56,7 @@ pub(crate) fn run(args: &BudgetArgs) -> Result<()> {
     if over > 0 {
         bail!("{over} figures are over budget; cargo xtask budget --save raises it on purpose");
     }
-    readme::check(&document)
+    budget_table::check(&document)
 }
 
 /// The budget for a figure. It is at least 2 % more, for another compiler, and rounded up to three

@@ -1,11 +1,12 @@
 //! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
-//! for browsers, and the golden flights.
+//! for browsers, the golden flights, and the figures of docs/validation.
 //!
 //! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
 //! and library sources, which they install as root.
 
 mod aarch64;
 mod budget;
+mod budget_table;
 mod c;
 mod contents;
 mod counts;
@@ -22,11 +23,11 @@ mod limits;
 mod nucleo;
 mod pil;
 mod qemu;
-mod readme;
 mod reproduce;
 mod stack;
 mod talk;
 mod toolchain;
+mod validation;
 mod wasm;
 
 use clap::{Parser, Subcommand};
@@ -75,6 +76,8 @@ enum Command {
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
     Golden(golden::GoldenArgs),
+    /// Say how old the figures of docs/validation are; --page runs the commands that print them again
+    Validation(validation::ValidationArgs),
 }
 
 fn main() -> ExitCode {
@@ -94,6 +97,7 @@ fn main() -> ExitCode {
         Command::Deb => deb::run(),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
+        Command::Validation(args) => validation::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

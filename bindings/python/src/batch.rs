@@ -275,7 +275,7 @@ impl Flights {
         let settings = recording::settings(&base).map_err(errors::flight)?;
         let most = settings
             .planner
-            .flight()
+            .plane()
             .map_or(f64::INFINITY, |own| own.thrust_max);
         let (limits, trim) = (base.limits(), base.trim().map_err(errors::set_up)?.control);
         // The deflection that holds the greatest angle of attack of a plan, and as much again to get there.
@@ -285,7 +285,7 @@ impl Flights {
             * held.abs()
             * settings
                 .planner
-                .flight()
+                .plane()
                 .map_or(0.2, |own| own.attitude.angle_of_attack);
         let side = |limit: Option<f64>| limit.map_or(reach, |limit| limit.min(reach));
         Ok(Self {

@@ -8,7 +8,7 @@ use crate::scenario;
 use mpp_analysis::recording;
 use mpp_core::config::KNOTS;
 use mpp_core::flight::FlightLoop;
-use mpp_core::planner::flight::MAX_CANDIDATES;
+use mpp_core::planner::plane::MAX_CANDIDATES;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
@@ -104,7 +104,7 @@ impl Choice {
         let mut knots = vec![0.0_f32; MAX_CANDIDATES * KNOTS * 2];
         let (mut prices, mut mask) = ([MOST; MAX_CANDIDATES], [0_i8; MAX_CANDIDATES]);
         let mut offered = Trajectory::new();
-        let planner = run.planner.flight();
+        let planner = run.planner.plane();
         for (place, (index, price)) in run.order.iter().enumerate() {
             prices[place] = (*price as f32).min(MOST);
             mask[place] = 1;
@@ -277,7 +277,7 @@ impl Run {
         self.verdict = planner.finish();
         let mut offered = Trajectory::new();
         self.order.clear();
-        if let Some(own) = planner.flight() {
+        if let Some(own) = planner.plane() {
             let prices = (0..own.offers())
                 .filter_map(|it| own.offer(it, &mut offered).map(|price| (it, price)));
             self.order.extend(prices);
@@ -297,7 +297,7 @@ impl Run {
             None => self.verdict,
             Some(None) => Verdict::Nothing,
             Some(Some((index, _))) => {
-                let own = self.planner.flight_mut();
+                let own = self.planner.plane_mut();
                 own.and_then(|own| own.choose(*index));
                 Verdict::Feasible
             }

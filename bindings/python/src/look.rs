@@ -3,9 +3,9 @@
 use crate::errors::state;
 use crate::output;
 use mpp_core::config::KNOTS;
-use mpp_core::map::MemoryMap;
+use mpp_core::map::RollingGrid;
 use mpp_core::planner::Planner;
-use mpp_core::planner::flight::FlightPlanner;
+use mpp_core::planner::plane::PlanePlanner;
 use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::tuning::memory::CELL;
 use numpy::{PyArray1, PyArray2};
@@ -64,7 +64,7 @@ pub(crate) fn candidates<'py>(py: Python<'py>, planner: &Planner) -> PyResult<Bo
 pub(crate) fn map<'py>(py: Python<'py>, planner: &Planner) -> PyResult<Bound<'py, PyDict>> {
     let own = of_flight(planner)?;
     let (map, field) = (own.map(), own.clearance());
-    let [rows, columns] = MemoryMap::SHAPE;
+    let [rows, columns] = RollingGrid::SHAPE;
     let centre = |first: f64, cell: usize| first + CELL * (cell as f64 + 0.5);
     let (x, z) = (
         |col| centre(map.first_x(), col),
@@ -98,9 +98,9 @@ pub(crate) fn map<'py>(py: Python<'py>, planner: &Planner) -> PyResult<Bound<'py
 }
 
 /// The flight planner. The paper's method has neither map nor candidates to look at.
-fn of_flight(planner: &Planner) -> PyResult<&FlightPlanner> {
+fn of_flight(planner: &Planner) -> PyResult<&PlanePlanner> {
     let none = || state("only preset flight has candidates and a map: give preset=\"flight\"");
-    planner.flight().ok_or_else(none)
+    planner.plane().ok_or_else(none)
 }
 
 /// A matrix of rows with this many columns; without rows an empty one.

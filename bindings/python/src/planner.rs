@@ -5,7 +5,7 @@ use crate::errors::{self, alone, input};
 use crate::input::{finite, vector};
 use crate::{look, scenario};
 use mpp_analysis::recording;
-use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::Conditions;
 use mpp_core::planner::Verdict;
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
@@ -65,7 +65,7 @@ impl Planner {
         let mut planner = alone(&self.guarded, "planner")?;
         let scan = scan(&self.lidar, ranges)?;
         let level = planner.trim().state;
-        let speed = planner.flight().map_or(1.0, |own| own.units().speed());
+        let speed = planner.plane().map_or(1.0, |own| own.units().speed());
         let air = AirState {
             airspeed: airspeed.unwrap_or(level.airspeed * speed),
             pitch: pitch.unwrap_or(level.pitch),

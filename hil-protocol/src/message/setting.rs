@@ -83,10 +83,10 @@ pub enum Setting {
     Latency,
     /// The quadratic price of the soft rows.
     PenaltyQuadratic,
-    /// The number of rounds of linearisation.
-    Rounds,
-    /// The number of candidates with all rounds.
-    Deepened,
+    /// The number of SQP iterations.
+    SqpIterations,
+    /// The number of candidates with all SQP iterations.
+    RefinedCandidates,
     /// The corridor's padding at the start of the plan.
     PaddingNear,
     /// The corridor's padding at the end of the plan.
@@ -154,8 +154,8 @@ impl fmt::Display for Setting {
             Self::PlanTerminalWeight => "the plan's weight of the last state",
             Self::Latency => "the latency of plans",
             Self::PenaltyQuadratic => "the quadratic price of the soft rows",
-            Self::Rounds => "the number of rounds of linearisation",
-            Self::Deepened => "the number of candidates with all rounds",
+            Self::SqpIterations => "the number of SQP iterations",
+            Self::RefinedCandidates => "the number of candidates with all SQP iterations",
             Self::PaddingNear => "the corridor's padding at the start of the plan",
             Self::PaddingFar => "the corridor's padding at the end of the plan",
             Self::ElevatorAbove => "the range of the elevator above its trim",

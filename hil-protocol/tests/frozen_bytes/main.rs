@@ -166,7 +166,7 @@ fn every_setting_out_of_range() {
         ElevatorBelow, ElevatorRate, DesignThrust, SpeedNoise, PitchNoise, RateNoise, PathNoise,
         AirspeedVariance, PitchVariance, InitialVariance, Gate, SpeedWeight, PitchWeight, RateWeight,
         PathWeight, ElevatorWeight, CrossTrack, AirspeedHold, PlanElevatorWeight, PlanThrustWeight,
-        PlanTerminalWeight, Latency, PenaltyQuadratic, Rounds, Deepened, PaddingNear, PaddingFar,
+        PlanTerminalWeight, Latency, PenaltyQuadratic, SqpIterations, RefinedCandidates, PaddingNear, PaddingFar,
         ElevatorAbove, LiftElevator, MomentPitchRate, BodyRadius, Stall, LengthUnit, TimeUnit, MassUnit,
         LiftAlphaRate, LiftPitchRate,
     ];

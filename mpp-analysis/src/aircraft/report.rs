@@ -70,7 +70,7 @@ impl AircraftReport {
         let balance = a.balanced();
         let modes = Modes::of(known, trim);
         let settings = Settings::flight_of(known);
-        let own = settings.planner.flight();
+        let own = settings.planner.plane();
         let allowed = own.map_or(0.0, |own| own.attitude.angle_of_attack);
         let balanced = known.actuators.angle_of_attack(a);
         let [down, up] = balanced;

@@ -3,7 +3,7 @@
 use crate::instance::Instance;
 use crate::recording::{planner, record, settings};
 use mpp_core::planner::Planner;
-use mpp_core::planner::flight::FlightPlanner;
+use mpp_core::planner::plane::PlanePlanner;
 use mpp_core::qp::Dynamics;
 use mpp_sim::flight::FlyError;
 use mpp_sim::scenario::{Preset, Scenario};
@@ -67,7 +67,7 @@ fn collect(
 /// planner has one for each stage.
 fn stages(planner: &Planner) -> Vec<Dynamics> {
     let flight = || {
-        let flight = planner.flight().and_then(FlightPlanner::stages);
+        let flight = planner.plane().and_then(PlanePlanner::stages);
         flight.map_or_else(Vec::new, |stages| stages.to_vec())
     };
     planner

@@ -9,7 +9,8 @@
 
 use super::percentile::percentile;
 use crate::recording::{Inputs, planner, record, settings};
-use mpp_core::planner::{Phase, Planner, flight, paper};
+use mpp_core::paper;
+use mpp_core::planner::{Phase, Planner, plane};
 use mpp_sim::flight::FlyError;
 use mpp_sim::scenario::{Preset, Scenario};
 use serde::Serialize;
@@ -185,12 +186,12 @@ fn plan(planner: &mut Planner, inputs: &Inputs) -> Parts {
 
 fn part(phase: Phase) -> usize {
     match phase {
-        Phase::Flight(phase) => match phase {
-            flight::Phase::Map => 0,
-            flight::Phase::Lattice => 1,
-            flight::Phase::Faces => 2,
-            flight::Phase::Linearise | flight::Phase::Improve => 3,
-            flight::Phase::Idle | flight::Phase::Done => 4,
+        Phase::Plane(phase) => match phase {
+            plane::Phase::Map => 0,
+            plane::Phase::Lattice => 1,
+            plane::Phase::Faces => 2,
+            plane::Phase::Linearise | plane::Phase::Improve => 3,
+            plane::Phase::Idle | plane::Phase::Done => 4,
         },
         Phase::Paper(phase) => match phase {
             paper::Phase::Map => 0,

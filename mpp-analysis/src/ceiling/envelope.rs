@@ -46,7 +46,7 @@ impl Envelope {
         let settings = Settings::flight_of(&aircraft.known);
         let plans = settings
             .planner
-            .flight()
+            .plane()
             .ok_or(CeilingError::Unbounded("no flight planner"))?;
         let widest = ANGLE_OF_ATTACK * plans.attitude.angle_of_attack;
         let [below, above] = limits

@@ -1,10 +1,11 @@
 //! Checks of lidar, occupancy grid and rays.
 
 use super::report::{Comparison, worst_difference};
-use mpp_core::Rules;
-use mpp_core::config::{GRID_COLS, GRID_ROWS, SEARCH_ROW};
-use mpp_core::corridor::{DIRECTION_VECTORS, authors_ray};
-use mpp_core::map::{GridPoint, OccupancyGrid};
+use mpp_core::corridor::DIRECTION_VECTORS;
+use mpp_core::paper::Rules;
+use mpp_core::paper::authors_ray;
+use mpp_core::paper::config::{GRID_COLS, GRID_ROWS, SEARCH_ROW};
+use mpp_core::paper::{GridPoint, OccupancyGrid};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::{AirState, VehicleState};
 use mpp_sim::field::{Obstacle, ObstacleField};

@@ -4,14 +4,15 @@
 use super::perception::grid_with;
 use super::report::{Comparison, worst_difference};
 use crate::instance::{Instance, InstanceError};
-use mpp_core::Rules;
-use mpp_core::config::{DIRECTIONS, SEARCH_ROW};
-use mpp_core::corridor::{Corridor, Padding};
-use mpp_core::map::GridPoint;
-use mpp_core::paths::resample;
-use mpp_core::qp::{
-    Bounds, Initial, ModelError, Problem, Solution, Solver, StageModel, Status, Weights,
-};
+use mpp_core::config::DIRECTIONS;
+use mpp_core::corridor::Corridor;
+use mpp_core::paper::GridPoint;
+use mpp_core::paper::Padding;
+use mpp_core::paper::Rules;
+use mpp_core::paper::config::SEARCH_ROW;
+use mpp_core::paper::resample;
+use mpp_core::paper::{Initial, ModelError, StageModel};
+use mpp_core::qp::{Bounds, Problem, Solution, Solver, Status, Weights};
 use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
 use nalgebra::{Vector4, Vector6};
 use serde::Deserialize;

@@ -2,9 +2,9 @@
 
 use super::perception::grid_with;
 use super::report::{Comparison, worst_difference};
-use mpp_core::Rules;
-use mpp_core::config::SEARCH_ROW;
-use mpp_core::paths::{Extension, Path, Search};
+use mpp_core::paper::Rules;
+use mpp_core::paper::config::SEARCH_ROW;
+use mpp_core::paper::{Extension, Path, Search};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
@@ -68,7 +68,7 @@ pub(super) fn check_tree(text: &str) -> Result<Vec<Comparison>, serde_json::Erro
     ])
 }
 
-fn in_box(point: mpp_core::map::GridPoint) -> [f64; 2] {
+fn in_box(point: mpp_core::paper::GridPoint) -> [f64; 2] {
     [point.col, point.row - SEARCH_ROW as f64]
 }
 

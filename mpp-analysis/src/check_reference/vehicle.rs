@@ -2,8 +2,9 @@
 
 use super::report::{Comparison, worst_difference};
 use mpp_core::control::{Lqr, LqrWeights};
-use mpp_core::estimate::{Ekf, EkfTuning, Measurement};
-use mpp_core::qp::{Initial, StageModel};
+use mpp_core::estimate::{Ekf, EkfTuning};
+use mpp_core::paper::{Initial, StageModel};
+use mpp_core::sense::Measurement;
 use mpp_core::vehicle::{
     AirState, Airframe, Control, JacobianForm, Linearization, Trim, VehicleState, linearize,
     vehicle_rate,

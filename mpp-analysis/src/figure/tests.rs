@@ -4,7 +4,7 @@ use super::panel::{self, Axis};
 use super::strips::{CANVAS, FIELD_HEIGHT, field_panels};
 use super::*;
 use crate::campaign::{Campaign, Lists, Report};
-use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
 use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use mpp_sim::entries::{Columns, PlanEntry, Tick};

@@ -6,7 +6,7 @@
 
 use super::{Corridor, DIRECTION_VECTORS};
 use crate::config::{DIRECTIONS, KNOTS, STAGE_PERIOD};
-use crate::map::ClearanceField;
+use crate::map::DistanceField;
 use crate::tuning::faces::{FREE, GIVE, REACH};
 use crate::vehicle::PathState;
 
@@ -36,7 +36,7 @@ impl Corridor {
     /// straight and level flight at the airspeed `cruise` [m/s].
     pub fn separate(
         &mut self,
-        field: &ClearanceField,
+        field: &DistanceField,
         knots: &[PathState; KNOTS],
         cruise: f64,
         keep: &Keep,
@@ -73,7 +73,7 @@ impl Corridor {
 }
 
 /// The distance that a segment keeps \[m\]. A program may use up [`GIVE`] of the room that the segment has.
-fn kept(field: &ClearanceField, from: &PathState, to: &PathState, keep: &Keep) -> f64 {
+fn kept(field: &DistanceField, from: &PathState, to: &PathState, keep: &Keep) -> f64 {
     if keep.room <= keep.margin {
         return keep.margin;
     }

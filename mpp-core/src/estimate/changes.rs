@@ -4,12 +4,12 @@ use crate::tuning::sensors::{BELIEVED_AFTER, FROZEN_TICKS, MOST_TURN};
 
 /// Watches one measured value for repetitions.
 #[derive(Clone, Copy, Debug)]
-pub struct Changes {
+pub struct StuckDetector {
     last: f64,
     repeats: u8,
 }
 
-impl Changes {
+impl StuckDetector {
     /// A watch that has seen no value.
     #[must_use]
     pub const fn new() -> Self {
@@ -42,7 +42,7 @@ impl Changes {
     }
 }
 
-impl Default for Changes {
+impl Default for StuckDetector {
     fn default() -> Self {
         Self::new()
     }
@@ -51,12 +51,12 @@ impl Default for Changes {
 /// Watches values that the filter refuses. An aircraft that turns otherwise than its model shows a steady course of them; a
 /// sensor that fails does not.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Course {
+pub struct SteadyTurn {
     last: f64,
     refused: u8,
 }
 
-impl Course {
+impl SteadyTurn {
     /// Takes the pitch of a tick \[rad\] and whether the filter refused it. Gives true once it refused [`BELIEVED_AFTER`] values in a row
     /// that make a steady course: the filter is wrong then.
     pub fn take(&mut self, pitch: f64, refused: bool) -> bool {

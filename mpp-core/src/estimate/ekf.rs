@@ -1,6 +1,7 @@
 //! Extended Kalman filter on `(v, theta, theta', gamma)` from airspeed and pitch (paper, II-B).
 
-use super::{Innovation, Measurement, Verdict};
+use super::{Innovation, MeasurementStatus};
+use crate::sense::Measurement;
 use crate::vehicle::{
     AirState, Airframe, Control, Directions, JacobianForm, air_rate_along, linearize_along,
 };
@@ -193,18 +194,23 @@ impl Ekf {
     }
 
     /// Scalar update by a measurement of state `INDEX`. Joseph's form keeps the covariance positive.
-    fn correct<const INDEX: usize>(&mut self, measured: f64, variance: f64, used: bool) -> Verdict {
+    fn correct<const INDEX: usize>(
+        &mut self,
+        measured: f64,
+        variance: f64,
+        used: bool,
+    ) -> MeasurementStatus {
         if !measured.is_finite() {
-            return Verdict::NotFinite;
+            return MeasurementStatus::NotFinite;
         }
         let mut state = self.estimate.to_vector();
         let innovation = measured - state[INDEX];
         let innovation_variance = self.covariance[(INDEX, INDEX)] + variance;
         if innovation * innovation > self.tuning.gate * self.tuning.gate * innovation_variance {
-            return Verdict::Gated;
+            return MeasurementStatus::Gated;
         }
         if !used {
-            return Verdict::Distrusted;
+            return MeasurementStatus::Distrusted;
         }
         let gain: Vector4<f64> = self.covariance.column(INDEX) / innovation_variance;
         state += gain * innovation;
@@ -225,7 +231,7 @@ impl Ekf {
             part + gain[row] * variance * gain[col]
         });
         self.covariance = symmetric(&corrected);
-        Verdict::Accepted
+        MeasurementStatus::Accepted
     }
 }
 

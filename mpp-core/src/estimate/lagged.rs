@@ -6,8 +6,9 @@
 //! (1998), which compares this way with others.
 
 use super::history::MOST_AGE;
-use super::{Diverged, Ekf, EkfTuning, Innovation, Measurement};
+use super::{Diverged, Ekf, EkfTuning, Innovation};
 use crate::config::TICK_PERIOD;
+use crate::sense::Measurement;
 use crate::tuning::sensors::LATE_MEASUREMENTS;
 use crate::vehicle::{AirState, Airframe, Control, air_rate};
 

@@ -8,14 +8,13 @@
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
 //! | [`Actuators`] | what motor and elevator do, with [`MotorWatch`] and [`ElevatorEffect`] |
 //! | [`Biases`] | what airspeed and pitch read wrongly: [`AirspeedBias`], [`PitchBias`] |
-//! | [`Watch`] | the trust in a sensor |
-//! | [`Changes`], [`Course`] | whether a sensor repeats its values, and whether refused values show a steady turn |
+//! | [`SensorMonitor`] | the trust in a sensor |
+//! | [`Changes`], [`SteadyTurn`] | whether a sensor repeats its values, and whether refused values show a steady turn |
 
 mod actuators;
 mod airspeed_bias;
 mod biases;
 mod changes;
-mod conditions;
 mod ekf;
 mod elevator_effect;
 mod estimator;
@@ -32,8 +31,7 @@ mod wind_filter;
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use biases::Biases;
-pub use changes::{Changes, Course};
-pub use conditions::Conditions;
+pub use changes::{SteadyTurn, StuckDetector};
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;
 pub use estimator::{Estimator, EstimatorDesign};
@@ -43,21 +41,12 @@ pub use lift::LiftEstimator;
 pub use motor_watch::{MotorWatch, Progress};
 pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
-pub use watch::{Sensors, Trust, Watch};
+pub use watch::{SensorMonitor, Sensors, Trust};
 pub use wind_filter::{Observation, WindFilter};
-
-/// Measured airspeed and pitch. Their errors are independent.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Measurement {
-    /// Airspeed [m/s].
-    pub airspeed: f64,
-    /// Pitch \[rad\].
-    pub pitch: f64,
-}
 
 /// The filter's decision on one measured value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum MeasurementStatus {
     /// The filter used the value.
     Accepted,
     /// The innovation exceeds the gate, and the filter did not use the value. The covariance grows until
@@ -76,7 +65,7 @@ pub enum Verdict {
     Distrusted,
 }
 
-impl Verdict {
+impl MeasurementStatus {
     /// Whether the value agrees with the estimate.
     #[must_use]
     pub fn is_good(self) -> bool {
@@ -87,16 +76,16 @@ impl Verdict {
 /// The verdicts on the two values of one measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Innovation {
-    /// Verdict on the airspeed.
-    pub airspeed: Verdict,
-    /// Verdict on the pitch.
-    pub pitch: Verdict,
+    /// MeasurementStatus on the airspeed.
+    pub airspeed: MeasurementStatus,
+    /// MeasurementStatus on the pitch.
+    pub pitch: MeasurementStatus,
 }
 
 impl Innovation {
     /// The same verdict on both values.
     #[must_use]
-    pub const fn both(verdict: Verdict) -> Self {
+    pub const fn both(verdict: MeasurementStatus) -> Self {
         Self {
             airspeed: verdict,
             pitch: verdict,

@@ -1,4 +1,4 @@
-//! Watch of the motor, by the speed that the sensors find and the thrust does not explain.
+//! SensorMonitor of the motor, by the speed that the sensors find and the thrust does not explain.
 //!
 //! Without thrust the aircraft does not gain the speed that its model expects of the command. Two signs must say so. The
 //! airspeed sensor and the estimated wind together say it soon, but a gust moves the one before the other. The positions do
@@ -24,7 +24,7 @@ pub struct Progress {
     pub wind: f64,
 }
 
-/// Watch of the motor, which has its full effect or none.
+/// SensorMonitor of the motor, which has its full effect or none.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorWatch {
     /// Unit of the times of this watch \[s\]: a faster aircraft gains and loses speed more slowly.

@@ -3,7 +3,7 @@
 //! Two filters take each fix. The *quick* one assumes that the wind changes as much as it can. Its wind holds each gust,
 //! and the watches of sensors and actuators need that. It also takes the noise of positions for gusts, and a plan
 //! that starts with such a gust sets off by a wrong angle. The *smooth* one assumes a share of this change. Plans, the map and
-//! the regulator use it (docs/decisions/0034).
+//! the regulator use it (decision 34).
 
 use super::History;
 use super::history::MOST_AGE;

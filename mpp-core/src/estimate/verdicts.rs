@@ -1,17 +1,17 @@
 //! Counts what the filters say about each input.
 
-use super::{PositionVerdict, Verdict};
+use super::{MeasurementStatus, PositionVerdict};
 use crate::health::Health;
 
 /// Counts the verdict on an airspeed or a pitch.
-pub(super) fn count_verdict(verdict: Verdict, health: &mut Health) {
+pub(super) fn count_verdict(verdict: MeasurementStatus, health: &mut Health) {
     let counter = match verdict {
-        Verdict::Accepted | Verdict::Missing => return,
-        Verdict::Gated => &mut health.measurements_gated,
-        Verdict::Frozen => &mut health.measurements_frozen,
-        Verdict::NotFinite => &mut health.measurements_not_finite,
-        Verdict::Late => &mut health.measurements_late,
-        Verdict::Distrusted => &mut health.measurements_distrusted,
+        MeasurementStatus::Accepted | MeasurementStatus::Missing => return,
+        MeasurementStatus::Gated => &mut health.measurements_gated,
+        MeasurementStatus::Frozen => &mut health.measurements_frozen,
+        MeasurementStatus::NotFinite => &mut health.measurements_not_finite,
+        MeasurementStatus::Late => &mut health.measurements_late,
+        MeasurementStatus::Distrusted => &mut health.measurements_distrusted,
     };
     Health::count(counter);
 }

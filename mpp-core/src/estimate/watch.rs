@@ -44,7 +44,7 @@ pub struct Sensors {
 
 /// Watches one sensor.
 #[derive(Clone, Copy, Debug)]
-pub struct Watch {
+pub struct SensorMonitor {
     trust: Trust,
     /// Ticks since the last good value.
     silent: u16,
@@ -54,7 +54,7 @@ pub struct Watch {
     period: u16,
 }
 
-impl Watch {
+impl SensorMonitor {
     /// A watch of a sensor that may deliver a good value every `period` ticks.
     #[must_use]
     pub const fn new(period: u16) -> Self {

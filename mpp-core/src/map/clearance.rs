@@ -1,7 +1,7 @@
 //! Distance to the nearest occupied cell, for every cell of the map with memory.
 
 use super::cell::bit;
-use super::memory::{COLS, MemoryMap, ROWS};
+use super::memory::{COLS, ROWS, RollingGrid};
 use crate::tuning::memory::{BEHIND, CELL};
 use crate::tuning::open;
 use core::ops::Range;
@@ -25,7 +25,7 @@ const OPEN_COLS: u128 = ((1 << open::AHEAD) - 1) << BEHIND;
 
 /// Distance field of the map of one cycle.
 #[derive(Clone, Debug)]
-pub struct ClearanceField {
+pub struct DistanceField {
     distance: [[u8; COLS]; ROWS],
     occupied: [u128; ROWS],
     unknown: [u128; ROWS],
@@ -37,7 +37,7 @@ pub struct ClearanceField {
     body_radius: f64,
 }
 
-impl ClearanceField {
+impl DistanceField {
     /// The field of an empty map.
     #[must_use]
     pub const fn new() -> Self {
@@ -54,7 +54,7 @@ impl ClearanceField {
 
     /// Computes the field of a map for an aircraft with this radius \[m\]: exact distances between cell centres
     /// up to [`FAR`].
-    pub fn build(&mut self, map: &MemoryMap, body_radius: f64) {
+    pub fn build(&mut self, map: &RollingGrid, body_radius: f64) {
         (self.first_x, self.floor) = (map.first_x(), map.floor());
         self.body_radius = body_radius;
         for row in 0..ROWS {
@@ -246,7 +246,7 @@ impl Height {
 }
 
 impl Column {
-    /// The same as [`ClearanceField::distance`].
+    /// The same as [`DistanceField::distance`].
     pub(crate) fn distance(&self, height: &Height) -> f64 {
         let Height { below, up, .. } = *height;
         let row = usize::from(below);
@@ -254,14 +254,14 @@ impl Column {
         (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
-    /// The same as [`ClearanceField::is_unknown`].
+    /// The same as [`DistanceField::is_unknown`].
     pub(crate) fn is_unknown(&self, height: &Height) -> bool {
         let unknown = self.unknown.get(usize::from(height.within));
         unknown.is_some_and(|unknown| *unknown)
     }
 }
 
-impl Default for ClearanceField {
+impl Default for DistanceField {
     fn default() -> Self {
         Self::new()
     }

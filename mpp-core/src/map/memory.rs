@@ -2,15 +2,15 @@
 //! aircraft.
 //!
 //! A beam is evidence against obstacles on its way, and evidence for an obstacle at its end. No beam sees
-//! the back of an obstacle, so the map knows nothing of it; [`super::ClearanceField`] completes it.
+//! the back of an obstacle, so the map knows nothing of it; [`super::DistanceField`] completes it.
 
-use super::Pose;
 use super::cell::{Place, at_least, bit, rounded_down, zeros};
 use crate::sense::LidarScan;
 use crate::tuning::memory::{
     BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,
     OCCUPIED, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
 };
+use crate::vehicle::Pose;
 use core::ops::Range;
 
 /// Number of cells downrange; a power of two.
@@ -24,20 +24,20 @@ const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 ///
 /// # Example
 ///
-/// One hit makes a cell occupied. The [`super::ClearanceField`] completes what lies behind it.
+/// One hit makes a cell occupied. The [`super::DistanceField`] completes what lies behind it.
 ///
 /// ```
-/// use mpp_core::map::{ClearanceField, FAR, MemoryMap, Pose};
+/// use mpp_core::map::{DistanceField, FAR, RollingGrid, Pose};
 /// use mpp_core::sense::LidarScan;
 ///
 /// // One beam along the body axis, which returns from 20.1 m.
 /// let mut scan = LidarScan::new();
 /// scan.ranges.push(20.1).expect("there is room for 128 beams");
 ///
-/// let mut map = MemoryMap::new();
+/// let mut map = RollingGrid::new();
 /// map.roll(0.0, 50.0);
 /// map.insert(&scan, 45.0, &Pose { x: 0.0, z: 50.2, pitch: 0.0 });
-/// let mut field = Box::new(ClearanceField::new());
+/// let mut field = Box::new(DistanceField::new());
 /// field.build(&map, 0.0);
 ///
 /// assert!(field.is_occupied(20.1, 50.2) && field.is_occupied(21.1, 50.2));
@@ -47,7 +47,7 @@ const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 /// assert!(field.distance(18.0, 50.2) < 2.5);
 /// ```
 #[derive(Clone, Debug)]
-pub struct MemoryMap {
+pub struct RollingGrid {
     /// Evidence of each cell. Rows count up from [`Self::floor`]; columns are world columns modulo [`COLS`].
     evidence: [[i8; COLS]; ROWS],
     /// World column at the near edge of the window.
@@ -60,9 +60,9 @@ pub struct MemoryMap {
 /// Cells that a beam of a scan ended in and that stand alone, columns as in the map. The other beams of the scan
 /// do not clear them.
 #[derive(Clone, Debug)]
-pub struct LoneHits([u128; ROWS]);
+pub struct IsolatedHits([u128; ROWS]);
 
-impl LoneHits {
+impl IsolatedHits {
     /// No cell.
     #[must_use]
     pub const fn none() -> Self {
@@ -70,7 +70,7 @@ impl LoneHits {
     }
 }
 
-impl MemoryMap {
+impl RollingGrid {
     /// Number of rows and of columns of the window.
     pub const SHAPE: [usize; 2] = [ROWS, COLS];
 
@@ -147,20 +147,20 @@ impl MemoryMap {
 
     /// Takes in a scan from a pose by a lidar with the range `sight` \[m\].
     pub fn insert(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
-        let mut lone = LoneHits::none();
-        self.write_lone_hits(scan, sight, pose, &mut lone);
+        let mut lone = IsolatedHits::none();
+        self.write_isolated_hits(scan, sight, pose, &mut lone);
         self.insert_beams(scan, 0..scan.ranges.len(), sight, pose, &lone);
     }
 
     /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect. `lone` are
-    /// the cells of [`Self::write_lone_hits`] for the same scan and pose.
+    /// the cells of [`Self::write_isolated_hits`] for the same scan and pose.
     pub fn insert_beams(
         &mut self,
         scan: &LidarScan,
         beams: Range<usize>,
         sight: f64,
         pose: &Pose,
-        lone: &LoneHits,
+        lone: &IsolatedHits,
     ) {
         let &Pose { x, z, pitch } = pose;
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
@@ -222,7 +222,7 @@ impl MemoryMap {
         [(x, z), (ahead, up)]: [(f64, f64); 2],
         length: f64,
         evidence_against: i8,
-        lone: &LoneHits,
+        lone: &IsolatedHits,
     ) {
         let steps = libm::ceil((length - FIRST_STEP) * (1.0 / STEP)) as u16;
         let near_edge = f64::from(self.first_col);
@@ -255,7 +255,13 @@ impl MemoryMap {
 
     /// Writes the cells that the beams of a scan ended in and that stand alone: a pole, a wire, or a bar end on.
     /// Beams that pass the rim of something larger clear the cells that errors of the range set beside it.
-    pub fn write_lone_hits(&self, scan: &LidarScan, sight: f64, pose: &Pose, lone: &mut LoneHits) {
+    pub fn write_isolated_hits(
+        &self,
+        scan: &LidarScan,
+        sight: f64,
+        pose: &Pose,
+        lone: &mut IsolatedHits,
+    ) {
         let mut hits = [0_u128; ROWS];
         for (beam, range) in scan.ranges.iter().enumerate() {
             let range = f64::from(*range);
@@ -334,7 +340,7 @@ impl MemoryMap {
     }
 }
 
-impl Default for MemoryMap {
+impl Default for RollingGrid {
     fn default() -> Self {
         Self::new()
     }

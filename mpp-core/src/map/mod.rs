@@ -2,58 +2,22 @@
 //!
 //! | type | content |
 //! |---|---|
-//! | [`MemoryMap`] | the map of the flight planner, which remembers earlier scans |
-//! | [`ClearanceField`] | the distance from a point to the nearest centre of an occupied cell of this map |
-//! | [`OccupancyGrid`] | the map of the paper's method, made from one scan |
-//! | [`GridPoint`] | a point in the cells of the occupancy grid |
+//! | [`RollingGrid`] | the rolling occupancy grid, which remembers earlier scans as log-odds |
+//! | [`DistanceField`] | the truncated distance field: from a point to the nearest centre of an occupied cell of this map |
 
-mod cell;
+pub(crate) mod cell;
 mod clearance;
-mod grid;
 mod memory;
-mod point;
-mod walk;
 
-use crate::config::{GRID_COLS, GRID_ROWS};
-use crate::vehicle::VehicleState;
-pub(crate) use cell::rounded_down;
-pub use clearance::{ClearanceField, FAR};
+pub use clearance::{DistanceField, FAR};
 pub(crate) use clearance::{Height, split};
-pub use grid::OccupancyGrid;
 pub(crate) use memory::has_return;
-pub use memory::{LoneHits, MemoryMap};
-pub use point::GridPoint;
-pub(crate) use walk::CellWalk;
-
-/// Greatest number of cells on a walk across the whole grid. It bounds every walk.
-pub(crate) const MAX_WALK: usize = GRID_ROWS + GRID_COLS + 3;
-
-/// Position and pitch of the aircraft at a scan.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pose {
-    /// Downrange position \[m\].
-    pub x: f64,
-    /// Height \[m\].
-    pub z: f64,
-    /// Pitch of the body axis \[rad\].
-    pub pitch: f64,
-}
-
-impl Pose {
-    /// The pose of a vehicle.
-    #[must_use]
-    pub fn of(state: &VehicleState) -> Self {
-        Self {
-            x: state.x,
-            z: state.z,
-            pitch: state.air.pitch,
-        }
-    }
-}
+pub use memory::{IsolatedHits, RollingGrid};
 
 #[cfg(test)]
 mod tests {
-    use super::{ClearanceField, MemoryMap, rounded_down};
+    use super::cell::rounded_down;
+    use super::{DistanceField, RollingGrid};
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
@@ -80,11 +44,11 @@ mod tests {
     #[test]
     fn a_column_is_the_field_at_its_place() {
         let mut random = Pcg64Mcg::seed_from_u64(2);
-        let mut map = MemoryMap::new();
+        let mut map = RollingGrid::new();
         map.roll(100.0, 50.0);
         map.know(|x, z| (x * 7.0 + z * 3.0) as i64 % 23 == 0);
         map.roll(108.0, 52.0);
-        let mut field = ClearanceField::new();
+        let mut field = DistanceField::new();
         field.build(&map, 0.3);
         let mut unknown = 0;
         for _ in 0..2000 {

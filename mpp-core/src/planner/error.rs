@@ -2,7 +2,7 @@
 
 use crate::config::MAX_PATHS;
 use crate::control::RiccatiError;
-use crate::qp::{CondenseError, ModelError};
+use crate::qp::CondenseError;
 use crate::settings::{PlannerSettings, Setting, Settings};
 use crate::vehicle::{Trim, TrimError};
 use core::fmt;
@@ -15,7 +15,7 @@ pub enum SetupError {
     /// The regulator has no stabilising gain.
     Regulator(RiccatiError),
     /// The plan's model has no steady state.
-    Model(ModelError),
+    NoSteadyState,
     /// The program's Hessian is not positive definite.
     Condense(CondenseError),
     /// The regulator does not hold the aircraft, because it acts only once in a tick.
@@ -26,7 +26,7 @@ pub enum SetupError {
     OutOfRange(Setting),
     /// The greatest thrust of motor or plans does not carry level flight.
     ThrustTooLow,
-    /// The settings ask the flight planner for zero paths.
+    /// The settings ask the plane planner for zero paths.
     NoPaths,
     /// The settings belong to another planning method than the one that is set up.
     OtherMethod,
@@ -37,8 +37,10 @@ impl fmt::Display for SetupError {
         f.write_str(match self {
             Self::Trim(error) => return error.fmt(f),
             Self::Regulator(error) => return error.fmt(f),
-            Self::Model(error) => return error.fmt(f),
             Self::Condense(error) => return error.fmt(f),
+            Self::NoSteadyState => {
+                "the plan's model has no steady state: check the pitch stiffness of the airframe"
+            }
             Self::Unstable => {
                 "the regulator is too firm or too soft for a tick of 10 ms: bring its weights, \
                  cross_track, airspeed_hold and the airframe nearer to those of a preset"
@@ -61,7 +63,7 @@ impl fmt::Display for SetupError {
                 "the greatest thrust does not carry level flight: raise it, or check cruise and \
                  airframe"
             }
-            Self::NoPaths => "the flight planner refines every path: ask for at least one",
+            Self::NoPaths => "the plane planner refines every path: ask for at least one",
             Self::OtherMethod => {
                 "the settings are of another planner than the one that is set up: set it up anew"
             }
@@ -81,7 +83,7 @@ pub(crate) fn check(settings: &Settings) -> Result<Trim, SetupError> {
         .cruise
         .trim(&settings.airframe)
         .map_err(SetupError::Trim)?;
-    let plans = settings.planner.flight().map(|own| own.thrust_max);
+    let plans = settings.planner.plane().map(|own| own.thrust_max);
     let most = [settings.actuators.thrust_max, plans];
     if most
         .into_iter()
@@ -94,7 +96,7 @@ pub(crate) fn check(settings: &Settings) -> Result<Trim, SetupError> {
 }
 
 /// Checks the settings that a planner takes over in flight.
-pub(super) fn check_planner(planner: &PlannerSettings) -> Result<(), SetupError> {
+pub(crate) fn check_planner(planner: &PlannerSettings) -> Result<(), SetupError> {
     if let Some(setting) = planner.out_of_range() {
         return Err(SetupError::OutOfRange(setting));
     }
@@ -105,7 +107,7 @@ fn check_paths(planner: &PlannerSettings) -> Result<(), SetupError> {
     if planner.paths > MAX_PATHS {
         return Err(SetupError::TooManyPaths);
     }
-    if planner.paths == 0 && planner.flight().is_some() {
+    if planner.paths == 0 && planner.plane().is_some() {
         return Err(SetupError::NoPaths);
     }
     Ok(())

@@ -7,37 +7,39 @@
 //!              +----------- next cycle -----------+
 //! ```
 //!
-//! There are two planning methods, each with its own state and settings: the [`flight`] planner, and with
+//! There are two planning methods, each with its own state and settings: the [`plane`] planner for flight in the vertical plane, and with
 //! the feature `paper` the paper's method for comparison (module `paper`). The flight loop may run between
 //! any two slices.
 
 mod error;
-pub mod flight;
-#[cfg(feature = "paper")]
-pub mod paper;
+pub mod plane;
 mod shared;
 mod summary;
 
 use crate::config::KNOTS;
-use crate::estimate::Conditions;
-use crate::map::Pose;
+#[cfg(feature = "paper")]
+use crate::paper::{self, PaperPlanner};
 use crate::qp::Problem;
 use crate::sense::LidarScan;
 use crate::settings::{Method, PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{Trim, VehicleState};
+use crate::vehicle::{Conditions, Pose, Trim, VehicleState};
 pub use error::SetupError;
 pub(crate) use error::check;
-use flight::FlightPlanner;
-#[cfg(feature = "paper")]
-use paper::PaperPlanner;
+use plane::PlanePlanner;
 pub use summary::{PlanSummary, Verdict};
+#[cfg(feature = "paper")]
+pub(crate) use {
+    error::check_planner,
+    shared::{NO_TRIM, STEPS_PER_SLICE, STILL},
+    summary::FEASIBLE,
+};
 
 /// The work of the next slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Phase {
-    /// A slice of the flight planner.
-    Flight(flight::Phase),
+    /// A slice of the planner in the vertical plane.
+    Plane(plane::Phase),
     /// A slice of the paper's method.
     #[cfg(feature = "paper")]
     Paper(paper::Phase),
@@ -46,7 +48,7 @@ pub enum Phase {
 /// The planner that was set up last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Chosen {
-    Flight,
+    Plane,
     #[cfg(feature = "paper")]
     Paper,
 }
@@ -59,7 +61,7 @@ enum Chosen {
 /// One cycle on a scan that shows one obstacle, a disc of 1 m radius 25 m ahead.
 ///
 /// ```
-/// use mpp_core::estimate::Conditions;
+/// use mpp_core::vehicle::Conditions;
 /// use mpp_core::planner::{Planner, Verdict};
 /// use mpp_core::sense::LidarScan;
 /// use mpp_core::settings::Settings;
@@ -93,7 +95,7 @@ enum Chosen {
 #[derive(Clone, Debug)]
 pub struct Planner {
     chosen: Chosen,
-    flight: FlightPlanner,
+    plane: PlanePlanner,
     #[cfg(feature = "paper")]
     paper: PaperPlanner,
 }
@@ -102,7 +104,7 @@ pub struct Planner {
 macro_rules! of_chosen {
     ($planner:expr, $method:ident($($argument:expr),*)) => {
         match $planner.chosen {
-            Chosen::Flight => $planner.flight.$method($($argument),*),
+            Chosen::Plane => $planner.plane.$method($($argument),*),
             #[cfg(feature = "paper")]
             Chosen::Paper => $planner.paper.$method($($argument),*),
         }
@@ -114,8 +116,8 @@ impl Planner {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            chosen: Chosen::Flight,
-            flight: FlightPlanner::new(),
+            chosen: Chosen::Plane,
+            plane: PlanePlanner::new(),
             #[cfg(feature = "paper")]
             paper: PaperPlanner::new(),
         }
@@ -127,9 +129,9 @@ impl Planner {
     /// [`SetupError`]: the planner then plans nothing.
     pub fn set_up(&mut self, settings: &Settings) -> Result<(), SetupError> {
         match &settings.planner.method {
-            Method::Flight(own) => {
-                self.chosen = Chosen::Flight;
-                self.flight.set_up(settings, own)
+            Method::Plane(own) => {
+                self.chosen = Chosen::Plane;
+                self.plane.set_up(settings, own)
             }
             #[cfg(feature = "paper")]
             Method::Paper(own) => {
@@ -140,13 +142,13 @@ impl Planner {
     }
 
     /// Takes over the settings that can change in flight, for the cycles to come: number of paths and
-    /// altitude; padding (the paper's method); penalty, attitude limits and latency (the flight planner).
+    /// altitude; padding (the paper's method); penalty, attitude limits and latency (the plane planner).
     ///
     /// # Errors
     /// [`SetupError`]: the settings stay as they were.
     pub fn retune(&mut self, settings: &PlannerSettings) -> Result<(), SetupError> {
         match (self.chosen, &settings.method) {
-            (Chosen::Flight, Method::Flight(own)) => self.flight.retune(settings, own),
+            (Chosen::Plane, Method::Plane(own)) => self.plane.retune(settings, own),
             #[cfg(feature = "paper")]
             (Chosen::Paper, Method::Paper(own)) => self.paper.retune(settings, own),
             #[cfg(feature = "paper")]
@@ -155,7 +157,7 @@ impl Planner {
     }
 
     /// Starts a cycle at a time \[s\] from a state and a checked scan, and drops a cycle that is under way.
-    /// The flight planner uses these conditions; the paper's method assumes still air and the known airframe.
+    /// The plane planner uses these conditions; the paper's method assumes still air and the known airframe.
     pub fn begin(
         &mut self,
         time: f64,
@@ -167,7 +169,7 @@ impl Planner {
     }
 
     /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from another pose, or without a scan
-    /// because the lidar shows nothing. The flight planner then plans slow flight in the map that it has. The
+    /// because the lidar shows nothing. The plane planner then plans slow flight in the map that it has. The
     /// paper's method has no map and knows only the present pose: without a scan it plans nothing.
     pub fn begin_from(
         &mut self,
@@ -178,7 +180,7 @@ impl Planner {
         scan: Option<&LidarScan>,
     ) {
         match self.chosen {
-            Chosen::Flight => self.flight.begin(time, pose, state, conditions, scan),
+            Chosen::Plane => self.plane.begin(time, pose, state, conditions, scan),
             #[cfg(feature = "paper")]
             Chosen::Paper => self.paper.begin(time, state, scan),
         }
@@ -188,7 +190,7 @@ impl Planner {
     #[must_use]
     pub fn phase(&self) -> Phase {
         match self.chosen {
-            Chosen::Flight => Phase::Flight(self.flight.phase()),
+            Chosen::Plane => Phase::Plane(self.plane.phase()),
             #[cfg(feature = "paper")]
             Chosen::Paper => Phase::Paper(self.paper.phase()),
         }
@@ -208,7 +210,7 @@ impl Planner {
     /// Forgets the map and the last plan, because positions are now counted from another origin. The paper's
     /// method remembers neither.
     pub fn forget(&mut self) {
-        self.flight.forget();
+        self.plane.forget();
     }
 
     /// Ends the cycle and returns its verdict; [`Planner::best`] gives the trajectory.
@@ -241,15 +243,15 @@ impl Planner {
         of_chosen!(self, candidate())
     }
 
-    /// The flight planner, if it is set up.
+    /// The plane planner, if it is set up.
     #[must_use]
-    pub fn flight(&self) -> Option<&FlightPlanner> {
-        (self.chosen == Chosen::Flight).then_some(&self.flight)
+    pub fn plane(&self) -> Option<&PlanePlanner> {
+        (self.chosen == Chosen::Plane).then_some(&self.plane)
     }
 
-    /// The flight planner, if it is set up, for example to change its map.
-    pub fn flight_mut(&mut self) -> Option<&mut FlightPlanner> {
-        (self.chosen == Chosen::Flight).then_some(&mut self.flight)
+    /// The plane planner, if it is set up, for example to change its map.
+    pub fn plane_mut(&mut self) -> Option<&mut PlanePlanner> {
+        (self.chosen == Chosen::Plane).then_some(&mut self.plane)
     }
 
     /// The paper's method, if it is set up.

@@ -4,10 +4,10 @@
 use crate::vehicle::{AirState, Control, Trim};
 
 /// Number of solver steps in one slice.
-pub(super) const STEPS_PER_SLICE: usize = 8;
+pub(crate) const STEPS_PER_SLICE: usize = 8;
 
 /// The motion in a planner that is not set up.
-pub(super) const STILL: AirState = AirState {
+pub(crate) const STILL: AirState = AirState {
     airspeed: 0.0,
     pitch: 0.0,
     pitch_rate: 0.0,
@@ -15,7 +15,7 @@ pub(super) const STILL: AirState = AirState {
 };
 
 /// The trim in a planner that is not set up.
-pub(super) const NO_TRIM: Trim = Trim {
+pub(crate) const NO_TRIM: Trim = Trim {
     state: STILL,
     control: Control {
         thrust: 0.0,

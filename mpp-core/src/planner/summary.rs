@@ -1,12 +1,12 @@
 //! The result of a planning cycle: its summary and its verdict.
 
 /// Greatest violation [m or rad] of a feasible trajectory.
-pub(super) const FEASIBLE: f64 = 1e-6;
+pub(crate) const FEASIBLE: f64 = 1e-6;
 
 /// The summary of a finished or interrupted cycle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlanSummary {
-    /// Number of programs solved: one for each candidate, and the further rounds of the best candidates.
+    /// Number of programs solved: one for each candidate, and the further SQP iterations of the best candidates.
     pub candidates: usize,
     /// Number of programs that gave a feasible trajectory. The trajectory of a dominated candidate is not
     /// known, so it does not count.
@@ -44,7 +44,7 @@ impl PlanSummary {
     };
 
     /// The verdict on the best trajectory of the cycle.
-    pub(super) fn verdict(&self) -> Verdict {
+    pub(crate) fn verdict(&self) -> Verdict {
         if self.cost == f64::INFINITY {
             Verdict::Nothing
         } else if self.violation <= FEASIBLE {
@@ -62,7 +62,7 @@ pub enum Verdict {
     /// planner).
     Feasible,
     /// A trajectory that violates its rows or its margin. The paper's method offers it if no candidate is
-    /// feasible. The flight planner also offers it if every feasible candidate has a higher price.
+    /// feasible. The plane planner also offers it if every feasible candidate has a higher price.
     LeastViolating,
     /// No candidate gave any trajectory.
     Nothing,

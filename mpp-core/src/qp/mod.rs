@@ -8,7 +8,7 @@
 //!      0 <= thrust_k <= greatest thrust
 //! ```
 //!
-//! `theta - gamma` is the angle of attack. The flight planner linearises about a candidate, so each stage has its own
+//! `theta - gamma` is the angle of attack. The plane planner linearises about a candidate, so each stage has its own
 //! `A`, `B` and offset `c`. In the paper's method all stages have the same `A` and `B`, and `c` is zero.
 //!
 //! The program has two parts. [`Condensed`] depends on the model alone and serves every candidate of that
@@ -34,7 +34,7 @@ mod triangle;
 
 use crate::config::{KNOTS, STAGES};
 pub use condense::{CondenseError, Condensed};
-pub use model::{Dynamics, Initial, ModelError, StageModel};
+pub use model::Dynamics;
 pub use rows::{Bounds, ROWS, RowKind};
 pub use solve::{MAX_ITERATIONS, Solver};
 
@@ -48,7 +48,7 @@ pub const MOTION: usize = STATES - POSITION;
 /// flight planner `(x, z, v, theta, thrust, gamma)`.
 pub type StageState = [f64; STATES];
 /// Place of the pitch in a state. The flight path stands last.
-const PITCH: usize = 3;
+pub(crate) const PITCH: usize = 3;
 
 /// Control of a program, the deviation from level trim: `(elevator, thrust)` [-, N] in the paper's method, and in the
 /// flight planner `(rate of the angle of attack, thrust)` [rad/s, N], which reckons in its [own units](crate::units::Units).

@@ -1,6 +1,6 @@
 //! The settings of preset `flight` for any aircraft, by similarity to the reference aircraft.
 
-use super::{Cruise, FlightSettings, Method, PlannerSettings, Settings};
+use super::{Cruise, Method, PlaneSettings, PlannerSettings, Settings};
 use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
 use crate::qp::Weights;
@@ -65,7 +65,7 @@ impl Settings {
         let [v, pitch, rate, path] = base.regulator.state;
         let [v_noise, pitch_noise, rate_noise, path_noise] = base.estimator.process_noise;
         let [turn, thrust] = base.planner.weights.control;
-        let own = FlightSettings::PRESET;
+        let own = PlaneSettings::PRESET;
         Self {
             units,
             airframe: aircraft.airframe,
@@ -93,7 +93,7 @@ impl Settings {
                     control: [turn / (angle * angle), thrust],
                     ..base.planner.weights
                 },
-                method: Method::Flight(FlightSettings {
+                method: Method::Plane(PlaneSettings {
                     attitude: super::AttitudeLimits {
                         angle_of_attack: own.attitude.angle_of_attack * angle,
                         ..own.attitude

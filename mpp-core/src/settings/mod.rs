@@ -1,20 +1,18 @@
 //! The settings that a user chooses before a flight, and the named presets.
 
 mod aircraft;
-mod flight;
-#[cfg(feature = "paper")]
-mod paper;
+mod plane;
 mod range;
 
 use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
+#[cfg(feature = "paper")]
+use crate::paper::PaperSettings;
 use crate::qp::Weights;
 use crate::units::Units;
 use crate::vehicle::{ActuatorLimits, Airframe, JacobianForm, Trim, TrimError};
 pub use aircraft::Aircraft;
-pub use flight::{AttitudeLimits, FlightSettings};
-#[cfg(feature = "paper")]
-pub use paper::PaperSettings;
+pub use plane::{AttitudeLimits, PlaneSettings};
 pub use range::Setting;
 
 /// The level flight from which plans deviate.
@@ -54,8 +52,8 @@ impl Cruise {
 /// The planning method, with the settings that only this method reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
-    /// The flight planner.
-    Flight(FlightSettings),
+    /// The plane planner.
+    Plane(PlaneSettings),
     /// The paper's method.
     #[cfg(feature = "paper")]
     Paper(PaperSettings),
@@ -64,7 +62,7 @@ pub enum Method {
 /// Settings of the planner: those that every method reads, and those of the chosen method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannerSettings {
-    /// Number of candidate paths of a cycle, at most [`crate::config::MAX_PATHS`]. For the flight planner it
+    /// Number of candidate paths of a cycle, at most [`crate::config::MAX_PATHS`]. For the plane planner it
     /// is an upper limit, and must be at least 1. With 0 the paper's method tracks the shortest path itself
     /// without refinement, which is the paper's baseline "RRT*".
     pub paths: usize,
@@ -79,20 +77,20 @@ pub struct PlannerSettings {
 }
 
 impl PlannerSettings {
-    /// The settings of the flight planner, if it is the chosen method.
+    /// The settings of the plane planner, if it is the chosen method.
     #[must_use]
-    pub fn flight(&self) -> Option<&FlightSettings> {
+    pub fn plane(&self) -> Option<&PlaneSettings> {
         match &self.method {
-            Method::Flight(settings) => Some(settings),
+            Method::Plane(settings) => Some(settings),
             #[cfg(feature = "paper")]
             Method::Paper(_) => None,
         }
     }
 
-    /// The settings of the flight planner for changes, if it is the chosen method.
-    pub fn flight_mut(&mut self) -> Option<&mut FlightSettings> {
+    /// The settings of the plane planner for changes, if it is the chosen method.
+    pub fn plane_mut(&mut self) -> Option<&mut PlaneSettings> {
         match &mut self.method {
-            Method::Flight(settings) => Some(settings),
+            Method::Plane(settings) => Some(settings),
             #[cfg(feature = "paper")]
             Method::Paper(_) => None,
         }
@@ -103,7 +101,7 @@ impl PlannerSettings {
     #[must_use]
     pub fn paper(&self) -> Option<&PaperSettings> {
         match &self.method {
-            Method::Flight(_) => None,
+            Method::Plane(_) => None,
             Method::Paper(settings) => Some(settings),
         }
     }
@@ -112,7 +110,7 @@ impl PlannerSettings {
     #[cfg(feature = "paper")]
     pub fn paper_mut(&mut self) -> Option<&mut PaperSettings> {
         match &mut self.method {
-            Method::Flight(_) => None,
+            Method::Plane(_) => None,
             Method::Paper(settings) => Some(settings),
         }
     }
@@ -121,7 +119,7 @@ impl PlannerSettings {
 /// Settings of the whole flight core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The units in which the flight planner reckons.
+    /// The units in which the plane planner reckons.
     pub units: Units,
     /// The aircraft as the core knows it.
     pub airframe: Airframe,
@@ -190,7 +188,7 @@ impl Settings {
         }
     }
 
-    /// Preset `flight`, the best that we know: the flight planner, an estimate of wind and lift, and a
+    /// Preset `flight`, the best that we know: the plane planner, an estimate of wind and lift, and a
     /// regulator that returns to the trajectory.
     #[must_use]
     pub const fn flight() -> Self {
@@ -214,7 +212,7 @@ impl Settings {
                     control: [1.0, 0.05],
                     terminal: 1.0,
                 },
-                method: Method::Flight(FlightSettings::PRESET),
+                method: Method::Plane(PlaneSettings::PRESET),
             },
         }
     }

@@ -3,7 +3,6 @@
 
 use super::{PlannerSettings, Settings};
 use crate::config::{MAX_PATHS, STAGE_PERIOD, STAGES};
-use crate::corridor::Padding;
 use crate::units::REFERENCE_CRUISE;
 use core::fmt;
 
@@ -92,10 +91,10 @@ impl PlannerSettings {
         self.own_out_of_range()
     }
 
-    /// The padding of the paper's method, if it is the chosen method.
-    fn padding(&self) -> Option<&Padding> {
+    /// The padding of the paper's method near and far, if it is the chosen method.
+    fn padding(&self) -> Option<[f64; 2]> {
         #[cfg(feature = "paper")]
-        let padding = self.paper().map(|own| &own.padding);
+        let padding = self.paper().map(|own| [own.padding.near, own.padding.far]);
         #[cfg(not(feature = "paper"))]
         let padding = None;
         padding
@@ -161,10 +160,10 @@ numbers! {
         AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e6], Some(all.airspeed_hold);
         // The clearance is known up to 3 of the planner's units of length; the rest is for the margin.
         BodyRadius, "body_radius", "m over the planner's unit of length", [0.0, 2.0],
-            all.planner.flight().map(|own| own.body_radius / all.units.length);
+            all.planner.plane().map(|own| own.body_radius / all.units.length);
         // A plan ends at the horizon; it is of no use if the vehicle takes it over later.
         Latency, "latency", "s of the planner's units", [0.0, STAGES as f64 * STAGE_PERIOD],
-            all.planner.flight().map(|own| own.latency / all.units.time);
+            all.planner.plane().map(|own| own.latency / all.units.time);
     }
     PlannerSettings as planner {
         Altitude, "planner.altitude", "m", [-1e3, 2e4], Some(planner.altitude);
@@ -172,22 +171,22 @@ numbers! {
         PlanThrustWeight, "planner.weights.control[1]", "1/N^2", [1e-6, 1e9],
             Some(planner.weights.control[1]);
         PlanTerminalWeight, "planner.weights.terminal", "1", [0.0, 1e9], Some(planner.weights.terminal);
-        Sight, "sight", "m", [1.0, 1e4], planner.flight().map(|own| own.sight);
-        PenaltyLinear, "penalty.linear", "1/m", [1e-6, 1e12], planner.flight().map(|own| own.penalty.linear);
+        Sight, "sight", "m", [1.0, 1e4], planner.plane().map(|own| own.sight);
+        PenaltyLinear, "penalty.linear", "1/m", [1e-6, 1e12], planner.plane().map(|own| own.penalty.linear);
         PenaltyQuadratic, "penalty.quadratic", "1/m^2", [1e-6, 1e12],
-            planner.flight().map(|own| own.penalty.quadratic);
+            planner.plane().map(|own| own.penalty.quadratic);
         AngleOfAttackLimit, "attitude.angle_of_attack", "rad", [1e-3, 1.5],
-            planner.flight().map(|own| own.attitude.angle_of_attack);
+            planner.plane().map(|own| own.attitude.angle_of_attack);
         FlightPathLimit, "attitude.flight_path", "rad", [1e-3, 1.5],
-            planner.flight().map(|own| own.attitude.flight_path);
-        Rounds, "rounds", "rounds", [1.0, 100.0], planner.flight().map(|own| f64::from(own.rounds));
-        Deepened, "deepened", "candidates", [0.0, MAX_PATHS as f64],
-            planner.flight().map(|own| own.deepened as f64);
-        Margin, "margin", "m", [1e-3, 500.0], planner.flight().map(|own| own.margin);
-        Stall, "stall", "rad", [1e-3, 1.5], planner.flight().and_then(|own| own.stall);
-        Band, "band", "m", [0.1, 1e4], planner.flight().map(|own| own.band);
-        PlanThrust, "thrust_max", "N", [0.1, 1e6], planner.flight().map(|own| own.thrust_max);
-        PaddingNear, "padding.near", "m", [0.0, 20.0], planner.padding().map(|padding| padding.near);
-        PaddingFar, "padding.far", "m", [0.0, 20.0], planner.padding().map(|padding| padding.far);
+            planner.plane().map(|own| own.attitude.flight_path);
+        SqpIterations, "sqp_iterations", "iterations", [1.0, 100.0], planner.plane().map(|own| f64::from(own.sqp_iterations));
+        RefinedCandidates, "refined_candidates", "candidates", [0.0, MAX_PATHS as f64],
+            planner.plane().map(|own| own.refined_candidates as f64);
+        Margin, "margin", "m", [1e-3, 500.0], planner.plane().map(|own| own.margin);
+        Stall, "stall", "rad", [1e-3, 1.5], planner.plane().and_then(|own| own.stall);
+        Band, "band", "m", [0.1, 1e4], planner.plane().map(|own| own.band);
+        PlanThrust, "thrust_max", "N", [0.1, 1e6], planner.plane().map(|own| own.thrust_max);
+        PaddingNear, "padding.near", "m", [0.0, 20.0], planner.padding().map(|[near, _]| near);
+        PaddingFar, "padding.far", "m", [0.0, 20.0], planner.padding().map(|[_, far]| far);
     }
 }

@@ -1,7 +1,7 @@
 //! The completion of a map's occupied cells.
 
 use super::cells::{COLS, ROWS, centre, occupied};
-use mpp_core::map::MemoryMap;
+use mpp_core::map::RollingGrid;
 
 /// The occupied cells together with the cells that count as hidden parts of obstacles.
 pub(crate) struct Cells(Vec<Vec<bool>>);
@@ -9,7 +9,7 @@ pub(crate) struct Cells(Vec<Vec<bool>>);
 impl Cells {
     /// Completes the cells by the definition. First come unknown cells that share an edge with an
     /// occupied cell, then unknown cells that share an edge or a corner with one of these.
-    pub(crate) fn completed(map: &MemoryMap) -> Self {
+    pub(crate) fn completed(map: &RollingGrid) -> Self {
         let all = |of: &dyn Fn(i32, i32) -> bool| {
             let row = |row| (0..COLS as i32).map(|col| of(row, col)).collect();
             Self((0..ROWS as i32).map(row).collect())
@@ -38,7 +38,7 @@ impl Cells {
     }
 
     /// Centres of the cells, by row and column.
-    pub(crate) fn centres(&self, map: &MemoryMap) -> Vec<(f64, f64)> {
+    pub(crate) fn centres(&self, map: &RollingGrid) -> Vec<(f64, f64)> {
         let cells = (0..ROWS as i32).flat_map(|row| (0..COLS as i32).map(move |col| (row, col)));
         cells
             .filter(|(row, col)| self.at(*row, *col))

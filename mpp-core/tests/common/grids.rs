@@ -1,8 +1,8 @@
 //! Random occupancy grids.
 
 use crate::common::draw::Draw;
-use mpp_core::config::{GRID_COLS, GRID_ROWS};
-use mpp_core::map::{GridPoint, OccupancyGrid};
+use mpp_core::paper::config::{GRID_COLS, GRID_ROWS};
+use mpp_core::paper::{GridPoint, OccupancyGrid};
 
 /// A point somewhere on the grid.
 pub(crate) fn point(draw: &mut Draw) -> GridPoint {

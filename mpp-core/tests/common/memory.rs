@@ -2,7 +2,7 @@
 
 use crate::common::draw::Draw;
 use crate::common::pose::pose;
-use mpp_core::map::{ClearanceField, MemoryMap};
+use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;
 
 /// A scan of 100 beams over 100 degrees. Ten beams at a time see an arc at a random range, or
@@ -22,8 +22,8 @@ pub(crate) fn noise(draw: &mut Draw) -> LidarScan {
 }
 
 /// A map that took in this number of such scans about `(x, 50)`.
-pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
-    let mut map = MemoryMap::new();
+pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> RollingGrid {
+    let mut map = RollingGrid::new();
     map.roll(x, 50.0);
     for _ in 0..scans {
         let (z, pitch) = (draw.between(42.0, 58.0), draw.between(-0.3, 0.3));
@@ -33,8 +33,8 @@ pub(crate) fn random_map(draw: &mut Draw, x: f64, scans: usize) -> MemoryMap {
 }
 
 /// The distance field of a map.
-pub(crate) fn field(map: &MemoryMap) -> ClearanceField {
-    let mut field = ClearanceField::new();
+pub(crate) fn field(map: &RollingGrid) -> DistanceField {
+    let mut field = DistanceField::new();
     field.build(map, 0.0);
     field
 }

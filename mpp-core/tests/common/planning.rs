@@ -2,9 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use crate::common::world::{Disc, scan};
-use mpp_core::estimate::Conditions;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::Settings;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::VehicleState;
 
 pub(crate) fn planner(settings: &Settings) -> Box<Planner> {

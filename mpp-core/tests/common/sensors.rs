@@ -1,6 +1,6 @@
 //! Sensors without error.
 
-use mpp_core::estimate::Measurement;
+use mpp_core::sense::Measurement;
 use mpp_core::sense::{AirData, Position, SensorFrame};
 use mpp_core::vehicle::VehicleState;
 

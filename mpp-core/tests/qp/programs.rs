@@ -2,9 +2,9 @@
 
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
+use mpp_core::paper::StageModel;
 use mpp_core::qp::{
-    Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, StageControl, StageModel,
-    StageState, Weights,
+    Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, StageControl, StageState, Weights,
 };
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::linearize;

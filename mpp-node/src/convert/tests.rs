@@ -40,7 +40,7 @@ fn every_failed_set_up_has_a_verdict_of_its_own() {
         SetupError::Regulator(RiccatiError::Singular),
         SetupError::Regulator(RiccatiError::NotConverged),
         SetupError::Regulator(RiccatiError::NotStabilising),
-        SetupError::Model(ModelError),
+        SetupError::NoSteadyState,
         SetupError::Condense(CondenseError),
         SetupError::Unstable,
         SetupError::TooManyPaths,

@@ -193,7 +193,7 @@ mod tests {
             flip(&mut all.settings.planner.altitude, bit);
         }),
         ("sight", |all, bit| {
-            if let Some(own) = all.settings.planner.flight_mut() {
+            if let Some(own) = all.settings.planner.plane_mut() {
                 flip(&mut own.sight, bit);
             }
         }),

@@ -18,7 +18,7 @@ use hil_protocol::{
     RejectionCause, Role, SensorFrame as WireFrame, encode_body, id,
 };
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
-use mpp_core::estimate::Watch;
+use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
 use mpp_core::sense::LidarScan;
@@ -86,7 +86,7 @@ struct Flight {
     old_ticks: Option<(u32, u32)>,
     /// The trust in the lidar, and whether a scan that was refused or planned from since the last tick was
     /// good.
-    lidar: Watch,
+    lidar: SensorMonitor,
     lidar_good: Option<bool>,
 }
 

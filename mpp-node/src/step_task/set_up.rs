@@ -6,7 +6,7 @@ use crate::convert;
 use crate::mail::Order;
 use crate::parameters::Tuning;
 use hil_protocol::{Configure, ConfigureReply, ConfigureVerdict, DecodeError};
-use mpp_core::estimate::Watch;
+use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::{FlightLoop, Regulated};
 
 impl StepTask {
@@ -77,7 +77,7 @@ impl StepTask {
             heard_scan: None,
             forget: false,
             old_ticks: None,
-            lidar: Watch::new(u16::try_from(between).unwrap_or(u16::MAX)),
+            lidar: SensorMonitor::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,
         });
     }

@@ -6,10 +6,10 @@ use crate::mail::Order;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
-use mpp_core::estimate::{Innovation, PositionVerdict, Verdict};
-use mpp_core::map::Pose;
+use mpp_core::estimate::{Innovation, MeasurementStatus, PositionVerdict};
 use mpp_core::planner::PlanSummary;
 use mpp_core::tuning::sensors::SUSPECTED_AFTER;
+use mpp_core::vehicle::Pose;
 
 /// Time between two scans of the slowest lidar whose rate is no fault, in periods of the planner [-].
 const SLOWEST_LIDAR: u32 = 4;
@@ -267,7 +267,7 @@ impl Flight {
     /// The tick from which the planner does without a scan: the next cycle is due, and the scan that it waits for is late. Only
     /// the flight planner remembers what earlier scans showed.
     fn blind_after(&self, begun: u32) -> Option<u32> {
-        self.tuning.settings.planner.flight()?;
+        self.tuning.settings.planner.plane()?;
         let interval = self.scan_interval?.saturating_add(SUSPECTED_AFTER.into());
         let late = self.last_scan?.wrapping_add(interval);
         let due = begun.wrapping_add(self.tuning.configure.replan_period_ticks);
@@ -307,14 +307,14 @@ fn measurement_rejection(
 ) -> Option<RejectionCause> {
     let Innovation { airspeed, pitch } = innovation;
     if position == Some(PositionVerdict::NotFinite)
-        || airspeed == Verdict::NotFinite
-        || pitch == Verdict::NotFinite
+        || airspeed == MeasurementStatus::NotFinite
+        || pitch == MeasurementStatus::NotFinite
     {
         Some(RejectionCause::NonFiniteSensor)
-    } else if airspeed == Verdict::Gated || pitch == Verdict::Gated {
+    } else if airspeed == MeasurementStatus::Gated || pitch == MeasurementStatus::Gated {
         Some(RejectionCause::InnovationGate {
-            airspeed: airspeed == Verdict::Gated,
-            pitch: pitch == Verdict::Gated,
+            airspeed: airspeed == MeasurementStatus::Gated,
+            pitch: pitch == MeasurementStatus::Gated,
         })
     } else {
         None

@@ -127,7 +127,7 @@ fn similar_aircraft_are_one_aircraft_in_own_units() {
         let model = AircraftModel::new(file.similar(scale)).unwrap();
         let units: Units = model.units();
         let settings = Settings::flight_of(&model.known);
-        let flight = units.own_settings(settings.planner.flight().unwrap());
+        let flight = units.own_settings(settings.planner.plane().unwrap());
         let a = units.own_airframe(&model.known.airframe);
         [
             a.mass,

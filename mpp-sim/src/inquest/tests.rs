@@ -159,7 +159,7 @@ fn the_reaction_time_is_the_airframes() {
     let settings = mpp_core::settings::Settings::flight();
     let (a, limits) = (
         settings.airframe,
-        settings.planner.flight().unwrap().attitude,
+        settings.planner.plane().unwrap().attitude,
     );
     let lift = 0.5 * a.air_density * a.wing_area * a.lift_alpha * 12.0 * 12.0;
     let acceleration = lift * limits.angle_of_attack / a.mass;

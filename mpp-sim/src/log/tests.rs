@@ -7,7 +7,7 @@ use crate::field::Obstacle;
 use crate::lidar::LidarConfig;
 use crate::outcome::{Class, Outcome};
 use crate::sensors::{AirDataNoise, Measurement};
-use mpp_core::estimate::Conditions;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 
 fn tick(t: f64, reference: Option<VehicleState>) -> Tick {

@@ -1,12 +1,14 @@
 //! Generated programs. They have random obstacle fields, the tree's paths through them, the
 //! corridors around these paths, and random motions at the start.
 
-use mpp_core::config::{GRID_ROWS, TREE_SAMPLES};
 use mpp_core::corridor::Corridor;
-use mpp_core::map::{GridPoint, OccupancyGrid};
-use mpp_core::paths::{Extension, Path, Search, resample};
-use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageModel, StageState, Weights};
-use mpp_core::settings::{AttitudeLimits, PaperSettings, Settings};
+use mpp_core::paper::PaperSettings;
+use mpp_core::paper::StageModel;
+use mpp_core::paper::config::{GRID_ROWS, TREE_SAMPLES};
+use mpp_core::paper::{Extension, Path, Search, resample};
+use mpp_core::paper::{GridPoint, OccupancyGrid};
+use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageState, Weights};
+use mpp_core::settings::{AttitudeLimits, Settings};
 use mpp_core::vehicle::{AirState, Trim, linearize};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -61,7 +63,7 @@ impl Preset {
     pub(crate) fn all() -> [Self; 3] {
         let (reference, paper) = (Settings::reference(), Settings::paper());
         let flight = Settings::flight().planner;
-        let attitude = flight.flight().map(|own| own.attitude);
+        let attitude = flight.plane().map(|own| own.attitude);
         [
             Self::new(&reference, reference.planner.weights, None),
             Self::new(&paper, paper.planner.weights, None),

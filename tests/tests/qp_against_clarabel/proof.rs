@@ -2,7 +2,8 @@
 
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::DIRECTION_VECTORS;
-use mpp_core::qp::{Problem, RowKind, Solver, StageControl, StageModel, StageState};
+use mpp_core::paper::StageModel;
+use mpp_core::qp::{Problem, RowKind, Solver, StageControl, StageState};
 
 /// The terms `(knot or stage, index, factor)` of the states or of the controls in a row.
 enum Terms {

@@ -7,10 +7,10 @@ use core::mem::MaybeUninit;
 use mpp_core::config::{MAX_BEAMS, TICK_PERIOD};
 use mpp_core::estimate::Trust;
 use mpp_core::flight::{Adoption, FlightLoop, Mode};
-use mpp_core::map::Pose;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Setting;
+use mpp_core::vehicle::Pose;
 use mpp_node::parameters::Tuning;
 
 /// By how much sums of ticks may differ [s]. A plan has no reference before its start.

@@ -217,7 +217,7 @@ impl MppStatus {
             E::OutOfRange(Setting::Altitude) => Self::Altitude,
             E::OutOfRange(_) => Self::OutOfRange,
             E::ThrustTooLow => Self::Thrust,
-            E::Model(_) | E::Condense(_) | E::OtherMethod => Self::Planner,
+            E::NoSteadyState | E::Condense(_) | E::OtherMethod => Self::Planner,
         }
     }
 

@@ -213,7 +213,7 @@ impl MppSensors {
     pub(crate) fn frame(&self) -> SensorFrame {
         let air = AirData {
             age: self.air_age,
-            measurement: mpp_core::estimate::Measurement {
+            measurement: mpp_core::sense::Measurement {
                 airspeed: self.airspeed,
                 pitch: self.pitch,
             },

@@ -9,7 +9,7 @@ use crate::vehicle::{ActuatorLimits, Airframe};
 ///
 /// No copies exist of what the parts derive from the settings at their start: the airframe and the greatest offset of
 /// [`LiftEstimator`](crate::estimate::LiftEstimator), the numbers of the aircraft in [`ElevatorEffect`](crate::estimate::ElevatorEffect),
-/// [`MotorWatch`](crate::estimate::MotorWatch) and [`AirspeedBias`](crate::estimate::AirspeedBias), the periods of [`Watch`](crate::estimate::Watch), and
+/// [`MotorWatch`](crate::estimate::MotorWatch) and [`AirspeedBias`](crate::estimate::AirspeedBias), the periods of [`SensorMonitor`](crate::estimate::SensorMonitor), and
 /// [`LaggedEkf::follows`](crate::estimate::LaggedEkf::follows). The check does not notice a bit that flips there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EstimatorDesign {

@@ -1,7 +1,7 @@
 //! What the estimators show to the watches of elevator and motor.
 
 use super::Estimator;
-use crate::estimate::{Innovation, PositionVerdict, Progress, Verdict};
+use crate::estimate::{Innovation, MeasurementStatus, PositionVerdict, Progress};
 use crate::sense::AirData;
 use crate::tuning::sensors::LONGEST_PREDICTION;
 
@@ -13,8 +13,10 @@ impl Estimator {
         air: Option<&AirData>,
         innovation: Innovation,
     ) {
-        let good =
-            matches!(innovation.pitch, Verdict::Accepted | Verdict::Gated) && self.air.lag() == 0;
+        let good = matches!(
+            innovation.pitch,
+            MeasurementStatus::Accepted | MeasurementStatus::Gated
+        ) && self.air.lag() == 0;
         let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION)
         else {
             return;

@@ -1,0 +1,390 @@
+//! Smooth paths over a lattice of stations, heights and slopes, by dynamic programming. The lattice is
+//! the deterministic counterpart of RRT*-AR.
+//!
+//! From one station to the next the slope of a path changes by at most one step, because the aircraft
+//! cannot turn more. The height follows from the slopes. One pass from the aircraft and one pass from the
+//! far end meet at the *via* station. There the search then knows the cost of the best path through every
+//! height. Each minimum of this cost gives a path. These paths differ in the way they pass the obstacles,
+//! or in their heights.
+
+mod cost_to_go;
+mod edges;
+
+use crate::map::{DistanceField, Height};
+use crate::tuning::UNKNOWN_PRICE;
+use crate::tuning::lattice::{
+    AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, MARGIN, MARGIN_PRICE, RISE, SPACING, STRETCH,
+};
+use core::ops::Range;
+pub use cost_to_go::CostToGo;
+use edges::{
+    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, NO_PRICES,
+    PER_BYTE, POINTS, Place, Prices, QUARTERS, SLOPES, VIA,
+};
+
+/// Number of stations, the station at the aircraft included.
+pub const STATIONS: usize = 17;
+/// Greatest number of paths from one search.
+pub const MAX_LATTICE_PATHS: usize = 6;
+
+/// Greatest distance of a path in height from where it starts \[m\].
+pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
+
+/// The slope at the other end of the best edge for each height and slope, by its difference: [`Place`] tells
+/// where it lies.
+type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
+/// A path: its height at each station \[m\].
+pub type LatticePath = [f64; STATIONS];
+
+/// Start of the paths, and the limits that they keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LatticeTask {
+    /// Downrange position of the start \[m\].
+    pub x: f64,
+    /// Height of the start \[m\].
+    pub z: f64,
+    /// Slope at the start [-].
+    pub slope: f64,
+    /// Height to which the paths return \[m\].
+    pub altitude: f64,
+    /// Greatest distance of a path from `altitude` \[m\].
+    pub band: f64,
+    /// Greatest curvature of a path [1/m].
+    pub curvature: f64,
+    /// Clearance that a path should have where there is room \[m\].
+    pub room: f64,
+    /// Price of the squared lack of it [1/m^2].
+    pub room_price: f64,
+    /// Distance ahead beyond which an unknown point has no price \[m\].
+    pub unknown_ahead: f64,
+}
+
+/// The search and its tables.
+#[derive(Clone, Debug)]
+pub struct Lattice {
+    task: LatticeTask,
+    spacing: f64,
+    slope_step: f64,
+    station: usize,
+    /// Costs between the start and the present station, or between the present station and the far end.
+    layer: Layer,
+    /// The same one station on, as far as the search knows it.
+    next: Layer,
+    /// The heights of the points.
+    points: [Point; POINTS],
+    /// Prices of the points of the present edges.
+    prices: Prices,
+    /// Costs from the start to the via station.
+    to_via: Layer,
+    /// Best previous slope for each height and slope, at each station up to the via station.
+    before: [Choice; VIA + 1],
+    /// Best next slope for each height and slope, at each station from the via station on.
+    after: [Choice; STATIONS - VIA],
+}
+
+impl Lattice {
+    /// A lattice before its first search.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            task: LatticeTask {
+                x: 0.0,
+                z: 0.0,
+                slope: 0.0,
+                altitude: 0.0,
+                band: 0.0,
+                curvature: 0.0,
+                room: 0.0,
+                room_price: 0.0,
+                unknown_ahead: 0.0,
+            },
+            spacing: SPACING,
+            slope_step: 0.0,
+            station: STATIONS,
+            layer: NO_COSTS,
+            next: NO_COSTS,
+            points: [Point::NONE; POINTS],
+            prices: NO_PRICES,
+            to_via: NO_COSTS,
+            before: [[[0; HEIGHTS]; _]; VIA + 1],
+            after: [[[0; HEIGHTS]; _]; STATIONS - VIA],
+        }
+    }
+
+    /// Starts a search. For an aircraft that turns less, the stations are farther apart and the slopes finer.
+    /// The field must not change during the search.
+    pub fn start(&mut self, task: &LatticeTask, field: &DistanceField) {
+        self.task = *task;
+        for (place, point) in self.points.iter_mut().enumerate() {
+            *point = Point::new(task, field, place);
+        }
+        // RISE = spacing * step / 2 holds at every spacing.
+        let stretch = libm::sqrt(AGILE / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
+        self.spacing = SPACING * stretch;
+        self.slope_step = 2.0 * RISE / self.spacing;
+        self.station = 0;
+        forbid(&mut self.layer);
+        let steps =
+            libm::round(task.slope / self.slope_step).clamp(-f64::from(LEVEL), LEVEL.into());
+        let slope = (steps as i32 + LEVEL) as usize;
+        if let Some(costs) = self.layer.get_mut(slope) {
+            costs[MIDDLE as usize] = 0;
+        }
+    }
+
+    /// Distance between stations \[m\].
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// Evaluates the edges of one station. Returns true while the search goes on.
+    pub fn advance(&mut self, field: &DistanceField) -> bool {
+        const LAST: usize = STATIONS - 1;
+        match self.station {
+            station @ 0..VIA => self.forward(field, station),
+            station @ VIA..LAST => {
+                if station == VIA {
+                    self.to_via = self.layer;
+                    self.layer = NO_COSTS;
+                }
+                // The second pass runs from the far end back to the via station.
+                self.backward(field, LAST - 1 - (station - VIA));
+            }
+            _ => return false,
+        }
+        self.station += 1;
+        self.station < LAST
+    }
+
+    #[inline(never)]
+    fn forward(&mut self, field: &DistanceField, station: usize) {
+        let reached = reached(&self.layer);
+        self.write_prices(field, station, &reached);
+        forbid(&mut self.next);
+        let choices = self.before.get_mut(station + 1);
+        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
+        for (to, costs) in (0..).zip(&mut self.next) {
+            // The lowest start comes first: among equal costs the first one stays.
+            for from in [to + 1, to, to - 1] {
+                let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, from)) else {
+                    continue;
+                };
+                let heights = edges.starts(&reached);
+                let ends = edges.ends(&heights);
+                let place = Place::of(to);
+                let row = choices.get_mut(place.row);
+                let row = row.and_then(|row| row.get_mut(ends.clone()));
+                let known = known.get(heights.clone()).unwrap_or_default();
+                let found = (
+                    costs.get_mut(ends).unwrap_or_default(),
+                    row.unwrap_or_default(),
+                );
+                edges.relax(
+                    &self.prices,
+                    heights.start,
+                    known,
+                    place.choosing(from - to),
+                    found,
+                );
+            }
+        }
+        self.layer = self.next;
+    }
+
+    #[inline(never)]
+    fn backward(&mut self, field: &DistanceField, station: usize) {
+        let all = 0..HEIGHTS;
+        self.write_prices(field, station, &all);
+        forbid(&mut self.next);
+        let choices = self.after.get_mut(station - VIA);
+        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
+        for (from, costs) in (0..).zip(&mut self.next) {
+            // The edge without a turn comes first: among equal costs the first one stays.
+            for to in [from, from - 1, from + 1] {
+                let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, to)) else {
+                    continue;
+                };
+                let heights = edges.starts(&all);
+                let known = known.get(edges.ends(&heights)).unwrap_or_default();
+                let first = heights.start;
+                let place = Place::of(from);
+                let row = choices.get_mut(place.row);
+                let row = row.and_then(|row| row.get_mut(heights.clone()));
+                let found = (
+                    costs.get_mut(heights).unwrap_or_default(),
+                    row.unwrap_or_default(),
+                );
+                edges.relax(&self.prices, first, known, place.choosing(to - from), found);
+            }
+        }
+        self.layer = self.next;
+    }
+
+    /// Writes the prices of the points on the edges of a station that begin at certain heights. The last quarter
+    /// also contains the price of the height itself.
+    // Both passes call it, and each would hold a copy.
+    #[inline(never)]
+    fn write_prices(&mut self, field: &DistanceField, station: usize, heights: &Range<usize>) {
+        let task = self.task;
+        self.prices = NO_PRICES;
+        let first = (2 * heights.start).saturating_sub(EDGE_REACH);
+        let last = (2 * heights.end + EDGE_REACH).min(POINTS);
+        for (quarter, prices) in self.prices.iter_mut().enumerate() {
+            let share = (quarter + 1) as f64 / QUARTERS as f64;
+            let ahead = self.spacing * (station as f64 + share);
+            let column = field.column(task.x + ahead);
+            let unknown = if ahead < task.unknown_ahead {
+                UNKNOWN_PRICE * (1.0 - ahead / task.unknown_ahead)
+            } else {
+                0.0
+            };
+            let prices = prices.get_mut(EDGE_REACH + first..EDGE_REACH + last);
+            let points = self.points.get(first..last).unwrap_or_default();
+            for (price, point) in prices.unwrap_or_default().iter_mut().zip(points) {
+                let distance = column.distance(&point.height);
+                let lack = (MARGIN - distance).max(0.0) + point.outside;
+                let crowded = (task.room - distance).max(0.0);
+                let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
+                if column.is_unknown(&point.height) {
+                    cost += unknown;
+                }
+                if quarter + 1 == QUARTERS {
+                    cost += point.altitude_price;
+                }
+                *price = (COST_UNIT * cost).min(DEAREST) as u32;
+            }
+        }
+    }
+
+    /// Writes the cost from the via station on. The call is valid only after the search.
+    pub fn write_cost_to_go(&self, to: &mut CostToGo) {
+        to.start = [self.task.x, self.task.z];
+        to.spacing = self.spacing;
+        to.slope_step = self.slope_step;
+        to.layer = self.layer;
+    }
+
+    /// Writes the paths through the best heights of the via station, the best path first. The call is valid
+    /// only after the search.
+    pub fn paths(&self, paths: &mut heapless::Vec<LatticePath, MAX_LATTICE_PATHS>) {
+        paths.clear();
+        // The least cost through each height, and its slope.
+        let (mut through, mut slopes) = ([0; HEIGHTS], [0_i8; HEIGHTS]);
+        through.fill(NEVER);
+        let passes = self.to_via.iter().zip(&self.layer);
+        for (slope, (to, from)) in (0..).zip(passes) {
+            let best = through.iter_mut().zip(&mut slopes);
+            for ((least, best), (to, from)) in best.zip(to.iter().zip(from)) {
+                let cost = to.saturating_add(*from);
+                if cost < *least {
+                    (*least, *best) = (cost, slope);
+                }
+            }
+        }
+        let mut minima: heapless::Vec<(u32, i32, i32), HEIGHTS> = heapless::Vec::new();
+        for (height, (cost, slope)) in (0..).zip(through.iter().zip(&slopes)) {
+            let at = |height: i32| {
+                let place = usize::try_from(height).ok();
+                place
+                    .and_then(|place| through.get(place).copied())
+                    .unwrap_or(NEVER)
+            };
+            if *cost < NEVER && *cost <= at(height - 1) && *cost < at(height + 1) {
+                let _ = minima.push((*cost, height, i32::from(*slope)));
+            }
+        }
+        while !paths.is_full()
+            && let Some(best) = minima.iter_mut().min()
+            && best.0 < NEVER
+        {
+            let (_, height, slope) = *best;
+            best.0 = NEVER;
+            let _ = paths.push(self.path(height, slope));
+        }
+    }
+
+    /// The best path through a height and a slope at the via station.
+    fn path(&self, height: i32, slope: i32) -> LatticePath {
+        let z = |height: i32| self.task.z + RISE * f64::from(height - MIDDLE);
+        let mut path = [z(height); STATIONS];
+        let (before, onward) = path.split_at_mut(VIA);
+        let mut at = (height, slope);
+        for (place, choices) in before.iter_mut().zip(&self.before[1..]).rev() {
+            let slope = choice(choices, at).unwrap_or(LEVEL);
+            at = (at.0 - (slope - LEVEL) - (at.1 - LEVEL), slope);
+            *place = z(at.0);
+        }
+        let mut at = (height, slope);
+        for (place, choices) in onward.iter_mut().skip(1).zip(&self.after) {
+            let slope = choice(choices, at).unwrap_or(LEVEL);
+            at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
+            *place = z(at.0);
+        }
+        path
+    }
+}
+
+/// What the prices of the points at one height have in common.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    height: Height,
+    /// Distance beyond the band less its margin \[m\].
+    outside: f64,
+    /// Price of the distance from the altitude [-].
+    altitude_price: f64,
+}
+
+impl Point {
+    const NONE: Self = Self {
+        height: Height::LOWEST,
+        outside: 0.0,
+        altitude_price: 0.0,
+    };
+
+    fn new(task: &LatticeTask, field: &DistanceField, place: usize) -> Self {
+        let z = task.z + 0.5 * RISE * (place as f64 - f64::from(2 * MIDDLE));
+        let from_altitude = z - task.altitude;
+        Self {
+            height: field.height(z),
+            outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
+            altitude_price: ALTITUDE_PRICE * from_altitude * from_altitude,
+        }
+    }
+}
+
+impl Default for Lattice {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// The heights between the lowest and the highest that a path reaches.
+fn reached(layer: &Layer) -> Range<usize> {
+    let is_reached = |height: &usize| {
+        let mut costs = layer.iter().filter_map(|costs| costs.get(*height));
+        costs.any(|cost| *cost < NEVER)
+    };
+    let mut heights = (0..HEIGHTS).filter(is_reached);
+    let first = heights.next().unwrap_or(0);
+    first..heights.next_back().unwrap_or(first) + 1
+}
+
+/// Sets costs that no path reaches. The compiler would write an array of such values as one store for each of
+/// them.
+#[inline(never)]
+fn forbid(layer: &mut Layer) {
+    layer.as_flattened_mut().fill(NEVER);
+}
+
+/// A row of a layer by the number of the slope.
+fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
+    layer.get(usize::try_from(slope).ok()?)
+}
+
+/// The choice at a height and a slope.
+fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<i32> {
+    let place = Place::of(slope);
+    let choices = choices.get(place.row)?.get(usize::try_from(height).ok()?)?;
+    Some(slope + place.change(*choices))
+}

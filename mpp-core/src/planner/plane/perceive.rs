@@ -1,0 +1,106 @@
+//! The phases from the scan to the paths: the map with memory, its clearance field, and the lattice.
+
+use super::workspace::{Intake, Workspace};
+use super::{Phase, PlanePlanner};
+use crate::lattice::{Lattice, LatticeTask};
+use crate::map::has_return;
+use crate::tuning::candidates::BEAMS_PER_SLICE;
+use crate::vehicle::Trim;
+
+impl PlanePlanner {
+    /// Takes some beams of the scan into the map. After the last beam it builds the clearance field, proposes
+    /// the previous plan, and starts the search of the lattice.
+    #[inline(never)]
+    pub(super) fn remember(&mut self) {
+        let Workspace::Scan(Intake { scan, beams, lone }) = &mut self.workspace else {
+            self.phase = Phase::Done;
+            return;
+        };
+        let (pose, sight) = (self.pose, self.settings.sight);
+        if *beams == 0 {
+            self.map.roll(pose.x, self.altitude);
+            // A lidar that has lied stays a liar until a beam returns.
+            self.lidar_distrusted = !has_return(scan, sight)
+                && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
+            if self.lidar_distrusted {
+                self.summary.blind = true;
+                scan.ranges.clear();
+            }
+            self.map.write_isolated_hits(scan, sight, &pose, lone);
+        }
+        if *beams < scan.ranges.len() {
+            let next = *beams..*beams + BEAMS_PER_SLICE;
+            *beams = next.end;
+            self.map.insert_beams(scan, next, sight, &pose, lone);
+            return;
+        }
+        if self.summary.blind {
+            self.slow_down();
+        }
+        self.field.build(&self.map, self.settings.body_radius);
+        self.limits
+            .widen(self.settings.margin, self.field.openness());
+        self.take_up_previous();
+        let (run, rise) = self.wind.ground_velocity(&self.state.air);
+        let task = LatticeTask {
+            x: self.state.x,
+            z: self.state.z,
+            slope: rise / run.max(1.0),
+            altitude: self.altitude,
+            band: self.settings.band,
+            curvature: self.limits.curvature,
+            room: self.limits.wanted_room,
+            room_price: self.limits.room_price,
+            unknown_ahead: self.limits.unknown_ahead,
+        };
+        self.workspace = Workspace::Lattice(Lattice::new());
+        if let Workspace::Lattice(lattice) = &mut self.workspace {
+            lattice.start(&task, &self.field);
+        }
+        self.phase = Phase::Lattice;
+    }
+
+    /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what
+    /// comes. The aircraft then leaves later what the map knows.
+    fn slow_down(&mut self) {
+        let [down, up] = self.limits.angle_of_attack;
+        let alpha = self.trim.state.angle_of_attack() + up;
+        let slow = Trim::at_angle_of_attack(&self.airframe, alpha).ok();
+        let Some(trim) = slow.filter(|it| it.control.thrust < self.limits.thrust_max) else {
+            return;
+        };
+        self.trim = trim;
+        self.bound_thrust();
+        // The limits stay where they are. They count from trim.
+        self.limits.angle_of_attack = [down + up, 0.0];
+        let [down, most] = self.limits.rolled_out;
+        self.limits.rolled_out = [down + up, (most - up).max(0.0)];
+    }
+
+    /// Searches one station of the lattice. After the last one it proposes its paths.
+    pub(super) fn search_lattice(&mut self) {
+        let Workspace::Lattice(lattice) = &mut self.workspace else {
+            self.phase = Phase::Done;
+            return;
+        };
+        if !lattice.advance(&self.field) {
+            self.take_lattice_paths();
+        }
+    }
+
+    /// Makes the paths of the lattice candidates, and frees its memory for the first program.
+    #[inline(never)]
+    fn take_lattice_paths(&mut self) {
+        let mut paths = heapless::Vec::new();
+        if let Workspace::Lattice(lattice) = &self.workspace {
+            lattice.paths(&mut paths);
+            lattice.write_cost_to_go(&mut self.cost_to_go);
+        }
+        for path in &paths {
+            let candidate = self.along(path);
+            self.propose(candidate);
+        }
+        self.workspace = Workspace::NEW;
+        self.phase = Phase::Faces;
+    }
+}

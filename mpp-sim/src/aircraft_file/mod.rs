@@ -1,0 +1,193 @@
+//! Aircraft files: one aircraft as TOML, from published derivatives to the numbers that core and plant use.
+//! `docs/aircraft.md` describes every key with its unit.
+
+mod choice;
+mod numbers;
+mod similar;
+
+use crate::file_error::ScenarioError;
+pub use numbers::AircraftModel;
+use serde::{Deserialize, Serialize};
+
+/// The content of an aircraft file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct AircraftFile {
+    /// Name in reports and in names of files: 1 to 64 bytes without slashes and control characters.
+    pub name: String,
+    /// Where the numbers come from.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub source: String,
+    /// The angle to which the derivatives refer.
+    pub derivatives: Angle,
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Moment of inertia in pitch [kg m^2].
+    pub pitch_inertia: f64,
+    /// Wing area [m^2].
+    pub wing_area: f64,
+    /// Mean chord, the reference length of the pitching moment \[m\].
+    pub chord: f64,
+    /// Air density [kg/m^3]; by default that at sea level.
+    #[serde(default = "sea_level")]
+    pub air_density: f64,
+    /// Airspeed of level flight [m/s].
+    pub cruise: f64,
+    /// Radius of the circle in the vertical plane that holds the aircraft \[m\]; by default 0.
+    #[serde(default)]
+    pub body_radius: f64,
+    /// Lift.
+    pub lift: Lift,
+    /// Drag.
+    pub drag: Drag,
+    /// Pitching moment.
+    pub moment: Moment,
+    /// Elevator.
+    pub elevator: Elevator,
+    /// Motor.
+    #[serde(default)]
+    pub thrust: Thrust,
+}
+
+fn sea_level() -> f64 {
+    1.225
+}
+
+/// The angle to which derivatives refer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Angle {
+    /// Derivatives are per radian.
+    Radian,
+    /// Derivatives are per degree.
+    Degree,
+}
+
+/// Lift coefficient `C_L = zero + alpha * angle of attack + elevator.lift * deflection`, and lift by rates.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lift {
+    /// At zero angle of attack [-].
+    pub zero: f64,
+    /// Slope [1 per angle].
+    pub alpha: f64,
+    /// Lift by the rate of the angle of attack, `C_L,alpha-dot` [1 per angle], of `alpha' c / 2v`.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub alpha_rate: f64,
+    /// Lift by the pitch rate, `C_Lq` [1 per angle], of `theta' c / 2v`.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub pitch_rate: f64,
+    /// Angle of attack at which the wing stalls \[rad\]; by default it never does.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stall: Option<f64>,
+}
+
+/// Drag coefficient `C_D = zero + induced * C_L^2`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drag {
+    /// Without lift [-].
+    pub zero: f64,
+    /// Factor on the squared lift coefficient [-].
+    pub induced: f64,
+}
+
+/// Pitching moment coefficient about the centre of gravity, nose-up positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Moment {
+    /// At zero angle of attack and elevator [-].
+    pub zero: f64,
+    /// Slope with the angle of attack [1 per angle]; negative for a stable aircraft.
+    pub alpha: f64,
+    /// Damping by the pitch rate, of `theta' chord / 2v` [1 per angle].
+    #[serde(default)]
+    pub pitch_rate: f64,
+    /// Damping by the rate of the angle of attack, of `alpha' chord / 2v` [1 per angle].
+    #[serde(default)]
+    pub alpha_rate: f64,
+    /// The same damping as the paper prints it, of `alpha'` [s per angle]. It does not change with the airspeed.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub alpha_rate_time: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for it")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
+/// The elevator. Limits and the command of the link have its unit.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Elevator {
+    /// Unit of the command.
+    pub unit: ElevatorUnit,
+    /// Moment coefficient of a deflection [1 per angle, or per unit of `command`].
+    pub moment: f64,
+    /// Lift coefficient of a deflection [1 per angle, or per unit of `command`].
+    #[serde(default)]
+    pub lift: f64,
+    /// Least deflection \[unit\]; by default there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub min: Option<f64>,
+    /// Greatest deflection \[unit\]; by default there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// Greatest rate [unit/s]; by default there is no limit.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rate: Option<f64>,
+}
+
+/// Unit of the elevator's command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ElevatorUnit {
+    /// Degrees.
+    Deg,
+    /// Radians.
+    Rad,
+    /// A number of its own. Moment and lift are per unit of this number.
+    Command,
+}
+
+/// The motor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Thrust {
+    /// Greatest thrust \[N\]; by default there is no limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max: Option<f64>,
+    /// Time constant of the thrust \[s\]; by default it follows at once.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lag: Option<f64>,
+}
+
+impl AircraftFile {
+    /// The aircraft that come with the project, by name.
+    pub const KNOWN: [(&'static str, &'static str); 6] = [
+        ("reference", include_str!("../../aircraft/reference.toml")),
+        ("paper", include_str!("../../aircraft/paper.toml")),
+        ("example", include_str!("../../aircraft/example.toml")),
+        ("aerosonde", include_str!("../../aircraft/aerosonde.toml")),
+        ("zagi", include_str!("../../aircraft/zagi.toml")),
+        ("cessna182", include_str!("../../aircraft/cessna182.toml")),
+    ];
+
+    /// Reads an aircraft file from text. An error shows `name` as the name of the text.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Toml`].
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+        toml::from_str(text).map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))
+    }
+
+    /// The aircraft with a name that comes with the project.
+    #[must_use]
+    pub fn known(name: &str) -> Option<Self> {
+        let (_, text) = Self::KNOWN.iter().find(|(known, _)| *known == name)?;
+        Self::parse(name, text).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests;
