@@ -12,14 +12,11 @@ use mpp_core::qp::{Penalty, Weights};
 use mpp_core::settings::{AttitudeLimits, Cruise, PlaneSettings, PlannerSettings, Settings};
 use mpp_core::units::Units;
 use mpp_core::vehicle::{Airframe, Trim};
+use mpp_tests::project::{files, root};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{BinOp, Expr, Item, Lit};
-
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
 
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -27,22 +24,8 @@ fn read(path: &Path) -> String {
 
 /// README, ARCHITECTURE, CONTRIBUTING, and every page below `docs`.
 fn pages() -> Vec<PathBuf> {
-    let mut pages =
-        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root().join(page));
-    pages.sort();
-    let mut pages = Vec::from(pages);
-    let mut folders = vec![root().join("docs")];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
-                pages.push(path);
-            }
-        }
-    }
-    pages
+    let pages = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root().join(page));
+    [&pages[..], &files(&root().join("docs"), "md")].concat()
 }
 
 /// Text and target of each link of a page; what stands in a block of code is none.
