@@ -6,10 +6,10 @@ use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::tick_record::TickRecord;
 use sil_harness::ground::tlog::TlogWriter;
 use sil_harness::ground::vehicle::{Outgoing, Vehicle, VehicleConfig};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -226,9 +226,9 @@ impl Ground for Radio {
         false
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
+    fn watch(&mut self, record: &TickRecord<'_>) {
         let (now, since_start) = (self.vehicle.now(), self.vehicle.microseconds());
-        self.vehicle.observe(moment);
+        self.vehicle.observe(record);
         self.listen(now, since_start);
     }
 }
