@@ -1,5 +1,5 @@
 //! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
-//! for browsers, and the golden flights.
+//! for browsers, the golden flights, and the page of numbers.
 //!
 //! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
 //! and library sources, which they install as root.
@@ -20,6 +20,7 @@ mod golden;
 mod identity;
 mod limits;
 mod nucleo;
+mod numbers;
 mod pil;
 mod qemu;
 mod readme;
@@ -75,6 +76,8 @@ enum Command {
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
     Golden(golden::GoldenArgs),
+    /// Print docs/planner-numbers.md with the numbers and comments of the code; --save writes it
+    Numbers(numbers::NumbersArgs),
 }
 
 fn main() -> ExitCode {
@@ -94,6 +97,7 @@ fn main() -> ExitCode {
         Command::Deb => deb::run(),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
+        Command::Numbers(args) => numbers::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
