@@ -1,8 +1,8 @@
 //! `aircraft`: what follows from an aircraft file, and how well it flies.
 
+use super::answer::{FAILURE, Failure, USAGE, data};
 use super::campaign::failure;
 use super::loudness::progress_bar;
-use super::answer::{FAILURE, Failure, USAGE, data};
 use super::signals::Signals;
 use super::values::{item, navigation, seed, threads};
 use crate::campaign::{CampaignError, run as fly_all};
