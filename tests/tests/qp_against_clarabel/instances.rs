@@ -1,6 +1,7 @@
 //! Generated programs. They have random obstacle fields, the tree's paths through them, the
 //! corridors around these paths, and random motions at the start.
 
+use chacha20::ChaCha8Rng;
 use mpp_core::config::{GRID_ROWS, TREE_SAMPLES};
 use mpp_core::corridor::Corridor;
 use mpp_core::map::{GridPoint, OccupancyGrid};
@@ -8,7 +9,6 @@ use mpp_core::paths::{Extension, Path, Search, resample};
 use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageModel, StageState, Weights};
 use mpp_core::settings::{AttitudeLimits, PaperSettings, Settings};
 use mpp_core::vehicle::{AirState, Trim, linearize};
-use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 /// Number of paths that are taken from one tree.
