@@ -174,9 +174,6 @@ pub enum RejectionCause {
     },
     /// After several faults in a row the core flies on without its planner, until its power goes off.
     PlannerOff,
-    /// A value of the configuration or of a parameter had changed in memory by itself. The core repaired it
-    /// from copies, or says hello if that was not possible.
-    ValuesRepaired,
 }
 
 /// A task of the core. The order goes over the wire: append only.
@@ -284,11 +281,6 @@ impl fmt::Display for RejectionCause {
                 f,
                 "{task} was restarted, because {fault} (address {address:#010x}, fault {count} in a row): \
                  report the fault"
-            ),
-            Self::ValuesRepaired => write!(
-                f,
-                "a bit of the core's settings had flipped and was repaired: if this comes again, replace \
-                 the flight computer"
             ),
             Self::PlannerOff => write!(
                 f,

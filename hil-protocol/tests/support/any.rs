@@ -312,7 +312,6 @@ fn cause() -> impl Strategy<Value = RejectionCause> {
             RejectionCause::ScanRepeated,
             RejectionCause::ScanBlind,
             RejectionCause::PlannerOff,
-            RejectionCause::ValuesRepaired,
         ]),
         (
             select(&[CoreTask::Step, CoreTask::Planner]),

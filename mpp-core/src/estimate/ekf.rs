@@ -91,11 +91,6 @@ impl Ekf {
         &self.tuning
     }
 
-    /// Replaces the filter's tuning.
-    pub fn set_tuning(&mut self, tuning: EkfTuning) {
-        self.tuning = tuning;
-    }
-
     /// A filter that starts from an estimate.
     #[must_use]
     pub fn new(airframe: Airframe, tuning: EkfTuning, estimate: AirState) -> Self {

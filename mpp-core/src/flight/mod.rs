@@ -1,7 +1,5 @@
 //! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
-mod design;
-
 use crate::config::TICK_PERIOD;
 use crate::control::{Lqr, holds};
 use crate::estimate::{Estimator, Innovation, PositionVerdict, Sensors};
@@ -13,7 +11,6 @@ use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::sensors::LONGEST_DOUBT;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{AirState, Conditions, Control, Pose, Trim, VehicleState, linearize};
-pub use design::Design;
 
 /// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

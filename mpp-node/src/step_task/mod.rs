@@ -1,11 +1,9 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
-mod check;
 mod input;
 mod loss;
 mod set_up;
-mod spare;
 mod tick;
 mod tune;
 
@@ -22,7 +20,6 @@ use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
 use mpp_core::sense::LidarScan;
-use spare::Spare;
 
 /// The behaviour at the tick at which a plan is due but the planner has not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -145,8 +142,6 @@ pub struct StepTask {
     buffer: [u8; MAX_FRAME],
     scan: LidarScan,
     flight: Option<Flight>,
-    /// Copies of those values of the flight that the flight itself does not change.
-    spare: Option<Spare>,
     order: Option<Order>,
     /// Number of the last set-up that the step ordered.
     set_ups: u32,
@@ -171,7 +166,6 @@ impl StepTask {
             buffer: [0; MAX_FRAME],
             scan: LidarScan::new(),
             flight: None,
-            spare: None,
             order: None,
             set_ups: 0,
             plan: None,

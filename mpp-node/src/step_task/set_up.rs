@@ -16,7 +16,6 @@ impl StepTask {
         match self.prepare(&self.decoder.body()?) {
             Ok((tuning, regulated)) => {
                 self.begin(&tuning, &regulated);
-                self.keep_values();
                 self.order_set_up();
             }
             Err(verdict) => self.reply(verdict, send),

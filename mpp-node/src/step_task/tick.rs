@@ -20,9 +20,6 @@ const HEALTH_PERIOD: u32 = 100;
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
     pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        if !self.check_values(frame.tick, send) {
-            return;
-        }
         self.tell_plan(send);
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {

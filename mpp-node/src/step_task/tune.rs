@@ -12,9 +12,6 @@ impl StepTask {
     // Not inlined, so that a new flight loop is not on the stack of each tick.
     #[inline(never)]
     pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
-        if !self.check_all(send) {
-            return;
-        }
         if let Err(verdict) = self.tune(set) {
             self.reply_to_parameter(set.parameter, verdict, send);
         } else if self.flight.as_ref().is_some_and(|flight| flight.ready) {
@@ -39,7 +36,6 @@ impl StepTask {
             flight.refit(&tuning, &regulated);
             self.order_set_up();
         }
-        self.keep_values();
         Ok(())
     }
 
@@ -67,7 +63,6 @@ impl StepTask {
                     flight.refit(&before, &regulated);
                 }
                 flight.asker = Asker::Nobody;
-                self.keep_values();
                 self.order_set_up();
                 ParameterVerdict::SetUp(verdict)
             }
