@@ -327,7 +327,7 @@ pub struct HealthReport {
 
 impl HealthReport {
     /// The name of each counter. The order goes over the wire: append only.
-    pub const NAMES: [&str; 19] = [
+    pub const NAMES: [&str; 20] = [
         "measurements_not_finite",
         "measurements_frozen",
         "measurements_late",
@@ -347,6 +347,7 @@ impl HealthReport {
         "plans_kept",
         "plans_least_violating",
         "plans_trim_hold",
+        "planner_inconsistent",
     ];
 
     /// Size of the longest payload \[bytes\].

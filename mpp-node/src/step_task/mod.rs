@@ -4,6 +4,8 @@ mod asker;
 mod input;
 mod loss;
 mod set_up;
+#[cfg(test)]
+mod tests;
 mod tick;
 mod tune;
 

@@ -52,6 +52,7 @@ impl StepTask {
         let scan_tick = cycle.scan;
         let time = flight.time(tick);
         let adoption = flight.control.adopt(time, plan.verdict, &plan.trajectory);
+        flight.control.count_cycle(&plan.summary);
         let outcome = convert::outcome(adoption);
         if flight.control.trajectory().is_none() {
             flight.plan_tick = None;
