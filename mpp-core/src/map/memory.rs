@@ -27,7 +27,8 @@ const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 /// One hit makes a cell occupied. The [`super::DistanceField`] completes what lies behind it.
 ///
 /// ```
-/// use mpp_core::map::{DistanceField, FAR, RollingGrid, Pose};
+/// use mpp_core::map::{DistanceField, FAR, RollingGrid};
+/// use mpp_core::vehicle::Pose;
 /// use mpp_core::sense::LidarScan;
 ///
 /// // One beam along the body axis, which returns from 20.1 m.

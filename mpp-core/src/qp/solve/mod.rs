@@ -67,7 +67,8 @@ struct Entering {
 ///
 /// ```
 /// use mpp_core::corridor::Corridor;
-/// use mpp_core::qp::{Bounds, Condensed, Initial, Problem, Solution, Solver, StageModel, Status, Weights};
+/// use mpp_core::paper::{Initial, StageModel};
+/// use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, Status, Weights};
 /// use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
 ///
 /// let airframe = Airframe::REFERENCE;
