@@ -1,7 +1,7 @@
 //! Tests of the step that reach into a flight.
 
 use super::{Cycle, Pace, StepTask};
-use crate::mail::{Answer, Plan};
+use crate::mail::{Plan, PlanReply};
 use hil_protocol::{
     ActuatorLimits, Aircraft, Body, Configure, MAX_FRAME, Preset, SensorFrame, encode_body,
 };
@@ -47,8 +47,8 @@ fn a_cycle_that_ended_by_a_defect_of_the_planner_is_counted() {
     task.set_up_done(Ok(()), &mut |_| {});
     tick(&mut task, 0);
     for (begun, inconsistent, count) in [(1, false, 0), (2, true, 1), (3, true, 2), (4, false, 2)] {
-        if let Some(flight) = &mut task.flight {
-            flight.cycle = Some(Cycle {
+        if let Some(session) = &mut task.session {
+            session.cycle = Some(Cycle {
                 begun,
                 scan: begun,
                 due: begun,
@@ -64,7 +64,7 @@ fn a_cycle_that_ended_by_a_defect_of_the_planner_is_counted() {
             },
             trajectory: Trajectory::new(),
         };
-        task.answer(Answer::Plan(plan), |_| {});
+        task.take_reply(PlanReply::Plan(plan), |_| {});
         tick(&mut task, begun);
         let counted = task.health().map(|health| health.planner_inconsistent);
         assert_eq!(counted, Some(count));
