@@ -1,5 +1,5 @@
 //! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
-//! for browsers, the golden flights, and the figures of docs/validation.
+//! for browsers, the golden flights, the page of numbers, and the figures of docs/validation.
 //!
 //! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
 //! and library sources, which they install as root.
@@ -14,13 +14,13 @@ mod deb;
 mod faults;
 mod firmware;
 mod flight;
-mod flips;
 mod folders;
 mod fuzz;
 mod golden;
 mod identity;
 mod limits;
 mod nucleo;
+mod numbers;
 mod pil;
 mod qemu;
 mod reproduce;
@@ -55,9 +55,6 @@ enum Command {
     Budget(budget::BudgetArgs),
     /// Let the planner or the step hang or trap, damage the image, let the timer run, and check that the aircraft flies on
     Faults(faults::FaultsArgs),
-    /// Flip random bits of the core's memory, in the emulator and in a process of this machine, and say
-    /// what came of it
-    Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
     /// Build the page that flies in the browser: one file, which needs nothing else
@@ -78,6 +75,8 @@ enum Command {
     Golden(golden::GoldenArgs),
     /// Say how old the figures of docs/validation are; --page runs the commands that print them again
     Validation(validation::ValidationArgs),
+    /// Print docs/planner-numbers.md with the numbers and comments of the code; --save writes it
+    Numbers(numbers::NumbersArgs),
 }
 
 fn main() -> ExitCode {
@@ -87,7 +86,6 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
-        Command::Flips(args) => flips::run(&args),
         Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
         Command::Web => wasm::page(),
         Command::C(args) => c::run(&args),
@@ -98,6 +96,7 @@ fn main() -> ExitCode {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Validation(args) => validation::run(&args),
+        Command::Numbers(args) => numbers::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -37,7 +37,7 @@ mod world;
 mod _native {
     #[pymodule_export]
     use super::{
-        aircraft::Aircraft, batch::Batch, batch::Moment, campaign::Campaign, choice::Choice,
+        aircraft::Aircraft, batch::Batch, batch::SavedFlight, campaign::Campaign, choice::Choice,
         choice::Fork, core::Core, field::Field, flight::Flight, flight::fly, lidar::Lidar,
         planner::Planner, world::World,
     };
