@@ -127,7 +127,7 @@ fn a_dead_link_and_a_name_that_is_gone_are_found() {
 
 #[test]
 fn the_table_of_tuned_numbers_is_that_of_the_code() {
-    let expected = page_of_numbers::text(&root()).unwrap();
+    let expected = page_of_numbers::text(root()).unwrap();
     let page = read(&root().join(page_of_numbers::PAGE));
     // A whole page is no readable difference: name the first line that differs.
     let differ = page.lines().zip(expected.lines()).find(|(is, be)| is != be);
