@@ -180,23 +180,22 @@ impl Radio {
         for datagram in self.datagrams(THERE, &outgoing) {
             let heard = &mut self.heard_there;
             Framer::new().receive_datagram(&datagram, |frame| {
-                heard.push((now, frame.bytes[4], message(frame.id, frame.payload)));
+                heard.push((
+                    now,
+                    frame.bytes[4],
+                    MavMessage::parse(frame.id, frame.payload).unwrap(),
+                ));
             });
         }
         let datagrams = self.datagrams(HERE, &outgoing);
         for datagram in (self.down)(datagrams) {
             let heard = &mut self.heard;
             self.framer.receive_datagram(&datagram, |frame| {
-                heard.push((now, message(frame.id, frame.payload)));
+                heard.push((now, MavMessage::parse(frame.id, frame.payload).unwrap()));
             });
         }
         self.notes.extend(self.vehicle.take_notes());
     }
-}
-
-fn message(id: u32, payload: &[u8]) -> MavMessage {
-    use mavlink_core::{MavlinkVersion, Message};
-    MavMessage::parse(MavlinkVersion::V2, id, payload).unwrap()
 }
 
 impl Ground for Radio {
