@@ -1,10 +1,6 @@
 //! Whether the documents say what the code says: links, names in links, and the numbers of the planner.
 
-#![expect(
-    clippy::panic,
-    clippy::unwrap_used,
-    reason = "the helpers of tests fail as tests do"
-)]
+#![expect(clippy::panic, reason = "the helpers of tests fail as tests do")]
 
 use mpp_core::vehicle::{Airframe, Trim};
 use mpp_node::parameters::Tuning;
