@@ -144,7 +144,7 @@ impl FieldArgs {
 }
 
 /// Whether a flag asks for another value than this one.
-pub(super) fn other<T: PartialEq>(flag: Option<T>, flown: T) -> bool {
+pub(super) fn other<T: Copy + PartialEq>(flag: Option<T>, flown: T) -> bool {
     flag.is_some_and(|asked| asked != flown)
 }
 
