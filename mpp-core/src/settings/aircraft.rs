@@ -7,7 +7,7 @@ use crate::qp::Weights;
 use crate::units::{REFERENCE_CRUISE, Units};
 use crate::vehicle::{ActuatorLimits, Airframe};
 
-/// What the core must know of an aircraft.
+/// The numbers of an aircraft that the core needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aircraft {
     /// Mass, inertia and aerodynamics.
