@@ -1,4 +1,4 @@
-//! All compile-time sizes and rates. Those of the paper's method stand in `paper::config`.
+//! All compile-time sizes and rates, but those of the paper's method (`paper::config`).
 
 /// Period of the flight loop \[s\].
 pub const TICK_PERIOD: f64 = 0.01;

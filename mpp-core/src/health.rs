@@ -26,7 +26,7 @@ pub struct Health {
     pub positions_late: u32,
     /// Positions beyond the innovation gate. The filter did not use them.
     pub positions_gated: u32,
-    /// Positions from which the filter started anew, after it had refused all positions for some time.
+    /// Positions from which the filter restarted, after it had refused all positions for some time.
     pub positions_restarted: u32,
     /// Commands that were not finite. The step commanded trim instead.
     pub commands_not_finite: u32,

@@ -4,12 +4,20 @@
 //! them. It follows Wallace, Streetman, Lessard, "Model Predictive Planning: Trajectory Planning in
 //! Obstruction-Dense Environments for Low-Agility Aircraft". The documentation calls it "the paper".
 //!
+//! In the field's terms, [`planner::plane`] is a receding-horizon planner (model predictive control, MPC). Each cycle
+//! refines candidate trajectories by sequential quadratic programming (SQP): every iteration solves a quadratic program
+//! with soft constraints and an exact penalty ([`qp`]). The previous plan is the warm start; the other candidates come
+//! from a state lattice, whose dynamic programming also gives the cost-to-go beyond the refined part ([`lattice`]). The
+//! map is a rolling grid of occupancy log-odds with a truncated distance field, ESDF ([`map`]). At 100 Hz the flight loop
+//! estimates by an extended Kalman filter (EKF), detects and isolates faults of sensors and actuators (FDI, [`estimate`]),
+//! and tracks the plan by a linear quadratic regulator (LQR, [`control`]).
+//!
 //! ```text
 //! 100 Hz  SensorFrame -> Ekf -> AirState -> Lqr -> Control                       flight
 //!                                | snapshot   ^ Trajectory::sample(t)
 //!                                v            |
-//! replan  LidarScan -> RollingGrid -> LatticePath, Path -> Corridor -> Solution -> roll-out   planner::plane
-//!         sense        map          paths                corridor    qp
+//! cycle   LidarScan -> RollingGrid -> LatticePath -> Corridor -> Solution -> roll-out   planner::plane
+//!         sense        map            lattice        corridor    qp
 //! ```
 //!
 //! * The crate has no heap, no clock, no I/O and no panic. Time is an argument, the caller owns the
@@ -58,13 +66,14 @@
 //! // The flight step may run between any two slices.
 //! while planner.advance() {}
 //! flight.adopt(0.01, planner.finish(), planner.best());
+//! flight.count_cycle(planner.summary());
 //! let second = flight.step(0.01, &frame);
 //! assert!(second.control.thrust >= 0.0 && first.control.elevator.is_finite());
 //! # Ok(())
 //! # }
 //! ```
 //!
-//! A loop that goes on also looks at two results of a step. After [`moved`](flight::StepOutput::moved) it drops the cycle
+//! A real loop also uses two results of a step. After [`moved`](flight::StepOutput::moved) it drops the cycle
 //! and calls [`planner::Planner::forget`]. While [`is_lost`](flight::FlightLoop::is_lost) holds it begins no cycle.
 #![no_std]
 #![forbid(unsafe_code)]

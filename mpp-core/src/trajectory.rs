@@ -59,7 +59,7 @@ enum Between {
     Flown(Medium),
 }
 
-/// What the motion between the references of a roll-out depends on.
+/// The values on which the motion between the references of a roll-out depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Medium {
     airframe: Airframe,

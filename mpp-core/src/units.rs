@@ -141,7 +141,7 @@ impl Units {
         }
     }
 
-    /// Settings of the plane planner in own units. Prices and limits of angles are in own units already.
+    /// Settings of the plane planner in own units. Penalties and limits of angles are in own units already.
     #[must_use]
     pub fn own_settings(&self, settings: &PlaneSettings) -> PlaneSettings {
         PlaneSettings {

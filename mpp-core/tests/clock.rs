@@ -62,7 +62,7 @@ fn a_clock_that_jumps_is_counted_and_survived() {
 }
 
 /// A clock that jumps during a turn leaves the estimate and the plan as they were: one tick has passed. If steps were
-/// lost instead, the sensors show another motion, and the plan goes on at the time of the clock.
+/// lost instead, the sensors show another motion, and the plan continues at the time of the clock.
 #[test]
 fn a_jump_of_the_clock_is_told_from_lost_steps() {
     let [same, turned, slower] = [(0.0, 0.0), (0.2, 0.0), (0.0, -4.0)];

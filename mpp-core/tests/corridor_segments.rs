@@ -3,12 +3,12 @@
 
 mod common {
     pub(crate) mod draw;
-    pub(crate) mod memory;
     pub(crate) mod pose;
+    pub(crate) mod rolling_grid;
 }
 
 use common::draw::Draw;
-use common::memory::{field, random_map};
+use common::rolling_grid::{field, random_map};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS, Keep};
 use mpp_core::map::DistanceField;

@@ -193,7 +193,7 @@ fn held_positions_are_bridged() {
     assert!(wind.x.abs() < 0.1 && wind.z.abs() < 0.1, "{wind:?}");
 }
 
-/// A sensor that repeats one value to the last bit has none: the estimate goes on by the other one.
+/// A sensor that repeats one value to the last bit has none: the estimate continues with the other one.
 #[test]
 fn frozen_values_are_not_used() {
     for frozen in 0..2 {

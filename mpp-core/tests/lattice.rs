@@ -3,13 +3,13 @@
 
 mod common {
     pub(crate) mod draw;
-    pub(crate) mod memory;
     pub(crate) mod pose;
+    pub(crate) mod rolling_grid;
 }
 
 use common::draw::Draw;
-use common::memory::{field, random_map};
 use common::pose::pose;
+use common::rolling_grid::{field, random_map};
 use mpp_core::lattice::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;
@@ -30,7 +30,7 @@ const TASK: LatticeTask = LatticeTask {
     band: 10.3,
     curvature: 1.0 / 18.0,
     room: 2.0,
-    room_price: 0.0,
+    room_weight: 0.0,
     unknown_ahead: 26.0,
 };
 
@@ -101,12 +101,12 @@ impl Costs<'_> {
             let distance = self.field.distance(x, z);
             let lack = (1.2 - distance).max(0.0) + outside;
             let crowded = (self.task.room - distance).max(0.0);
-            let mut price = 10.0 * lack * lack + self.task.room_price * crowded * crowded;
+            let mut point = 10.0 * lack * lack + self.task.room_weight * crowded * crowded;
             if ahead < self.task.unknown_ahead && self.field.is_unknown(x, z) {
-                price += 5.0 * (1.0 - ahead / self.task.unknown_ahead);
+                point += 5.0 * (1.0 - ahead / self.task.unknown_ahead);
             }
-            price += if quarter == 4 { 0.01 * off * off } else { 0.0 };
-            cost += (16.0 * price) as u32;
+            point += if quarter == 4 { 0.01 * off * off } else { 0.0 };
+            cost += (16.0 * point) as u32;
         }
         cost
     }
@@ -154,7 +154,7 @@ fn tasks(draw: &mut Draw) -> LatticeTask {
         slope: draw.between(-0.9, 0.9),
         curvature: draw.between(0.005, 0.1),
         room: draw.between(1.0, 3.0),
-        room_price: draw.between(-1.0, 2.0).max(0.0),
+        room_weight: draw.between(-1.0, 2.0).max(0.0),
         unknown_ahead: draw.between(20.0, 50.0),
         ..TASK
     }
@@ -207,7 +207,7 @@ fn no_path_is_cheaper_than_the_first_and_the_others_follow_by_cost() {
 }
 
 #[test]
-fn onward_tells_what_the_best_path_costs_from_the_via_station() {
+fn the_cost_to_go_is_what_the_best_path_costs_from_the_via_station() {
     let mut compared = 0;
     for seed in 0..25 {
         let mut draw = Draw::new(seed);
@@ -232,12 +232,12 @@ fn onward_tells_what_the_best_path_costs_from_the_via_station() {
             let rest = costs.path(&slopes) - costs.path(&slopes[..=via]);
             let rest = (f64::from(rest) / 16.0).min(2000.0);
             let slope = 2.0 * RISE / spacing * f64::from(slopes[via]);
-            let onward = cost_to_go.at(path[via], slope);
-            assert!((onward - rest).abs() < 1e-3, "seed {seed}: {onward}");
+            let cost = cost_to_go.at(path[via], slope);
+            assert!((cost - rest).abs() < 1e-3, "seed {seed}: {cost}");
             // Half a step aside the cost lies between the costs at either end.
             let aside = cost_to_go.at(path[via] + RISE, slope);
             let between = cost_to_go.at(path[via] + 0.5 * RISE, slope);
-            assert!((between - 0.5 * (onward + aside)).abs() < 1e-3);
+            assert!((between - 0.5 * (cost + aside)).abs() < 1e-3);
             compared += 1;
         }
         for (z, slope) in [(f64::INFINITY, 9.0), (f64::NEG_INFINITY, -9.0)] {

@@ -211,7 +211,7 @@ fn what_is_not_a_number_is_no_speed() {
     assert!(told.is_some());
 }
 
-/// The speed by positions is of no use when the position jumps, so the watch begins anew.
+/// The speed by positions is of no use when the position jumps, so the watch restarts.
 #[test]
 fn after_a_jump_of_the_position_the_watch_settles_again() {
     let told_after = |jump: f64| {

@@ -156,7 +156,7 @@ proptest! {
         // Four standard errors of the mean of chi-square values with two degrees of freedom.
         let doubt = 4.0 / f64::sqrt(count);
         // Late measurements share the noise of the wind with the estimate, which the filter does not know: it
-        // is then careful, and most so where the white error is a small part of what it reckons with.
+        // is then careful, and most so where the white error is a small part of the error that it assumes.
         let late = f64::from(delay) * TICK_PERIOD;
         let shared = CHANGE * CHANGE * late * late * late / 3.0;
         let careful = match (delay, with_velocity) {
@@ -226,7 +226,7 @@ fn the_smooth_filter_takes_less_noise_for_wind() {
 /// A fix that repeats the one that started the filter has twice its variance: that of the source, and that of a wind which
 /// changed since, `noise * delay^3 / 3`.
 #[test]
-fn a_late_fix_reckons_with_a_wind_that_has_changed() {
+fn a_late_fix_allows_for_a_wind_that_has_changed() {
     for (delay, sigma, noise) in [(0.0, 0.02, 1.0), (0.3, 0.1, 1.0), (0.3, 0.02, 4.0)] {
         let mut filter = WindFilter::new(50.0);
         filter.start(&Observation::position((0.0, 50.0), delay, sigma), noise);
@@ -303,7 +303,7 @@ fn a_wrong_position_is_refused_and_counted() {
             "{number}"
         );
         assert_eq!(health.commands_not_finite, 0);
-        // The leap stays, so the filter starts anew from it.
+        // The leap stays, so the filter restarts from it.
         assert_eq!(
             health.positions_restarted,
             u32::from(number == 1),

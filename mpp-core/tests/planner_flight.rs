@@ -90,7 +90,7 @@ fn the_parts_of_a_price_add_up_to_the_price_that_the_planner_ranks_by() {
         let Some((price, parts)) = own.price_parts(own.at_hand()) else {
             continue;
         };
-        let sum = parts.clearance + parts.unknown + parts.onward + parts.effort;
+        let sum = parts.clearance + parts.unknown + parts.cost_to_go + parts.effort;
         assert!((sum - price).abs() < 1e-9 * price, "{parts:?} of {price}");
         if price < least {
             (least, effort) = (price, parts.effort);
@@ -319,7 +319,7 @@ fn a_new_set_up_forgets_the_map_and_the_plan_of_a_former_flight() {
     for seed in 0..3 {
         plan(&mut used, &state, &dense(seed));
         // The step is small, so that the next flight does not start behind the window. That would
-        // lay the map anew.
+        // lay the map again.
         state.x += 2.0;
     }
     // This is as if the flight had ended in the middle of a cycle.

@@ -1,4 +1,4 @@
-//! Tests that plans reckon with a thrust that lags behind its command.
+//! Tests that plans allow for a thrust that lags behind its command.
 
 mod common {
     pub(crate) mod dense;
@@ -121,7 +121,7 @@ fn the_aircraft_flies_the_plan_with_the_lag_of_its_motor() {
         let discs = dense(seed);
         let mut state = level(&planner);
         let mut given = planner.trim().control.thrust;
-        // Each plan goes on with the thrust that the last one has at that time.
+        // Each plan continues with the thrust that the last one has at that time.
         for cycle in 0..4 {
             let time = 0.5 * f64::from(cycle);
             assert!(replan(&mut planner, time, &state, &discs));

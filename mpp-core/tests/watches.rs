@@ -8,7 +8,7 @@ mod common {
 use common::gaussian::gaussian;
 use common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{AirspeedBias, Before, Biases, PitchBias, SensorMonitor, Trust};
+use mpp_core::estimate::{AirspeedBias, Before, BiasMonitor, PitchBias, SensorMonitor, Trust};
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, VehicleState};
@@ -108,7 +108,7 @@ fn a_growing_error_of_the_airspeed_is_found_by_wind_and_lift_together() {
 fn an_airspeed_that_is_wrong_from_the_start_is_found_and_the_pitch_is_not_blamed() {
     let level_lift = 1.4;
     let found = |wind: f64, lift: f64| {
-        let mut biases = Biases::new(level_lift);
+        let mut biases = BiasMonitor::new(level_lift);
         let before = (0..500).find_map(|_| {
             biases.see_tilt(0.09, 0.1, TICK_PERIOD);
             biases.see_wind(wind, lift * level_lift, 12.0, TICK_PERIOD)

@@ -194,7 +194,7 @@ fn judged(planner: &Planner, before: &PlanSummary, length: f64) -> Judged {
         parts: parts.map(|parts| Parts {
             clearance: parts.clearance,
             unknown: parts.unknown,
-            onward: parts.onward,
+            onward: parts.cost_to_go,
             effort: parts.effort,
             lack: parts.lack * length,
         }),

@@ -21,7 +21,7 @@ use crate::field::{Obstacle, Point, Shape};
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
-use mpp_core::tuning::memory::CELL;
+use mpp_core::tuning::grid::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::{FlightNode, PlanRequest};
 

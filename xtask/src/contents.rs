@@ -39,7 +39,7 @@ pub(crate) fn sealed(mut bytes: Vec<u8>) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// What an image puts into the flash, from the beginning of the flash to the end of the first contents of RAM.
+/// The bytes that an image puts into the flash, from the beginning of the flash to the end of the first contents of RAM.
 pub(crate) fn flash(bytes: &[u8]) -> Result<Vec<u8>> {
     let file = ElfFile32::<Endianness>::parse(bytes)?;
     let address = |name: &str| -> Result<u64> {

@@ -13,7 +13,7 @@ use std::process::Command;
 const FIGURES: &str = "<!-- figures: ";
 const REGENERATE: &str = "<!-- regenerate -->\n```console\n";
 
-/// What a command of a page stands for; docs/validation/README.md says the same.
+/// The shell function that the commands of pages call; docs/validation/README.md has the same.
 const HARNESS: &str =
     r#"sil-harness() { cargo run --release --locked --quiet -p sil-harness -- "$@"; }"#;
 
@@ -24,7 +24,7 @@ pub(crate) struct ValidationArgs {
     page: Option<String>,
 }
 
-/// What a page says about its figures.
+/// The figures of a page: where they come from, and the commands that print them.
 #[derive(Debug, PartialEq)]
 struct Page {
     /// Commit, and the paths of the code that its figures depend on.

@@ -7,7 +7,7 @@ use mpp_core::map::RollingGrid;
 use mpp_core::planner::Planner;
 use mpp_core::planner::plane::PlanePlanner;
 use mpp_core::trajectory::{Reference, Trajectory};
-use mpp_core::tuning::memory::CELL;
+use mpp_core::tuning::grid::CELL;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

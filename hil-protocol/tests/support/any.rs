@@ -60,7 +60,10 @@ fn hello() -> impl Strategy<Value: Serialize> {
 }
 
 fn configure() -> impl Strategy<Value: Serialize> {
-    let aircraft = (uniform::<_, { Airframe::COUNT + 2 }>(f64::ANY), option::of(f64::ANY));
+    let aircraft = (
+        uniform::<_, { Airframe::COUNT + 2 }>(f64::ANY),
+        option::of(f64::ANY),
+    );
     let numbers = any::<(u16, [u32; 3], u64, u16)>();
     let limits = uniform5(option::of(f64::ANY));
     let rest = (f32::ANY, f64::ANY, limits);

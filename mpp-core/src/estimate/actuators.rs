@@ -1,4 +1,4 @@
-//! What the actuators give, and what effect it has on the aircraft.
+//! The controls that the actuators give, and their effect on the aircraft.
 
 use super::{ElevatorEffect, MotorWatch, Progress};
 use crate::settings::Settings;

@@ -1,10 +1,11 @@
 //! Slow error of the airspeed, seen as a wind along the way and as missing lift at once.
 //!
-//! The filter believes its airspeed sensor. A sensor that reads too much by `e` therefore makes the air move along with
-//! the aircraft by `e` less, and the wing give less lift than the dynamic pressure promises: the lift coefficient seems to
-//! change by `-2 e / V` of itself. Wind alone changes the one, an error of the airframe the other, and gusts change
-//! both but not together. So an error is the lesser of the two, if both say so for some time. An error that is there from the
-//! start changes neither. Then both are further from calm air and from the known airframe than both can be.
+//! The filter believes its airspeed sensor. If the sensor reads too much by `e`, the estimated wind along the way falls by
+//! `e`, and the wing seems to give less lift than the dynamic pressure promises: the lift coefficient seems to change by
+//! `-2 e / V` of itself. Wind alone changes only the wind, an error of the airframe changes only the lift, and a gust changes
+//! both, but at different times. So wind and lift must show an error together, for some time. An error that is there from
+//! the start changes neither. Then wind and lift are both farther from calm air and from the known airframe than they can
+//! be.
 
 use crate::tuning::airspeed_bias::{
     AGREES, AGREES_FOR, FOUND_BY_LIFT, FOUND_BY_LIFT_AT_START, FOUND_BY_WIND, FOUND_FOR, MEMORY,
@@ -21,7 +22,7 @@ pub struct AirspeedBias {
     /// Slow means of the wind [m/s] and of the lift coefficient's offset [-].
     wind: f64,
     lift: f64,
-    /// Time for which both have said so \[s\].
+    /// Time for which wind and lift have both shown an error \[s\].
     beyond: f64,
     found: bool,
     /// Mean difference of the sensor from the estimate, as a share of the airspeed [-], and the time for which it was small
@@ -40,7 +41,7 @@ pub struct Before {
 }
 
 impl AirspeedBias {
-    /// A watch that has seen nothing, for an aircraft with this lift coefficient in level flight [-].
+    /// A watch without observations, for an aircraft with this lift coefficient in level flight [-].
     #[must_use]
     pub const fn new(level_lift: f64) -> Self {
         Self {
@@ -56,7 +57,7 @@ impl AirspeedBias {
     }
 
     /// Takes in the estimated wind along the way [m/s] and the offset of the lift coefficient [-] at an estimated
-    /// airspeed [m/s], after a further `period` \[s\]. Gives the estimates of before if an error has just been found.
+    /// airspeed [m/s], after a further `period` \[s\]. Gives the estimates before the error if it has just been found.
     pub fn update(&mut self, wind: f64, lift: f64, airspeed: f64, period: f64) -> Option<Before> {
         let sound = wind.is_finite() && lift.is_finite() && airspeed > 1.0 && period > 0.0;
         if !sound || self.found {

@@ -27,14 +27,14 @@ pub struct ElevatorEffect {
     trim_angle: f64,
     /// Angle of attack that a unit of command balances \[rad\].
     per_unit: f64,
-    /// Time by which it follows the command \[s\]. The damping of the pitch delays it.
+    /// Time constant with which the angle of attack follows the command \[s\]. The damping of the pitch delays it.
     lag: f64,
     /// Pitch that the known elevator would give \[rad\].
     expected: Option<f64>,
     given: Response,
     planned: Response,
     regression: Regression,
-    /// Time for which the effect was another one \[s\].
+    /// Time for which the regression has shown another effect \[s\].
     shown: f64,
     /// Whether the elevator has answered as it should since the effect was last set.
     proven: bool,
@@ -188,7 +188,7 @@ impl ElevatorEffect {
     }
 }
 
-/// Response of the pitch to an angle of attack, as it would be without all else.
+/// Response of the pitch to an angle of attack alone.
 #[derive(Clone, Copy, Debug, Default)]
 struct Response {
     /// Angle of attack \[rad\].
@@ -235,7 +235,7 @@ impl Regression {
         }
     }
 
-    /// Missing share of the response [-], and its variance. `None` if there was no response to speak of.
+    /// Missing share of the response [-], and its variance. `None` if the response was too small.
     fn slope(&self) -> Option<(f64, f64)> {
         let [
             [missing, both, _],
@@ -247,7 +247,7 @@ impl Regression {
         }
         let slope = by_missing / by_given;
         let rest = missing - slope * (2.0 * both - slope * given);
-        // What is left changes within the time of fading, so as many values are independent as that time is contained.
+        // The residual changes within the time of fading. One value in each such time is independent.
         let variance = rest.max(0.0) * planned * (FADE / self.seen);
         Some((slope, variance / (by_given * by_given)))
     }

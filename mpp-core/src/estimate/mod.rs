@@ -1,4 +1,4 @@
-//! The estimates of the 100 Hz step, and the trust in sensors and actuators.
+//! The estimates of the 100 Hz step, and fault detection and isolation for sensors and actuators: the watches.
 //!
 //! | type | content |
 //! |---|---|
@@ -6,15 +6,14 @@
 //! | [`Ekf`], [`LaggedEkf`] | motion through the air from airspeed and pitch, and the same from late ones |
 //! | [`Navigation`], [`WindFilter`] | position and wind |
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
-//! | [`Actuators`] | what motor and elevator do, with [`MotorWatch`] and [`ElevatorEffect`] |
-//! | [`Biases`] | what airspeed and pitch read wrongly: [`AirspeedBias`], [`PitchBias`] |
+//! | [`Actuators`] | the model of motor and elevator, with [`MotorWatch`] and [`ElevatorEffect`] |
+//! | [`BiasMonitor`] | the watches for slow errors: [`AirspeedBias`], [`PitchBias`] |
 //! | [`SensorMonitor`] | the trust in a sensor |
-//! | [`Changes`], [`SteadyTurn`] | whether a sensor repeats its values, and whether refused values show a steady turn |
+//! | [`StuckDetector`], [`SteadyTurn`] | whether a sensor repeats its values, and whether refused values show a steady turn |
 
 mod actuators;
 mod airspeed_bias;
-mod biases;
-mod changes;
+mod bias_monitor;
 mod ekf;
 mod elevator_effect;
 mod estimator;
@@ -24,14 +23,14 @@ mod lift;
 mod motor_watch;
 mod navigation;
 mod pitch_bias;
+mod sensor_monitor;
+mod stuck_detector;
 mod verdicts;
-mod watch;
 mod wind_filter;
 
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
-pub use biases::Biases;
-pub use changes::{SteadyTurn, StuckDetector};
+pub use bias_monitor::BiasMonitor;
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;
 pub use estimator::Estimator;
@@ -41,7 +40,8 @@ pub use lift::LiftEstimator;
 pub use motor_watch::{MotorWatch, Progress};
 pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
-pub use watch::{SensorMonitor, Sensors, Trust};
+pub use sensor_monitor::{SensorMonitor, Sensors, Trust};
+pub use stuck_detector::{SteadyTurn, StuckDetector};
 pub use wind_filter::{Observation, WindFilter};
 
 /// The filter's decision on one measured value.
@@ -76,9 +76,9 @@ impl MeasurementStatus {
 /// The verdicts on the two values of one measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Innovation {
-    /// MeasurementStatus on the airspeed.
+    /// Verdict on the airspeed.
     pub airspeed: MeasurementStatus,
-    /// MeasurementStatus on the pitch.
+    /// Verdict on the pitch.
     pub pitch: MeasurementStatus,
 }
 

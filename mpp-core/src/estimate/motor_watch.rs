@@ -1,8 +1,8 @@
-//! SensorMonitor of the motor, by the speed that the sensors find and the thrust does not explain.
+//! The watch of the motor, by the speed that the sensors find and the thrust does not explain.
 //!
-//! Without thrust the aircraft does not gain the speed that its model expects of the command. Two signs must say so. The
-//! airspeed sensor and the estimated wind together say it soon, but a gust moves the one before the other. The positions do
-//! not know gusts, but they say it late. The first sign must also exceed what it says on a usual day.
+//! Without thrust the aircraft does not gain the speed that its model expects of the command. Two signs must show it.
+//! Airspeed and estimated wind together show it soon, but a gust moves the airspeed before the wind. The positions show it
+//! without gusts, but late. The first sign must also exceed its usual value.
 
 use super::Trust;
 use crate::tuning::motor::{
@@ -11,31 +11,31 @@ use crate::tuning::motor::{
 };
 use crate::units::REFERENCE_CRUISE;
 
-/// What the estimates of a tick say about the speed along the way.
+/// The estimates of a tick about the speed along the way.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Progress {
     /// Position downrange \[m\].
     pub x: f64,
     /// Velocity through the air along the way [m/s].
     pub air: f64,
-    /// Part of it by which the sensors have corrected it since the last tick [m/s].
+    /// Correction of this velocity by the sensors since the last tick [m/s].
     pub corrected: f64,
     /// Wind along the way [m/s].
     pub wind: f64,
 }
 
-/// SensorMonitor of the motor, which has its full effect or none.
+/// The watch of the motor, which has its full effect or none.
 #[derive(Clone, Copy, Debug)]
 pub struct MotorWatch {
     /// Unit of the times of this watch \[s\]: a faster aircraft gains and loses speed more slowly.
     unit: f64,
     /// Mass \[kg\].
     mass: f64,
-    /// Least gain of speed with which the comparison reckons [m/s].
+    /// Least gain of speed that the comparison assumes [m/s].
     least: f64,
     last: Option<Progress>,
-    /// Position \[m\] and velocity over ground [m/s] by the model and the positions alone.
-    reckoned: (f64, f64),
+    /// Dead reckoned position \[m\] and velocity over ground [m/s], by the model and the positions alone.
+    dead_reckoned: (f64, f64),
     /// Gain of speed that the command should give [m/s]. It fades.
     given: f64,
     /// Gains beyond that of the model, by airspeed and wind and by the positions [m/s]. They fade.
@@ -59,7 +59,7 @@ impl MotorWatch {
             mass,
             least: LEAST_GIVEN * level / mass * FADE * unit,
             last: None,
-            reckoned: (0.0, 0.0),
+            dead_reckoned: (0.0, 0.0),
             given: 0.0,
             by_airspeed: 0.0,
             by_position: 0.0,
@@ -85,7 +85,7 @@ impl MotorWatch {
         }
     }
 
-    /// Begins anew at the next tick, because the estimates have jumped or cannot be judged. The verdict stays meanwhile.
+    /// Restarts at the next tick, because the estimates have jumped or cannot be judged. The verdict stays meanwhile.
     pub fn interrupt(&mut self) {
         self.last = None;
         (self.given, self.by_airspeed, self.by_position) = (0.0, 0.0, 0.0);
@@ -100,21 +100,21 @@ impl MotorWatch {
             return;
         }
         let Some(last) = self.last.replace(*now) else {
-            self.reckoned = (now.x, now.air + now.wind);
+            self.dead_reckoned = (now.x, now.air + now.wind);
             return;
         };
         let rate = FOLLOWS / self.unit;
         // After a gap the position is caught up with at once, and no further.
         let follows = (rate * period).min(0.5);
-        let speed = self.reckoned.1 + now.air - last.air - now.corrected;
-        let x = self.reckoned.0 + speed * period;
+        let speed = self.dead_reckoned.1 + now.air - last.air - now.corrected;
+        let x = self.dead_reckoned.0 + speed * period;
         let ahead = now.x - x;
         // After lost steps the first position corrects the place, not the speed.
         if libm::fabs(ahead) > MOST_AHEAD * self.unit * self.unit {
             return self.interrupt();
         }
         let pull = rate * follows * ahead;
-        self.reckoned = (x + 2.0 * follows * ahead, speed + pull);
+        self.dead_reckoned = (x + 2.0 * follows * ahead, speed + pull);
 
         let own = period / self.unit;
         let kept = (1.0 - own / FADE).max(0.0);

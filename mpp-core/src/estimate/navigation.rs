@@ -26,7 +26,7 @@ pub enum PositionVerdict {
     Late,
     /// The innovation exceeds the gate. The filter did not use it.
     Gated,
-    /// The filter started anew from this position, because it had refused all others for
+    /// The filter restarted from this position, because it had refused all others for
     /// [`RESTART_TIME`].
     Restarted,
 }
@@ -209,7 +209,7 @@ impl Navigation {
     }
 
     /// Corrects both filters. Returns false, and corrects nothing, if the quick one refuses the observation. If only the smooth
-    /// one refuses it, the wind has changed by more than it assumes, and it goes on from the quick one.
+    /// one refuses it, the wind has changed by more than it assumes, and it continues from the quick one.
     fn correct(&mut self, observed: &Observation) -> bool {
         let noise = self.noise();
         if !self.quick.correct(observed, noise.quick) {

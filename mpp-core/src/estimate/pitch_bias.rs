@@ -25,7 +25,7 @@ pub struct PitchBias {
 }
 
 impl PitchBias {
-    /// A watch that has seen nothing.
+    /// A watch without observations.
     #[must_use]
     pub const fn new() -> Self {
         Self {

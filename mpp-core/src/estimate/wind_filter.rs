@@ -20,7 +20,7 @@ struct Covariance {
     wind: f64,
 }
 
-/// What a fix says about each axis: the scalar `h0 p + h1 w`, with an error.
+/// A fix on each axis: the measured scalar `h0 p + h1 w`, with an error.
 #[derive(Clone, Copy, Debug)]
 pub struct Observation {
     /// `h0` [-] and `h1` \[s\]; for a velocity `h0` is 0 and `h1` is 1 [-].

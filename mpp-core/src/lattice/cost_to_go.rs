@@ -1,11 +1,11 @@
-//! What the lattice knows of the way on from the via station. It outlives the search, because it is part of the
-//! price of a roll-out.
+//! The cost-to-go of the lattice from the via station on. It outlives the search, because it is part of the price of a
+//! roll-out.
 
 use super::edges::{COST_UNIT, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, SLOPES, VIA};
 use crate::map::split;
-use crate::tuning::lattice::{DEAREST_ONWARD, RISE, SPACING};
+use crate::tuning::lattice::{MOST_COST_TO_GO, RISE, SPACING};
 
-/// Cost of the best path from a height and a slope at the via station to the far end.
+/// The cost-to-go: the cost of the best path from a height and a slope at the via station to the far end.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     /// Start of the paths `(x, z)` \[m\].
@@ -39,7 +39,7 @@ impl CostToGo {
         self.start[0] + self.spacing * VIA as f64
     }
 
-    /// The cost from a height \[m\] and a slope at the via station. It is linear between lattice points, and at
+    /// The cost-to-go from a height \[m\] and a slope at the via station. It is linear between lattice points, and at
     /// most 2,000.
     #[must_use]
     pub fn at(&self, z: f64, slope: f64) -> f64 {
@@ -48,7 +48,7 @@ impl CostToGo {
         let at = |height: usize, slope: usize| {
             let costs = self.layer.get(slope);
             let cost = costs.and_then(|costs| costs.get(height)).copied();
-            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(DEAREST_ONWARD)
+            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(MOST_COST_TO_GO)
         };
         let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
         along(height) * (1.0 - up) + along(height + 1) * up

@@ -1,6 +1,6 @@
 //! The edges between two stations of the lattice, by their slopes.
 
-use crate::tuning::lattice::{SLOPE_PRICE, TURN_PRICE};
+use crate::tuning::lattice::{SLOPE_WEIGHT, TURN_COST};
 use core::ops::Range;
 
 /// Number of heights at a station.
@@ -18,7 +18,7 @@ pub(super) const NO_COSTS: Layer = [[0; HEIGHTS]; SLOPES];
 /// Cost of what no path reaches.
 pub(super) const NEVER: u32 = 1 << 28;
 
-/// Number of points of an edge at which the search takes prices.
+/// Number of points of an edge whose costs the search adds up.
 pub(super) const QUARTERS: usize = 4;
 /// Number of heights of these points, in steps of half of [`RISE`].
 pub(super) const POINTS: usize = 2 * HEIGHTS - 1;
@@ -27,23 +27,23 @@ pub(super) const COST_UNIT: f64 = 16.0;
 /// Farthest point of an edge from the height at which it begins, in steps of half of `RISE`.
 pub(super) const EDGE_REACH: usize = 18;
 
-/// Prices of the points of edges, by quarter and height in halves of `RISE`. The first and the last
+/// Costs of the points of edges, by quarter and height in halves of `RISE`. The first and the last
 /// [`EDGE_REACH`] places lie outside of the heights and cost nothing. One more place makes pairs of them.
-pub(super) type Prices = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
-pub(super) const NO_PRICES: Prices = [[0; _]; QUARTERS];
+pub(super) type PointCosts = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
+pub(super) const NO_POINT_COSTS: PointCosts = [[0; _]; QUARTERS];
 
 /// Number of choices in a byte.
 pub(super) const PER_BYTE: usize = 4;
 
-/// The place of the choices of a slope: four slopes share a row of bytes. A choice is the change of the slope by
-/// -1 to 1, as two bits.
+/// The two bits that hold the choices of a slope: four slopes share a row of bytes. A choice is the change of the slope
+/// by -1 to 1.
 #[derive(Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct ChoiceBits {
     pub(super) row: usize,
     shift: u32,
 }
 
-impl Place {
+impl ChoiceBits {
     pub(super) fn of(slope: i32) -> Self {
         let slope = slope as u32;
         Self {
@@ -52,7 +52,7 @@ impl Place {
         }
     }
 
-    /// What a change of slope keeps of a byte, and what it adds.
+    /// The mask that keeps the other choices of a byte, and the bits of a change of slope.
     pub(super) fn choosing(self, change: i32) -> (u8, u8) {
         (!(3 << self.shift), ((change + 1) as u8) << self.shift)
     }
@@ -85,7 +85,7 @@ impl Edges {
         self.slope + self.next
     }
 
-    /// Those of certain heights from which an edge leads to a height of the lattice.
+    /// The heights of a range from which an edge leads to a height of the lattice.
     pub(super) fn starts(&self, heights: &Range<usize>) -> Range<usize> {
         let [down, up] = [-self.rise(), self.rise()].map(|steps| steps.max(0) as usize);
         heights.start.max(down)..heights.end.min(HEIGHTS - up)
@@ -97,22 +97,22 @@ impl Edges {
         end(starts.start)..end(starts.end)
     }
 
-    /// Lowers costs to those over the edges from the height `first` on, which are known costs and the prices of
+    /// Lowers costs to those over the edges from the height `first` on, which are known costs and the costs of
     /// points, slope and turn. Notes the choice where a cost falls.
     // The callers are few loops over slopes, which would each hold a copy.
     #[inline(never)]
     pub(super) fn relax(
         &self,
-        points: &Prices,
+        points: &PointCosts,
         first: usize,
         known: &[u32],
         (mask, choice): (u8, u8),
         (costs, choices): (&mut [u32], &mut [u8]),
     ) {
-        const TURN: u32 = (COST_UNIT * TURN_PRICE) as u32;
+        const TURN: u32 = (COST_UNIT * TURN_COST) as u32;
         let turn = self.next - self.slope;
         let own = if turn == 0 { 0 } else { TURN };
-        let own = own + (COST_UNIT * SLOPE_PRICE * f64::from(self.next * self.next)) as u32;
+        let own = own + (COST_UNIT * SLOPE_WEIGHT * f64::from(self.next * self.next)) as u32;
         let of_quarter = |quarter: usize| {
             // The edge is a parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
             let q = quarter as i32 + 1;
@@ -127,7 +127,7 @@ impl Edges {
         for ((cost, place), (known, ((([a, _], [b, _]), [c, _]), [d, _]))) in
             costs.iter_mut().zip(choices).zip(edges)
         {
-            // The sum cannot overflow: known costs are at most `NEVER`, and prices 5e7.
+            // The sum cannot overflow: known costs are at most `NEVER`, and those of an edge 5e7.
             let through = known.wrapping_add(own + a + b + c + d);
             if through < *cost {
                 *cost = through;

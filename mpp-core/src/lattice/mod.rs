@@ -3,23 +3,24 @@
 //!
 //! From one station to the next the slope of a path changes by at most one step, because the aircraft
 //! cannot turn more. The height follows from the slopes. One pass from the aircraft and one pass from the
-//! far end meet at the *via* station. There the search then knows the cost of the best path through every
-//! height. Each minimum of this cost gives a path. These paths differ in the way they pass the obstacles,
+//! far end meet at the *via* station. There the search knows the cost of the best path through every
+//! height, and from there on the cost-to-go. Each minimum of the cost gives a path. These paths differ in the way they pass the obstacles,
 //! or in their heights.
 
 mod cost_to_go;
 mod edges;
 
 use crate::map::{DistanceField, Height};
-use crate::tuning::UNKNOWN_PRICE;
+use crate::tuning::UNKNOWN_COST;
 use crate::tuning::lattice::{
-    AGILE, ALTITUDE_PRICE, BAND_MARGIN, DEAREST, MARGIN, MARGIN_PRICE, RISE, SPACING, STRETCH,
+    AGILE, ALTITUDE_WEIGHT, BAND_MARGIN, MARGIN, MARGIN_WEIGHT, MOST_POINT_COST, RISE, SPACING,
+    STRETCH,
 };
 use core::ops::Range;
 pub use cost_to_go::CostToGo;
 use edges::{
-    COST_UNIT, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, NO_PRICES,
-    PER_BYTE, POINTS, Place, Prices, QUARTERS, SLOPES, VIA,
+    COST_UNIT, ChoiceBits, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS,
+    NO_POINT_COSTS, PER_BYTE, POINTS, PointCosts, QUARTERS, SLOPES, VIA,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -30,8 +31,8 @@ pub const MAX_LATTICE_PATHS: usize = 6;
 /// Greatest distance of a path in height from where it starts \[m\].
 pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
 
-/// The slope at the other end of the best edge for each height and slope, by its difference: [`Place`] tells
-/// where it lies.
+/// The slope at the other end of the best edge for each height and slope, as a difference: [`ChoiceBits`] tells
+/// which bits hold it.
 type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
 /// A path: its height at each station \[m\].
 pub type LatticePath = [f64; STATIONS];
@@ -53,9 +54,9 @@ pub struct LatticeTask {
     pub curvature: f64,
     /// Clearance that a path should have where there is room \[m\].
     pub room: f64,
-    /// Price of the squared lack of it [1/m^2].
-    pub room_price: f64,
-    /// Distance ahead beyond which an unknown point has no price \[m\].
+    /// Weight of the squared lack of it [1/m^2].
+    pub room_weight: f64,
+    /// Distance ahead beyond which an unknown point costs nothing \[m\].
     pub unknown_ahead: f64,
 }
 
@@ -70,10 +71,10 @@ pub struct Lattice {
     layer: Layer,
     /// The same one station on, as far as the search knows it.
     next: Layer,
-    /// The heights of the points.
-    points: [Point; POINTS],
-    /// Prices of the points of the present edges.
-    prices: Prices,
+    /// Terms of the costs of points that depend on their heights alone.
+    heights: [HeightTerms; POINTS],
+    /// PointCosts of the points of the present edges.
+    point_costs: PointCosts,
     /// Costs from the start to the via station.
     to_via: Layer,
     /// Best previous slope for each height and slope, at each station up to the via station.
@@ -95,7 +96,7 @@ impl Lattice {
                 band: 0.0,
                 curvature: 0.0,
                 room: 0.0,
-                room_price: 0.0,
+                room_weight: 0.0,
                 unknown_ahead: 0.0,
             },
             spacing: SPACING,
@@ -103,8 +104,8 @@ impl Lattice {
             station: STATIONS,
             layer: NO_COSTS,
             next: NO_COSTS,
-            points: [Point::NONE; POINTS],
-            prices: NO_PRICES,
+            heights: [HeightTerms::NONE; POINTS],
+            point_costs: NO_POINT_COSTS,
             to_via: NO_COSTS,
             before: [[[0; HEIGHTS]; _]; VIA + 1],
             after: [[[0; HEIGHTS]; _]; STATIONS - VIA],
@@ -115,8 +116,8 @@ impl Lattice {
     /// The field must not change during the search.
     pub fn start(&mut self, task: &LatticeTask, field: &DistanceField) {
         self.task = *task;
-        for (place, point) in self.points.iter_mut().enumerate() {
-            *point = Point::new(task, field, place);
+        for (place, terms) in self.heights.iter_mut().enumerate() {
+            *terms = HeightTerms::new(task, field, place);
         }
         // RISE = spacing * step / 2 holds at every spacing.
         let stretch = libm::sqrt(AGILE / task.curvature.max(1e-6)).clamp(1.0, STRETCH);
@@ -138,7 +139,7 @@ impl Lattice {
         self.spacing
     }
 
-    /// Evaluates the edges of one station. Returns true while the search goes on.
+    /// Evaluates the edges of one station. Returns true until the search is complete.
     pub fn advance(&mut self, field: &DistanceField) -> bool {
         const LAST: usize = STATIONS - 1;
         match self.station {
@@ -160,7 +161,7 @@ impl Lattice {
     #[inline(never)]
     fn forward(&mut self, field: &DistanceField, station: usize) {
         let reached = reached(&self.layer);
-        self.write_prices(field, station, &reached);
+        self.write_point_costs(field, station, &reached);
         forbid(&mut self.next);
         let choices = self.before.get_mut(station + 1);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
@@ -172,8 +173,8 @@ impl Lattice {
                 };
                 let heights = edges.starts(&reached);
                 let ends = edges.ends(&heights);
-                let place = Place::of(to);
-                let row = choices.get_mut(place.row);
+                let bits = ChoiceBits::of(to);
+                let row = choices.get_mut(bits.row);
                 let row = row.and_then(|row| row.get_mut(ends.clone()));
                 let known = known.get(heights.clone()).unwrap_or_default();
                 let found = (
@@ -181,10 +182,10 @@ impl Lattice {
                     row.unwrap_or_default(),
                 );
                 edges.relax(
-                    &self.prices,
+                    &self.point_costs,
                     heights.start,
                     known,
-                    place.choosing(from - to),
+                    bits.choosing(from - to),
                     found,
                 );
             }
@@ -195,7 +196,7 @@ impl Lattice {
     #[inline(never)]
     fn backward(&mut self, field: &DistanceField, station: usize) {
         let all = 0..HEIGHTS;
-        self.write_prices(field, station, &all);
+        self.write_point_costs(field, station, &all);
         forbid(&mut self.next);
         let choices = self.after.get_mut(station - VIA);
         let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
@@ -208,56 +209,62 @@ impl Lattice {
                 let heights = edges.starts(&all);
                 let known = known.get(edges.ends(&heights)).unwrap_or_default();
                 let first = heights.start;
-                let place = Place::of(from);
-                let row = choices.get_mut(place.row);
+                let bits = ChoiceBits::of(from);
+                let row = choices.get_mut(bits.row);
                 let row = row.and_then(|row| row.get_mut(heights.clone()));
                 let found = (
                     costs.get_mut(heights).unwrap_or_default(),
                     row.unwrap_or_default(),
                 );
-                edges.relax(&self.prices, first, known, place.choosing(to - from), found);
+                edges.relax(
+                    &self.point_costs,
+                    first,
+                    known,
+                    bits.choosing(to - from),
+                    found,
+                );
             }
         }
         self.layer = self.next;
     }
 
-    /// Writes the prices of the points on the edges of a station that begin at certain heights. The last quarter
-    /// also contains the price of the height itself.
+    /// Writes the costs of the points on the edges of a station that begin at certain heights. The last quarter also
+    /// contains the cost of the height itself.
     // Both passes call it, and each would hold a copy.
     #[inline(never)]
-    fn write_prices(&mut self, field: &DistanceField, station: usize, heights: &Range<usize>) {
+    fn write_point_costs(&mut self, field: &DistanceField, station: usize, heights: &Range<usize>) {
         let task = self.task;
-        self.prices = NO_PRICES;
+        self.point_costs = NO_POINT_COSTS;
         let first = (2 * heights.start).saturating_sub(EDGE_REACH);
         let last = (2 * heights.end + EDGE_REACH).min(POINTS);
-        for (quarter, prices) in self.prices.iter_mut().enumerate() {
+        for (quarter, costs) in self.point_costs.iter_mut().enumerate() {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
             let ahead = self.spacing * (station as f64 + share);
             let column = field.column(task.x + ahead);
             let unknown = if ahead < task.unknown_ahead {
-                UNKNOWN_PRICE * (1.0 - ahead / task.unknown_ahead)
+                UNKNOWN_COST * (1.0 - ahead / task.unknown_ahead)
             } else {
                 0.0
             };
-            let prices = prices.get_mut(EDGE_REACH + first..EDGE_REACH + last);
-            let points = self.points.get(first..last).unwrap_or_default();
-            for (price, point) in prices.unwrap_or_default().iter_mut().zip(points) {
-                let distance = column.distance(&point.height);
-                let lack = (MARGIN - distance).max(0.0) + point.outside;
+            let costs = costs.get_mut(EDGE_REACH + first..EDGE_REACH + last);
+            let heights = self.heights.get(first..last).unwrap_or_default();
+            for (cost, terms) in costs.unwrap_or_default().iter_mut().zip(heights) {
+                let distance = column.distance(&terms.height);
+                let lack = (MARGIN - distance).max(0.0) + terms.outside;
                 let crowded = (task.room - distance).max(0.0);
-                let mut cost = MARGIN_PRICE * lack * lack + task.room_price * crowded * crowded;
-                if column.is_unknown(&point.height) {
-                    cost += unknown;
+                let mut sum = MARGIN_WEIGHT * lack * lack + task.room_weight * crowded * crowded;
+                if column.is_unknown(&terms.height) {
+                    sum += unknown;
                 }
                 if quarter + 1 == QUARTERS {
-                    cost += point.altitude_price;
+                    sum += terms.altitude_cost;
                 }
-                *price = (COST_UNIT * cost).min(DEAREST) as u32;
+                *cost = (COST_UNIT * sum).min(MOST_POINT_COST) as u32;
             }
         }
     }
 
-    /// Writes the cost from the via station on. The call is valid only after the search.
+    /// Writes the cost-to-go from the via station on. The call is valid only after the search.
     pub fn write_cost_to_go(&self, to: &mut CostToGo) {
         to.start = [self.task.x, self.task.z];
         to.spacing = self.spacing;
@@ -308,7 +315,7 @@ impl Lattice {
     fn path(&self, height: i32, slope: i32) -> LatticePath {
         let z = |height: i32| self.task.z + RISE * f64::from(height - MIDDLE);
         let mut path = [z(height); STATIONS];
-        let (before, onward) = path.split_at_mut(VIA);
+        let (before, after) = path.split_at_mut(VIA);
         let mut at = (height, slope);
         for (place, choices) in before.iter_mut().zip(&self.before[1..]).rev() {
             let slope = choice(choices, at).unwrap_or(LEVEL);
@@ -316,7 +323,7 @@ impl Lattice {
             *place = z(at.0);
         }
         let mut at = (height, slope);
-        for (place, choices) in onward.iter_mut().skip(1).zip(&self.after) {
+        for (place, choices) in after.iter_mut().skip(1).zip(&self.after) {
             let slope = choice(choices, at).unwrap_or(LEVEL);
             at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
             *place = z(at.0);
@@ -325,21 +332,21 @@ impl Lattice {
     }
 }
 
-/// What the prices of the points at one height have in common.
+/// The terms of the cost of a point that depend on its height alone.
 #[derive(Clone, Copy, Debug)]
-struct Point {
+struct HeightTerms {
     height: Height,
     /// Distance beyond the band less its margin \[m\].
     outside: f64,
-    /// Price of the distance from the altitude [-].
-    altitude_price: f64,
+    /// Cost of the distance from the altitude [-].
+    altitude_cost: f64,
 }
 
-impl Point {
+impl HeightTerms {
     const NONE: Self = Self {
         height: Height::LOWEST,
         outside: 0.0,
-        altitude_price: 0.0,
+        altitude_cost: 0.0,
     };
 
     fn new(task: &LatticeTask, field: &DistanceField, place: usize) -> Self {
@@ -348,7 +355,7 @@ impl Point {
         Self {
             height: field.height(z),
             outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
-            altitude_price: ALTITUDE_PRICE * from_altitude * from_altitude,
+            altitude_cost: ALTITUDE_WEIGHT * from_altitude * from_altitude,
         }
     }
 }
@@ -384,7 +391,7 @@ fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
 
 /// The choice at a height and a slope.
 fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<i32> {
-    let place = Place::of(slope);
-    let choices = choices.get(place.row)?.get(usize::try_from(height).ok()?)?;
-    Some(slope + place.change(*choices))
+    let bits = ChoiceBits::of(slope);
+    let choices = choices.get(bits.row)?.get(usize::try_from(height).ok()?)?;
+    Some(slope + bits.change(*choices))
 }

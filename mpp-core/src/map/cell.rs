@@ -14,25 +14,25 @@ pub(crate) fn rounded_down(coordinate: f64) -> i32 {
     cut.saturating_sub(i32::from(f64::from(cut) > coordinate))
 }
 
-/// A coordinate in cells, in parts of 2^-32. To go along a line, a flight computer adds whole numbers with fewer
+/// A coordinate in cells as a fixed-point number, in parts of 2^-32. To go along a line, a flight computer adds whole numbers with fewer
 /// instructions than it rounds floats.
 #[derive(Clone, Copy)]
-pub(super) struct Place(i64);
+pub(super) struct FixedPoint(i64);
 
-impl Place {
-    /// The place with a coordinate in cells, rounded down to a part.
+impl FixedPoint {
+    /// The number for a coordinate in cells, rounded down to a part.
     pub(super) fn of(coordinate: f64) -> Self {
         let cell = rounded_down(coordinate);
         let rest = (coordinate - f64::from(cell)) * 4_294_967_296.0;
         Self(i64::from(cell) << 32 | i64::from(rest as u32))
     }
 
-    /// The cell that holds the place. A cell below the first one is a number beyond the last one.
+    /// The cell that holds the coordinate. A cell below the first one is a number beyond the last one.
     pub(super) fn cell(self) -> u32 {
         (self.0 >> 32) as u32
     }
 
-    /// The place after a step.
+    /// The coordinate after a step.
     pub(super) fn after(self, step: Self) -> Self {
         Self(self.0.wrapping_add(step.0))
     }
@@ -65,7 +65,7 @@ fn first_bits(high: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Place, at_least, zeros};
+    use super::{FixedPoint, at_least, zeros};
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
@@ -91,14 +91,14 @@ mod tests {
     }
 
     #[test]
-    fn a_place_goes_along_a_line_as_its_coordinate_does() {
+    fn a_fixed_point_goes_along_a_line_as_its_coordinate_does() {
         let mut random = Pcg64Mcg::seed_from_u64(2);
         let mut between = |least: f64, most: f64| {
             least + (most - least) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
         };
         for _ in 0..1000 {
             let (start, step) = (between(-200.0, 300.0), between(-1.0, 1.0));
-            let (mut place, next) = (Place::of(start), Place::of(step));
+            let (mut place, next) = (FixedPoint::of(start), FixedPoint::of(step));
             for number in 0..384 {
                 let coordinate = start + f64::from(number) * step;
                 let off = coordinate - f64::from(place.cell() as i32);

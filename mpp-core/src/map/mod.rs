@@ -1,18 +1,18 @@
-//! What the scans show of the surroundings.
+//! The map: a grid of what the scans have shown, and the distances in it.
 //!
 //! | type | content |
 //! |---|---|
-//! | [`RollingGrid`] | the rolling occupancy grid, which remembers earlier scans as log-odds |
-//! | [`DistanceField`] | the truncated distance field: from a point to the nearest centre of an occupied cell of this map |
+//! | [`RollingGrid`] | the rolling occupancy grid: log-odds of earlier scans |
+//! | [`DistanceField`] | the truncated distance field \(ESDF\): from a point to the nearest centre of an occupied cell of the grid |
 
 pub(crate) mod cell;
-mod clearance;
-mod memory;
+mod distance_field;
+mod rolling_grid;
 
-pub use clearance::{DistanceField, FAR};
-pub(crate) use clearance::{Height, split};
-pub(crate) use memory::has_return;
-pub use memory::{IsolatedHits, RollingGrid};
+pub use distance_field::{DistanceField, FAR};
+pub(crate) use distance_field::{Height, split};
+pub(crate) use rolling_grid::has_return;
+pub use rolling_grid::{IsolatedHits, RollingGrid};
 
 #[cfg(test)]
 mod tests {

@@ -227,7 +227,7 @@ impl PaperPlanner {
         !matches!(self.phase, Phase::Idle | Phase::Done)
     }
 
-    /// Does one bounded slice of work. Returns true while the cycle goes on.
+    /// Does one bounded slice of work. Returns true until the cycle ends.
     pub fn advance(&mut self) -> bool {
         if self.is_working() {
             self.summary.slices += 1;

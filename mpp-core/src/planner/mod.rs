@@ -1,4 +1,4 @@
-//! The interface of the planner, which can stop at any time. A cycle begins with a scan, or without one if the lidar
+//! The interface of the planner, a receding-horizon planner that can stop at any time. A cycle begins with a scan, or without one if the lidar
 //! is silent, and advances in bounded slices. After each slice the best trajectory so far is available.
 //!
 //! ```text
@@ -202,7 +202,7 @@ impl Planner {
         of_chosen!(self, is_working())
     }
 
-    /// Does one bounded slice of work. Returns true while the cycle goes on.
+    /// Does one bounded slice of work. Returns true until the cycle ends.
     pub fn advance(&mut self) -> bool {
         of_chosen!(self, advance())
     }

@@ -51,7 +51,7 @@ pub type StageState = [f64; STATES];
 pub(crate) const PITCH: usize = 3;
 
 /// Control of a program, the deviation from level trim: `(elevator, thrust)` [-, N] in the paper's method, and in the
-/// flight planner `(rate of the angle of attack, thrust)` [rad/s, N], which reckons in its [own units](crate::units::Units).
+/// flight planner `(rate of the angle of attack, thrust)` [rad/s, N], which computes in its [own units](crate::units::Units).
 pub type StageControl = [f64; 2];
 
 /// Weights of the cost.

@@ -118,7 +118,7 @@ impl PlannerSettings {
 /// Settings of the whole flight core.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// The units in which the plane planner reckons.
+    /// The units in which the plane planner computes.
     pub units: Units,
     /// The aircraft as the core knows it.
     pub airframe: Airframe,

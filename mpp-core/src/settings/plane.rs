@@ -20,7 +20,7 @@ pub struct PlaneSettings {
     /// Time from the start of a cycle ([`Planner::begin`](crate::planner::Planner::begin)) until its plan is taken over
     /// \[s\]. A plan starts where the aircraft will be then.
     pub latency: f64,
-    /// Price of violating corridor and attitude rows. These rows are soft, but those of an angle of attack that the
+    /// Penalty of violating corridor and attitude rows. These rows are soft, but those of an angle of attack that the
     /// elevator limits are hard.
     pub penalty: Penalty,
     /// Limits of the attitude rows.

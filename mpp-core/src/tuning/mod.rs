@@ -1,4 +1,4 @@
-//! The tuned numbers of the plane planner and of the flight loop, in the order of the data flow. The
+//! The tuning of the plane planner and of the flight loop: their numbers, in the order of the data flow. The
 //! settings that a user chooses before a flight are in [`crate::settings`]; sizes and rates are in
 //! [`crate::config`].
 //!
@@ -11,8 +11,8 @@ mod watches;
 
 pub use watches::{airspeed_bias, elevator, motor, pitch_bias, sensors};
 
-/// Clearance that an aircraft which turns little should have where there is room for it \[m\]. Lattice and
-/// judgement put a price on the lack of this clearance. More room costs longer ways; with 1.6 m fewer
+/// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of
+/// this clearance costs something in lattice and judgement. More room costs longer ways; with 1.6 m fewer
 /// flights succeed under all conditions together (757 against 768 of 800). Source: D13.
 pub const ROOM: f64 = 2.0;
 
@@ -21,10 +21,10 @@ pub mod open {
     /// Clearance that every aircraft should have in open country \[m\]. It is the greatest distance that the map
     /// tells. Source: D21.
     pub const ROOM: f64 = 3.0;
-    /// Price of the squared lack of it where all is open [1/m^2]. Half of it gave 0.1 m less of clearance past 20
+    /// Weight of the squared lack of it where all is open [1/m^2]. Half of it gave 0.1 m less clearance past 20
     /// obstacles. Source: D21.
-    pub const PRICE: f64 = 4.0;
-    /// Power of the share of open cells with which price and margins fall [-]. With 4, past 120 obstacles 773 of 800
+    pub const WEIGHT: f64 = 4.0;
+    /// Power of the share of open cells with which weight and margins fall [-]. With 4, past 120 obstacles 773 of 800
     /// flights succeeded against 783 without room; with 6 as many as without. Source: D21.
     pub const POWER: f64 = 6.0;
     /// Margins that programs keep beyond the first one where all is open and the candidate has the room [-]. With 3
@@ -38,12 +38,12 @@ pub mod open {
     pub const AHEAD: u32 = 52;
 }
 
-/// Price of a point of which the map knows nothing, at the aircraft [-]. It falls linearly to zero at
-/// the distance of [`UNKNOWN_AHEAD`]. With a higher price plans stay in the cells that the lidar has seen, and so turn
-/// away from ways that would have been open. Source: D8, D10 (other prices gave no gain).
-pub const UNKNOWN_PRICE: f64 = 5.0;
+/// Cost of a point of which the map knows nothing, at the aircraft [-]. It falls linearly to zero at
+/// the distance of [`UNKNOWN_AHEAD`]. With a higher cost plans stay in the cells that the lidar has seen, and so turn
+/// away from ways that would have been open. Source: D8, D10 (other costs gave no gain).
+pub const UNKNOWN_COST: f64 = 5.0;
 
-/// Distance ahead beyond which an unknown point has no price to an agile aircraft \[m\]. It is two seconds of
+/// Distance ahead beyond which an unknown point costs an agile aircraft nothing \[m\]. It is two seconds of
 /// flight; until then the lidar has looked again. 18, 20 and 36 m gave no gain. Source: D10.
 pub const UNKNOWN_AHEAD: f64 = 26.0;
 
@@ -52,29 +52,30 @@ pub const UNKNOWN_AHEAD: f64 = 26.0;
 /// limited actuators past 160 obstacles succeeded. Source: D38.
 pub const UNKNOWN_STRETCH: f64 = 1.75;
 
-/// The map with memory. The evidence of a cell is a number from `-LIMIT` to `LIMIT`.
-pub mod memory {
+/// The rolling occupancy grid. The log-odds of a cell are a whole number from `-LIMIT` to `LIMIT`, and 0 where no beam
+/// has been.
+pub mod grid {
     /// Edge of a cell \[m\]. Smaller cells show gaps better and cost time by their square; 0.25 m gave no
     /// gain. Source: D8.
     pub const CELL: f64 = 0.5;
     /// Number of columns of the window that stay behind the aircraft \[cells\]. They are 8 m, which is more
     /// than an obstacle's radius and the reach of a face together. Source: derived.
     pub const BEHIND: i32 = 16;
-    /// Evidence that one hit adds. One hit makes an unknown cell occupied, because it is above
+    /// Log-odds that one hit adds. One hit makes an unknown cell occupied, because it is above
     /// [`OCCUPIED`]; two passing beams make the cell free again. Source: D8.
     pub const HIT: i8 = 60;
-    /// Least evidence at which a cell counts as occupied. Source: chosen.
+    /// Least log-odds at which a cell counts as occupied. Source: chosen.
     pub const OCCUPIED: i8 = 25;
-    /// Evidence that a beam takes away where it passes on its way to a hit. Source: chosen.
+    /// Log-odds that a beam takes away where it passes on its way to a hit. Source: chosen.
     pub const PASSED: i8 = 30;
-    /// Evidence that a beam without a return takes away where it passes. Such a beam may be a lost one, so
+    /// Log-odds that a beam without a return takes away where it passes. Its return may have been lost, so
     /// it takes away a third of [`PASSED`]. Source: chosen.
     pub const PASSED_UNANSWERED: i8 = 10;
     /// Greatest number of cells hit by one scan, within a metre of one of them, that stand alone [-]. Other beams
     /// of the scan do not clear such cells. With a greater number beams leave cells beside the rims of
     /// obstacles that are not occupied. Source: D15.
-    pub const LONE_CELLS: u32 = 2;
-    /// Greatest evidence for and against an obstacle. Three or four beams can reverse the state of a cell.
+    pub const ISOLATED_CELLS: u32 = 2;
+    /// Greatest log-odds for and against an obstacle. Three or four beams can reverse the state of a cell.
     /// Source: chosen.
     pub const LIMIT: i8 = 100;
     /// Distance between the points along a beam at which the map visits cells \[m\]. It is less than a
@@ -83,9 +84,9 @@ pub mod memory {
     /// Distance of the first of these points \[m\]: half a cell, within the aircraft's own cell. Source: derived.
     pub const FIRST_STEP: f64 = 0.25;
     /// Share of its range by which a hit may be too far [-]: three standard deviations of a range error of
-    /// 1 %. This last part of a beam before its hit is no evidence. Source: derived.
+    /// 1 %. This last part of a beam before its hit shows nothing. Source: derived.
     pub const RANGE_DOUBT: f64 = 0.03;
-    /// Length before a hit that is no evidence at any range \[m\]: two cells, for beams that graze a rim.
+    /// Length before a hit that shows nothing at any range \[m\]: two cells, for beams that graze a rim.
     /// Source: chosen.
     pub const HIT_DOUBT: f64 = 1.0;
     /// Number of occupied cells in the fan of a scan without returns at which the lidar counts as blind [-]. One
@@ -95,7 +96,7 @@ pub mod memory {
     /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
     /// pose moves a cell out of sight. Source: chosen.
     pub const BLIND_SHARE: f64 = 0.8;
-    /// Share of the lidar's range over which a beam without a return is evidence [-]: 40 m of 45 m. Source: chosen.
+    /// Share of the lidar's range over which a beam without a return shows free space [-]: 40 m of 45 m. Source: chosen.
     pub const UNANSWERED_SHARE: f64 = 8.0 / 9.0;
 }
 
@@ -113,7 +114,7 @@ pub mod candidates {
     pub const THRUST_SCALE: f64 = 100.0;
 }
 
-/// The lattice of stations downrange, heights and slopes. Its prices have the units of the judgement.
+/// The lattice of stations downrange, heights and slopes. Its costs have the units of the judgement.
 pub mod lattice {
     /// Distance between heights \[m\]: half a cell of the map. Source: derived.
     pub const RISE: f64 = 0.25;
@@ -130,21 +131,21 @@ pub mod lattice {
     /// Clearance that a path keeps \[m\]. It is more than the margin of programs, because a path is straight
     /// where the aircraft turns. Source: D8, D10, D11.
     pub const MARGIN: f64 = 1.2;
-    /// Price of the squared lack of [`MARGIN`] [1/m^2]. Source: chosen.
-    pub const MARGIN_PRICE: f64 = 10.0;
-    /// Price of a change of the slope by one step, per station [-]. Source: chosen.
-    pub const TURN_PRICE: f64 = 1.0;
-    /// Price of the squared slope in steps, per station [-]. Source: chosen.
-    pub const SLOPE_PRICE: f64 = 0.05;
-    /// Price of the squared distance from the altitude, per station [1/m^2]. Source: D11.
-    pub const ALTITUDE_PRICE: f64 = 0.01;
+    /// Weight of the squared lack of [`MARGIN`] [1/m^2]. Source: chosen.
+    pub const MARGIN_WEIGHT: f64 = 10.0;
+    /// Cost of a change of the slope by one step, per station [-]. Source: chosen.
+    pub const TURN_COST: f64 = 1.0;
+    /// Weight of the squared slope in steps, per station [-]. Source: chosen.
+    pub const SLOPE_WEIGHT: f64 = 0.05;
+    /// Weight of the squared distance from the altitude, per station [1/m^2]. Source: D11.
+    pub const ALTITUDE_WEIGHT: f64 = 0.01;
     /// Distance from floor and ceiling that a path keeps \[m\]. Source: chosen.
     pub const BAND_MARGIN: f64 = 0.5;
-    /// Greatest price of a point, in sixteenths [-]. Costs then stay finite whole numbers. Source: derived.
-    pub const DEAREST: f64 = 1e7;
-    /// Greatest price of the way on from the via station [-]. It also applies to places from which no path
+    /// Greatest cost of a point, in sixteenths [-]. Costs then stay finite whole numbers. Source: derived.
+    pub const MOST_POINT_COST: f64 = 1e7;
+    /// Greatest cost-to-go from the via station [-]. It also applies to places from which no path
     /// leads on. Source: chosen.
-    pub const DEAREST_ONWARD: f64 = 2000.0;
+    pub const MOST_COST_TO_GO: f64 = 2000.0;
 }
 
 /// Faces between a candidate's segments and the obstacles around them.
@@ -159,7 +160,7 @@ pub mod faces {
     /// bound in practice. Source: derived.
     pub const FREE: f64 = 60.0;
     /// Distance that programs keep in addition to the margin \[m\], so that their roll-outs still keep the
-    /// margin. Roll-outs differ from programs by a few centimetres after the first round. Source: derived.
+    /// margin. Roll-outs differ from programs by a few centimetres after the first SQP iteration. Source: derived.
     pub const ROUNDING: f64 = 0.05;
     /// Greatest distance that programs keep where a candidate has the room, in margins [-]. Source: D13.
     pub const MOST_MARGINS: f64 = 2.0;
@@ -190,17 +191,17 @@ pub mod judgement {
     /// Number of points in a stage at which the judgement takes the clearance: 0.75 m apart at 12 m/s.
     /// Source: derived.
     pub const SAMPLES: usize = 4;
-    /// Price of the squared lack of margin [1/m^2]. With a lower price plans fly too close to obstacles to
-    /// save effort; with a higher price they make violent motions to gain centimetres. Source: D8.
-    pub const LACK_PRICE: f64 = 100.0;
+    /// Weight of the squared lack of margin [1/m^2]. With a lower weight plans fly too close to obstacles to
+    /// save effort; with a higher weight they make violent motions to gain centimetres. Source: D8.
+    pub const LACK_WEIGHT: f64 = 100.0;
     /// Discount of the last stage against the first [-]. The vehicle plans the last stage again before it
     /// flies there. Source: chosen.
     pub const LAST_STAGE: f64 = 0.5;
-    /// Price of the squared lack of [`super::ROOM`] [1/m^2] for an aircraft that cannot turn at all. With
-    /// half of this price as many flights succeeded (769 against 768 of 800). Source: D13.
-    pub const ROOM_PRICE: f64 = 2.0;
-    /// Share of these prices that counts beyond the lattice's via station [-]. When the aircraft is there, it
-    /// flies another plan. The judgement adds the cost of the best path of the lattice from there on.
+    /// Weight of the squared lack of [`super::ROOM`] [1/m^2] for an aircraft that cannot turn at all. With
+    /// half of this weight as many flights succeeded (769 against 768 of 800). Source: D13.
+    pub const ROOM_WEIGHT: f64 = 2.0;
+    /// Share of these costs that counts beyond the lattice's via station [-]. When the aircraft is there, it
+    /// flies another plan. The judgement adds the cost-to-go of the lattice from there on.
     /// Source: D11.
     pub const FAR_SHARE: f64 = 0.5;
 }
@@ -224,7 +225,7 @@ pub mod navigation {
     /// Share of the greatest change of the wind that the filter for plans assumes [-]. A smaller share lets less noise of
     /// the positions into the start of a plan, and follows strong gusts later. Source: D34.
     pub const SMOOTH_SHARE: f64 = 0.5;
-    /// Time without an accepted position after which the filter starts anew from a refused one \[s\]. Before
+    /// Time without an accepted position after which the filter restarts from a refused one \[s\]. Before
     /// it a jump of the source does no harm; after it the source is believed again. Source: chosen.
     pub const RESTART_TIME: f64 = 1.0;
 }

@@ -29,18 +29,18 @@ pub mod sensors {
     /// is another one; the sensors tell it. Source: D15.
     pub const LONGEST_PREDICTION: f64 = 0.5;
     /// Longest time without steps after which the first position is believed at once \[s\]. After a longer time the
-    /// filter of the positions starts anew. Source: derived.
+    /// filter of the positions restarts. Source: derived.
     pub const LONGEST_GAP: f64 = 3.0;
-    /// Standard deviations of the sensors by which the motion differs after steps were lost, and does not differ
-    /// after the clock jumped [-]. Fewer take a fast turn of one tick for lost steps. Source: derived; 1.8
-    /// deg of pitch.
+    /// Standard deviations of the sensors that tell lost steps from a jump of the clock [-]. If the motion differs
+    /// from the last one by more, steps were lost; if by less, the clock jumped. With fewer a fast turn of one tick
+    /// looks like lost steps. Source: derived; 1.8 deg of pitch.
     pub const CHANGED: f64 = 7.0;
-    /// Standard deviation of the airspeed after lost steps, as a share of it [-]. Source: derived, as the next two; the
-    /// sensors must pass their gates.
+    /// Standard deviation of the airspeed after lost steps, as a share of it [-]. Source: derived; the sensors
+    /// must pass their gates.
     pub const GAP_AIRSPEED: f64 = 0.15;
-    /// That of pitch and flight path angle \[rad\]. Source: derived.
+    /// Standard deviation of pitch and flight path angle after lost steps \[rad\]. Source: derived.
     pub const GAP_ANGLE: f64 = 0.2;
-    /// That of the pitch rate [rad/s]. Source: derived.
+    /// Standard deviation of the pitch rate after lost steps [rad/s]. Source: derived.
     pub const GAP_RATE: f64 = 0.5;
     /// Longest time after a jump of the time for which scans wait for a position that tells where the aircraft is
     /// \[s\]: three positions of a source of 10 Hz. Source: derived.
@@ -72,7 +72,7 @@ pub mod pitch_bias {
 
 /// Slow error of the airspeed, seen as wind and lift at once.
 pub mod airspeed_bias {
-    /// Time after which wind and lift are settled \[s\]. What they are then counts as right, unless both are
+    /// Time after which wind and lift are settled \[s\]. Their values then count as right, unless both are
     /// impossible ([`FOUND_BY_LIFT_AT_START`]). Source: D26.
     pub const SETTLED: f64 = 1.5;
     /// Time over which their slow means follow \[s\]. With more of it steady wind counts as a change for longer,
@@ -115,11 +115,11 @@ pub mod elevator {
     /// Source: chosen.
     pub const LEAST_RESPONSE: f64 = 2e-4;
     /// Greatest difference of the pitch from the expected one \[rad\]: 0.1 s of an elevator that stalls the wing.
-    /// What is beyond is no turn. Source: derived.
+    /// A greater difference is no turn. Source: derived.
     pub const MOST_MISSING: f64 = 0.5;
     /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 gusts look so more often. Source: D27.
     pub const WEAK: f64 = 0.55;
-    /// The share from which on it does not answer [-]. Such an elevator is told, and not corrected. Source: D27.
+    /// The share from which on it does not answer [-]. The core tells such an elevator and does not correct it. Source: D27.
     pub const SILENT: f64 = 0.8;
     /// Standard deviations that a missing share exceeds [-]. With 4 gusts look like a weak elevator in eight of 400
     /// flights, with 8 a weak one is found late. Source: D27.
@@ -139,7 +139,7 @@ pub mod elevator {
     pub const LEAST_EFFECT: f64 = 0.15;
 }
 
-/// The watch of the motor. Times and the usual gain are those of the reference aircraft; they grow with the
+/// The watch of the motor. Its times and the usual gain are those of the reference aircraft; they grow with the
 /// cruising airspeed.
 pub mod motor {
     /// Time over which a gain of speed fades from the comparison \[s\]. With less the noise of the airspeed weighs
@@ -168,9 +168,9 @@ pub mod motor {
     /// motor in 3 of 200 flights with all conditions together. Source: D28.
     pub const SETTLED: f64 = 4.0;
     /// Greatest distance of the estimated position from the dead reckoned one \[m\]. It is twice that of a motor
-    /// lost at full thrust; what is beyond is a jump of the position. Source: derived.
+    /// lost at full thrust; a greater distance is a jump of the position. Source: derived.
     pub const MOST_AHEAD: f64 = 1.0;
-    /// Least thrust with which the comparison reckons, as a share of that of level flight [-]. Less lets noise look
+    /// Least thrust that the comparison assumes, as a share of that of level flight [-]. Less lets noise look
     /// great in a dive without thrust. Source: chosen.
     pub const LEAST_GIVEN: f64 = 0.3;
 }

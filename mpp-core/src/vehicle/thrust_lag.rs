@@ -1,5 +1,5 @@
-//! The lag of the thrust over the stages of a plan. A thrust that is commanded at the start of a stage comes by and
-//! by, and the plan must know how fast the aircraft really is.
+//! The lag of the thrust over the stages of a plan. The thrust follows a command at the start of a stage with
+//! a lag, and the plan must know how fast the aircraft really is.
 
 use super::ActuatorLimits;
 

@@ -1,4 +1,4 @@
-//! Cells of a map with memory.
+//! Cells of a rolling grid.
 
 use mpp_core::map::RollingGrid;
 

@@ -36,9 +36,10 @@ pub const ALLEY: f64 = 12.0;
 /// Time that the aircraft needs to avoid a circle straight ahead \[s\].
 pub const REACTION: f64 = 0.7;
 
-/// Largest distance between a return and the obstacle that it came from: the sum of a length \[m\]
-/// and a share of the range.
-const DOUBT: (f64, f64) = (2.0, 0.05);
+/// Largest distance between a return and the obstacle that it came from \[m\], without the next part.
+const RETURN_OFF: f64 = 2.0;
+/// Part of this distance that grows with the range, as a share of the range [-].
+const RETURN_OFF_SHARE: f64 = 0.05;
 
 /// The cause of a failed flight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -261,7 +262,7 @@ fn met(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
             Some((index, entry.max(RANGE_MIN)))
         });
         let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let told = range > 0.0 && (range - entry).abs() <= DOUBT.0 + DOUBT.1 * entry;
+        let told = range > 0.0 && (range - entry).abs() <= RETURN_OFF + RETURN_OFF_SHARE * entry;
         told.then_some(nearest)
     };
     scan.ranges

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use std::net::SocketAddr;
 
 /// Demands that are met in a tick.
-pub(super) const A_TICK: usize = 16;
+pub(super) const DEMANDS_PER_TICK: usize = 16;
 /// Demands that may wait for a later one.
 pub(super) const WAITING: usize = 256;
 
@@ -59,7 +59,7 @@ impl<T> Demands<T> {
 
     /// Gives the demand back if it may be met at once.
     pub(super) fn admit(&mut self, demand: T) -> Option<T> {
-        if self.waiting.is_empty() && self.met < A_TICK {
+        if self.waiting.is_empty() && self.met < DEMANDS_PER_TICK {
             self.met += 1;
             return Some(demand);
         }
@@ -73,7 +73,7 @@ impl<T> Demands<T> {
 
     /// In a new tick: the demands that waited for it.
     pub(super) fn due(&mut self) -> Vec<T> {
-        self.met = A_TICK.min(self.waiting.len());
+        self.met = DEMANDS_PER_TICK.min(self.waiting.len());
         self.waiting.drain(..self.met).collect()
     }
 
@@ -99,16 +99,16 @@ mod tests {
     fn a_flood_is_met_bit_by_bit_and_in_order() {
         let mut demands = Demands::new();
         let at_once: Vec<usize> = (0..400).filter_map(|n| demands.admit(n)).collect();
-        assert_eq!(at_once, (0..A_TICK).collect::<Vec<_>>());
-        assert_eq!(demands.lost() as usize, 400 - A_TICK - WAITING);
+        assert_eq!(at_once, (0..DEMANDS_PER_TICK).collect::<Vec<_>>());
+        assert_eq!(demands.lost() as usize, 400 - DEMANDS_PER_TICK - WAITING);
         assert!(demands.is_news() && !demands.is_news());
         let mut met = at_once;
-        while met.len() < A_TICK + WAITING {
+        while met.len() < DEMANDS_PER_TICK + WAITING {
             let due = demands.due();
-            assert!((1..=A_TICK).contains(&due.len()));
+            assert!((1..=DEMANDS_PER_TICK).contains(&due.len()));
             met.extend(due);
         }
-        assert_eq!(met, (0..A_TICK + WAITING).collect::<Vec<_>>());
+        assert_eq!(met, (0..DEMANDS_PER_TICK + WAITING).collect::<Vec<_>>());
         assert!(!demands.is_news());
         // A tick without any is a new one.
         assert!(demands.due().is_empty());

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 /// Number of values that are sent in a tick. It is so small that no socket's buffer overflows.
-const A_TICK: usize = 2;
+const PARAMETERS_PER_TICK: usize = 2;
 
 /// Numbers of the parameters that are still to be sent.
 #[derive(Default)]
@@ -17,6 +17,8 @@ impl ParameterQueue {
 
     /// The numbers to be sent in this tick.
     pub(super) fn due(&mut self) -> Vec<u8> {
-        self.0.drain(..A_TICK.min(self.0.len())).collect()
+        self.0
+            .drain(..PARAMETERS_PER_TICK.min(self.0.len()))
+            .collect()
     }
 }

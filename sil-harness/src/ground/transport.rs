@@ -22,7 +22,7 @@ pub const PROGRAM_PORT: u16 = 14540;
 /// Longest datagram that is read \[bytes\].
 const DATAGRAM: usize = 2048;
 /// Number of datagrams that are read in a tick. A station that sends more does not stop the flight.
-const A_TICK: usize = 1000;
+const DATAGRAMS_PER_TICK: usize = 1000;
 /// The start of the time of signatures, 2015-01-01T00:00:00Z, since 1970.
 const SIGNING_EPOCH: Duration = Duration::from_secs(1_420_070_400);
 
@@ -194,7 +194,7 @@ impl Transport {
         let mut buffer = [0; DATAGRAM];
         // Any other answer of the socket ends the loop, for instance that nobody listens yet. The
         // cause may be gone at the next tick.
-        for _ in 0..A_TICK {
+        for _ in 0..DATAGRAMS_PER_TICK {
             let Some(Ok((length, from))) = self.socket.as_ref().map(|s| s.recv_from(&mut buffer))
             else {
                 break;

@@ -164,7 +164,7 @@ impl Bench {
     }
 
     /// The step hangs for ever. The watchdog resets the core. The core says hello, is configured
-    /// anew and flies on.
+    /// again and flies on.
     fn stuck_step_is_reset(&self) -> Result<()> {
         let image = self.folder.join("step-hangs");
         contents::patched(

@@ -76,7 +76,7 @@ impl Bench {
         Ok(())
     }
 
-    /// The step traps. The core restarts, tells why, is configured anew and flies on.
+    /// The step traps. The core restarts, tells why, is configured again and flies on.
     pub(super) fn step_that_traps_is_reset(&self) -> Result<()> {
         for (kind, (what, fault)) in (0_u32..).zip(TRAPS) {
             let image = self.folder.join("step-traps");

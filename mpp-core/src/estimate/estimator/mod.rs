@@ -4,7 +4,7 @@ mod watching;
 
 use super::verdicts::{count_position, count_verdict};
 use super::{
-    Actuators, Biases, Innovation, LaggedEkf, LiftEstimator, MOST_SCAN_AGE, MeasurementStatus,
+    Actuators, BiasMonitor, Innovation, LaggedEkf, LiftEstimator, MOST_SCAN_AGE, MeasurementStatus,
     Navigation, PositionVerdict, SensorMonitor, Sensors, SteadyTurn, StuckDetector, Taken, Trust,
 };
 use crate::config::TICK_PERIOD;
@@ -28,11 +28,11 @@ pub struct Estimator {
     lift: Option<LiftEstimator>,
     airspeed_changes: StuckDetector,
     pitch_changes: StuckDetector,
-    course: SteadyTurn,
+    steady_turn: SteadyTurn,
     airspeed: SensorMonitor,
     pitch: SensorMonitor,
     position: SensorMonitor,
-    biases: Biases,
+    biases: BiasMonitor,
     /// Amount by which the pitch reads too much, as the estimates take it \[rad\].
     pitch_error: f64,
     /// Part of the airspeed by which the sensors have corrected it since the motor's watch saw it [m/s].
@@ -56,11 +56,11 @@ impl Estimator {
             lift: settings.wind_change.is_some().then_some(lift),
             airspeed_changes: StuckDetector::new(),
             pitch_changes: StuckDetector::new(),
-            course: SteadyTurn::default(),
+            steady_turn: SteadyTurn::default(),
             airspeed: SensorMonitor::new(1),
             pitch: SensorMonitor::new(1),
             position: SensorMonitor::new(POSITION_PERIOD),
-            biases: Biases::new(airframe.level_lift(trim.state.airspeed)),
+            biases: BiasMonitor::new(airframe.level_lift(trim.state.airspeed)),
             pitch_error: 0.0,
             corrected: 0.0,
             behind: None,
@@ -265,7 +265,7 @@ impl Estimator {
             innovation.pitch = MeasurementStatus::Frozen;
         }
         let refused = innovation.pitch == MeasurementStatus::Gated;
-        if self.course.take(fresh.pitch, refused) {
+        if self.steady_turn.take(fresh.pitch, refused) {
             self.air.doubt([0.0, GAP_ANGLE, GAP_RATE, 0.0]);
         }
         self.airspeed.tick(Some(innovation.airspeed.is_good()));

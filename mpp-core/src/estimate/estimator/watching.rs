@@ -1,4 +1,4 @@
-//! What the estimators show to the watches of elevator and motor.
+//! The inputs of the watches of elevator and motor, from the estimators.
 
 use super::Estimator;
 use crate::estimate::{Innovation, MeasurementStatus, PositionVerdict, Progress};

@@ -1,5 +1,4 @@
-//! What others may see of a cycle: map, candidates, programs. And another candidate than the best, for whoever
-//! chooses himself.
+//! Access to map, candidates and programs of a cycle, for a caller who inspects them or chooses a candidate himself.
 
 use super::judge::PriceParts;
 use super::workspace::Workspace;
@@ -16,7 +15,7 @@ impl PlanePlanner {
         &self.field
     }
 
-    /// The map with memory, for a caller who knows the obstacles better than the lidar.
+    /// The grid, for a caller who knows the obstacles better than the lidar.
     pub fn map_mut(&mut self) -> &mut RollingGrid {
         &mut self.map
     }
@@ -57,7 +56,7 @@ impl PlanePlanner {
         self.candidates.len()
     }
 
-    /// Writes a candidate of the last cycle, as its last round left it, into a trajectory in SI units, and gives
+    /// Writes a candidate of the last cycle, as its last SQP iteration left it, into a trajectory in SI units, and gives
     /// its price. The price is infinite if no program of the candidate had a solution; the trajectory is then the
     /// path that the candidate began with. `None` if there is no such candidate.
     pub fn offer(&self, index: usize, trajectory: &mut Trajectory) -> Option<f64> {
@@ -79,7 +78,7 @@ impl PlanePlanner {
         self.at_hand
     }
 
-    /// The price of a candidate of the present cycle, as its last round left it, and the parts of this price.
+    /// The price of a candidate of the present cycle, as its last SQP iteration left it, and the parts of this price.
     /// `None` if there is no such candidate, or if no program of the candidate had a solution.
     #[must_use]
     pub fn price_parts(&self, index: usize) -> Option<(f64, PriceParts)> {
@@ -88,7 +87,7 @@ impl PlanePlanner {
         priced.then(|| (candidate.price, self.parts_of(&candidate.flown)))
     }
 
-    /// Takes a candidate of the last cycle for the best one: the next cycle then counts on it being flown. Gives
+    /// Takes a candidate of the last cycle for the best one: the next cycle then assumes that the aircraft flies it. Gives
     /// its price as [`Self::offer`] does.
     pub fn choose(&mut self, index: usize) -> Option<f64> {
         let mut chosen = Trajectory::new();
@@ -97,7 +96,7 @@ impl PlanePlanner {
         Some(price)
     }
 
-    /// The map with memory, in own units.
+    /// The grid, in own units.
     #[must_use]
     pub fn map(&self) -> &RollingGrid {
         &self.map

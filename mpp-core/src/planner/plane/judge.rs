@@ -1,22 +1,22 @@
-//! The price of a roll-out: its clearance in the map itself, the unknown cells on its way, its effort,
-//! and the cost of the way on from the via station.
+//! The price of a roll-out, by which the planner ranks candidates: what it lacks of clearance in the map itself, the
+//! unknown cells on its way, its effort, and the cost-to-go from the via station.
 
 use super::PlanePlanner;
 use crate::config::{KNOTS, STAGES};
 use crate::trajectory::RollOut;
-use crate::tuning::UNKNOWN_PRICE;
-use crate::tuning::judgement::{FAR_SHARE, LACK_PRICE, LAST_STAGE, SAMPLES};
+use crate::tuning::UNKNOWN_COST;
+use crate::tuning::judgement::{FAR_SHARE, LACK_WEIGHT, LAST_STAGE, SAMPLES};
 
 /// The price of a roll-out by its parts, and what it lacks of clearance. The parts add up to the price, up to
 /// rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PriceParts {
-    /// Price of what is missing of the margin, of the wanted room and of the altitude band.
+    /// Cost of what is missing of the margin, of the wanted room and of the altitude band.
     pub clearance: f64,
-    /// Price of unknown cells near ahead.
+    /// Cost of unknown cells near ahead.
     pub unknown: f64,
-    /// Price of the way on from the via station.
-    pub onward: f64,
+    /// Cost-to-go from the via station.
+    pub cost_to_go: f64,
     /// The program's cost function.
     pub effort: f64,
     /// Worst lack of clearance, in own units of length.
@@ -28,7 +28,7 @@ pub struct PriceParts {
 enum Part {
     Clearance,
     Unknown,
-    Onward,
+    CostToGo,
 }
 
 /// Worst lack of clearance \[m\], effort, and the price that ranks candidates.
@@ -50,7 +50,7 @@ impl PlanePlanner {
         let judgement = self.add_up(flown, |part, summand| match part {
             Part::Clearance => parts.clearance += summand,
             Part::Unknown => parts.unknown += summand,
-            Part::Onward => parts.onward += summand,
+            Part::CostToGo => parts.cost_to_go += summand,
         });
         PriceParts {
             effort: judgement.effort,
@@ -75,8 +75,8 @@ impl PlanePlanner {
             let (run, rise) = (to.x - from.x, to.z - from.z);
             if from.x <= via && via < to.x {
                 let slope = rise / run;
-                let onward = cost_to_go.at(from.z + slope * (via - from.x), slope);
-                add(Part::Onward, onward);
+                let rest = cost_to_go.at(from.z + slope * (via - from.x), slope);
+                add(Part::CostToGo, rest);
             }
             for sample in 1..=SAMPLES {
                 let share = sample as f64 / SAMPLES as f64;
@@ -87,13 +87,13 @@ impl PlanePlanner {
                 let missing = (own.margin - distance).max(0.0) + outside;
                 let crowded = (self.limits.wanted_room - distance).max(0.0);
                 lack = lack.max(missing);
-                let lacking = weight * LACK_PRICE * discount * missing * missing;
+                let lacking = weight * LACK_WEIGHT * discount * missing * missing;
                 add(Part::Clearance, lacking);
-                let crowding = weight * self.limits.room_price * discount * crowded * crowded;
+                let crowding = weight * self.limits.room_weight * discount * crowded * crowded;
                 add(Part::Clearance, crowding);
                 let ahead = x - self.state.x;
                 if ahead < unknown_ahead && field.is_unknown(x, z) {
-                    let hidden = weight * UNKNOWN_PRICE * (1.0 - ahead / unknown_ahead);
+                    let hidden = weight * UNKNOWN_COST * (1.0 - ahead / unknown_ahead);
                     add(Part::Unknown, hidden);
                 }
             }

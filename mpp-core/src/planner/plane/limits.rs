@@ -23,12 +23,12 @@ pub(super) struct Limits {
     pub(super) thrust_max: f64,
     /// Greatest curvature of a path in level flight at cruise [1/m].
     pub(super) curvature: f64,
-    /// Distance ahead beyond which an unknown point has no price \[m\].
+    /// Distance ahead beyond which an unknown point costs nothing \[m\].
     pub(super) unknown_ahead: f64,
-    /// Clearance whose lack has a price \[m\].
+    /// Clearance whose lack costs something \[m\].
     pub(super) wanted_room: f64,
-    /// Price of the squared lack of it [1/m^2].
-    pub(super) room_price: f64,
+    /// Weight of the squared lack of it [1/m^2].
+    pub(super) room_weight: f64,
     /// Distance that a program keeps where its candidate already has that much room \[m\].
     pub(super) room: f64,
 }
@@ -44,7 +44,7 @@ impl Limits {
         curvature: 0.0,
         unknown_ahead: UNKNOWN_AHEAD,
         wanted_room: ROOM,
-        room_price: 0.0,
+        room_weight: 0.0,
         room: 0.0,
     };
 
@@ -80,7 +80,7 @@ impl Limits {
             wanted_room: ROOM,
             // An agile aircraft corrects the effect of a gust at once. An aircraft that turns little needs
             // some room in reserve.
-            room_price: judgement::ROOM_PRICE * (1.0 - agility),
+            room_weight: judgement::ROOM_WEIGHT * (1.0 - agility),
             room: own.margin * (1.0 / agility).min(faces::MOST_MARGINS),
         }
     }
@@ -89,9 +89,9 @@ impl Limits {
     /// that are open.
     pub(super) fn widen(&mut self, margin: f64, openness: f64) {
         let share = libm::pow(openness, open::POWER);
-        let price = open::PRICE * share;
-        if price > self.room_price {
-            (self.wanted_room, self.room_price) = (open::ROOM, price);
+        let weight = open::WEIGHT * share;
+        if weight > self.room_weight {
+            (self.wanted_room, self.room_weight) = (open::ROOM, weight);
         }
         let margins = (1.0 + open::MARGINS * share).min(open::MOST_MARGINS);
         self.room = self.room.max(margin * margins);

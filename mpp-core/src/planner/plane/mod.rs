@@ -17,11 +17,11 @@
 //! | `setup` | the set-up of the planner and the checks of its settings |
 //! | `limits` | the limits of the plans of a cycle |
 //! | `perceive` | Map, Lattice: from the scan to the lattice's paths |
-//! | `propose` | the candidates: previous plan and lattice |
+//! | `propose` | the candidates: the previous plan as warm start, and the paths of the lattice |
 //! | `refine` | Faces, Linearise, Improve |
 //! | `candidate` | roll-out and linearisation of a candidate |
 //! | `judge` | the price of a roll-out |
-//! | `inspect` | what others may see of a cycle, and choose |
+//! | `inspect` | access to map, candidates and programs of a cycle |
 //! | `workspace` | the memory that the phases use one after the other |
 
 mod candidate;
@@ -63,7 +63,7 @@ const FLOWN_ON_STEPS: u8 = 4;
 pub enum Phase {
     /// The slice does nothing, because no cycle is under way.
     Idle,
-    /// Takes some beams of the scan into the map with memory. The last slice builds the clearance field.
+    /// Takes some beams of the scan into the grid. The last slice builds the distance field.
     Map,
     /// Searches one station of the lattice.
     Lattice,
@@ -79,7 +79,7 @@ pub enum Phase {
 
 /// The plane planner and all its workspaces. Large: place it in a `static` or a box.
 ///
-/// It reckons in its [own units](Units): scan, state and settings are converted when they come in, and the
+/// It computes in its [own units](Units): scan, state and settings are converted when they come in, and the
 /// best trajectory when it is kept. Times of trajectories stay in seconds.
 #[derive(Clone, Debug)]
 pub struct PlanePlanner {
@@ -199,7 +199,7 @@ impl PlanePlanner {
         conditions: &Conditions,
         scan: Option<&LidarScan>,
     ) {
-        self.reckon_with(conditions);
+        self.take_conditions(conditions);
         self.pose = self.units.own_pose(pose);
         self.state = self.taken_over(time, &self.units.own_state(state));
         self.time = time + self.settings.latency * self.units.time;
@@ -232,7 +232,7 @@ impl PlanePlanner {
 
     /// Takes over the estimated wind and airframe. Cruise keeps the angle of attack of the set-up, so that
     /// the elevator keeps the same range to either side; the airspeed of cruise changes instead.
-    fn reckon_with(&mut self, conditions: &Conditions) {
+    fn take_conditions(&mut self, conditions: &Conditions) {
         let (airframe, trim) = &self.known;
         self.conditions = *conditions;
         let own = self.units.own_conditions(conditions);
@@ -289,7 +289,7 @@ impl PlanePlanner {
         self.phase
     }
 
-    /// The units in which this planner reckons. Trim, clearance, map and candidate are in these units.
+    /// The units in which this planner computes. Trim, clearance, map and candidate are in these units.
     #[must_use]
     pub fn units(&self) -> &Units {
         &self.units
@@ -301,7 +301,7 @@ impl PlanePlanner {
         !matches!(self.phase, Phase::Idle | Phase::Done)
     }
 
-    /// Does one bounded slice of work. Returns true while the cycle goes on.
+    /// Does one bounded slice of work. Returns true until the cycle ends.
     // The phases that need much stack are never inlined. Otherwise this function would need the sum of
     // their stacks.
     pub fn advance(&mut self) -> bool {

@@ -1,4 +1,4 @@
-//! The phases from the scan to the paths: the map with memory, its clearance field, and the lattice.
+//! The phases from the scan to the paths: the occupancy grid, its distance field, and the lattice.
 
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
@@ -8,29 +8,34 @@ use crate::tuning::candidates::BEAMS_PER_SLICE;
 use crate::vehicle::Trim;
 
 impl PlanePlanner {
-    /// Takes some beams of the scan into the map. After the last beam it builds the clearance field, proposes
+    /// Takes some beams of the scan into the map. After the last beam it builds the distance field, proposes
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
-        let Workspace::Scan(Intake { scan, beams, lone }) = &mut self.workspace else {
+        let Workspace::Scan(Intake {
+            scan,
+            beams,
+            isolated,
+        }) = &mut self.workspace
+        else {
             return self.end_inconsistent();
         };
         let (pose, sight) = (self.pose, self.settings.sight);
         if *beams == 0 {
             self.map.roll(pose.x, self.altitude);
-            // A lidar that has lied stays a liar until a beam returns.
+            // A lidar that was distrusted once stays so until a beam returns.
             self.lidar_distrusted = !has_return(scan, sight)
                 && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
             if self.lidar_distrusted {
                 self.summary.blind = true;
                 scan.ranges.clear();
             }
-            self.map.write_isolated_hits(scan, sight, &pose, lone);
+            self.map.write_isolated_hits(scan, sight, &pose, isolated);
         }
         if *beams < scan.ranges.len() {
             let next = *beams..*beams + BEAMS_PER_SLICE;
             *beams = next.end;
-            self.map.insert_beams(scan, next, sight, &pose, lone);
+            self.map.insert_beams(scan, next, sight, &pose, isolated);
             return;
         }
         if self.summary.blind {
@@ -39,7 +44,7 @@ impl PlanePlanner {
         self.field.build(&self.map, self.settings.body_radius);
         self.limits
             .widen(self.settings.margin, self.field.openness());
-        self.take_up_previous();
+        self.warm_start();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
         let task = LatticeTask {
             x: self.state.x,
@@ -49,7 +54,7 @@ impl PlanePlanner {
             band: self.settings.band,
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
-            room_price: self.limits.room_price,
+            room_weight: self.limits.room_weight,
             unknown_ahead: self.limits.unknown_ahead,
         };
         self.workspace = Workspace::Lattice(Lattice::new());

@@ -8,8 +8,8 @@ use crate::trajectory::RollOut;
 use crate::vehicle::{PathControl, PathState};
 
 impl PlanePlanner {
-    /// Proposes the rest of the previous plan as a candidate.
-    pub(super) fn take_up_previous(&mut self) {
+    /// Proposes the rest of the previous plan as a candidate, the warm start.
+    pub(super) fn warm_start(&mut self) {
         if self.last_plan(self.time).is_none() {
             return;
         }

@@ -41,8 +41,8 @@ impl PlanePlanner {
         self.phase = Phase::Linearise;
     }
 
-    /// Index of the candidate to improve next. Each candidate gets one round; then each of the best few gets
-    /// all its further SQP iterations before the next one.
+    /// Index of the candidate to improve next. Each candidate gets one SQP iteration; then each of the best few gets
+    /// all its further ones before the next candidate.
     fn turn(&self) -> Option<usize> {
         let Some(further) = self.improvements.checked_sub(self.candidates.len()) else {
             return Some(self.improvements);

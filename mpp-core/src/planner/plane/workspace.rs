@@ -5,8 +5,8 @@ use crate::map::IsolatedHits;
 use crate::qp::Condensed;
 use crate::sense::LidarScan;
 
-/// What a phase needs for itself. The next phase overwrites it, so that all of them take the memory of the largest
-/// alone. What outlives a phase is a field of [`super::PlanePlanner`].
+/// The memory of one phase. The next phase overwrites it, so that all phases together take the memory of the largest.
+/// A value that outlives its phase is a field of [`super::PlanePlanner`].
 #[derive(Clone, Debug)]
 pub(super) enum Workspace {
     /// Phases Faces, Linearise and Improve.
@@ -24,7 +24,7 @@ pub(super) struct Intake {
     pub(super) scan: LidarScan,
     /// Number of beams that the map has taken in.
     pub(super) beams: usize,
-    pub(super) lone: IsolatedHits,
+    pub(super) isolated: IsolatedHits,
 }
 
 impl Workspace {
@@ -38,7 +38,7 @@ impl Intake {
         Self {
             scan,
             beams: 0,
-            lone: IsolatedHits::none(),
+            isolated: IsolatedHits::none(),
         }
     }
 }

@@ -38,7 +38,7 @@ impl Solver {
                 .sum::<f64>();
         if excess <= NEGLIGIBLE {
             Stand::Touches
-        // A rise of 16 absurd rises from here is a rise of more than one from the optimum without rows.
+        // The cost would rise by more than the absurd rise above the unconstrained optimum, so the rows contradict each other.
         } else if excess * excess > 32.0 * self.absurd_rise * complement {
             Stand::Contradicts
         } else {

@@ -36,13 +36,13 @@ pub struct Sensors {
     pub pitch: Trust,
     /// Positions.
     pub position: Trust,
-    /// The elevator, which is no sensor but is watched like one.
+    /// The elevator. It is no sensor, but [`ElevatorEffect`](super::ElevatorEffect) watches it.
     pub elevator: Trust,
-    /// The motor, likewise.
+    /// The motor. It is no sensor, but [`MotorWatch`](super::MotorWatch) watches it.
     pub motor: Trust,
 }
 
-/// Watches one sensor.
+/// The monitor of one sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct SensorMonitor {
     trust: Trust,
@@ -55,7 +55,7 @@ pub struct SensorMonitor {
 }
 
 impl SensorMonitor {
-    /// A watch of a sensor that may deliver a good value every `period` ticks.
+    /// The monitor of a sensor that may deliver a good value every `period` ticks.
     #[must_use]
     pub const fn new(period: u16) -> Self {
         Self {

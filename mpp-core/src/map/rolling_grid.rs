@@ -1,13 +1,13 @@
-//! The map with memory: evidence of obstacles in the world frame, in a window that moves along with the
+//! The rolling occupancy grid: log-odds of obstacles in the world frame, in a window that moves along with the
 //! aircraft.
 //!
-//! A beam is evidence against obstacles on its way, and evidence for an obstacle at its end. No beam sees
+//! A beam lowers the log-odds of the cells on its way, and raises those of the cell at its end. No beam sees
 //! the back of an obstacle, so the map knows nothing of it; [`super::DistanceField`] completes it.
 
-use super::cell::{Place, at_least, bit, rounded_down, zeros};
+use super::cell::{FixedPoint, at_least, bit, rounded_down, zeros};
 use crate::sense::LidarScan;
-use crate::tuning::memory::{
-    BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, LIMIT, LONE_CELLS,
+use crate::tuning::grid::{
+    BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, ISOLATED_CELLS, LIMIT,
     OCCUPIED, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
 };
 use crate::vehicle::Pose;
@@ -20,7 +20,7 @@ pub(super) const ROWS: usize = 64;
 /// Greatest number of steps along one beam.
 const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 
-/// The map with memory.
+/// The rolling occupancy grid.
 ///
 /// # Example
 ///
@@ -49,8 +49,8 @@ const MAX_STEPS: u16 = (COLS + ROWS) as u16 * 2;
 /// ```
 #[derive(Clone, Debug)]
 pub struct RollingGrid {
-    /// Evidence of each cell. Rows count up from [`Self::floor`]; columns are world columns modulo [`COLS`].
-    evidence: [[i8; COLS]; ROWS],
+    /// Log-odds of each cell. Rows count up from [`Self::floor`]; columns are world columns modulo [`COLS`].
+    log_odds: [[i8; COLS]; ROWS],
     /// World column at the near edge of the window.
     first_col: i32,
     /// Height of the low edge of the window \[m\].
@@ -79,7 +79,7 @@ impl RollingGrid {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            evidence: [[0; COLS]; ROWS],
+            log_odds: [[0; COLS]; ROWS],
             first_col: 0,
             floor: 0.0,
             started: false,
@@ -98,7 +98,7 @@ impl RollingGrid {
         let first = rounded_down(x / CELL).saturating_sub(BEHIND);
         let behind = first < self.first_col.saturating_sub(BEHIND);
         if !self.started || behind {
-            self.evidence = [[0; COLS]; ROWS];
+            self.log_odds = [[0; COLS]; ROWS];
             self.floor = altitude - 0.5 * CELL * ROWS as f64;
             self.first_col = first;
             self.started = true;
@@ -106,7 +106,7 @@ impl RollingGrid {
         let ahead = first.saturating_sub(self.first_col).clamp(0, COLS as i32);
         for col in 0..ahead {
             let slot = slot(self.first_col.saturating_add(col));
-            for row in &mut self.evidence {
+            for row in &mut self.log_odds {
                 row[slot] = 0;
             }
         }
@@ -124,36 +124,36 @@ impl RollingGrid {
         }
         // A turn to the right is one to the left by the rest, and the image holds one rotation.
         let left = if up > 0.0 { rows } else { ROWS - rows };
-        self.evidence.rotate_left(left);
+        self.log_odds.rotate_left(left);
         let fresh = if up > 0.0 { ROWS - rows..ROWS } else { 0..rows };
-        for row in self.evidence.get_mut(fresh).unwrap_or_default() {
+        for row in self.log_odds.get_mut(fresh).unwrap_or_default() {
             *row = [0; COLS];
         }
         self.floor += CELL * up;
     }
 
-    /// Overwrites the memory of the whole window with certain knowledge. `occupied` tells whether the cell
+    /// Overwrites the whole window with certain knowledge. `occupied` tells whether the cell
     /// with the centre `(x, z)` \[m\] is occupied.
     pub fn know(&mut self, occupied: impl Fn(f64, f64) -> bool) {
         let (first, floor) = (self.first_col, self.floor);
-        for (row, evidence) in self.evidence.iter_mut().enumerate() {
+        for (row, log_odds) in self.log_odds.iter_mut().enumerate() {
             let z = floor + CELL * (row as f64 + 0.5);
             for col in 0..COLS as i32 {
                 let col = first.saturating_add(col);
                 let x = CELL * (f64::from(col) + 0.5);
-                evidence[slot(col)] = if occupied(x, z) { LIMIT } else { -LIMIT };
+                log_odds[slot(col)] = if occupied(x, z) { LIMIT } else { -LIMIT };
             }
         }
     }
 
     /// Takes in a scan from a pose by a lidar with the range `sight` \[m\].
     pub fn insert(&mut self, scan: &LidarScan, sight: f64, pose: &Pose) {
-        let mut lone = IsolatedHits::none();
-        self.write_isolated_hits(scan, sight, pose, &mut lone);
-        self.insert_beams(scan, 0..scan.ranges.len(), sight, pose, &lone);
+        let mut isolated = IsolatedHits::none();
+        self.write_isolated_hits(scan, sight, pose, &mut isolated);
+        self.insert_beams(scan, 0..scan.ranges.len(), sight, pose, &isolated);
     }
 
-    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect. `lone` are
+    /// Takes in the beams of a scan with the numbers `beams`. Numbers beyond the last beam have no effect. `isolated` are
     /// the cells of [`Self::write_isolated_hits`] for the same scan and pose.
     pub fn insert_beams(
         &mut self,
@@ -161,7 +161,7 @@ impl RollingGrid {
         beams: Range<usize>,
         sight: f64,
         pose: &Pose,
-        lone: &IsolatedHits,
+        isolated: &IsolatedHits,
     ) {
         let &Pose { x, z, pitch } = pose;
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
@@ -171,21 +171,26 @@ impl RollingGrid {
             let beam = [(x, z), (ahead, up)];
             let range = f64::from(*range);
             if is_return(range, sight) {
-                self.pass(beam, range - HIT_DOUBT - RANGE_DOUBT * range, PASSED, lone);
+                self.pass(
+                    beam,
+                    range - HIT_DOUBT - RANGE_DOUBT * range,
+                    PASSED,
+                    isolated,
+                );
                 let place = self.slot_at(self.locate((x + range * ahead, z + range * up)));
                 if let Some((row, slot)) = place
-                    && let Some(cells) = self.evidence.get_mut(row)
+                    && let Some(cells) = self.log_odds.get_mut(row)
                 {
-                    cells[slot] = weighed(cells[slot], HIT);
+                    cells[slot] = updated(cells[slot], HIT);
                 }
             } else {
-                self.pass(beam, UNANSWERED_SHARE * sight, PASSED_UNANSWERED, lone);
+                self.pass(beam, UNANSWERED_SHARE * sight, PASSED_UNANSWERED, isolated);
             }
         }
     }
 
-    /// Whether a scan has no return although obstacles that the map knows stand in its fan. Such a scan is no
-    /// evidence of free space: the lidar is blind.
+    /// Whether a scan has no return although obstacles that the map knows stand in its fan. The scan then does not
+    /// show free space: the lidar is blind.
     #[must_use]
     pub fn contradicts(&self, scan: &LidarScan, sight: f64, pose: &Pose) -> bool {
         if has_return(scan, sight) {
@@ -195,13 +200,13 @@ impl RollingGrid {
         let centre = pose.pitch + scan.angle_min + scan.angle_increment * middle;
         let half = libm::fabs(scan.angle_increment) * middle * BLIND_SHARE;
         let mut seen = 0_u32;
-        for (row, evidence) in self.evidence.iter().enumerate() {
+        for (row, log_odds) in self.log_odds.iter().enumerate() {
             let up = self.floor + CELL * (row as f64 + 0.5) - pose.z;
             for col in 0..COLS as i32 {
                 let col = self.first_col.saturating_add(col);
-                if evidence
+                if log_odds
                     .get(slot(col))
-                    .is_none_or(|evidence| *evidence < OCCUPIED)
+                    .is_none_or(|log_odds| *log_odds < OCCUPIED)
                 {
                     continue;
                 }
@@ -214,7 +219,7 @@ impl RollingGrid {
         seen >= BLIND_CELLS
     }
 
-    /// Adds evidence against obstacles to each cell along a beam, up to a length \[m\]. The beam has its start \[m\]
+    /// Lowers the log-odds of each cell along a beam, up to a length \[m\]. The beam has its start \[m\]
     /// and its direction [-].
     // Both kinds of beams call it, and each would hold a copy.
     #[inline(never)]
@@ -222,14 +227,14 @@ impl RollingGrid {
         &mut self,
         [(x, z), (ahead, up)]: [(f64, f64); 2],
         length: f64,
-        evidence_against: i8,
-        lone: &IsolatedHits,
+        by: i8,
+        isolated: &IsolatedHits,
     ) {
         let steps = libm::ceil((length - FIRST_STEP) * (1.0 / STEP)) as u16;
         let near_edge = f64::from(self.first_col);
-        let mut col = Place::of((x + FIRST_STEP * ahead) / CELL - near_edge);
-        let mut row = Place::of((z + FIRST_STEP * up - self.floor) / CELL);
-        let [next_col, next_row] = [ahead, up].map(|share| Place::of(STEP / CELL * share));
+        let mut col = FixedPoint::of((x + FIRST_STEP * ahead) / CELL - near_edge);
+        let mut row = FixedPoint::of((z + FIRST_STEP * up - self.floor) / CELL);
+        let [next_col, next_row] = [ahead, up].map(|share| FixedPoint::of(STEP / CELL * share));
         let first_slot = slot(self.first_col);
         let mut last = None;
         for _ in 0..steps.min(MAX_STEPS) {
@@ -240,7 +245,8 @@ impl RollingGrid {
             }
             last = Some(place);
             let (row, col) = (place.0 as usize, place.1 as usize);
-            let (Some(cells), Some(lone)) = (self.evidence.get_mut(row), lone.0.get(row)) else {
+            let (Some(cells), Some(isolated)) = (self.log_odds.get_mut(row), isolated.0.get(row))
+            else {
                 continue;
             };
             if col >= COLS {
@@ -248,8 +254,8 @@ impl RollingGrid {
             }
             let slot = (first_slot + col) % COLS;
             // A beam of this scan that ended in a cell that stands alone says more than others that pass.
-            if !bit(lone, slot) {
-                cells[slot] = weighed(cells[slot], -evidence_against);
+            if !bit(isolated, slot) {
+                cells[slot] = updated(cells[slot], -by);
             }
         }
     }
@@ -261,7 +267,7 @@ impl RollingGrid {
         scan: &LidarScan,
         sight: f64,
         pose: &Pose,
-        lone: &mut IsolatedHits,
+        isolated: &mut IsolatedHits,
     ) {
         let mut hits = [0_u128; ROWS];
         for (beam, range) in scan.ranges.iter().enumerate() {
@@ -276,8 +282,8 @@ impl RollingGrid {
                 }
             }
         }
-        for (row, lone) in lone.0.iter_mut().enumerate() {
-            *lone = 0;
+        for (row, isolated) in isolated.0.iter_mut().enumerate() {
+            *isolated = 0;
             let near = hits.get(row.saturating_sub(2)..(row + 3).min(ROWS));
             let near = near.unwrap_or_default();
             let mut rest = hits.get(row).copied().unwrap_or(0);
@@ -286,8 +292,8 @@ impl RollingGrid {
                 rest &= rest - 1;
                 let about =
                     |cells: &u128| (cells.rotate_left(2).rotate_right(col) & 0b11111).count_ones();
-                if near.iter().map(about).sum::<u32>() <= LONE_CELLS {
-                    *lone |= 1 << col;
+                if near.iter().map(about).sum::<u32>() <= ISOLATED_CELLS {
+                    *isolated |= 1 << col;
                 }
             }
         }
@@ -325,8 +331,8 @@ impl RollingGrid {
     #[must_use]
     pub fn row(&self, row: usize) -> (u128, u128) {
         let (mut occupied, mut unknown) = (0, 0);
-        if let Some(evidence) = self.evidence.get(row) {
-            for cells in evidence.as_chunks::<32>().0.iter().rev() {
+        if let Some(log_odds) = self.log_odds.get(row) {
+            for cells in log_odds.as_chunks::<32>().0.iter().rev() {
                 let (mut block, mut unknown_block) = (0, 0);
                 for four in cells.as_chunks::<4>().0.iter().rev() {
                     block = block << 4 | at_least::<OCCUPIED>(*four);
@@ -347,10 +353,10 @@ impl Default for RollingGrid {
     }
 }
 
-/// Sum of old and new evidence, within the limits. It is never 0, because 0 means that no beam has seen
+/// The log-odds of a cell after a beam, within the limits. It is never 0, because 0 means that no beam has seen
 /// the cell.
-fn weighed(evidence: i8, more: i8) -> i8 {
-    match evidence.saturating_add(more).clamp(-LIMIT, LIMIT) {
+fn updated(log_odds: i8, change: i8) -> i8 {
+    match log_odds.saturating_add(change).clamp(-LIMIT, LIMIT) {
         0 => -1,
         sum => sum,
     }

@@ -1,8 +1,8 @@
-//! Distance to the nearest occupied cell, for every cell of the map with memory.
+//! The truncated distance field \(ESDF\): the distance to the nearest occupied cell, for every cell of the grid.
 
 use super::cell::bit;
-use super::memory::{COLS, ROWS, RollingGrid};
-use crate::tuning::memory::{BEHIND, CELL};
+use super::rolling_grid::{COLS, ROWS, RollingGrid};
+use crate::tuning::grid::{BEHIND, CELL};
 use crate::tuning::open;
 use core::ops::Range;
 
@@ -215,7 +215,7 @@ impl DistanceField {
     }
 }
 
-/// The clearance field at one place downrange, for callers that ask at many heights.
+/// The distance field at one place downrange, for callers that ask at many heights.
 pub(crate) struct Column {
     /// Distances between the cell centres of a row, by row [1 / PARTS m].
     along: [f64; ROWS],
@@ -225,7 +225,7 @@ pub(crate) struct Column {
 
 const _: () = assert!(ROWS <= u8::MAX as usize);
 
-/// A height in the clearance field, for callers that ask at many places downrange.
+/// A height in the distance field, for callers that ask at many places downrange.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Height {
     /// The last row whose centre is below.

@@ -4,14 +4,14 @@ mod common {
     pub(crate) mod cells;
     pub(crate) mod completed;
     pub(crate) mod draw;
-    pub(crate) mod memory;
     pub(crate) mod pose;
+    pub(crate) mod rolling_grid;
 }
 
 use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::completed::Cells;
 use common::draw::Draw;
-use common::memory::{field, random_map};
+use common::rolling_grid::{field, random_map};
 use mpp_core::map::{DistanceField, FAR, RollingGrid};
 
 /// Distances are kept in 64ths of a metre, rounded down.

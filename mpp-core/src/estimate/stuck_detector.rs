@@ -1,8 +1,8 @@
-//! Values that a sensor repeats, and values that the filter refuses.
+//! Detection of values that a sensor repeats, and of refused values that show a steady turn.
 
 use crate::tuning::sensors::{BELIEVED_AFTER, FROZEN_TICKS, MOST_TURN};
 
-/// Watches one measured value for repetitions.
+/// Detects that a sensor repeats one measured value.
 #[derive(Clone, Copy, Debug)]
 pub struct StuckDetector {
     last: f64,
@@ -10,7 +10,7 @@ pub struct StuckDetector {
 }
 
 impl StuckDetector {
-    /// A watch that has seen no value.
+    /// A detector that has seen no value.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -48,8 +48,8 @@ impl Default for StuckDetector {
     }
 }
 
-/// Watches values that the filter refuses. An aircraft that turns otherwise than its model shows a steady course of them; a
-/// sensor that fails does not.
+/// Detects a steady turn in values that the filter refuses. An aircraft that turns otherwise than its model gives such
+/// values; a sensor that fails does not.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SteadyTurn {
     last: f64,
@@ -57,8 +57,8 @@ pub struct SteadyTurn {
 }
 
 impl SteadyTurn {
-    /// Takes the pitch of a tick \[rad\] and whether the filter refused it. Gives true once it refused [`BELIEVED_AFTER`] values in a row
-    /// that make a steady course: the filter is wrong then.
+    /// Takes the pitch of a tick \[rad\] and whether the filter refused it. Gives true once the filter has refused
+    /// [`BELIEVED_AFTER`] values in a row that change steadily: the filter is wrong then.
     pub fn take(&mut self, pitch: f64, refused: bool) -> bool {
         let is_steady = libm::fabs(pitch - self.last) < MOST_TURN;
         self.last = pitch;

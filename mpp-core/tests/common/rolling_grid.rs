@@ -1,4 +1,4 @@
-//! Maps with memory, built from scans.
+//! Rolling grids, built from scans.
 
 use crate::common::draw::Draw;
 use crate::common::pose::pose;

@@ -1,16 +1,16 @@
-//! Tests what the map with memory keeps, unlearns and forgets.
+//! Tests what the rolling grid keeps, unlearns and forgets.
 
 mod common {
     pub(crate) mod cells;
     pub(crate) mod draw;
-    pub(crate) mod memory;
     pub(crate) mod pose;
+    pub(crate) mod rolling_grid;
 }
 
 use common::cells::{CELL, COLS, ROWS, centre, occupied};
 use common::draw::Draw;
-use common::memory::{field, noise, random_map};
 use common::pose::pose;
+use common::rolling_grid::{field, noise, random_map};
 use mpp_core::map::RollingGrid;
 use mpp_core::sense::LidarScan;
 
@@ -139,7 +139,7 @@ fn unanswered_beams_speak_for_eight_ninths_of_the_sight() {
     }
 }
 
-/// Two beams that pass take back the evidence of a hit. The cell is then free, not unknown again.
+/// Two beams that pass take back the log-odds of a hit. The cell is then free, not unknown again.
 #[test]
 fn what_was_seen_is_never_unknown_again() {
     let mut map = started();

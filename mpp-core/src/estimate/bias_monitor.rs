@@ -1,19 +1,20 @@
-//! Slow errors of airspeed and pitch, which look alike.
+//! The watches for slow errors of airspeed and pitch, which look alike.
 //!
-//! A wrong airspeed also tilts the estimated motion, because the known airframe needs another angle of attack at it.
-//! So the pitch is not judged while the airspeed may be wrong, and what was seen of it by then is forgotten.
+//! A wrong airspeed also tilts the estimated motion, because the known airframe needs another angle of attack at this
+//! airspeed. So the watch of the pitch pauses while the airspeed may be wrong. Once the airspeed is found wrong, this watch
+//! drops what it has collected.
 
 use super::{AirspeedBias, Before, PitchBias};
 
 /// The watches of both sensors.
 #[derive(Clone, Copy, Debug)]
-pub struct Biases {
+pub struct BiasMonitor {
     airspeed: AirspeedBias,
     pitch: PitchBias,
 }
 
-impl Biases {
-    /// Watches that have seen nothing, for an aircraft with this lift coefficient in level flight [-].
+impl BiasMonitor {
+    /// Watches without observations, for an aircraft with this lift coefficient in level flight [-].
     #[must_use]
     pub const fn new(level_lift: f64) -> Self {
         Self {
