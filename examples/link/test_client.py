@@ -47,7 +47,7 @@ def test_the_page_lists_every_variant_in_its_order(enum):
 
 
 def test_the_page_lists_every_cause_of_a_rejection():
-    listed = re.findall(r"^\| (\d+) \| `(\w+)` \|", PAGE, re.MULTILINE)
+    listed = re.findall(r"^\|(\d+)\|`(\w+)`\|", PAGE, re.MULTILINE)
     assert listed == [(str(place), name) for place, name in enumerate(variants("RejectionCause"))]
 
 

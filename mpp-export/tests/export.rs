@@ -32,14 +32,11 @@ fn the_page_has_every_column_with_kind_unit_frame_and_meaning() {
             .nth(1)
             .unwrap();
         let part = part.split("\n#").next().unwrap();
-        let listed: Vec<&str> = part
-            .lines()
-            .filter(|line| line.starts_with("| `"))
-            .collect();
+        let listed: Vec<&str> = part.lines().filter(|line| line.starts_with("|`")).collect();
         let row = |column: &mpp_export::schema::Column| {
             let kind = format!("{:?}", column.kind).to_lowercase();
             let (name, unit, frame, about) = (column.name, column.unit, column.frame, column.about);
-            format!("| `{name}` | {kind} | {unit} | {frame} | {about} |")
+            format!("|`{name}`|{kind}|{unit}|{frame}|{about}|")
         };
         let expected: Vec<String> = schema.columns.iter().map(row).collect();
         assert_eq!(listed, expected);

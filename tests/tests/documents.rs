@@ -6,16 +6,15 @@
     reason = "the helpers of tests fail as tests do"
 )]
 
-use mpp_core::control::LqrWeights;
-use mpp_core::estimate::EkfTuning;
-use mpp_core::qp::{Penalty, Weights};
-use mpp_core::settings::{AttitudeLimits, Cruise, PlaneSettings, PlannerSettings, Settings};
-use mpp_core::units::Units;
 use mpp_core::vehicle::{Airframe, Trim};
-use std::collections::BTreeMap;
+use mpp_node::parameters::Tuning;
+use mpp_sim::scenario::{Preset, Scenario};
+use sil_harness::ground::param_file::values;
 use std::fs;
 use std::path::{Path, PathBuf};
-use syn::{BinOp, Expr, Item, Lit};
+
+#[path = "../../xtask/src/numbers/page.rs"]
+mod page_of_numbers;
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
@@ -143,211 +142,48 @@ fn a_dead_link_and_a_name_that_is_gone_are_found() {
     assert_eq!(faults[2], None);
 }
 
-/// Values of the constants of a file, those of a module inside it as `module::NAME`.
-fn constants(source: &str) -> BTreeMap<String, f64> {
-    let file = syn::parse_file(source).unwrap();
-    let mut found = BTreeMap::new();
-    collect("", &file.items, &mut found);
-    found
-}
-
-fn collect(prefix: &str, items: &[Item], found: &mut BTreeMap<String, f64>) {
-    for item in items {
-        match item {
-            Item::Const(constant) => {
-                if let Some(value) = value(&constant.expr, found) {
-                    found.insert(format!("{prefix}{}", constant.ident), value);
-                }
-            }
-            Item::Mod(module) => {
-                if let Some((_, items)) = &module.content {
-                    collect(&format!("{prefix}{}::", module.ident), items, found);
-                }
-            }
-            _ => {}
-        }
-    }
-}
-
-/// The value of a number, or of a few with signs between them.
-fn value(expression: &Expr, known: &BTreeMap<String, f64>) -> Option<f64> {
-    match expression {
-        Expr::Lit(literal) => match &literal.lit {
-            Lit::Float(number) => number.base10_parse().ok(),
-            Lit::Int(number) => number.base10_parse().ok(),
-            _ => None,
-        },
-        Expr::Paren(inner) => value(&inner.expr, known),
-        Expr::Path(path) => known.get(&path.path.get_ident()?.to_string()).copied(),
-        Expr::Binary(binary) => {
-            let (left, right) = (value(&binary.left, known)?, value(&binary.right, known)?);
-            match binary.op {
-                BinOp::Add(_) => Some(left + right),
-                BinOp::Mul(_) => Some(left * right),
-                BinOp::Div(_) => Some(left / right),
-                _ => None,
-            }
-        }
-        _ => None,
-    }
-}
-
-/// Name, value and whole line of each row of a section of docs/planner-numbers.md.
-fn rows(section: &str) -> Vec<(String, f64, String)> {
-    let page = read(&root().join("docs/planner-numbers.md"));
-    let start = page
-        .find(section)
-        .unwrap_or_else(|| panic!("there is no {section}"));
-    let body = &page[start + section.len()..];
-    let body = body.split("\n## ").next().unwrap_or(body);
-    let rows: Vec<_> = body
-        .lines()
-        .filter_map(|line| {
-            let mut cells = line.strip_prefix("| `")?.split('|').map(str::trim);
-            let name = cells.next()?.trim_end_matches('`');
-            let number = syn::parse_str(cells.next()?).unwrap();
-            let number = value(&number, &BTreeMap::new()).unwrap();
-            Some((name.to_owned(), number, line.to_owned()))
-        })
-        .collect();
-    assert!(!rows.is_empty(), "{section} has no rows");
-    rows
-}
-
-/// What a table says, by name.
-fn table(section: &str) -> BTreeMap<String, f64> {
-    let rows = rows(section);
-    let count = rows.len();
-    let table: BTreeMap<_, _> = rows
-        .into_iter()
-        .map(|(name, number, _)| (name, number))
-        .collect();
-    assert_eq!(table.len(), count, "{section}: a name stands there twice");
-    table
-}
-
 #[test]
 fn the_table_of_tuned_numbers_is_that_of_the_code() {
-    let mut numbers = BTreeMap::new();
-    for file in ["tuning.rs", "tuning/watches.rs"] {
-        let source = read(&root().join("mpp-core/src").join(file));
-        let found = constants(&source);
-        // Each constant of the file has a value that this test can read.
-        let all = source.matches("pub const ").count();
-        assert_eq!(found.len(), all, "{file}");
-        assert_eq!(source.matches("Source: ").count(), all, "sources in {file}");
-        numbers.extend(found);
-    }
-    assert_eq!(table("## Tuned numbers"), numbers);
+    let expected = page_of_numbers::text(&root()).unwrap();
+    let page = read(&root().join(page_of_numbers::PAGE));
+    // A whole page is no readable difference: name the first line that differs.
+    let differ = page.lines().zip(expected.lines()).find(|(is, be)| is != be);
+    assert_eq!(differ, None, "run `cargo xtask numbers --save`");
+    assert_eq!(
+        page.len(),
+        expected.len(),
+        "run `cargo xtask numbers --save`"
+    );
 }
 
-#[test]
-fn the_table_of_sizes_is_that_of_the_code() {
-    for (name, number, line) in rows("## Sizes and rates") {
-        let links = links(&line);
-        let (_, target) = links.last().unwrap_or_else(|| panic!("{name} has no link"));
-        let known = constants(&read(&root().join("docs").join(target)));
-        assert_eq!(known.get(&name), Some(&number), "{name} of {target}");
-    }
-}
+/// Parameters of the session and of the aircraft, and one whose value is no short number: they have no row.
+const UNLISTED: [&str; 8] = [
+    "MPP_REPLAN_S",
+    "MPP_LATENCY_S",
+    "MPP_SLICES",
+    "EKF_R_PITCH",
+    "ACT_THRUST_N",
+    "ACT_THRUST_LAG_S",
+    "ACT_ELEV_RANGE",
+    "ACT_ELEV_RATE",
+];
 
 #[test]
 fn the_table_of_settings_is_that_of_preset_flight() {
-    // Whoever adds a field has to say here, and in the table, what it is.
-    let Settings {
-        units: Units::SI,
-        airframe: Airframe::REFERENCE,
-        actuators: _,
-        cruise: Cruise::Airspeed(cruise),
-        design_thrust: None,
-        design_jacobian: _,
-        estimator,
-        wind_change: Some(wind_change),
-        regulator,
-        cross_track,
-        airspeed_hold,
-        planner,
-    } = Settings::flight()
-    else {
-        panic!("preset flight has other settings than the table says");
-    };
-    let EkfTuning {
-        process_noise,
-        airspeed_variance,
-        pitch_variance,
-        initial_variance,
-        gate,
-        jacobian: _,
-    } = estimator;
-    let LqrWeights { state, elevator } = regulator;
-    let own = *planner.plane().unwrap();
-    let PlannerSettings {
-        paths,
-        altitude,
-        seed: 0,
-        weights: Weights { control, terminal },
-        method: _,
-    } = planner
-    else {
-        panic!("preset flight has another seed than the table says");
-    };
-    let PlaneSettings {
-        sight,
-        latency,
-        penalty: Penalty { linear, quadratic },
-        stall: _,
-        body_radius: _,
-        attitude: AttitudeLimits {
-            angle_of_attack,
-            flight_path,
-        },
-        sqp_iterations,
-        refined_candidates,
-        margin,
-        band,
-        thrust_max,
-    } = own;
-    // A standard deviation of a quarter of a degree.
-    assert!((pitch_variance.sqrt() - 0.25_f64.to_radians()).abs() < 1e-15);
-    let settings: [(&str, f64); 32] = [
-        ("cruise", cruise),
-        ("wind_change", wind_change),
-        ("cross_track", cross_track),
-        ("airspeed_hold", airspeed_hold),
-        ("estimator.process_noise[0]", process_noise[0]),
-        ("estimator.process_noise[1]", process_noise[1]),
-        ("estimator.process_noise[2]", process_noise[2]),
-        ("estimator.process_noise[3]", process_noise[3]),
-        ("estimator.airspeed_variance", airspeed_variance),
-        ("estimator.initial_variance", initial_variance),
-        ("estimator.gate", gate),
-        ("regulator.state[0]", state[0]),
-        ("regulator.state[1]", state[1]),
-        ("regulator.state[2]", state[2]),
-        ("regulator.state[3]", state[3]),
-        ("regulator.elevator", elevator),
-        ("planner.paths", paths as f64),
-        ("planner.altitude", altitude),
-        ("planner.weights.control[0]", control[0]),
-        ("planner.weights.control[1]", control[1]),
-        ("planner.weights.terminal", terminal),
-        ("sight", sight),
-        ("latency", latency),
-        ("penalty.linear", linear),
-        ("penalty.quadratic", quadratic),
-        ("attitude.angle_of_attack", angle_of_attack),
-        ("attitude.flight_path", flight_path),
-        ("sqp_iterations", f64::from(sqp_iterations)),
-        ("refined_candidates", refined_candidates as f64),
-        ("margin", margin),
-        ("band", band),
-        ("thrust_max", thrust_max),
-    ];
-    let settings = settings.map(|(name, value)| (name.to_owned(), value));
-    assert_eq!(
-        table("## Settings of preset `flight`"),
-        BTreeMap::from(settings)
-    );
+    let tuning = Tuning::new(&Scenario::new(Preset::Flight, 1).configure()).unwrap();
+    let flown: Vec<_> = values(&tuning)
+        .filter(|(name, _)| !UNLISTED.contains(name))
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect();
+    let page = read(&root().join(page_of_numbers::PAGE));
+    let told: Vec<(String, f64)> = page
+        .lines()
+        .filter_map(|line| {
+            let (name, rest) = line.strip_prefix("|`")?.split_once("`|")?;
+            Some((name.to_owned(), rest.split('|').next()?.parse().unwrap()))
+        })
+        .collect();
+    assert_eq!(told, flown);
 }
 
 /// The pages give the elevator of level trim by airframe and cruise.

@@ -1,5 +1,5 @@
 //! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
-//! for browsers, the golden flights, and the figures of docs/validation.
+//! for browsers, the golden flights, the page of numbers, and the figures of docs/validation.
 //!
 //! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
 //! and library sources, which they install as root.
@@ -21,6 +21,7 @@ mod golden;
 mod identity;
 mod limits;
 mod nucleo;
+mod numbers;
 mod pil;
 mod qemu;
 mod reproduce;
@@ -78,6 +79,8 @@ enum Command {
     Golden(golden::GoldenArgs),
     /// Say how old the figures of docs/validation are; --page runs the commands that print them again
     Validation(validation::ValidationArgs),
+    /// Print docs/planner-numbers.md with the numbers and comments of the code; --save writes it
+    Numbers(numbers::NumbersArgs),
 }
 
 fn main() -> ExitCode {
@@ -98,6 +101,7 @@ fn main() -> ExitCode {
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Validation(args) => validation::run(&args),
+        Command::Numbers(args) => numbers::run(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

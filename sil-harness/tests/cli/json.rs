@@ -51,14 +51,18 @@ fn printed(directory: &Path, commands: &[&str]) -> BTreeSet<String> {
     found
 }
 
-/// The names in the table of a command.
+/// The names in the table of a command; a row may have several.
 #[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn documented(command: &str) -> Vec<&'static str> {
     let page = include_str!("../../../docs/logs.md");
     let (_, section) = page.split_once(&format!("### `{command}`\n")).unwrap();
     let section = section.split("\n##").next().unwrap();
-    let rows = section.lines().filter_map(|line| line.strip_prefix("| `"));
-    rows.map(|row| row.split('`').next().unwrap()).collect()
+    let rows = section.lines().filter_map(|line| line.strip_prefix("|`"));
+    let cells = rows.map(|row| row.split('|').next().unwrap());
+    cells
+        .flat_map(|cell| cell.split('`').step_by(2))
+        .filter(|name| !name.is_empty())
+        .collect()
 }
 
 /// Whether a documented name stands for this path: it is the path, or an object or a list around it.
