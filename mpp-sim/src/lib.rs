@@ -59,6 +59,8 @@ pub mod names;
 
 pub mod random;
 
+mod toml_error;
+
 pub mod field;
 
 pub mod generator;

@@ -327,16 +327,9 @@ impl Shard {
 }
 
 /// A text that names no part of a campaign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give i/n with i from 1 to n, such as 2/8")]
 pub struct NoShard;
-
-impl fmt::Display for NoShard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("give i/n with i from 1 to n, such as 2/8")
-    }
-}
-
-impl std::error::Error for NoShard {}
 
 impl FromStr for Shard {
     type Err = NoShard;

@@ -194,7 +194,7 @@ fn table(name: &'static str, fault: &impl Timed) -> Table {
         absent: is_absent(fault),
         acts: !is_absent(&fault.timeless()),
         window: fault.window(),
-        flaw: fault.flaw(),
+        flaw: fault.window().flaw().or(fault.wrong_key()),
     }
 }
 

@@ -1,59 +1,31 @@
 //! Faults of one signal: a sensor that reports another value, or an actuator that gives another one.
 
-use super::window::{Timed, Window, is_absent};
+use super::window::{Timed, fault_table, is_absent};
 use crate::random::{self, Stream};
 use mpp_core::config::TICK_PERIOD;
 use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 
-/// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
-/// `quantum`, `frozen`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SignalFault {
-    /// Time at which the fault begins \[s\]; by default the start of the flight.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<f64>,
-    /// Time at which the fault ends \[s\]; by default it does not end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-    /// Factor on the value [-].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scale: Option<f64>,
-    /// Constant error, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bias: Option<f64>,
-    /// Error that grows from the beginning of the fault on, in units of the signal per second.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ramp: Option<f64>,
-    /// Standard deviation of additional white noise, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise: Option<f64>,
-    /// Step between the values that the signal can have, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub quantum: Option<f64>,
-    /// Whether the signal keeps the first value that it has within the fault.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub frozen: bool,
+fault_table! {
+    /// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
+    /// `quantum`, `frozen`.
+    pub struct SignalFault {
+        /// Factor on the value [-].
+        pub scale: Option<f64>,
+        /// Constant error, in the unit of the signal.
+        pub bias: Option<f64>,
+        /// Error that grows from the beginning of the fault on, in units of the signal per second.
+        pub ramp: Option<f64>,
+        /// Standard deviation of additional white noise, in the unit of the signal.
+        pub noise: Option<f64>,
+        /// Step between the values that the signal can have, in the unit of the signal.
+        pub quantum: Option<f64>,
+        /// Whether the signal keeps the first value that it has within the fault.
+        pub frozen: bool,
+    }
 }
 
-impl Timed for SignalFault {
-    fn window(&self) -> Window {
-        Window {
-            from: self.from,
-            until: self.until,
-        }
-    }
-
-    fn timeless(&self) -> Self {
-        Self {
-            from: None,
-            until: None,
-            ..*self
-        }
-    }
-
-    fn flaw(&self) -> Option<&'static str> {
+impl SignalFault {
+    fn wrong_key(&self) -> Option<&'static str> {
         let finite = |value: Option<f64>| value.is_none_or(f64::is_finite);
         let (noise, quantum) = (self.noise.unwrap_or(0.0), self.quantum.unwrap_or(1.0));
         let keys = [
@@ -70,7 +42,7 @@ impl Timed for SignalFault {
             ),
         ];
         let flaw = keys.into_iter().find(|(sound, _)| !sound);
-        self.window().flaw().or(flaw.map(|(_, advice)| advice))
+        flaw.map(|(_, advice)| advice)
     }
 }
 

@@ -6,7 +6,7 @@ use super::file_name::file_name;
 use super::ground::GroundArgs;
 use super::help::{CORE, OUTPUT, PLANNER, WORLD};
 use super::loudness::{Loudness, progress_bar};
-use super::scenario::{ScenarioArgs, replace};
+use super::scenario::{ScenarioArgs, other, replace};
 use super::signals::Signals;
 use super::values::{generator, preset, seconds, seed};
 use crate::files::{read_field, write_field, write_log, write_whole};
@@ -112,25 +112,12 @@ impl FlyArgs {
         let flown = (log.header.scenario()).map_err(|error| usage(error.to_string()))?;
         let rate = |hz: f64| (hz - flown.replan_hz()).abs() > 1e-9;
         let flags = [
-            ("--seed", self.seed.is_some_and(|seed| seed != flown.seed)),
+            ("--seed", other(self.seed, flown.seed)),
             ("--field", self.other_field(&flown)?),
-            (
-                "--generator",
-                self.generator
-                    .is_some_and(|name| name != flown.generator.name),
-            ),
-            (
-                "--obstacles",
-                self.obstacles.is_some_and(|count| count != flown.obstacles),
-            ),
-            (
-                "--paths",
-                self.paths.is_some_and(|count| count != flown.paths),
-            ),
-            (
-                "--preset",
-                self.preset.is_some_and(|preset| preset != flown.preset),
-            ),
+            ("--generator", other(self.generator, flown.generator.name)),
+            ("--obstacles", other(self.obstacles, flown.obstacles)),
+            ("--paths", other(self.paths, flown.paths)),
+            ("--preset", other(self.preset, flown.preset)),
             ("--replan-hz", self.replan_hz.is_some_and(rate)),
             ("--oracle", self.oracle && !flown.oracle),
         ];

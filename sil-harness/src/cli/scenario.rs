@@ -83,30 +83,23 @@ impl ScenarioArgs {
     ) -> Result<[(&'static str, bool); 8], Failure> {
         let lidar = self.lidar()?;
         let other_lidar = lidar.is_some_and(|table| table.over(flown.lidar) != flown.lidar);
-        let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
-        let slices = other(self.slices_per_tick, flown.slices_per_tick);
         let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
             read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
         });
         let seconds = (self.duration).is_some_and(|asked| (asked - flown.duration()).abs() > 1e-6);
+        let navigation = self.navigation.map(NavigationSource::config);
+        let latency_ms = flown.latency_ticks * TICK_MS;
         Ok([
             ("--lidar", other_lidar),
             ("--scene", self.scene.is_some() && self.scene != flown.scene),
             ("--aircraft", aircraft),
+            ("--world-scale", other(self.world_scale, flown.world_scale)),
+            ("--navigation", other(navigation, flown.navigation)),
+            ("--latency-ms", other(self.latency_ms, latency_ms)),
             (
-                "--world-scale",
-                (self.world_scale).is_some_and(|scale| (scale - flown.world_scale).abs() > 0.0),
+                "--slices-per-tick",
+                other(self.slices_per_tick, flown.slices_per_tick),
             ),
-            (
-                "--navigation",
-                self.navigation
-                    .is_some_and(|source| source.config() != flown.navigation),
-            ),
-            (
-                "--latency-ms",
-                other(self.latency_ms, flown.latency_ticks * TICK_MS),
-            ),
-            ("--slices-per-tick", slices),
             ("--duration", seconds),
         ])
     }
@@ -148,6 +141,11 @@ impl FieldArgs {
             ..Lists::default()
         })
     }
+}
+
+/// Whether a flag asks for another value than this one.
+pub(super) fn other<T: PartialEq>(flag: Option<T>, flown: T) -> bool {
+    flag.is_some_and(|asked| asked != flown)
 }
 
 /// Takes a flag's value if it was given.

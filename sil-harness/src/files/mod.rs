@@ -6,74 +6,48 @@ use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
-use std::fmt;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The reason why a file cannot be used. The message names the file.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file cannot be read.
-    Read(PathBuf, io::Error),
+    #[error("cannot read {path}: {1}", path = .0.display())]
+    Read(PathBuf, #[source] io::Error),
     /// There is no aircraft with this name, and no file that can be read.
-    Aircraft(String, io::Error),
+    #[error(
+        "there is no aircraft `{0}`, and no such file can be read ({1}): give {known} or a file",
+        known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ")
+    )]
+    Aircraft(String, #[source] io::Error),
     /// The file cannot be written.
-    Write(PathBuf, io::Error),
+    #[error("cannot write {path}: {1}", path = .0.display())]
+    Write(PathBuf, #[source] io::Error),
     /// The file is no scenario; the error names the file.
-    Scenario(ScenarioError),
+    #[error("{0}")]
+    Scenario(#[source] ScenarioError),
     /// The file is no field; the error names the file.
-    Field(FieldError),
+    #[error("{0}")]
+    Field(#[source] FieldError),
     /// The file is no flight log, or the log cannot be written.
-    Log(PathBuf, LogError),
+    #[error("{path}: {1}", path = .0.display())]
+    Log(PathBuf, #[source] LogError),
     /// The file holds no programs.
-    Instances(PathBuf, InstanceError),
+    #[error("{path}: {1}", path = .0.display())]
+    Instances(PathBuf, #[source] InstanceError),
     /// The directory holds no programs.
+    #[error(
+        "{}: no programs: give a file of instances or a directory with case_*.json",
+        .0.display()
+    )]
     NoInstances(PathBuf),
     /// The directory holds no recorded data.
+    #[error(
+        "{} holds no .json files: give the directory of the recorded reference",
+        .0.display()
+    )]
     NoRecords(PathBuf),
-}
-
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read(path, error) => write!(f, "cannot read {}: {error}", path.display()),
-            Self::Aircraft(name, error) => {
-                let known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ");
-                write!(
-                    f,
-                    "there is no aircraft `{name}`, and no such file can be read ({error}): give {known} or a file"
-                )
-            }
-            Self::Write(path, error) => write!(f, "cannot write {}: {error}", path.display()),
-            Self::Scenario(error) => write!(f, "{error}"),
-            Self::Field(error) => write!(f, "{error}"),
-            Self::Log(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::Instances(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::NoInstances(path) => write!(
-                f,
-                "{}: no programs: give a file of instances or a directory with case_*.json",
-                path.display()
-            ),
-            Self::NoRecords(path) => write!(
-                f,
-                "{} holds no .json files: give the directory of the recorded reference",
-                path.display()
-            ),
-        }
-    }
-}
-
-impl std::error::Error for FileError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Read(_, error) | Self::Aircraft(_, error) | Self::Write(_, error) => Some(error),
-            Self::Scenario(error) => Some(error),
-            Self::Field(error) => Some(error),
-            Self::Log(_, error) => Some(error),
-            Self::Instances(_, error) => Some(error),
-            Self::NoInstances(_) | Self::NoRecords(_) => None,
-        }
-    }
 }
 
 /// Greatest size of a file that people write: scenarios, parameters, keys \[bytes\].
