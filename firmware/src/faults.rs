@@ -39,18 +39,6 @@ static FAULT_STEP_TRAPS_AFTER: u32 = NEVER;
 #[unsafe(no_mangle)]
 static FAULT_TRAP: u32 = 0;
 
-/// Tick after whose step a bit of RAM flips, the byte's address, and the bit. It flips once.
-#[unsafe(no_mangle)]
-static FAULT_FLIP_AFTER: u32 = NEVER;
-#[unsafe(no_mangle)]
-static FAULT_FLIP_ADDRESS: u32 = 0;
-#[unsafe(no_mangle)]
-static FAULT_FLIP_BIT: u32 = 0;
-
-/// Whether the bit has flipped. This memory survives the reset.
-#[unsafe(link_section = ".uninit.faults")]
-static FLIPPED: AtomicU32 = AtomicU32::new(0);
-
 /// Whether the planner has hung since the start.
 static PLANNER_HUNG: AtomicBool = AtomicBool::new(false);
 /// Whether the step has hung or trapped. This memory survives the reset.
@@ -95,21 +83,10 @@ pub fn step(clock: u32) {
     if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
         hang();
     }
-    let after = read(&FAULT_FLIP_AFTER);
-    if after != NEVER && clock == after && FLIPPED.swap(YES, Ordering::Relaxed) != YES {
-        flip(read(&FAULT_FLIP_ADDRESS), read(&FAULT_FLIP_BIT));
-    }
     let after = read(&FAULT_STEP_TRAPS_AFTER);
     if after != NEVER && clock == after && STEP_HUNG.swap(YES, Ordering::Relaxed) != YES {
         trap();
     }
-}
-
-fn flip(address: u32, bit: u32) {
-    let byte = address as *mut u8;
-    // SAFETY: there is nothing to say for it. The flip stands for one by radiation, which keeps no rule of the
-    // language either; the compiler does not know the address.
-    unsafe { byte.write_volatile(byte.read_volatile() ^ 1_u8.wrapping_shl(bit)) };
 }
 
 fn trap() -> ! {

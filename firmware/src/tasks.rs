@@ -6,12 +6,12 @@ use crate::{faults, image, mark, restart, trap};
 use core::sync::atomic::{AtomicU32, Ordering};
 use hil_protocol::{ConfigureVerdict, RejectionCause};
 use mark::Region;
-use mpp_node::{Answer, Order, Pace, PlanTask, Progress, StepTask};
+use mpp_node::{Pace, PlanReply, PlanRequest, PlanTask, Progress, StepTask};
 
-/// Orders from the step to the planner.
-static ORDERS: Mailbox<Order> = Mailbox::new();
-/// Answers from the planner to the step.
-static ANSWERS: Mailbox<Answer> = Mailbox::new();
+/// Requests of the step to the planner.
+static REQUESTS: Mailbox<PlanRequest> = Mailbox::new();
+/// Replies of the planner to the step.
+static REPLIES: Mailbox<PlanReply> = Mailbox::new();
 /// The planner's clock, from [`StepTask::clock`].
 static CLOCK: AtomicU32 = AtomicU32::new(0);
 /// Counter of the planner's activity. As long as it changes, the planner is alive.
@@ -110,15 +110,15 @@ impl StepSide {
         self.post();
     }
 
-    /// Takes the planner's answer, if there is one.
-    // Not inlined, so that the answer is not on the stack of each byte.
+    /// Takes the planner's reply, if there is one.
+    // Not inlined, so that the reply is not on the stack of each byte.
     #[inline(never)]
     pub fn collect(&mut self, send: impl FnMut(&[u8])) {
         // SAFETY: the step is the consumer.
-        if let Some(answer) = unsafe { ANSWERS.take() } {
+        if let Some(reply) = unsafe { REPLIES.take() } {
             let before = self.task.last_tick();
             mark::begin();
-            self.task.answer(answer, send);
+            self.task.take_reply(reply, send);
             self.end_region(true, before);
         }
         self.post();
@@ -161,8 +161,8 @@ impl StepSide {
         self.silent_for = 0;
         self.calm_for = 0;
         self.restarts = self.restarts.saturating_add(1);
-        // SAFETY: the step is the consumer. It drops an answer from before the restart.
-        drop(unsafe { ANSWERS.take() });
+        // SAFETY: the step is the consumer. It drops a reply from before the restart.
+        drop(unsafe { REPLIES.take() });
         if trap::planner_stays_off() {
             self.planner_off = true;
             self.task.planner_off(send);
@@ -172,20 +172,20 @@ impl StepSide {
         self.post();
     }
 
-    /// Sends the orders and the time to the planner.
+    /// Sends the request and the time to the planner.
     fn post(&mut self) {
-        if !ORDERS.is_full() && self.task.has_order() {
-            self.post_order();
+        if !REQUESTS.is_full() && self.task.has_request() {
+            self.post_request();
         }
         CLOCK.store(self.task.clock(), Ordering::Release);
     }
 
-    // Not inlined, so that the order is not on the stack of each byte.
+    // Not inlined, so that the request is not on the stack of each byte.
     #[inline(never)]
-    fn post_order(&mut self) {
-        if let Some(order) = self.task.order() {
+    fn post_request(&mut self) {
+        if let Some(request) = self.task.request() {
             // SAFETY: the step is the producer.
-            unsafe { ORDERS.post(order) };
+            unsafe { REQUESTS.post(request) };
         }
     }
 
@@ -201,10 +201,10 @@ impl StepSide {
     }
 }
 
-/// Whether an order waits for the planner.
+/// Whether a request waits for the planner.
 #[must_use]
 pub fn has_order() -> bool {
-    ORDERS.is_full()
+    REQUESTS.is_full()
 }
 
 fn pulse() {
@@ -228,12 +228,12 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
         PLAN.get()
     };
     // A task of zeros is valid, but not ready. It must do nothing until its first `SetUp`, which sets
-    // all of its state. The loop also ignores orders for a planner before a restart.
+    // all of its state. The loop also ignores requests to a planner before a restart.
     let mut set_up = false;
     let mut first_slice = false;
     loop {
         pulse();
-        if ORDERS.is_full() {
+        if REQUESTS.is_full() {
             // SAFETY: this is the thread.
             let begins = unsafe { obey(task, &mut set_up) };
             first_slice |= begins;
@@ -258,10 +258,10 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
                 mark::end(Region::Idle);
                 idle();
             }
-            Progress::Answered => {
-                if !ANSWERS.is_full() {
+            Progress::Replied => {
+                if !REPLIES.is_full() {
                     // SAFETY: this is the thread.
-                    unsafe { post_answer(task) };
+                    unsafe { post_reply(task) };
                 }
                 mark::end(Region::Answer);
                 notify_step();
@@ -270,13 +270,13 @@ pub unsafe fn plan(notify_step: fn(), mut idle: impl FnMut()) -> ! {
     }
 }
 
-/// Takes an order, if the planner is or will be set up. Returns true if a cycle begins.
+/// Takes a request, if the planner is or will be set up. Returns true if a cycle begins.
 ///
 /// # Safety
 /// Only the thread may call this function.
 unsafe fn obey(task: &mut PlanTask, set_up: &mut bool) -> bool {
-    let take = |order: &Order| {
-        let begins = matches!(order, Order::Begin { .. });
+    let take = |request: &PlanRequest| {
+        let begins = matches!(request, PlanRequest::Begin { .. });
         *set_up |= !begins;
         if !*set_up {
             return false;
@@ -285,23 +285,23 @@ unsafe fn obey(task: &mut PlanTask, set_up: &mut bool) -> bool {
             faults::set_up(pulse);
         }
         mark::begin();
-        task.take(order);
+        task.take(request);
         mark::end(Region::Order);
         begins
     };
     // SAFETY: the thread is the consumer.
-    unsafe { ORDERS.read(take) }.unwrap_or_default()
+    unsafe { REQUESTS.read(take) }.unwrap_or_default()
 }
 
-/// Posts the answer of the planner.
+/// Posts the reply of the planner.
 ///
 /// # Safety
 /// Only the thread may call this function.
-// Not inlined, so that the answer is not on the stack of the slices.
+// Not inlined, so that the reply is not on the stack of the slices.
 #[inline(never)]
-unsafe fn post_answer(task: &mut PlanTask) {
-    if let Some(answer) = task.answer() {
+unsafe fn post_reply(task: &mut PlanTask) {
+    if let Some(reply) = task.reply() {
         // SAFETY: the thread is the producer.
-        unsafe { ANSWERS.post(answer) };
+        unsafe { REPLIES.post(reply) };
     }
 }

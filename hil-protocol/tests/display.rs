@@ -49,7 +49,7 @@ fn every_verdict_and_cause_speaks() {
         (
             ConfigureVerdict::ImageDamaged,
             ParameterVerdict::CruiseFixed,
-            RejectionCause::ValuesRepaired,
+            RejectionCause::PlannerOff,
             DecodeError::TrailingBytes { id: 0 },
         )
     );

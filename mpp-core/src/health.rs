@@ -42,12 +42,15 @@ pub struct Health {
     pub plans_least_violating: u32,
     /// Cycles that gave no trajectory, while there was also no last trajectory to continue.
     pub plans_trim_hold: u32,
+    /// Cycles that the planner ended early, because its phase and its workspace did not belong together. More than 0 is a
+    /// defect of the planner.
+    pub planner_inconsistent: u32,
 }
 
 impl Health {
     /// The counters, in the order of the fields.
     #[must_use]
-    pub const fn counters(&self) -> [u32; 19] {
+    pub const fn counters(&self) -> [u32; 20] {
         [
             self.measurements_not_finite,
             self.measurements_frozen,
@@ -68,6 +71,7 @@ impl Health {
             self.plans_kept,
             self.plans_least_violating,
             self.plans_trim_hold,
+            self.planner_inconsistent,
         ]
     }
 

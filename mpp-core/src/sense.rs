@@ -1,7 +1,6 @@
 //! The data of the sensors: the inputs of the flight loop and of the map.
 
 use crate::config::MAX_BEAMS;
-use core::fmt;
 
 /// The measurements that arrived in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -138,9 +137,10 @@ impl Default for LidarScan {
 }
 
 /// A scan that cannot be used. The vehicle flies on with the last plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScanError {
     /// The number of beams differs from the declared one.
+    #[error("the scan has {found} beams instead of {expected}: declare the lidar as it is")]
     Length {
         /// Declared number of beams.
         expected: usize,
@@ -148,43 +148,20 @@ pub enum ScanError {
         found: usize,
     },
     /// An angle is not a finite number.
+    #[error("an angle of the scan is not a finite number: check the lidar")]
     AngleNotFinite,
     /// A range is not a finite number.
+    #[error("the range of beam {beam} is not a finite number: give 0 where nothing came back")]
     NotFinite {
         /// The first such beam.
         beam: usize,
     },
     /// A range is negative or beyond the declared sight.
+    #[error(
+        "the range of beam {beam} is negative or beyond the sight: give 0 where nothing came back"
+    )]
     OutOfRange {
         /// The first such beam.
         beam: usize,
     },
 }
-
-impl fmt::Display for ScanError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Length { expected, found } => write!(
-                f,
-                "the scan has {found} beams instead of {expected}: declare the lidar as it is"
-            ),
-            Self::AngleNotFinite => {
-                write!(
-                    f,
-                    "an angle of the scan is not a finite number: check the lidar"
-                )
-            }
-            Self::NotFinite { beam } => write!(
-                f,
-                "the range of beam {beam} is not a finite number: give 0 where nothing came back"
-            ),
-            Self::OutOfRange { beam } => write!(
-                f,
-                "the range of beam {beam} is negative or beyond the sight: give 0 where nothing \
-                 came back"
-            ),
-        }
-    }
-}
-
-impl core::error::Error for ScanError {}

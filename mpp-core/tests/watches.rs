@@ -8,12 +8,10 @@ mod common {
 use common::gaussian::gaussian;
 use common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{
-    AirspeedBias, Before, Biases, Estimator, PitchBias, SensorMonitor, Trust,
-};
+use mpp_core::estimate::{AirspeedBias, Before, Biases, PitchBias, SensorMonitor, Trust};
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{AirState, Trim, VehicleState};
+use mpp_core::vehicle::{AirState, VehicleState};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
@@ -246,25 +244,5 @@ fn a_pitch_on_a_steady_course_is_believed_against_the_model() {
         }
         assert!(worst < 0.2, "{worst} rad");
         assert_eq!(excluded, fails);
-    }
-}
-
-/// The values that no step changes can be compared with a copy, and put back from it.
-#[test]
-fn values_of_the_estimator_that_changed_in_memory_are_noticed_and_put_back() {
-    let known = Settings::flight();
-    let trim = Trim::of_authors(&known.airframe);
-    let design = Estimator::new(&known, &trim).design();
-    let mut others = [known; 4];
-    others[0].airframe.mass *= 1.01;
-    others[1].actuators.elevator_rate = Some(7.0);
-    others[2].estimator.gate += 1.0;
-    others[3].wind_change = Some(0.123);
-    assert!(Estimator::new(&known, &trim).has(&design));
-    for other in others {
-        let mut changed = Estimator::new(&other, &trim);
-        assert!(!changed.has(&design));
-        changed.restore(&design);
-        assert!(changed.has(&design));
     }
 }

@@ -24,8 +24,8 @@
 //! # Two tasks
 //!
 //! ```text
-//! bytes -> StepTask --- Order ----> PlanTask     1, 2, 3, 4 | 5
-//! bytes <-          <-- Answer ---
+//! bytes -> StepTask -- PlanRequest -> PlanTask     1, 2, 3, 4 | 5
+//! bytes <-          <- PlanReply ---
 //! ```
 //!
 //! [`StepTask`] has the link and the 100 Hz step, and [`PlanTask`] has the planner. They share no data and
@@ -42,7 +42,7 @@ mod plan_task;
 mod step_task;
 
 pub use convert::sensor_frame;
-pub use mail::{Answer, Order, Plan};
+pub use mail::{Plan, PlanReply, PlanRequest};
 pub use node::FlightNode;
 pub use plan_task::{PlanTask, Progress};
 pub use step_task::{Pace, StepTask};

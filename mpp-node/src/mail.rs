@@ -8,22 +8,22 @@ use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::Pose;
 use mpp_core::vehicle::VehicleState;
 
-/// A message from the step to the planner.
+/// A request of the step to the planner.
 #[expect(
     clippy::large_enum_variant,
     reason = "there is no heap to put the scan on"
 )]
 #[derive(Clone, Debug)]
-pub enum Order {
-    /// Sets the planner up and drops its present work. The answer is [`Answer::SetUp`].
+pub enum PlanRequest {
+    /// Sets the planner up and drops its present work. The reply is [`PlanReply::SetUp`].
     SetUp {
-        /// Number of the set-up. It comes back with the answer, and the step drops an answer to an earlier
+        /// Number of the set-up. It comes back with the reply, and the step drops a reply to an earlier
         /// set-up.
         number: u32,
         /// The settings in force.
         settings: Settings,
     },
-    /// Starts a cycle. The answer is [`Answer::Plan`].
+    /// Starts a cycle. The reply is [`PlanReply::Plan`].
     Begin {
         /// The tick at which the cycle starts.
         tick: u32,
@@ -49,16 +49,16 @@ pub enum Order {
     },
 }
 
-/// A message from the planner to the step.
+/// The reply of the planner to a [`PlanRequest`].
 #[expect(
     clippy::large_enum_variant,
     reason = "there is no heap to put the trajectory on"
 )]
 #[derive(Clone, Debug)]
-pub enum Answer {
+pub enum PlanReply {
     /// The result of a set-up.
     SetUp {
-        /// The number of the order.
+        /// The number of the request.
         number: u32,
         /// The cause if the set-up failed.
         result: Result<(), SetupError>,

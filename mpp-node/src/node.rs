@@ -1,6 +1,6 @@
 //! The node that runs both tasks in one thread.
 
-use crate::mail::Order;
+use crate::mail::PlanRequest;
 use crate::plan_task::{PlanTask, Progress};
 use crate::step_task::{Pace, StepTask};
 use mpp_core::health::Health;
@@ -29,12 +29,12 @@ impl FlightNode {
     }
 
     /// Does the work of [`FlightNode::receive`] for a caller that knows more than the link tells. `advise`
-    /// may change each order, and the planner's map, before the planner takes the order.
+    /// may change each request, and the planner's map, before the planner takes the request.
     pub fn receive_advised(
         &mut self,
         bytes: &[u8],
         mut send: impl FnMut(&[u8]),
-        mut advise: impl FnMut(&mut Order, &mut Planner),
+        mut advise: impl FnMut(&mut PlanRequest, &mut Planner),
     ) {
         for byte in bytes {
             self.step.receive(*byte, &mut send);
@@ -55,23 +55,23 @@ impl FlightNode {
     }
 
     /// Runs the planner until it waits. The loop ends, because a cycle has a bounded number of slices, and
-    /// an answer starts at most one more tick.
+    /// a reply starts at most one more tick.
     fn run_planner(
         &mut self,
         send: &mut impl FnMut(&[u8]),
-        advise: &mut impl FnMut(&mut Order, &mut Planner),
+        advise: &mut impl FnMut(&mut PlanRequest, &mut Planner),
     ) {
         loop {
-            if let Some(mut order) = self.step.order() {
-                advise(&mut order, self.plan.planner_mut());
-                self.plan.take(&order);
+            if let Some(mut request) = self.step.request() {
+                advise(&mut request, self.plan.planner_mut());
+                self.plan.take(&request);
             }
             match self.plan.advance(self.step.clock()) {
                 Progress::Waiting => return,
                 Progress::Working => {}
-                Progress::Answered => {
-                    if let Some(answer) = self.plan.answer() {
-                        self.step.answer(answer, &mut *send);
+                Progress::Replied => {
+                    if let Some(reply) = self.plan.reply() {
+                        self.step.take_reply(reply, &mut *send);
                     }
                 }
             }

@@ -7,7 +7,6 @@
 use crate::convert;
 use hil_protocol::{Configure, ConfigureVerdict, ParameterVerdict, Preset};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::paper::Padding;
 use mpp_core::settings::{Cruise, PlaneSettings, Settings};
 
 /// A configuration, and the settings that follow from it and from later changes of parameters.
@@ -201,26 +200,28 @@ fn set_flight(tuning: &mut Tuning, set: impl FnOnce(&mut PlaneSettings)) {
     }
 }
 
-/// A value from the padding of the paper's method, if it is the chosen method.
+/// The near and the far padding of the paper's method, if it is the chosen method.
 #[cfg(feature = "paper")]
-fn padding(tuning: &Tuning, get: impl FnOnce(&Padding) -> f64) -> Option<f64> {
-    tuning.settings.planner.paper().map(|own| get(&own.padding))
+fn padding(tuning: &Tuning) -> Option<[f64; 2]> {
+    let padding = &tuning.settings.planner.paper()?.padding;
+    Some([padding.near, padding.far])
 }
 
 #[cfg(not(feature = "paper"))]
-fn padding(_: &Tuning, _: impl FnOnce(&Padding) -> f64) -> Option<f64> {
+fn padding(_: &Tuning) -> Option<[f64; 2]> {
     None
 }
 
 #[cfg(feature = "paper")]
-fn set_padding(tuning: &mut Tuning, set: impl FnOnce(&mut Padding)) {
-    if let Some(own) = tuning.settings.planner.paper_mut() {
-        set(&mut own.padding);
-    }
+fn padding_mut(tuning: &mut Tuning) -> Option<[&mut f64; 2]> {
+    let padding = &mut tuning.settings.planner.paper_mut()?.padding;
+    Some([&mut padding.near, &mut padding.far])
 }
 
 #[cfg(not(feature = "paper"))]
-fn set_padding(_: &mut Tuning, _: impl FnOnce(&mut Padding)) {}
+fn padding_mut(_: &mut Tuning) -> Option<[&mut f64; 2]> {
+    None
+}
 
 /// A limit of an actuator, if the preset uses limits. 0 means no limit.
 fn limit(tuning: &Tuning, limit: Option<f64>) -> Option<f64> {
@@ -260,11 +261,11 @@ parameters! { 41:
         |tuning| Some(tuning.settings.planner.altitude),
         |tuning, value| tuning.settings.planner.altitude = value;
     MppPadNearM = "MPP_PAD_NEAR_M", "m", [0.0, 10.0], None, ANY_TIME,
-        |tuning| padding(tuning, |padding| padding.near),
-        |tuning, value| set_padding(tuning, |padding| padding.near = value);
+        |tuning| padding(tuning).map(|[near, _]| near),
+        |tuning, value| if let Some([near, _]) = padding_mut(tuning) { *near = value };
     MppPadFarM = "MPP_PAD_FAR_M", "m", [0.0, 10.0], None, ANY_TIME,
-        |tuning| padding(tuning, |padding| padding.far),
-        |tuning, value| set_padding(tuning, |padding| padding.far = value);
+        |tuning| padding(tuning).map(|[_, far]| far),
+        |tuning, value| if let Some([_, far]) = padding_mut(tuning) { *far = value };
     MppAlphaLim = "MPP_ALPHA_LIM", "rad", [0.02, 0.5], None, ANY_TIME,
         |tuning| flight(tuning, |own| own.attitude.angle_of_attack),
         |tuning, value| set_flight(tuning, |own| own.attitude.angle_of_attack = value);

@@ -1,18 +1,18 @@
 //! The task of the planner, which runs cycles slice by slice.
 
-use crate::mail::{Answer, Order, Plan};
+use crate::mail::{Plan, PlanReply, PlanRequest};
 use crate::ticks;
 use mpp_core::planner::Planner;
 
 /// The result of a call of [`PlanTask::advance`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
-    /// There is nothing to do until a later tick grants more slices, or an order comes.
+    /// There is nothing to do until a later tick grants more slices, or a request comes.
     Waiting,
     /// The task has done a slice.
     Working,
-    /// An answer is ready: [`PlanTask::answer`].
-    Answered,
+    /// A reply is ready: [`PlanTask::reply`].
+    Replied,
 }
 
 /// A cycle under way.
@@ -22,21 +22,21 @@ struct Cycle {
     slices: u32,
 }
 
-/// The planner and its orders. The value is large: place it in a `static` or a box.
+/// The planner and the cycle that it works on. The value is large: place it in a `static` or a box.
 ///
 /// A cycle gets `slices_per_tick` slices for each tick from its start until its plan is due. The cycle ends
 /// when it has used these slices, when it has no more work, or when the tick at which the plan is due has
-/// passed. It then answers with its best trajectory so far.
+/// passed. The reply then has the best trajectory so far.
 #[derive(Clone, Debug)]
 pub struct PlanTask {
     planner: Planner,
     latency: u32,
     slices_per_tick: u32,
     cycle: Option<Cycle>,
-    answer: Option<Due>,
+    reply: Option<Due>,
 }
 
-/// An answer that waits to be collected.
+/// A reply that waits to be collected.
 #[derive(Clone, Copy, Debug)]
 enum Due {
     SetUp(u32, Result<(), mpp_core::planner::SetupError>),
@@ -44,7 +44,7 @@ enum Due {
 }
 
 impl PlanTask {
-    /// A task that waits for its first order.
+    /// A task that waits for its first request.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -52,7 +52,7 @@ impl PlanTask {
             latency: 0,
             slices_per_tick: 0,
             cycle: None,
-            answer: None,
+            reply: None,
         }
     }
 
@@ -66,19 +66,19 @@ impl PlanTask {
         &mut self.planner
     }
 
-    /// Takes an order, and drops the present work.
+    /// Takes a request, and drops the present work.
     // The set-up needs a deep stack. The function is not inlined, so that this stack is free again when
     // slices run.
     #[inline(never)]
-    pub fn take(&mut self, order: &Order) {
+    pub fn take(&mut self, request: &PlanRequest) {
         self.cycle = None;
-        self.answer = None;
-        match order {
-            Order::SetUp { number, settings } => {
+        self.reply = None;
+        match request {
+            PlanRequest::SetUp { number, settings } => {
                 let result = self.planner.set_up(settings);
-                self.answer = Some(Due::SetUp(*number, result));
+                self.reply = Some(Due::SetUp(*number, result));
             }
-            Order::Begin {
+            PlanRequest::Begin {
                 tick,
                 time,
                 forget,
@@ -92,7 +92,7 @@ impl PlanTask {
             } => {
                 self.latency = *latency_ticks;
                 self.slices_per_tick = *slices_per_tick;
-                // The step checks all values before it orders a cycle, so the planner refuses none of them.
+                // The step checks all values before it requests a cycle, so the planner refuses none of them.
                 let _ = self.planner.retune(planner);
                 if *forget {
                     self.planner.forget();
@@ -109,8 +109,8 @@ impl PlanTask {
 
     /// Does at most one slice. `clock` is the tick of the last step.
     pub fn advance(&mut self, clock: u32) -> Progress {
-        if self.answer.is_some() {
-            return Progress::Answered;
+        if self.reply.is_some() {
+            return Progress::Replied;
         }
         let Some(cycle) = &mut self.cycle else {
             return Progress::Waiting;
@@ -119,9 +119,9 @@ impl PlanTask {
         let late = elapsed.is_some_and(|elapsed| elapsed >= self.latency);
         let quota = self.latency.saturating_mul(self.slices_per_tick);
         if late || cycle.slices >= quota || !self.planner.is_working() {
-            self.answer = Some(Due::Plan(cycle.tick));
+            self.reply = Some(Due::Plan(cycle.tick));
             self.cycle = None;
-            return Progress::Answered;
+            return Progress::Replied;
         }
         // The clock may still show the tick before the cycle.
         let granted = elapsed.map_or(0, |elapsed| elapsed.saturating_add(1));
@@ -133,11 +133,11 @@ impl PlanTask {
         Progress::Working
     }
 
-    /// Takes the answer, if one is ready.
-    pub fn answer(&mut self) -> Option<Answer> {
-        Some(match self.answer.take()? {
-            Due::SetUp(number, result) => Answer::SetUp { number, result },
-            Due::Plan(tick) => Answer::Plan(Plan {
+    /// Takes the reply, if one is ready.
+    pub fn reply(&mut self) -> Option<PlanReply> {
+        Some(match self.reply.take()? {
+            Due::SetUp(number, result) => PlanReply::SetUp { number, result },
+            Due::Plan(tick) => PlanReply::Plan(Plan {
                 tick,
                 verdict: self.planner.finish(),
                 summary: *self.planner.summary(),

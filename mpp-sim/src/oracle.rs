@@ -23,7 +23,7 @@ use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::tuning::memory::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
-use mpp_node::{FlightNode, Order};
+use mpp_node::{FlightNode, PlanRequest};
 
 /// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
 const REACH: f64 = 80.0;
@@ -82,23 +82,23 @@ impl Oracle {
     ) {
         match oracle {
             None => node.receive(bytes, send),
-            Some(oracle) => node.receive_advised(bytes, send, |order, planner| {
-                oracle.advise(order, planner);
+            Some(oracle) => node.receive_advised(bytes, send, |request, planner| {
+                oracle.advise(request, planner);
             }),
         }
     }
 
     /// Replaces the core's map by the truth, and its estimates if the oracle knows the true state.
-    fn advise(&self, order: &mut Order, planner: &mut Planner) {
-        match order {
-            Order::SetUp { settings, .. } => {
+    fn advise(&self, request: &mut PlanRequest, planner: &mut Planner) {
+        match request {
+            PlanRequest::SetUp { settings, .. } => {
                 if matches!(self.knowledge, Knowledge::All)
                     && let Some(own) = settings.planner.plane_mut()
                 {
                     own.refined_candidates = MAX_PATHS;
                 }
             }
-            Order::Begin {
+            PlanRequest::Begin {
                 pose,
                 state,
                 conditions,

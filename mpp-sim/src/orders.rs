@@ -6,7 +6,7 @@
 
 use crate::disturbance::Disturbance;
 use crate::field::FieldFile;
-use crate::moment::Moment;
+use crate::tick_record::TickRecord;
 use hil_protocol::ParameterVerdict;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
@@ -145,8 +145,8 @@ pub trait Ground {
     }
 
     /// Watches one tick that was flown.
-    fn watch(&mut self, moment: &Moment<'_>) {
-        let _ = moment;
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        let _ = record;
     }
 }
 
@@ -209,7 +209,7 @@ impl<G: Ground> Ground for Again<G> {
         self.until.is_some_and(|until| tick >= until) || self.ground.interrupts(tick)
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
-        self.ground.watch(moment);
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        self.ground.watch(record);
     }
 }

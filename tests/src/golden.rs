@@ -79,6 +79,12 @@ pub fn table() -> Result<String, Failure> {
 }
 
 fn line(log: &FlightLog) -> Result<String, Failure> {
+    if log.health.contains_key("planner_inconsistent") {
+        return Err(
+            "the planner ended a cycle early: its phase and its workspace did not belong together"
+                .into(),
+        );
+    }
     let flown = &log.summary;
     let clearance = flown
         .min_clearance

@@ -9,6 +9,7 @@
 use mpp_core::vehicle::{Airframe, Trim};
 use mpp_node::parameters::Tuning;
 use mpp_sim::scenario::{Preset, Scenario};
+use mpp_tests::project::{files, root};
 use sil_harness::ground::param_file::values;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,32 +17,14 @@ use std::path::{Path, PathBuf};
 #[path = "../../xtask/src/numbers/page.rs"]
 mod page_of_numbers;
 
-fn root() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
 /// README, ARCHITECTURE, CONTRIBUTING, and every page below `docs`.
 fn pages() -> Vec<PathBuf> {
-    let mut pages =
-        ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root().join(page));
-    pages.sort();
-    let mut pages = Vec::from(pages);
-    let mut folders = vec![root().join("docs")];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
-                pages.push(path);
-            }
-        }
-    }
-    pages
+    let pages = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|page| root().join(page));
+    [&pages[..], &files(&root().join("docs"), "md")].concat()
 }
 
 /// Text and target of each link of a page; what stands in a block of code is none.

@@ -5,7 +5,7 @@ use hil_protocol::{
     Decoder, MAX_FRAME, Message, PlanOutcome, RejectionCause, SetParameter, encode,
 };
 use mpp_node::parameters::PARAMETERS;
-use mpp_node::{Answer, FlightNode, Order, Pace, PlanTask, Progress, StepTask};
+use mpp_node::{FlightNode, Pace, PlanReply, PlanRequest, PlanTask, Progress, StepTask};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::pipe::PipeLink;
@@ -58,8 +58,8 @@ fn lockstep(input: &[u8]) -> Vec<u8> {
 struct Tasks {
     step: StepTask,
     plan: Box<PlanTask>,
-    orders: Option<Order>,
-    answers: Option<Answer>,
+    request: Option<PlanRequest>,
+    reply: Option<PlanReply>,
     sent: Vec<u8>,
 }
 
@@ -68,24 +68,24 @@ impl Tasks {
         Self {
             step: StepTask::new(pace),
             plan: Box::new(PlanTask::new()),
-            orders: None,
-            answers: None,
+            request: None,
+            reply: None,
             sent: Vec::new(),
         }
     }
 
     fn post(&mut self) {
-        if self.orders.is_none() {
-            self.orders = self.step.order();
+        if self.request.is_none() {
+            self.request = self.step.request();
         }
     }
 
-    /// Runs the step's interrupt: it takes the answer if there is one, then at most `count` bytes.
+    /// Runs the step's interrupt: it takes the reply if there is one, then at most `count` bytes.
     fn step(&mut self, bytes: &mut &[u8], count: usize) {
         let sent = &mut self.sent;
-        if let Some(answer) = self.answers.take() {
+        if let Some(reply) = self.reply.take() {
             self.step
-                .answer(answer, |frame| sent.extend_from_slice(frame));
+                .take_reply(reply, |frame| sent.extend_from_slice(frame));
         }
         self.post();
         for _ in 0..count {
@@ -103,13 +103,13 @@ impl Tasks {
     /// Runs the planner's thread for at most `count` slices.
     fn plan(&mut self, count: usize) {
         for _ in 0..count {
-            if let Some(order) = self.orders.take() {
-                self.plan.take(&order);
+            if let Some(request) = self.request.take() {
+                self.plan.take(&request);
             }
             match self.plan.advance(self.step.clock()) {
                 Progress::Working => {}
-                Progress::Answered if self.answers.is_none() => self.answers = self.plan.answer(),
-                Progress::Waiting | Progress::Answered => return,
+                Progress::Replied if self.reply.is_none() => self.reply = self.plan.reply(),
+                Progress::Waiting | Progress::Replied => return,
             }
         }
     }
@@ -215,7 +215,7 @@ fn a_lost_planner_is_reported_its_cycle_given_up_and_the_next_one_planned() {
         if tasks.step.last_tick() == Some(10) && !lost {
             lost = true;
             *tasks.plan = PlanTask::new();
-            tasks.answers = None;
+            tasks.reply = None;
             let sent = &mut tasks.sent;
             tasks
                 .step
@@ -261,12 +261,12 @@ fn without_its_planner_the_step_flies_on_and_later_sessions_are_accepted() {
     // The planner never runs again.
     while !bytes.is_empty() {
         tasks.step(&mut bytes, 1);
-        assert!(tasks.orders.is_none());
+        assert!(tasks.request.is_none());
     }
     let mut rest = &input[..];
     while !rest.is_empty() {
         tasks.step(&mut rest, 1);
-        assert!(tasks.orders.is_none());
+        assert!(tasks.request.is_none());
     }
     let messages = tasks.messages();
     assert_eq!(commands(&messages), 600);
@@ -305,7 +305,7 @@ fn a_core_that_refuses_says_why_and_flies_nothing() {
                     .flatten(),
             );
         });
-        assert!(step.order().is_none());
+        assert!(step.request().is_none());
     }
     assert!(messages.iter().any(|message| {
         matches!(message, Message::ConfigureReply(reply)
@@ -315,7 +315,7 @@ fn a_core_that_refuses_says_why_and_flies_nothing() {
 }
 
 #[test]
-fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
+fn a_reply_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
     let input = flight(1);
     let mut tasks = Tasks::new(Pace::RealTime);
     let mut bytes = &input[..];
@@ -325,19 +325,19 @@ fn an_answer_to_an_earlier_set_up_does_not_accept_a_later_configuration() {
     }
     // The planner is lost and set up again. Meanwhile a new session begins.
     *tasks.plan = PlanTask::new();
-    tasks.answers = None;
+    tasks.reply = None;
     tasks.step.planner_lost(|_| {});
     tasks.post();
     tasks.plan(1);
     tasks.plan(1);
-    let stale = tasks.answers.take();
-    assert!(matches!(stale, Some(Answer::SetUp { .. })));
+    let stale = tasks.reply.take();
+    assert!(matches!(stale, Some(PlanReply::SetUp { .. })));
     let mut again = &input[..];
     tasks.step(&mut again, usize::MAX);
     assert!(tasks.step.waits());
-    tasks.answers = stale;
+    tasks.reply = stale;
     tasks.step(&mut again, usize::MAX);
-    assert!(tasks.step.waits(), "accepted by an answer to another order");
+    assert!(tasks.step.waits(), "accepted by a reply to another request");
     while !again.is_empty() {
         tasks.plan(200);
         tasks.step(&mut again, usize::MAX);

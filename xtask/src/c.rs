@@ -1,6 +1,6 @@
 //! `c`: the core's C interface. Flies the example under sanitizers, and on an emulated Cortex-M7.
 
-use crate::flight::{Harness, PATIENCE, await_end};
+use crate::flight::{Harness, await_end};
 use crate::folders::{root, work};
 use crate::qemu::{Emulator, Run};
 use crate::toolchain::{Toolchain, install, output, succeed};
@@ -140,7 +140,7 @@ fn emulated(example: &Example, seed: u64, image: &Path, folder: &Path) -> Result
     fly.arg(folder)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped());
-    let flown = await_end(fly.spawn()?, &mut emulator, PATIENCE)?;
+    let flown = await_end(fly.spawn()?, &mut emulator)?;
     let said = String::from_utf8_lossy(&flown.stdout);
     ensure!(
         flown.status.success(),

@@ -59,7 +59,6 @@ impl Outcome {
 pub(crate) struct Harness {
     program: PathBuf,
     out: PathBuf,
-    patience: Duration,
 }
 
 impl Harness {
@@ -92,7 +91,6 @@ impl Harness {
         Ok(Self {
             program: Path::new(target).join("release/sil-harness"),
             out: out.to_owned(),
-            patience: PATIENCE,
         })
     }
 
@@ -101,13 +99,7 @@ impl Harness {
         Self {
             program,
             out: out.to_owned(),
-            patience: PATIENCE,
         }
-    }
-
-    /// This harness with another patience for a silent core.
-    pub(crate) fn with_patience(self, patience: Duration) -> Self {
-        Self { patience, ..self }
     }
 
     /// The harness's program.
@@ -132,17 +124,12 @@ impl Harness {
         outcome(&self.command(arguments, &self.out.join("host")).output()?)
     }
 
-    /// Flies with a core at a link.
-    pub(crate) fn fly_linked(&self, arguments: &[String], link: &str) -> Result<Outcome> {
-        outcome(&self.linked(arguments, link).output()?)
-    }
-
     fn linked(&self, arguments: &[String], link: &str) -> Command {
         let mut command = self.command(arguments, &self.out.join("target"));
         command.args(["--link", link]);
         if link.starts_with("tcp:") {
             // An emulator on a busy machine is slow. FIFOs wait as long as it takes.
-            let patience = self.patience.as_secs().to_string();
+            let patience = PATIENCE.as_secs().to_string();
             command.args(["--patience", &patience]);
         }
         command
@@ -155,23 +142,19 @@ impl Harness {
         emulator: &mut Emulator,
     ) -> Result<Outcome> {
         let harness = self.linked(arguments, emulator.link()).spawn()?;
-        outcome(&await_end(harness, emulator, self.patience)?)
+        outcome(&await_end(harness, emulator)?)
     }
 }
 
 /// Waits until a program that flies with an emulated core has ended.
-pub(crate) fn await_end(
-    mut program: Child,
-    emulator: &mut Emulator,
-    patience: Duration,
-) -> Result<Output> {
+pub(crate) fn await_end(mut program: Child, emulator: &mut Emulator) -> Result<Output> {
     let mut died = None;
     // The program notices a core that died, unless it died before the link was up.
     while program.try_wait()?.is_none() {
         if died.is_none() && emulator.has_ended()? {
             died = Some(Instant::now());
         }
-        if died.is_some_and(|when| when.elapsed() > patience) {
+        if died.is_some_and(|when| when.elapsed() > PATIENCE) {
             program.kill()?;
             program.wait()?;
             bail!("the emulator ended before the flight did");

@@ -14,7 +14,6 @@ mod deb;
 mod faults;
 mod firmware;
 mod flight;
-mod flips;
 mod folders;
 mod fuzz;
 mod golden;
@@ -56,9 +55,6 @@ enum Command {
     Budget(budget::BudgetArgs),
     /// Let the planner or the step hang or trap, damage the image, let the timer run, and check that the aircraft flies on
     Faults(faults::FaultsArgs),
-    /// Flip random bits of the core's memory, in the emulator and in a process of this machine, and say
-    /// what came of it
-    Flips(flips::FlipsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
     /// Build the page that flies in the browser: one file, which needs nothing else
@@ -90,7 +86,6 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
-        Command::Flips(args) => flips::run(&args),
         Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
         Command::Web => wasm::page(),
         Command::C(args) => c::run(&args),

@@ -30,7 +30,7 @@
 #define MPP_KNOTS 19
 
 // Counters of events.
-#define MPP_COUNTERS 19
+#define MPP_COUNTERS 20
 
 // The result of a call. Every result but `Ok` leaves the core as it was; only a refused `mpp_set_up` leaves it
 // without a configuration.
@@ -127,6 +127,8 @@ typedef enum mpp_counter {
   MPP_COUNTER_PLANS_LEAST_VIOLATING = 17,
   // Cycles without a plan, after which there was no last plan either.
   MPP_COUNTER_PLANS_TRIM_HOLD = 18,
+  // Cycles that the planner ended early because of a defect of the planner. Report one that is not 0.
+  MPP_COUNTER_PLANNER_INCONSISTENT = 19,
 } mpp_counter;
 
 // A core. Its content is private.

@@ -48,8 +48,8 @@ struct Run {
 }
 
 /// A copy of one flight. It goes on as the original would, bit for bit, also after pickling.
-#[pyclass(frozen, module = "mpp._native")]
-pub(crate) struct Moment {
+#[pyclass(frozen, module = "mpp._native", name = "Moment")]
+pub(crate) struct SavedFlight {
     plan: Arc<Flights>,
     run: Run,
 }
@@ -195,10 +195,10 @@ impl Batch {
     }
 
     /// A copy of a flight as it is now.
-    fn save(&self, index: usize) -> PyResult<Moment> {
+    fn save(&self, index: usize) -> PyResult<SavedFlight> {
         let runs = alone(&self.guarded, "environment")?;
         let run = runs.get(index).and_then(Option::as_ref).ok_or_else(unset)?;
-        Ok(Moment {
+        Ok(SavedFlight {
             plan: Arc::clone(&self.plan),
             run: run.clone(),
         })
@@ -214,7 +214,7 @@ impl Batch {
     }
 
     /// Goes on from a copy.
-    fn restore(&self, index: usize, moment: &Moment) -> PyResult<()> {
+    fn restore(&self, index: usize, moment: &SavedFlight) -> PyResult<()> {
         let mut runs = alone(&self.guarded, "environment")?;
         if moment.plan.file != self.plan.file || moment.plan.scan_ticks != self.plan.scan_ticks {
             return Err(input("moment: it is of an environment with other keys"));
@@ -228,7 +228,7 @@ impl Batch {
 }
 
 #[pymethods]
-impl Moment {
+impl SavedFlight {
     /// The moment to which these actions lead.
     #[staticmethod]
     fn replayed(file: &str, scan_ticks: u32, seed: u64, actions: Vec<[f64; 2]>) -> PyResult<Self> {

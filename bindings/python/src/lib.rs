@@ -41,7 +41,7 @@ mod _native {
     const __version__: &str = env!("CARGO_PKG_VERSION");
     #[pymodule_export]
     use super::{
-        aircraft::Aircraft, batch::Batch, batch::Moment, campaign::Campaign, campaign::wilson,
+        aircraft::Aircraft, batch::Batch, batch::SavedFlight, campaign::Campaign, campaign::wilson,
         choice::Choice, choice::Fork, core::Core, field::Field, flight::Flight, flight::fly,
         lidar::Lidar, planner::Planner, world::World,
     };

@@ -201,13 +201,6 @@ pub enum RejectionCause {
         "after several faults in a row the core flies without its planner: land, and switch the power off"
     )]
     PlannerOff,
-    /// A value of the configuration or of a parameter had changed in memory by itself. The core repaired it
-    /// from copies, or says hello if that was not possible.
-    #[error(
-        "a bit of the core's settings had flipped and was repaired: if this comes again, replace the flight \
-         computer"
-    )]
-    ValuesRepaired,
 }
 
 /// A task of the core. The order goes over the wire: append only.
@@ -272,7 +265,7 @@ pub struct HealthReport {
 
 impl HealthReport {
     /// The name of each counter. The order goes over the wire: append only.
-    pub const NAMES: [&str; 19] = [
+    pub const NAMES: [&str; 20] = [
         "measurements_not_finite",
         "measurements_frozen",
         "measurements_late",
@@ -292,6 +285,7 @@ impl HealthReport {
         "plans_kept",
         "plans_least_violating",
         "plans_trim_hold",
+        "planner_inconsistent",
     ];
 
     /// Size of the longest payload \[bytes\].

@@ -127,7 +127,6 @@ fn rejection_and_every_cause() {
             "124d500209ac020f0101f0a20402a8b8eefb00",
         ),
         (rejection(PlannerOff), "0c4d500209ac02103809154c00"),
-        (rejection(ValuesRepaired), "0c4d500209ac0211ae39123b00"),
     ]);
 }
 
@@ -229,6 +228,6 @@ fn health_report() {
     };
     check(&[(
         Message::HealthReport(report),
-        "074d50020def0903ac0201010101010101010101010101010106077d9e63fe00",
+        "074d50020def0903ac02010101010101010101010101010101020705928148fc00",
     )]);
 }

@@ -2,7 +2,6 @@
 //! (Chu, Fan, Lin: "A structure-preserving doubling algorithm for continuous-time algebraic
 //! Riccati equations", 2005).
 
-use core::fmt;
 use nalgebra::Matrix4;
 
 /// Greatest number of doublings. Convergence is quadratic, and this problem needs about 8.
@@ -12,43 +11,34 @@ const MAX_DOUBLINGS: usize = 40;
 const RESIDUAL: f64 = 1e-8;
 
 /// The reason why the solver found no stabilising solution.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum RiccatiError {
     /// An entry of the equation is not a finite number.
+    #[error(
+        "the regulator's equation has a number that is not finite: check the airframe, and that \
+         the weight of the elevator is positive"
+    )]
     NotFinite,
     /// A matrix that must be inverted is singular.
+    #[error(
+        "the regulator's equation has a matrix without an inverse: check airframe and weights of \
+         the regulator"
+    )]
     Singular,
     /// The doublings gave a number that is not finite, or did not settle within `MAX_DOUBLINGS`.
+    #[error(
+        "the regulator's equation was not solved within its bound: check airframe and weights of \
+         the regulator"
+    )]
     NotConverged,
     /// The doublings settled on a matrix that does not solve the equation or is not positive
     /// semidefinite. The pair is probably not stabilisable.
+    #[error(
+        "no gain of the regulator stabilises the aircraft: check that the elevator turns it, and \
+         the weights of the regulator"
+    )]
     NotStabilising,
 }
-
-impl fmt::Display for RiccatiError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::NotFinite => {
-                "the regulator's equation has a number that is not finite: check the airframe, and \
-                 that the weight of the elevator is positive"
-            }
-            Self::Singular => {
-                "the regulator's equation has a matrix without an inverse: check airframe and \
-                 weights of the regulator"
-            }
-            Self::NotConverged => {
-                "the regulator's equation was not solved within its bound: check airframe and \
-                 weights of the regulator"
-            }
-            Self::NotStabilising => {
-                "no gain of the regulator stabilises the aircraft: check that the elevator turns it, \
-                 and the weights of the regulator"
-            }
-        })
-    }
-}
-
-impl core::error::Error for RiccatiError {}
 
 /// Solves `A'X + X A - X G X + Q = 0` for the stabilising `X` (4 x 4, symmetric), with
 /// `G = B R^-1 B'`.

@@ -39,11 +39,6 @@ impl Actuators {
         &self.limits
     }
 
-    /// Puts limits back that have changed in memory by themselves.
-    pub fn set_limits(&mut self, limits: ActuatorLimits) {
-        self.limits = limits;
-    }
-
     /// The controls that the actuators gave up to the last step.
     #[must_use]
     pub fn given(&self) -> Control {

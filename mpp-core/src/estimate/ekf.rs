@@ -5,7 +5,6 @@ use crate::sense::Measurement;
 use crate::vehicle::{
     AirState, Airframe, Control, Directions, JacobianForm, air_rate_along, linearize_along,
 };
-use core::fmt;
 use nalgebra::{Matrix4, Vector4};
 
 /// Tuning of the filter.
@@ -62,18 +61,9 @@ impl EkfTuning {
 
 /// The prediction is not finite, for instance because the airspeed is zero. The filter keeps its last
 /// estimate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the estimator's prediction is not finite: check the control and the time since the last")]
 pub struct Diverged;
-
-impl fmt::Display for Diverged {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "the estimator's prediction is not finite: check the control and the time since the last",
-        )
-    }
-}
-
-impl core::error::Error for Diverged {}
 
 /// Extended Kalman filter with the state order `(v, theta, theta', gamma)`.
 #[derive(Clone, Debug)]
@@ -89,11 +79,6 @@ impl Ekf {
     #[must_use]
     pub fn tuning(&self) -> &EkfTuning {
         &self.tuning
-    }
-
-    /// Replaces the filter's tuning.
-    pub fn set_tuning(&mut self, tuning: EkfTuning) {
-        self.tuning = tuning;
     }
 
     /// A filter that starts from an estimate.

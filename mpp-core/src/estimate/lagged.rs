@@ -87,12 +87,6 @@ impl LaggedEkf {
         self.ekf.tuning()
     }
 
-    /// Sets the filter's tuning.
-    pub fn set_tuning(&mut self, tuning: EkfTuning) {
-        self.ekf.set_tuning(tuning);
-        self.follows = follows(&tuning);
-    }
-
     /// Ticks by which the filter is behind.
     #[must_use]
     pub fn lag(&self) -> u32 {

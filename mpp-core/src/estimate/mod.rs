@@ -34,7 +34,7 @@ pub use biases::Biases;
 pub use changes::{SteadyTurn, StuckDetector};
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;
-pub use estimator::{Estimator, EstimatorDesign};
+pub use estimator::Estimator;
 pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;

@@ -67,17 +67,6 @@ impl Navigation {
         }
     }
 
-    /// Standard deviation of the change of the wind in one second [m/s], if the filter estimates wind.
-    #[must_use]
-    pub fn wind_change(&self) -> Option<f64> {
-        self.wind_change
-    }
-
-    /// Sets this standard deviation.
-    pub fn set_wind_change(&mut self, wind_change: Option<f64>) {
-        self.wind_change = wind_change;
-    }
-
     /// The filter for plans, the map and the regulator.
     #[must_use]
     pub fn smooth(&self) -> &WindFilter {

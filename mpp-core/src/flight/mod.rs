@@ -1,19 +1,16 @@
 //! The 100 Hz step (estimate, reference, control) and the hand-over of trajectories.
 
-mod design;
-
 use crate::config::TICK_PERIOD;
 use crate::control::{Lqr, holds};
 use crate::estimate::{Estimator, Innovation, PositionVerdict, Sensors};
 use crate::health::Health;
-use crate::planner::{SetupError, Verdict, check};
+use crate::planner::{PlanSummary, SetupError, Verdict, check};
 use crate::sense::SensorFrame;
 use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::sensors::LONGEST_DOUBT;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{AirState, Conditions, Control, Pose, Trim, VehicleState, linearize};
-pub use design::Design;
 
 /// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -204,6 +201,13 @@ impl FlightLoop {
                 Health::count(&mut self.health.plans_trim_hold);
                 Adoption::TrimHold
             }
+        }
+    }
+
+    /// Counts a cycle that the planner ended early because of a defect. Call it when a cycle has ended, with its summary.
+    pub fn count_cycle(&mut self, summary: &PlanSummary) {
+        if summary.inconsistent {
+            Health::count(&mut self.health.planner_inconsistent);
         }
     }
 

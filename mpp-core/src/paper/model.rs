@@ -5,7 +5,6 @@ use crate::config::STAGE_PERIOD;
 use crate::inverse::inverse;
 use crate::qp::{Dynamics, MOTION, PITCH, POSITION, STATES, StageControl, StageState};
 use crate::vehicle::{AirState, Linearization, Trim};
-use core::fmt;
 use nalgebra::{ArrayStorage, Matrix6, Matrix6x2, Vector6};
 
 /// The rule that gives the plan's first state from the estimate.
@@ -30,18 +29,9 @@ pub struct StageModel {
 }
 
 /// The steady-state rows have no solution: the airframe has no pitch stiffness.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the plan's model has no steady state: check the pitch stiffness of the airframe")]
 pub struct ModelError;
-
-impl fmt::Display for ModelError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "the plan's model has no steady state: check the pitch stiffness of the airframe",
-        )
-    }
-}
-
-impl core::error::Error for ModelError {}
 
 const PITCH_RATE: usize = PITCH + 1;
 const FLIGHT_PATH: usize = STATES - 1;

@@ -5,73 +5,49 @@ use crate::control::RiccatiError;
 use crate::qp::CondenseError;
 use crate::settings::{PlannerSettings, Setting, Settings};
 use crate::vehicle::{Trim, TrimError};
-use core::fmt;
 
 /// The reason why step or planner cannot be set up. The vehicle then does not start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SetupError {
     /// The airframe has no level trim at the cruise airspeed.
+    #[error(transparent)]
     Trim(TrimError),
     /// The regulator has no stabilising gain.
+    #[error(transparent)]
     Regulator(RiccatiError),
     /// The plan's model has no steady state.
+    #[error("the plan's model has no steady state: check the pitch stiffness of the airframe")]
     NoSteadyState,
     /// The program's Hessian is not positive definite.
+    #[error(transparent)]
     Condense(CondenseError),
     /// The regulator does not hold the aircraft, because it acts only once in a tick.
+    #[error(
+        "the regulator is too firm or too soft for a tick of 10 ms: bring its weights, \
+         cross_track, airspeed_hold and the airframe nearer to those of a preset"
+    )]
     Unstable,
     /// The settings ask for more than [`MAX_PATHS`] paths.
+    #[error("there is no room for that many paths: ask for at most {}", MAX_PATHS)]
     TooManyPaths,
     /// A number of the settings is outside of its range, or is not finite.
+    #[error(
+        "the setting {setting} is out of range: give a number from {least} to {most}, unit {unit}",
+        setting = .0, least = .0.range()[0], most = .0.range()[1], unit = .0.unit()
+    )]
     OutOfRange(Setting),
     /// The greatest thrust of motor or plans does not carry level flight.
+    #[error(
+        "the greatest thrust does not carry level flight: raise it, or check cruise and airframe"
+    )]
     ThrustTooLow,
     /// The settings ask the plane planner for zero paths.
+    #[error("the plane planner refines every path: ask for at least one")]
     NoPaths,
     /// The settings belong to another planning method than the one that is set up.
+    #[error("the settings are of another planner than the one that is set up: set it up anew")]
     OtherMethod,
 }
-
-impl fmt::Display for SetupError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Trim(error) => return error.fmt(f),
-            Self::Regulator(error) => return error.fmt(f),
-            Self::Condense(error) => return error.fmt(f),
-            Self::NoSteadyState => {
-                "the plan's model has no steady state: check the pitch stiffness of the airframe"
-            }
-            Self::Unstable => {
-                "the regulator is too firm or too soft for a tick of 10 ms: bring its weights, \
-                 cross_track, airspeed_hold and the airframe nearer to those of a preset"
-            }
-            Self::TooManyPaths => {
-                return write!(
-                    f,
-                    "there is no room for that many paths: ask for at most {MAX_PATHS}"
-                );
-            }
-            Self::OutOfRange(setting) => {
-                let ([least, most], unit) = (setting.range(), setting.unit());
-                return write!(
-                    f,
-                    "the setting {setting} is out of range: give a number from {least} to {most}, \
-                     unit {unit}"
-                );
-            }
-            Self::ThrustTooLow => {
-                "the greatest thrust does not carry level flight: raise it, or check cruise and \
-                 airframe"
-            }
-            Self::NoPaths => "the plane planner refines every path: ask for at least one",
-            Self::OtherMethod => {
-                "the settings are of another planner than the one that is set up: set it up anew"
-            }
-        })
-    }
-}
-
-impl core::error::Error for SetupError {}
 
 /// Checks all settings that step and planner use, and gives the trim of level flight.
 pub(crate) fn check(settings: &Settings) -> Result<Trim, SetupError> {

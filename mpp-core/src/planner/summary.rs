@@ -23,6 +23,9 @@ pub struct PlanSummary {
     /// in the fan of this scan, or of an earlier one since which no beam has returned. The map did not use it, and the
     /// plans fly slowly.
     pub blind: bool,
+    /// Whether the planner ended the cycle early, because its phase and its workspace did not belong together. This is a
+    /// defect of the planner; [`FlightLoop::count_cycle`](crate::flight::FlightLoop::count_cycle) counts it.
+    pub inconsistent: bool,
     /// Cost of the best trajectory. It is infinite if there is no trajectory.
     pub cost: f64,
     /// Worst violation of the best trajectory [m or rad]. It is infinite if there is no trajectory.
@@ -39,6 +42,7 @@ impl PlanSummary {
         solver_steps: 0,
         complete: false,
         blind: false,
+        inconsistent: false,
         cost: f64::INFINITY,
         violation: f64::INFINITY,
     };

@@ -1,7 +1,6 @@
 //! Steady flight: the operating points of the planner and of the regulator.
 
 use super::{AirState, Airframe, Control, GRAVITY};
-use core::fmt;
 
 /// Steady straight flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,47 +12,29 @@ pub struct Trim {
 }
 
 /// The reason why there is no trim. The vehicle then does not start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TrimError {
     /// The airspeed is not a positive, finite number.
+    #[error(
+        "the airspeed of level flight is not a positive, finite number: check cruise and airframe"
+    )]
     Airspeed,
     /// The angle of the flight path or of attack is not a finite number.
+    #[error("the angle of steady flight is not a finite number: give it in radians")]
     Angle,
     /// A parameter of the airframe is not a finite number.
+    #[error("a parameter of the airframe is not a finite number: check the airframe")]
     Airframe,
     /// The balance of forces gives a number that is not finite: the wing does not carry the aircraft.
+    #[error("the wing does not carry the aircraft in steady flight: check cruise and airframe")]
     NotCarried,
     /// The elevator command that balances the moments is not a finite number: the elevator has no effect.
+    #[error("the elevator has no effect on steady flight: check the moments of the airframe")]
     NoElevator,
     /// The iteration did not settle within its bound.
+    #[error("no steady flight was found at the airspeed: check cruise and airframe")]
     NotConverged,
 }
-
-impl fmt::Display for TrimError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Airspeed => {
-                "the airspeed of level flight is not a positive, finite number: check cruise and \
-                 airframe"
-            }
-            Self::Angle => "the angle of steady flight is not a finite number: give it in radians",
-            Self::Airframe => {
-                "a parameter of the airframe is not a finite number: check the airframe"
-            }
-            Self::NotCarried => {
-                "the wing does not carry the aircraft in steady flight: check cruise and airframe"
-            }
-            Self::NoElevator => {
-                "the elevator has no effect on steady flight: check the moments of the airframe"
-            }
-            Self::NotConverged => {
-                "no steady flight was found at the airspeed: check cruise and airframe"
-            }
-        })
-    }
-}
-
-impl core::error::Error for TrimError {}
 
 /// Greatest number of substitutions. Each one gains more than a digit at the paper's airspeeds.
 const MAX_ITERATIONS: usize = 60;

@@ -7,14 +7,14 @@ use mpp_core::planner::{PlanSummary, Verdict};
 use mpp_core::trajectory::Trajectory;
 
 impl StepTask {
-    /// Handles a restart of the planner: orders its set-up, and ends its cycle without a trajectory.
+    /// Handles a restart of the planner: requests its set-up, and ends its cycle without a trajectory.
     pub fn planner_lost(&mut self, mut send: impl FnMut(&[u8])) {
         let send = &mut send;
-        let Some(flight) = &self.flight else {
+        let Some(session) = &self.session else {
             return;
         };
-        let ready = flight.ready;
-        self.order_set_up();
+        let ready = session.ready;
+        self.request_set_up();
         if ready {
             self.reject(RejectionCause::PlannerRestarted, send);
             self.give_cycle_up(send);
@@ -28,19 +28,19 @@ impl StepTask {
         self.planner_off = true;
         self.reject(RejectionCause::PlannerOff, send);
         self.give_cycle_up(send);
-        self.go_on_without_planner(send);
+        self.fly_without_planner(send);
     }
 
-    /// Drops orders for the planner, and answers those who wait for its set-up.
-    pub(super) fn go_on_without_planner(&mut self, send: &mut impl FnMut(&[u8])) {
-        self.order = None;
-        if self.flight.as_ref().is_some_and(|flight| !flight.ready) {
+    /// Drops requests for the planner, and answers whoever waits for its set-up.
+    pub(super) fn fly_without_planner(&mut self, send: &mut impl FnMut(&[u8])) {
+        self.request = None;
+        if self.session.as_ref().is_some_and(|session| !session.ready) {
             self.set_up_done(Ok(()), send);
         }
     }
 
     fn give_cycle_up(&mut self, send: &mut impl FnMut(&[u8])) {
-        let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
+        let cycle = self.session.as_ref().and_then(|session| session.cycle);
         if let Some(Cycle { begun, .. }) = cycle
             && self.plan.is_none()
         {

@@ -1,16 +1,16 @@
 //! The task of the step: the link, the 100 Hz step, and the hand-over of plans.
 
 mod asker;
-mod check;
 mod input;
 mod loss;
 mod set_up;
-mod spare;
+#[cfg(test)]
+mod tests;
 mod tick;
 mod tune;
 
 use crate::convert;
-use crate::mail::{Answer, Order, Plan};
+use crate::mail::{Plan, PlanReply, PlanRequest};
 use crate::parameters::Tuning;
 use asker::Asker;
 use hil_protocol::{
@@ -22,15 +22,14 @@ use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
 use mpp_core::sense::LidarScan;
-use spare::Spare;
 
-/// The behaviour at the tick at which a plan is due but the planner has not answered.
+/// The behaviour at the tick at which a plan is due but the planner has not replied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// The tick waits until the planner has done all its slices. The harness sets the time, so the time
     /// stands still meanwhile.
     Lockstep,
-    /// The step goes on with the present trajectory. The planner ends its cycle at its next slice, and the
+    /// The step continues with the present trajectory. The planner ends its cycle at its next slice, and the
     /// step takes over the plan at the following tick.
     RealTime,
 }
@@ -48,8 +47,8 @@ struct Cycle {
     without_scan: bool,
 }
 
-/// A flight under way.
-struct Flight {
+/// A session after its configuration: the flight under way.
+struct Session {
     tuning: Tuning,
     /// The cause of the last set-up of the planner.
     asker: Asker,
@@ -90,8 +89,8 @@ struct Flight {
     lidar_good: Option<bool>,
 }
 
-/// The link and the 100 Hz step. It shares no data with the planner: the caller passes orders from
-/// [`StepTask::order`] to the [`crate::PlanTask`], and answers back to [`StepTask::answer`].
+/// The link and the 100 Hz step. It shares no data with the planner: the caller passes requests from
+/// [`StepTask::request`] to the [`crate::PlanTask`], and replies back to [`StepTask::take_reply`].
 ///
 /// # Example
 ///
@@ -113,12 +112,12 @@ struct Flight {
 ///     for byte in encode(&question, &mut buffer)? {
 ///         step.receive(*byte, |frame| sent.extend_from_slice(frame));
 ///     }
-///     if let Some(order) = step.order() {
-///         plan.take(&order);
+///     if let Some(request) = step.request() {
+///         plan.take(&request);
 ///     }
 ///     while plan.advance(step.clock()) == Progress::Working {}
-///     if let Some(answer) = plan.answer() {
-///         step.answer(answer, |frame| sent.extend_from_slice(frame));
+///     if let Some(reply) = plan.reply() {
+///         step.take_reply(reply, |frame| sent.extend_from_slice(frame));
 ///     }
 ///     Ok(sent.iter().filter_map(|byte| decoder.push(*byte)).flatten().last())
 /// };
@@ -144,17 +143,15 @@ pub struct StepTask {
     decoder: Decoder,
     buffer: [u8; MAX_FRAME],
     scan: LidarScan,
-    flight: Option<Flight>,
-    /// Copies of those values of the flight that the flight itself does not change.
-    spare: Option<Spare>,
-    order: Option<Order>,
-    /// Number of the last set-up that the step ordered.
+    session: Option<Session>,
+    request: Option<PlanRequest>,
+    /// Number of the last set-up that the step requested.
     set_ups: u32,
     /// A plan that is not due yet.
     plan: Option<Plan>,
     /// The sensor frame that waits for a plan.
     held: Option<WireFrame>,
-    /// Whether the flight goes on without the planner.
+    /// Whether the core flies without the planner.
     planner_off: bool,
     /// The reason why the core accepts no configuration, if there is one.
     refusal: Option<ConfigureVerdict>,
@@ -170,9 +167,8 @@ impl StepTask {
             decoder: Decoder::new(),
             buffer: [0; MAX_FRAME],
             scan: LidarScan::new(),
-            flight: None,
-            spare: None,
-            order: None,
+            session: None,
+            request: None,
             set_ups: 0,
             plan: None,
             held: None,
@@ -207,40 +203,40 @@ impl StepTask {
         }
     }
 
-    /// Whether the next byte of the link has to wait for an answer of the planner.
+    /// Whether the next byte of the link has to wait for a reply of the planner.
     #[must_use]
     pub fn waits(&self) -> bool {
-        self.held.is_some() || self.flight.as_ref().is_some_and(|flight| !flight.ready)
+        self.held.is_some() || self.session.as_ref().is_some_and(|session| !session.ready)
     }
 
-    /// Whether there is an order for the planner.
+    /// Whether there is a request for the planner.
     #[must_use]
-    pub fn has_order(&self) -> bool {
-        self.order.is_some()
+    pub fn has_request(&self) -> bool {
+        self.request.is_some()
     }
 
-    /// Takes the order for the planner, if there is one.
-    pub fn order(&mut self) -> Option<Order> {
-        self.order.take()
+    /// Takes the request for the planner, if there is one.
+    pub fn request(&mut self) -> Option<PlanRequest> {
+        self.request.take()
     }
 
-    /// Takes an answer of the planner.
-    pub fn answer(&mut self, answer: Answer, mut send: impl FnMut(&[u8])) {
+    /// Takes a reply of the planner.
+    pub fn take_reply(&mut self, reply: PlanReply, mut send: impl FnMut(&[u8])) {
         let send = &mut send;
-        match answer {
-            Answer::Plan(plan) => {
+        match reply {
+            PlanReply::Plan(plan) => {
                 // The step drops a plan that does not belong to the present cycle, for example one from a
                 // session that has ended.
-                let cycle = self.flight.as_ref().and_then(|flight| flight.cycle);
+                let cycle = self.session.as_ref().and_then(|session| session.cycle);
                 if cycle.is_some_and(|cycle| cycle.begun == plan.tick) {
                     self.plan = Some(plan);
                 }
             }
-            Answer::SetUp { number, result } if number == self.set_ups => {
+            PlanReply::SetUp { number, result } if number == self.set_ups => {
                 self.set_up_done(result.map_err(convert::setup_verdict), send);
             }
-            // The step drops an answer to an earlier set-up.
-            Answer::SetUp { .. } => {}
+            // The step drops a reply to an earlier set-up.
+            PlanReply::SetUp { .. } => {}
         }
         if let Some(frame) = self.held.take() {
             self.tick(&frame, send);
@@ -255,7 +251,7 @@ impl StepTask {
     /// The tick of the last step of this flight, if there was one.
     #[must_use]
     pub fn last_tick(&self) -> Option<u32> {
-        self.flight.as_ref().and_then(|flight| flight.last_tick)
+        self.session.as_ref().and_then(|session| session.last_tick)
     }
 
     /// The tick up to which the planner may use its slices: the clock of [`crate::PlanTask::advance`].
@@ -267,7 +263,9 @@ impl StepTask {
     /// The counters of this flight; `None` before the configuration.
     #[must_use]
     pub fn health(&self) -> Option<&Health> {
-        self.flight.as_ref().map(|flight| flight.control.health())
+        self.session
+            .as_ref()
+            .map(|session| session.control.health())
     }
 
     /// Acts on the message that the decoder has found. Only what comes to a core is read.
@@ -287,7 +285,7 @@ impl StepTask {
             _ => return Err(DecodeError::UnknownId { id }),
         }
         if self.planner_off {
-            self.go_on_without_planner(send);
+            self.fly_without_planner(send);
         }
         Ok(())
     }
@@ -306,7 +304,7 @@ impl StepTask {
 
     /// Answers a hello. It starts a new session, whatever the state of the last one.
     fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
-        self.flight = None;
+        self.session = None;
         self.plan = None;
         let hello = Hello {
             role: Role::Core,

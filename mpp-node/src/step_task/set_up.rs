@@ -1,9 +1,9 @@
-//! The set-up of a flight: a configuration, the regulator that is designed for it, and the planner's answer.
+//! The set-up of a flight: a configuration, the regulator that is designed for it, and the planner's reply.
 
 use super::asker::Asker;
-use super::{Flight, StepTask};
+use super::{Session, StepTask};
 use crate::convert;
-use crate::mail::Order;
+use crate::mail::PlanRequest;
 use crate::parameters::Tuning;
 use hil_protocol::{Configure, ConfigureReply, ConfigureVerdict, DecodeError};
 use mpp_core::estimate::SensorMonitor;
@@ -16,30 +16,29 @@ impl StepTask {
         match self.prepare(&self.decoder.body()?) {
             Ok((tuning, regulated)) => {
                 self.begin(&tuning, &regulated);
-                self.keep_values();
-                self.order_set_up();
+                self.request_set_up();
             }
             Err(verdict) => self.reply(verdict, send),
         }
         Ok(())
     }
 
-    /// Orders the set-up of the planner with the values of the flight. It replaces an order that still waits.
-    pub(super) fn order_set_up(&mut self) {
-        let Some(flight) = &self.flight else {
+    /// Requests the set-up of the planner with the values of the session. It replaces a request that still waits.
+    pub(super) fn request_set_up(&mut self) {
+        let Some(session) = &self.session else {
             return;
         };
         self.set_ups = self.set_ups.wrapping_add(1);
-        self.order = Some(Order::SetUp {
+        self.request = Some(PlanRequest::SetUp {
             number: self.set_ups,
-            settings: flight.tuning.settings,
+            settings: session.tuning.settings,
         });
     }
 
     /// Checks a configuration, and designs the regulator for it.
     #[inline(never)]
     fn prepare(&self, configure: &Configure) -> Result<(Tuning, Regulated), ConfigureVerdict> {
-        if self.flight.is_some() {
+        if self.session.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
         if let Some(refusal) = self.refusal {
@@ -58,7 +57,7 @@ impl StepTask {
         let between = configure
             .replan_period_ticks
             .saturating_add(configure.latency_ticks);
-        self.flight = Some(Flight {
+        self.session = Some(Session {
             tuning: *tuning,
             asker: Asker::Configure,
             ready: false,
@@ -87,23 +86,23 @@ impl StepTask {
         result: Result<(), ConfigureVerdict>,
         send: &mut impl FnMut(&[u8]),
     ) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
-        if flight.ready {
+        if session.ready {
             // The planner was restarted in flight, so no sender waits for a reply.
             return;
         }
-        if flight.asker != Asker::Configure {
+        if session.asker != Asker::Configure {
             return self.tuned(result, send);
         }
         match result {
             Ok(()) => {
-                flight.ready = true;
+                session.ready = true;
                 self.reply(ConfigureVerdict::Accepted, send);
             }
             Err(verdict) => {
-                self.flight = None;
+                self.session = None;
                 self.reply(verdict, send);
             }
         }

@@ -1,8 +1,8 @@
 //! One tick: the step takes over a plan that is due, makes the 100 Hz step, and starts a cycle.
 
-use super::{Cycle, Flight, Pace, StepTask};
+use super::{Cycle, Pace, Session, StepTask};
 use crate::convert;
-use crate::mail::Order;
+use crate::mail::PlanRequest;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
@@ -20,9 +20,6 @@ const HEALTH_PERIOD: u32 = 100;
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
     pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        if !self.check_values(frame.tick, send) {
-            return;
-        }
         self.tell_plan(send);
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {
@@ -39,27 +36,28 @@ impl StepTask {
     }
 
     fn plan_is_due(&self, tick: u32) -> bool {
-        self.flight
+        self.session
             .as_ref()
-            .is_some_and(|flight| (flight.cycle).is_some_and(|cycle| ticks(cycle.due, tick) >= 0))
+            .is_some_and(|session| (session.cycle).is_some_and(|cycle| ticks(cycle.due, tick) >= 0))
     }
 
     /// Takes over the result of a cycle, if it has ended.
     fn take_over(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
-        let (Some(flight), Some(plan)) = (&mut self.flight, &self.plan) else {
+        let (Some(session), Some(plan)) = (&mut self.session, &self.plan) else {
             return;
         };
-        let Some(cycle) = flight.cycle.take() else {
+        let Some(cycle) = session.cycle.take() else {
             return;
         };
         let scan_tick = cycle.scan;
-        let time = flight.time(tick);
-        let adoption = flight.control.adopt(time, plan.verdict, &plan.trajectory);
+        let time = session.time(tick);
+        let adoption = session.control.adopt(time, plan.verdict, &plan.trajectory);
+        session.control.count_cycle(&plan.summary);
         let outcome = convert::outcome(adoption);
-        if flight.control.trajectory().is_none() {
-            flight.plan_tick = None;
+        if session.control.trajectory().is_none() {
+            session.plan_tick = None;
         } else if outcome != PlanOutcome::KeptPrevious {
-            flight.plan_tick = Some(scan_tick);
+            session.plan_tick = Some(scan_tick);
         }
         let PlanSummary {
             candidates,
@@ -73,9 +71,9 @@ impl StepTask {
             ..
         } = plan.summary;
         if !cycle.without_scan {
-            flight.lidar_good = Some(!blind);
+            session.lidar_good = Some(!blind);
         }
-        flight.untold = Some(PlanReport {
+        session.untold = Some(PlanReport {
             scan_tick,
             used_from_tick: tick,
             outcome,
@@ -97,26 +95,26 @@ impl StepTask {
     /// to do.
     #[inline(never)]
     fn tell_plan(&mut self, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
-        let steered = flight.unsteered.take();
-        if let Some(scan_tick) = steered.filter(|tick| flight.plan_tick == Some(*tick)) {
-            if let Some(controls) = convert::controls(scan_tick, &flight.control) {
+        let steered = session.unsteered.take();
+        if let Some(scan_tick) = steered.filter(|tick| session.plan_tick == Some(*tick)) {
+            if let Some(controls) = convert::controls(scan_tick, &session.control) {
                 self.emit(&controls, send);
             }
             return;
         }
-        let Some(report) = flight.untold.take() else {
+        let Some(report) = session.untold.take() else {
             return;
         };
         let is_new = matches!(
             report.outcome,
             PlanOutcome::Adopted | PlanOutcome::LeastViolating
         );
-        let new = flight.control.trajectory().filter(|_| is_new);
+        let new = session.control.trajectory().filter(|_| is_new);
         let told = new.map(|trajectory| convert::trajectory(report.scan_tick, trajectory));
-        flight.unsteered = told.as_ref().map(|trajectory| trajectory.scan_tick);
+        session.unsteered = told.as_ref().map(|trajectory| trajectory.scan_tick);
         self.emit(&report, send);
         if let Some(trajectory) = told {
             self.emit(&trajectory, send);
@@ -124,29 +122,29 @@ impl StepTask {
     }
 
     fn step(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
-        flight.first_tick.get_or_insert(frame.tick);
-        flight.last_tick = Some(frame.tick);
-        let time = flight.time(frame.tick);
-        let output = flight.control.step(time, &convert::sensor_frame(frame));
+        session.first_tick.get_or_insert(frame.tick);
+        session.last_tick = Some(frame.tick);
+        let time = session.time(frame.tick);
+        let output = session.control.step(time, &convert::sensor_frame(frame));
         if output.moved {
             // The plan under way counts from estimates that are no more.
-            flight.cycle = None;
-            flight.forget = true;
+            session.cycle = None;
+            session.forget = true;
             self.plan = None;
         }
-        flight.lidar.tick(flight.lidar_good.take());
-        let sensors = convert::sensor_states(flight.control.sensors(), flight.lidar.trust());
-        let age = flight
+        session.lidar.tick(session.lidar_good.take());
+        let sensors = convert::sensor_states(session.control.sensors(), session.lidar.trust());
+        let age = session
             .plan_tick
             .map_or(0, |plan| frame.tick.wrapping_sub(plan));
         let report = convert::step_report(
             frame.tick,
             age,
-            &flight.control.state(),
-            &flight.control.conditions(),
+            &session.control.state(),
+            &session.control.conditions(),
             sensors,
             &output,
         );
@@ -178,17 +176,17 @@ impl StepTask {
     /// Starts a cycle from the scan that has come, if one is due, or without a scan if the lidar has fallen silent. Both wait
     /// while the place of the aircraft is in doubt.
     fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
-        if self.planner_off || flight.control.is_lost() {
+        if self.planner_off || session.control.is_lost() {
             return;
         }
-        match flight.scan_tick.take() {
+        match session.scan_tick.take() {
             Some(scan_tick) => self.plan_from_scan(tick, scan_tick, send),
-            None if flight.is_due_without_scan(tick) && self.order.is_none() => {
-                if let Some(pose) = flight.control.pose_at(0) {
-                    self.order_cycle(tick, tick, &pose, true);
+            None if session.is_due_without_scan(tick) && self.request.is_none() => {
+                if let Some(pose) = session.control.pose_at(0) {
+                    self.request_cycle(tick, tick, &pose, true);
                 }
             }
             None => {}
@@ -196,68 +194,68 @@ impl StepTask {
     }
 
     fn plan_from_scan(&mut self, tick: u32, scan_tick: u32, send: &mut impl FnMut(&[u8])) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
         let age = tick.wrapping_sub(scan_tick);
-        let again = flight
+        let again = session
             .last_scan
             .is_some_and(|last| ticks(last, scan_tick) <= 0);
-        let Some(pose) = flight.control.pose_at(age).filter(|_| !again) else {
+        let Some(pose) = session.control.pose_at(age).filter(|_| !again) else {
             let cause = RejectionCause::TickOrder {
                 expected: tick,
                 found: scan_tick,
             };
             return self.reject(cause, send);
         };
-        if !flight.is_due(tick, scan_tick) {
+        if !session.is_due(tick, scan_tick) {
             return;
         }
-        if flight.cycle.is_some_and(|cycle| cycle.without_scan) {
-            // The scan tells more than the cycle knows. Its order may still wait, or its plan.
-            flight.cycle = None;
+        if session.cycle.is_some_and(|cycle| cycle.without_scan) {
+            // The scan tells more than the cycle knows. Its request may still wait, or its plan.
+            session.cycle = None;
             self.plan = None;
-            if let Some(Order::Begin { forget, .. }) = self.order.take() {
-                flight.forget |= forget;
+            if let Some(PlanRequest::Begin { forget, .. }) = self.request.take() {
+                session.forget |= forget;
             }
         }
-        if flight.cycle.is_some() || self.order.is_some() {
+        if session.cycle.is_some() || self.request.is_some() {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
-        flight.note_scan(scan_tick);
-        self.order_cycle(tick, scan_tick, &pose, false);
+        session.note_scan(scan_tick);
+        self.request_cycle(tick, scan_tick, &pose, false);
     }
 
-    fn order_cycle(&mut self, tick: u32, scan_tick: u32, pose: &Pose, without_scan: bool) {
-        let Some(flight) = &mut self.flight else {
+    fn request_cycle(&mut self, tick: u32, scan_tick: u32, pose: &Pose, without_scan: bool) {
+        let Some(session) = &mut self.session else {
             return;
         };
-        // The planner gets the same latency with its order. A later change applies to the next cycle.
-        flight.cycle = Some(Cycle {
+        // The planner gets the same latency with the request. A later change applies to the next cycle.
+        session.cycle = Some(Cycle {
             begun: tick,
             scan: scan_tick,
-            due: tick.wrapping_add(flight.tuning.configure.latency_ticks),
+            due: tick.wrapping_add(session.tuning.configure.latency_ticks),
             without_scan,
         });
-        flight.last_cycle = Some(tick);
-        flight.blind_from = flight.blind_after(tick);
-        self.order = Some(Order::Begin {
+        session.last_cycle = Some(tick);
+        session.blind_from = session.blind_after(tick);
+        self.request = Some(PlanRequest::Begin {
             tick,
-            time: flight.time(tick),
-            forget: flight.forget,
+            time: session.time(tick),
+            forget: session.forget,
             pose: *pose,
-            state: flight.control.state(),
-            conditions: flight.control.conditions(),
+            state: session.control.state(),
+            conditions: session.control.conditions(),
             scan: (!without_scan).then(|| self.scan.clone()),
-            planner: flight.tuning.settings.planner,
-            latency_ticks: flight.tuning.configure.latency_ticks,
-            slices_per_tick: flight.tuning.configure.slices_per_tick,
+            planner: session.tuning.settings.planner,
+            latency_ticks: session.tuning.configure.latency_ticks,
+            slices_per_tick: session.tuning.configure.slices_per_tick,
         });
-        flight.forget = false;
+        session.forget = false;
     }
 }
 
-impl Flight {
+impl Session {
     /// Whether the next cycle is due, and the planner has to do without a scan.
     fn is_due_without_scan(&self, tick: u32) -> bool {
         let silent = self.blind_from.is_some_and(|from| ticks(from, tick) >= 0);

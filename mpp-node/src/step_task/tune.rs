@@ -1,8 +1,8 @@
-//! Changes of parameters. Before the flight the core is set up anew; in flight the next cycle takes the
+//! Changes of parameters. Before the flight the core is set up again; in flight the next cycle takes the
 //! new value.
 
 use super::asker::Asker;
-use super::{Flight, StepTask};
+use super::{Session, StepTask};
 use crate::convert;
 use crate::parameters::Tuning;
 use hil_protocol::{ConfigureVerdict, ParameterReply, ParameterVerdict, SetParameter};
@@ -12,34 +12,30 @@ impl StepTask {
     // Not inlined, so that a new flight loop is not on the stack of each tick.
     #[inline(never)]
     pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
-        if !self.check_all(send) {
-            return;
-        }
         if let Err(verdict) = self.tune(set) {
             self.reply_to_parameter(set.parameter, verdict, send);
-        } else if self.flight.as_ref().is_some_and(|flight| flight.ready) {
+        } else if self.session.as_ref().is_some_and(|session| session.ready) {
             self.reply_to_parameter(set.parameter, ParameterVerdict::Accepted, send);
         }
     }
 
     /// Takes over a value. Before the flight the reply waits for the planner.
     fn tune(&mut self, set: &SetParameter) -> Result<(), ParameterVerdict> {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return Err(ParameterVerdict::NotConfigured);
         };
-        let in_flight = flight.last_tick.is_some();
-        let mut tuning = flight.tuning;
+        let in_flight = session.last_tick.is_some();
+        let mut tuning = session.tuning;
         tuning.change(set.parameter, set.value, in_flight)?;
         if in_flight {
-            flight.tuning = tuning;
+            session.tuning = tuning;
         } else {
             let failed = |error| ParameterVerdict::SetUp(convert::setup_verdict(error));
             let regulated = Regulated::new(&tuning.settings).map_err(failed)?;
-            flight.asker = Asker::Parameter(set.parameter, flight.tuning);
-            flight.refit(&tuning, &regulated);
-            self.order_set_up();
+            session.asker = Asker::Parameter(set.parameter, session.tuning);
+            session.refit(&tuning, &regulated);
+            self.request_set_up();
         }
-        self.keep_values();
         Ok(())
     }
 
@@ -49,26 +45,25 @@ impl StepTask {
         result: Result<(), ConfigureVerdict>,
         send: &mut impl FnMut(&[u8]),
     ) {
-        let Some(flight) = &mut self.flight else {
+        let Some(session) = &mut self.session else {
             return;
         };
-        let Asker::Parameter(number, before) = flight.asker else {
+        let Asker::Parameter(number, before) = session.asker else {
             // The previous values have worked before, so their result needs no check.
-            flight.ready = true;
+            session.ready = true;
             return;
         };
         let verdict = match result {
             Ok(()) => {
-                flight.ready = true;
+                session.ready = true;
                 ParameterVerdict::Accepted
             }
             Err(verdict) => {
                 if let Ok(regulated) = Regulated::new(&before.settings) {
-                    flight.refit(&before, &regulated);
+                    session.refit(&before, &regulated);
                 }
-                flight.asker = Asker::Nobody;
-                self.keep_values();
-                self.order_set_up();
+                session.asker = Asker::Nobody;
+                self.request_set_up();
                 ParameterVerdict::SetUp(verdict)
             }
         };
@@ -86,7 +81,7 @@ impl StepTask {
     }
 }
 
-impl Flight {
+impl Session {
     /// Takes other values before the flight, with a regulator for them. The planner is not set up for them.
     // Not inlined, so that the new loop does not lie on the stack above the design of the regulator.
     #[inline(never)]

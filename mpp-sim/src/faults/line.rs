@@ -1,8 +1,7 @@
 //! Faults of the line to the core: ticks whose messages are lost, and a clock that is wrong.
 
 use super::window::{TICKS_PER_SECOND, Timed, Window, fault_table};
-use crate::random::{self, Stream};
-use rand_chacha::ChaCha8Rng;
+use crate::random::{self, Draws, Stream};
 use serde::{Deserialize, Serialize};
 
 fault_table! {
@@ -35,7 +34,7 @@ pub struct Passage {
 #[derive(Clone, Debug)]
 pub struct Line {
     fault: LinkFault,
-    generator: ChaCha8Rng,
+    generator: Draws,
 }
 
 impl Line {

@@ -1,9 +1,8 @@
 //! Faults of one signal: a sensor that reports another value, or an actuator that gives another one.
 
 use super::window::{Timed, fault_table, is_absent};
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use mpp_core::config::TICK_PERIOD;
-use rand_chacha::ChaCha8Rng;
 
 fault_table! {
     /// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
@@ -65,7 +64,7 @@ impl SignalFault {
 #[derive(Clone, Debug)]
 pub struct Signal {
     fault: SignalFault,
-    generator: ChaCha8Rng,
+    generator: Draws,
     /// The value that a frozen signal keeps.
     kept: Option<f64>,
 }

@@ -17,9 +17,9 @@
 
 use crate::field::{Field, Obstacle, Point};
 use crate::lidar::RANGE_MIN;
-use crate::moment::Moment;
 use crate::outcome::Class;
 use crate::scenario::Scenario;
+use crate::tick_record::TickRecord;
 use hil_protocol::LidarScan;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::VehicleState;
@@ -128,13 +128,13 @@ pub(crate) struct Inquest {
 
 impl Inquest {
     /// Records one tick.
-    pub(crate) fn watch(&mut self, moment: &Moment<'_>) {
-        let (t, state) = (moment.tick.t, moment.tick.state);
-        if let Some(scan) = moment.scan {
+    pub(crate) fn watch(&mut self, record: &TickRecord<'_>) {
+        let (t, state) = (record.tick.t, record.tick.state);
+        if let Some(scan) = record.scan {
             let scan = scan.clone();
             self.sights.push(Sight { t, state, scan });
         }
-        if let (Some(report), Some(trajectory)) = (moment.report, moment.trajectory) {
+        if let (Some(report), Some(trajectory)) = (record.report, record.trajectory) {
             let knots = trajectory.knots.iter();
             self.plans.push(Plan {
                 made: Scenario::time(report.scan_tick),

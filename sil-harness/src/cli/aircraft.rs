@@ -65,7 +65,7 @@ struct Success {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct AircraftOutput {
     aircraft: AircraftReport,
     flights: Vec<Success>,
 }
@@ -82,12 +82,12 @@ pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
         let name = file.name.clone();
         vec![Variant { name, file }]
     };
-    let mut answer = Answer {
+    let mut output = AircraftOutput {
         aircraft: AircraftReport::new(&model),
         flights: Vec::new(),
     };
     if !args.json {
-        data(&answer.aircraft)?;
+        data(&output.aircraft)?;
     }
     if args.flights > 0 {
         for variant in &variants {
@@ -95,11 +95,11 @@ pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
             if !args.json {
                 flown.iter().map(line).try_for_each(data)?;
             }
-            answer.flights.extend(flown);
+            output.flights.extend(flown);
         }
     }
     if args.json {
-        data(serde_json::to_string(&answer).map_err(|error| Failure::new(FAILURE, error))?)?;
+        data(serde_json::to_string(&output).map_err(|error| Failure::new(FAILURE, error))?)?;
     }
     Ok(0)
 }

@@ -37,7 +37,6 @@ impl Vehicle {
             "Trapped" => "Core trapped and recovered",
             "PlannerRestarted" => "Planner restarted",
             "PlannerOff" => "Planner stays off: land",
-            "ValuesRepaired" => "Settings in memory repaired",
             "CoreRestarted" => "Core restarted in flight",
             _ => return,
         };

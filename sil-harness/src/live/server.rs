@@ -44,7 +44,7 @@ fn welcome(stream: TcpStream, shared: &Arc<Shared>) {
     if stream.set_write_timeout(Some(PATIENCE)).is_err() {
         return;
     }
-    let Some(place) = Place::take(shared) else {
+    let Some(place) = ViewerPlace::take(shared) else {
         let again = "too many pages look at this flight: close one";
         let _ = respond(&stream, "503 Service Unavailable", "text/plain", again);
         return;
@@ -59,9 +59,9 @@ fn welcome(stream: TcpStream, shared: &Arc<Shared>) {
 }
 
 /// One of the [`PLACES`], until it is dropped.
-struct Place(Arc<Shared>);
+struct ViewerPlace(Arc<Shared>);
 
-impl Place {
+impl ViewerPlace {
     fn take(shared: &Arc<Shared>) -> Option<Self> {
         let mut state = shared.lock();
         (state.places < PLACES).then(|| {
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for ViewerPlace {
     fn drop(&mut self) {
         self.0.lock().places -= 1;
     }

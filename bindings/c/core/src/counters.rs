@@ -42,6 +42,8 @@ pub enum MppCounter {
     PlansLeastViolating = 17,
     /// Cycles without a plan, after which there was no last plan either.
     PlansTrimHold = 18,
+    /// Cycles that the planner ended early because of a defect of the planner. Report one that is not 0.
+    PlannerInconsistent = 19,
 }
 
 #[cfg(test)]
@@ -73,6 +75,7 @@ mod tests {
             C::PlansKept,
             C::PlansLeastViolating,
             C::PlansTrimHold,
+            C::PlannerInconsistent,
         ];
         assert_eq!(all.map(name), hil_protocol::HealthReport::NAMES);
         assert!(

@@ -213,6 +213,7 @@ impl MppCore {
             Adoption::TrimHold => 3,
         };
         let summary = self.planner.summary();
+        flight.control.count_cycle(summary);
         let mut knots = [MppState::default(); MPP_KNOTS];
         let (mut thrust, mut elevator) = ([0.0; MPP_KNOTS], [0.0; MPP_KNOTS]);
         if outcome < 2 {

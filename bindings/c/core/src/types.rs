@@ -11,7 +11,7 @@ pub const MPP_BEAMS: usize = 128;
 /// Places of a plan.
 pub const MPP_KNOTS: usize = 19;
 /// Counters of events.
-pub const MPP_COUNTERS: usize = 19;
+pub const MPP_COUNTERS: usize = 20;
 
 /// What a flight needs to know before it begins.
 #[repr(C)]

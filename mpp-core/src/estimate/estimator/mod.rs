@@ -1,6 +1,5 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
-mod design;
 mod watching;
 
 use super::verdicts::{count_position, count_verdict};
@@ -17,7 +16,6 @@ use crate::tuning::sensors::{
     CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
 use crate::vehicle::{AirState, Airframe, Conditions, Control, GRAVITY, Pose, Trim, VehicleState};
-pub use design::EstimatorDesign;
 
 /// The estimators of a flight.
 #[derive(Clone, Debug)]

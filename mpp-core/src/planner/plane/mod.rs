@@ -328,9 +328,15 @@ impl PlanePlanner {
 
     /// Ends the cycle and returns its verdict.
     pub fn finish(&mut self) -> Verdict {
-        self.summary.complete = self.phase == Phase::Done;
+        self.summary.complete = self.phase == Phase::Done && !self.summary.inconsistent;
         self.phase = Phase::Idle;
         self.summary.verdict()
+    }
+
+    /// Ends a cycle whose phase and workspace do not belong together. The best trajectory so far stays.
+    fn end_inconsistent(&mut self) {
+        self.summary.inconsistent = true;
+        self.phase = Phase::Done;
     }
 
     /// The best trajectory of the cycle.

@@ -13,8 +13,7 @@ impl PlanePlanner {
     #[inline(never)]
     pub(super) fn remember(&mut self) {
         let Workspace::Scan(Intake { scan, beams, lone }) = &mut self.workspace else {
-            self.phase = Phase::Done;
-            return;
+            return self.end_inconsistent();
         };
         let (pose, sight) = (self.pose, self.settings.sight);
         if *beams == 0 {
@@ -80,8 +79,7 @@ impl PlanePlanner {
     /// Searches one station of the lattice. After the last one it proposes its paths.
     pub(super) fn search_lattice(&mut self) {
         let Workspace::Lattice(lattice) = &mut self.workspace else {
-            self.phase = Phase::Done;
-            return;
+            return self.end_inconsistent();
         };
         if !lattice.advance(&self.field) {
             self.take_lattice_paths();

@@ -60,8 +60,7 @@ impl PlanePlanner {
         let (Some(candidate), Workspace::Program(shared)) =
             (self.candidates.get(self.at_hand), &mut self.workspace)
         else {
-            self.phase = Phase::Done;
-            return;
+            return self.end_inconsistent();
         };
         let condensed = shared.condense_varying(&self.weights, |dynamics| {
             frame.linearise(candidate, dynamics);
@@ -92,8 +91,7 @@ impl PlanePlanner {
     #[inline(never)]
     pub(super) fn improve(&mut self) {
         let Workspace::Program(shared) = &self.workspace else {
-            self.phase = Phase::Done;
-            return;
+            return self.end_inconsistent();
         };
         let before = self.solver.iterations();
         let status = self.solver.advance(shared, STEPS_PER_SLICE);

@@ -42,3 +42,48 @@ impl Intake {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::super::{Phase, PlanePlanner};
+    use super::{Intake, Workspace};
+    use crate::planner::Verdict;
+    use crate::sense::LidarScan;
+    use crate::settings::{PlaneSettings, Settings};
+    use crate::vehicle::{Conditions, Pose, VehicleState};
+    use std::boxed::Box;
+
+    /// Each phase with a workspace of another phase.
+    #[test]
+    fn a_phase_without_its_workspace_ends_the_cycle_and_tells_it() {
+        let scan = || Workspace::Scan(Intake::new(LidarScan::new()));
+        let mixed_up = [
+            (Phase::Map, Workspace::NEW),
+            (Phase::Lattice, scan()),
+            (Phase::Linearise, scan()),
+            (Phase::Improve, scan()),
+        ];
+        let mut planner = Box::new(PlanePlanner::new());
+        let set_up = planner.set_up(&Settings::flight(), &PlaneSettings::PRESET);
+        assert_eq!(set_up, Ok(()));
+        for (phase, workspace) in mixed_up {
+            let air = planner.trim().state;
+            let state = VehicleState {
+                x: 0.0,
+                z: 50.0,
+                air,
+            };
+            planner.begin(0.0, &Pose::of(&state), &state, &Conditions::STILL, None);
+            assert!(planner.is_working() && !planner.summary().inconsistent);
+            let one = planner.cruising();
+            planner.propose(one);
+            (planner.phase, planner.workspace) = (phase, workspace);
+            assert!(!planner.advance());
+            assert_eq!(planner.finish(), Verdict::Nothing);
+            let summary = planner.summary();
+            assert!(summary.inconsistent && !summary.complete, "{phase:?}");
+        }
+    }
+}

@@ -9,7 +9,6 @@ use super::rows::{ATTITUDE_OUTPUT, OUTPUTS, ROWS, RowPattern, THRUST_OUTPUT, par
 use super::{Dynamics, PITCH, STATES, Solution, StageState, Weights};
 use crate::config::{KNOTS, STAGES};
 use crate::corridor::DIRECTION_VECTORS;
-use core::fmt;
 use feedback::Feedback;
 use nalgebra::SVector;
 
@@ -32,19 +31,12 @@ pub struct Condensed {
 
 /// The cost has no single optimum: a weight is not positive, or the model is not finite. The planner then
 /// does not start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the plan's cost has no single optimum: give the controls positive weights, and the terminal \
+     state one that is not negative"
+)]
 pub struct CondenseError;
-
-impl fmt::Display for CondenseError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(
-            "the plan's cost has no single optimum: give the controls positive weights, and the \
-             terminal state one that is not negative",
-        )
-    }
-}
-
-impl core::error::Error for CondenseError {}
 
 impl Condensed {
     /// An empty workspace. All of it is zero, so that whoever needs a new one writes zeros in place.
