@@ -164,6 +164,27 @@ fn a_flight_of_ten_minutes_is_drawn_in_strips_to_scale() {
     assert!(flight_svg(&log).unwrap().contains("Downrange distance (m)"));
 }
 
+/// A broken sensor gives such references, and a broken log such flights.
+#[test]
+fn absurd_positions_make_no_great_picture() {
+    let plain = flight_svg(&example(600, 20)).unwrap();
+    for absurd in [1e6, 1e14, -1e18, 1e300] {
+        let mut log = example(600, 20);
+        for row in 300..500 {
+            log.ticks.ref_x[row] = Some(absurd * row as f64);
+            log.ticks.ref_z[row] = Some(-absurd);
+            log.ticks.ref_pitch[row] = Some(absurd);
+        }
+        let stray = flight_svg(&log).unwrap();
+        // The flight is still to be seen.
+        assert!(field_panels(&log, None).len() <= 2, "{absurd}");
+        (log.ticks.x[550], log.ticks.z[550]) = (absurd, absurd);
+        for svg in [stray, flight_svg(&log).unwrap()] {
+            assert!(svg.len() < 4 * plain.len(), "{absurd}: {} B", svg.len());
+        }
+    }
+}
+
 #[test]
 fn a_scene_shows_where_the_flight_with_one_path_failed() {
     let flown = |paths| {

@@ -23,21 +23,21 @@ fault_table! {
     }
 }
 
+/// Greatest number of a fault. What follows from one that is much greater is not finite.
+const MOST: f64 = 1e9;
+
 impl SignalFault {
     fn wrong_key(&self) -> Option<&'static str> {
-        let finite = |value: Option<f64>| value.is_none_or(f64::is_finite);
+        let bounded = |value: Option<f64>| value.is_none_or(|it| it.abs() <= MOST);
         let (noise, quantum) = (self.noise.unwrap_or(0.0), self.quantum.unwrap_or(1.0));
         let keys = [
-            (finite(self.scale), "give a finite `scale`"),
-            (finite(self.bias), "give a finite `bias`"),
-            (finite(self.ramp), "give a finite `ramp`"),
+            (bounded(self.scale), "give a `scale` of at most 1e9"),
+            (bounded(self.bias), "give a `bias` of at most 1e9"),
+            (bounded(self.ramp), "give a `ramp` of at most 1e9"),
+            ((0.0..=MOST).contains(&noise), "give a `noise` of 0 to 1e9"),
             (
-                noise >= 0.0 && noise.is_finite(),
-                "give a `noise` of 0 or more",
-            ),
-            (
-                quantum > 0.0 && quantum.is_finite(),
-                "give a `quantum` above 0",
+                quantum > 0.0 && quantum <= MOST,
+                "give a `quantum` above 0, and at most 1e9",
             ),
         ];
         let flaw = keys.into_iter().find(|(sound, _)| !sound);

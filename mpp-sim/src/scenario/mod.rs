@@ -17,7 +17,8 @@ use crate::sensors::AirDataNoise;
 use core::fmt;
 use core::str::FromStr;
 use hil_protocol::Configure;
-use mpp_core::config::TICK_PERIOD;
+use mpp_core::config::{MAX_PATHS, TICK_PERIOD};
+use mpp_core::planner::plane::MAX_CANDIDATES;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::vehicle::{ActuatorLimits, Trim, TrimError, VehicleState};
 use serde::{Deserialize, Serialize};
@@ -44,6 +45,9 @@ pub const TICK_US: u32 = 1000 * TICK_MS;
 /// Replanning rate of an oracle \[Hz\]; see [`crate::oracle`].
 pub const ORACLE_REPLAN_HZ: f64 = 10.0;
 
+/// Number of candidate paths if nobody gives one: the paper's.
+const USUAL_PATHS: u16 = 25;
+
 /// The named sets of parameters and rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -67,6 +71,27 @@ impl Preset {
             Self::Reference => "reference",
             Self::Paper => "paper",
             Self::Flight => "flight",
+        }
+    }
+
+    /// The most candidate paths that a cycle finds.
+    #[must_use]
+    pub fn most_paths(self) -> usize {
+        match self {
+            Self::Reference | Self::Paper => MAX_PATHS,
+            Self::Flight => MAX_CANDIDATES,
+        }
+    }
+
+    /// The number of paths of a flight for which this number was asked: the usual one stands for all that are more than a
+    /// cycle finds. Such flights are the same, and so have the same log.
+    #[must_use]
+    pub fn flown_paths(self, asked: u16) -> u16 {
+        let more = self.most_paths() + 1..=MAX_PATHS;
+        if more.contains(&usize::from(asked)) {
+            USUAL_PATHS
+        } else {
+            asked
         }
     }
 
@@ -161,7 +186,7 @@ impl Scenario {
             preset,
             aircraft: AircraftModel::reference(),
             world_scale: 1.0,
-            paths: 25,
+            paths: USUAL_PATHS,
             replan_ticks: TICKS_PER_SECOND,
             latency_ticks: 1,
             slices_per_tick: u32::MAX,
@@ -191,6 +216,12 @@ impl Scenario {
             oracle: true,
             ..self
         }
+    }
+
+    /// The most candidates of a cycle, as the preset finds them.
+    #[must_use]
+    pub fn most_candidates(&self) -> usize {
+        usize::from(self.paths).min(self.preset.most_paths())
     }
 
     /// Whether the core gets advice of an [`crate::oracle`], which knows more than the sensors tell.

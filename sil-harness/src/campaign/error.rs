@@ -27,9 +27,12 @@ pub enum CampaignError {
     /// A flight's log cannot be written. Holds its cell, its seed and the reason.
     #[error("{2}; fly it again with: fly --seed {1} {0}")]
     Log(Box<Cell>, u64, #[source] LogError),
-    /// A row file cannot be opened or read.
+    /// A row file cannot be opened to go on with it.
     #[error("cannot open {0}: {1}; give a path that can be read and written")]
-    File(String, #[source] std::io::Error),
+    Open(String, #[source] std::io::Error),
+    /// A row file cannot be read.
+    #[error("cannot read {0}: {1}")]
+    Read(String, #[source] std::io::Error),
     /// A row cannot be written: file, rows that it holds, why.
     #[error(
         "cannot write to {0}: {2}; it holds {1} whole rows: make room, and give the same command again to go on"

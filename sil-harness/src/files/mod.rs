@@ -30,6 +30,9 @@ pub enum FileError {
     /// The file is no field; the error names the file.
     #[error("{0}")]
     Field(#[source] FieldError),
+    /// The file has rows of a campaign, where a flight's log is wanted.
+    #[error("{path} is a row file: give a flight's log, which fly writes", path = .0.display())]
+    Rows(PathBuf),
     /// The file is no flight log, or the log cannot be written.
     #[error("{path}: {1}", path = .0.display())]
     Log(PathBuf, #[source] LogError),
@@ -59,7 +62,8 @@ pub const MOST_RECORDED: u64 = 1 << 30;
 /// Greatest number of bytes from a pipe or a device, which may have no end.
 const MOST_STREAMED: u64 = 64 << 20;
 
-/// Reads a text of at most so many bytes. A pipe or a device gives fewer.
+/// Reads a text of at most so many bytes. A pipe or a device gives fewer. A byte order mark, which some editors write,
+/// is no part of it.
 ///
 /// # Errors
 /// The error of the operating system; or the file is longer, or is no text.
@@ -76,9 +80,13 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
         let why = format!("it has more than {most} bytes: give another file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
     }
-    String::from_utf8(bytes).map_err(|_| {
+    let text = String::from_utf8(bytes).map_err(|_| {
         let why = "it is no UTF-8 text: give another file";
         io::Error::new(io::ErrorKind::InvalidData, why)
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
     })
 }
 
@@ -179,8 +187,11 @@ pub fn read_recorded(path: &Path) -> Result<String, FileError> {
 /// The flight's log that a text of this file holds.
 ///
 /// # Errors
-/// [`FileError::Log`].
+/// [`FileError::Log`] or [`FileError::Rows`].
 pub fn parse_log(path: &Path, text: &str) -> Result<FlightLog, FileError> {
+    if is_row_file(text) {
+        return Err(FileError::Rows(path.to_owned()));
+    }
     FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
 }
 
@@ -188,6 +199,20 @@ pub fn parse_log(path: &Path, text: &str) -> Result<FlightLog, FileError> {
 #[must_use]
 pub fn is_row_file(text: &str) -> bool {
     text.starts_with("{\"rows\":")
+}
+
+/// Makes a directory if there is none, and writes and removes a file there: a flight should not end to find that its log
+/// has no place.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn try_directory(directory: &Path) -> Result<(), FileError> {
+    let failed = |error| FileError::Write(directory.to_owned(), error);
+    std::fs::create_dir_all(directory).map_err(failed)?;
+    let probe = beside(&directory.join("probe"));
+    std::fs::write(&probe, "")
+        .and_then(|()| std::fs::remove_file(&probe))
+        .map_err(failed)
 }
 
 /// Writes a flight's log: exactly the bytes that are hashed.
