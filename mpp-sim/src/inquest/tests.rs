@@ -87,7 +87,7 @@ fn nearest_on_each_beam(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
         });
         let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let range = f64::from(*range);
-        let told = range > 0.0 && (range - entry).abs() <= DOUBT.0 + DOUBT.1 * entry;
+        let told = range > 0.0 && (range - entry).abs() <= RETURN_OFF + RETURN_OFF_SHARE * entry;
         told.then_some(nearest)
     };
     (scan.ranges.iter().enumerate())
