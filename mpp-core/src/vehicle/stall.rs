@@ -45,8 +45,8 @@ impl StallGuard {
             .limits
             .map(|limit| limit + STALL_LEAD * (limit - angle_of_attack));
         let kept = balanced.min(most).max(least);
-        // Comparison, so that a command within the limits keeps its bits.
-        if kept < balanced || kept > balanced {
+        // A command within the limits keeps its bits.
+        if libm::fabs(kept - balanced) > 0.0 {
             command.elevator = elevator + (kept - level) / self.per_unit;
         }
         command
