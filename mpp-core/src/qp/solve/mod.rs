@@ -41,7 +41,7 @@ const ABSURD_MISS: f64 = 1000.0;
 /// Factor of the cost of the optimum without rows in the absurd cost.
 const ABSURD_FACTOR: f64 = 1e3;
 /// Control [-, N] whose cost in every stage is absurd: terminal weights may be so small that a miss costs nothing.
-const ABSURD_CONTROL: f64 = 1000.0;
+const ABSURD_CONTROL: f64 = 200.0;
 
 /// A row with a multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
