@@ -114,10 +114,10 @@ pub(super) fn feedforward(
         slope -= gain.transpose() * pull;
         *control = (scale * (scale.transpose() * pull)).into();
     }
-    *controls
+    controls
         .as_flattened()
-        .as_array()
-        .unwrap_or(&[0.0; 2 * STAGES])
+        .try_into()
+        .unwrap_or([0.0; 2 * STAGES])
 }
 
 /// The lower triangle `T` with `T T' = M^-1`, or `None` if `M` is not positive definite.
