@@ -34,8 +34,10 @@ def write(kind, value) -> bytes:
     if kind[0] == "*":
         return write("v", len(value)) + b"".join(write(kind[1:], each) for each in value)
     if kind in STRUCTS:
+        if unknown := value.keys() - dict(STRUCTS[kind]):
+            raise ValueError(f"{kind} has no field {', '.join(unknown)}")
         return b"".join(write(part, value.get(name)) for name, part in STRUCTS[kind])
-    return struct.pack("<" + kind, value)
+    return struct.pack("<" + kind, value or 0)
 
 
 def read(kind, data: bytes, at: int = 0):
@@ -102,10 +104,9 @@ class Core:
         return self.ask((frame("LidarScan", scan) if scan else b"") + frame("SensorFrame", sensed), "ActuatorCommand")
 
 
-# Aircraft and session. What is absent is an option without a value.
+# Aircraft and session. What is absent is 0, or an option without a value.
 OWN = dict(mass=3.2, pitch_inertia=0.17, wing_area=0.25, moment_length=1.0, air_density=1.225, lift_zero=0.5,
-           lift_alpha=5.73, lift_alpha_rate=0.0, lift_pitch_rate=0.0, lift_elevator=0.0, drag_zero=0.1,
-           drag_induced=0.05, moment_zero=0.5, moment_alpha=-8.0, moment_alpha_rate=-0.46, moment_pitch_rate=0.0,
+           lift_alpha=5.73, drag_zero=0.1, drag_induced=0.05, moment_zero=0.5, moment_alpha=-8.0, moment_alpha_rate=-0.46,
            moment_elevator=0.2, cruise=12.0, body_radius=0.1, preset=2, paths=25, replan_period_ticks=100,
            latency_ticks=1, slices_per_tick=1000, beams=100, range_max=45.0, altitude=50.0)
 

@@ -2,7 +2,7 @@
 //! switches a fault on by a change of its word in the image file. Without such a change the faults have no
 //! effect.
 
-use crate::serial;
+use crate::ring;
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
 /// Value for a fault that is switched off.
@@ -72,7 +72,7 @@ pub fn slice() {
 
 /// Waits for lost bytes if the fault is switched on. It calls `alive` meanwhile.
 pub fn set_up(alive: impl Fn()) {
-    while read(&FAULT_SET_UP_AWAITS_LOSS) != NEVER && serial::lost() == 0 {
+    while read(&FAULT_SET_UP_AWAITS_LOSS) != NEVER && ring::lost() == 0 {
         alive();
     }
 }

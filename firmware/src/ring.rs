@@ -1,12 +1,21 @@
 //! A fixed ring of bytes between two priorities.
 
-use core::sync::atomic::{AtomicU8, AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicU8, AtomicU32, AtomicUsize, Ordering};
 
 /// Number of places in the ring; a power of two. A harness in lockstep sends a scan and a sensor frame at
 /// a time, which are 600 bytes. An answer is shorter.
 pub const PLACES: usize = 1024;
 /// Half of the places. A ring that fills up passes this length.
 pub const HALF: usize = PLACES / 2;
+
+/// Number of bytes lost because a ring was full.
+static LOST: AtomicU32 = AtomicU32::new(0);
+
+/// Number of bytes that all rings have lost since the start.
+#[must_use]
+pub fn lost() -> u32 {
+    LOST.load(Ordering::Relaxed)
+}
 
 /// A ring with a single producer and a single consumer. Neither of them ever waits.
 pub struct Ring {
@@ -28,9 +37,9 @@ impl Ring {
         }
     }
 
-    /// Puts in bytes. Returns the number of those for which there is no room, the last ones. Only the producer
-    /// may call this function.
-    pub fn push(&self, bytes: &[u8]) -> usize {
+    /// Puts in bytes. Those for which there is no room, the last ones, are lost. Only the producer may call this
+    /// function.
+    pub fn push(&self, bytes: &[u8]) {
         let head = self.head.load(Ordering::Relaxed);
         let used = head.wrapping_sub(self.tail.load(Ordering::Acquire));
         let taken = bytes.len().min(PLACES.saturating_sub(used));
@@ -38,7 +47,10 @@ impl Ring {
             self.bytes[head.wrapping_add(index) % PLACES].store(*byte, Ordering::Relaxed);
         }
         self.head.store(head.wrapping_add(taken), Ordering::Release);
-        bytes.len().saturating_sub(taken)
+        let lost = bytes.len().saturating_sub(taken);
+        if lost > 0 {
+            LOST.fetch_add(lost as u32, Ordering::Relaxed);
+        }
     }
 
     /// Number of bytes in the ring, as the caller's priority sees it.

@@ -2,7 +2,7 @@
 
 use crate::mark::{self, Region};
 use crate::processor;
-use crate::ring::{HALF, PLACES, Ring};
+use crate::ring::{HALF, PLACES, Ring, lost};
 use crate::tasks::{self, StepSide};
 use core::sync::atomic::{AtomicU32, Ordering};
 use cortex_m::peripheral::SCB;
@@ -36,8 +36,6 @@ pub trait Line {
 
 static RECEIVED: Ring = Ring::new();
 static TO_SEND: Ring = Ring::new();
-/// Number of bytes lost because a ring was full.
-static LOST: AtomicU32 = AtomicU32::new(0);
 /// Number of lost bytes that the step has reported.
 static REPORTED: AtomicU32 = AtomicU32::new(0);
 
@@ -45,19 +43,7 @@ static REPORTED: AtomicU32 = AtomicU32::new(0);
 // Not inlined, because each message would hold a copy.
 #[inline(never)]
 pub fn send(bytes: &[u8]) {
-    count_lost(TO_SEND.push(bytes));
-}
-
-/// Number of bytes lost in both directions since the start.
-#[must_use]
-pub fn lost() -> u32 {
-    LOST.load(Ordering::Relaxed)
-}
-
-fn count_lost(bytes: usize) {
-    if bytes > 0 {
-        LOST.fetch_add(bytes as u32, Ordering::Relaxed);
-    }
+    TO_SEND.push(bytes);
 }
 
 /// The interrupt of the step: answers of the planner, received bytes, and each 10 ms the watch of the planner and the
@@ -97,6 +83,56 @@ fn run(side: &mut StepSide) {
     }
 }
 
+/// Defines the program of an image that flies over a serial line. `$board` and `$line` are the modules of both;
+/// `$prepare` prepares them before anything else runs.
+#[macro_export]
+macro_rules! serial_image {
+    ($board:ident, $line:ident, $prepare:expr) => {
+        #[cortex_m_rt::entry]
+        fn main() -> ! {
+            if let Some(mut peripherals) = cortex_m::Peripherals::take() {
+                ($prepare)(&mut peripherals);
+                $crate::protection::start(&mut peripherals.MPU, &$board::REGIONS);
+                // SAFETY: no interrupt is enabled yet.
+                unsafe {
+                    $crate::tasks::set_up($crate::serial::PACE);
+                    $crate::tasks::step_side().announce($crate::serial::send);
+                }
+                $crate::processor::set_priorities(&mut peripherals);
+                $board::start_watchdog();
+                $crate::processor::start_ticking(&mut peripherals, $board::TICK);
+                $line::start();
+            }
+            planner_thread()
+        }
+
+        #[unsafe(no_mangle)]
+        extern "C" fn planner_thread() -> ! {
+            // SAFETY: only `main` calls this function, and the restart after it has dropped the thread.
+            unsafe {
+                $crate::tasks::plan(cortex_m::peripheral::SCB::set_pendst, || {
+                    $crate::processor::sleep_unless($crate::tasks::has_order)
+                })
+            }
+        }
+
+        /// The interrupt of the step. It comes every 10 ms, after the last byte of a frame, and after an answer of
+        /// the planner.
+        #[cortex_m_rt::exception]
+        fn SysTick() {
+            // SAFETY: this is the step's interrupt.
+            unsafe {
+                $crate::serial::step($board::feed_watchdog, $line::kick);
+            }
+        }
+
+        #[cortex_m_rt::exception]
+        unsafe fn DefaultHandler(number: i16) {
+            $line::interrupt(number);
+        }
+    };
+}
+
 /// Handles the interrupt of the line.
 pub fn interrupt<L: Line>() {
     mark::begin();
@@ -106,7 +142,7 @@ pub fn interrupt<L: Line>() {
         let Some(byte) = L::take() else {
             break;
         };
-        count_lost(RECEIVED.push(&[byte]));
+        RECEIVED.push(&[byte]);
         // The step must also take bytes in time if no delimiter comes.
         if byte == DELIMITER || RECEIVED.len() == HALF {
             SCB::set_pendst();

@@ -80,7 +80,7 @@ def main(arguments=None):
 
 
 def connected(args):
-    passphrase = Path(args.key).read_text().splitlines()[0] if args.key else None
+    passphrase = Path(args.key).read_text("utf-8-sig").splitlines()[0].rstrip() if args.key else None
     vehicle = Vehicle(args.connect, args.system, passphrase)
     try:
         {"monitor": run_monitor, "params": run_params, "command": run_command, "record": run_record}[

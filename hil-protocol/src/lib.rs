@@ -103,7 +103,6 @@ mod version;
 
 pub use error::{DecodeError, EncodeError};
 pub use frame::{Decoder, MAGIC, MAX_FRAME, encode, encode_body};
-pub use message::aircraft::{ActuatorLimits, Aircraft};
 pub use message::flight::{
     ActuatorCommand, AirData, ControlMode, GroundVelocity, LidarScan, MAX_BEAMS, Position,
     SensorFrame, SensorState, SensorStates, StepReport,
@@ -115,7 +114,7 @@ pub use message::report::{
 pub use message::session::{
     Configure, ConfigureReply, Hello, ParameterReply, Preset, Role, SetParameter,
 };
-pub use message::setting::Setting;
 pub use message::verdict::{ConfigureVerdict, ParameterVerdict};
 pub use message::{Body, MAX_PAYLOAD, Message, id};
+pub use mpp_data::{ActuatorLimits, Aircraft, Airframe, OutOfRange, Setting};
 pub use version::PROTOCOL_VERSION;

@@ -10,7 +10,6 @@ use mpp_core::qp::{
 };
 use nalgebra::{Matrix6x2, SMatrix};
 use serde::{Deserialize, Serialize};
-use std::fmt;
 
 /// One program: everything that a solver needs.
 ///
@@ -253,60 +252,29 @@ fn rows_of<const COLS: usize>(matrix: &SMatrix<f64, 6, COLS>) -> [[f64; COLS]; 6
 }
 
 /// The reason why a text holds no programs.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum InstanceError {
     /// The text is not the JSON that it should be.
-    Json(serde_json::Error),
+    #[error("{0}")]
+    Json(#[source] serde_json::Error),
     /// The program of this name has another number of stage boundaries than the core.
+    #[error("{0}: position_bounds has {1} stages instead of {KNOTS}")]
     Stages(String, usize),
     /// The program of this name has dynamics for another number of stages than one or all.
+    #[error("{0}: a, b and offset have {1} stages instead of 1 or {STAGES}")]
     Dynamics(String, usize),
     /// The program of this name has a motion that depends on the position.
+    #[error(
+        "{0}: the first two columns of a must be those of the identity, because the core takes it that a \
+         motion does not depend on the position"
+    )]
     Position(String),
     /// The program of this name has other directions than the core.
+    #[error("{0}: directions are not the eight of this crate")]
     Directions(String),
     /// The recorded case of this name has a model without steady state.
+    #[error("{0}: the plan's model has no steady state")]
     NoSteadyState(String),
-}
-
-impl fmt::Display for InstanceError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Json(error) => write!(f, "{error}"),
-            Self::Stages(name, found) => write!(
-                f,
-                "{name}: position_bounds has {found} stages instead of {KNOTS}"
-            ),
-            Self::Dynamics(name, found) => write!(
-                f,
-                "{name}: a, b and offset have {found} stages instead of 1 or {STAGES}"
-            ),
-            Self::Position(name) => write!(
-                f,
-                "{name}: the first two columns of a must be those of the identity, because the core \
-                 takes it that a motion does not depend on the position"
-            ),
-            Self::Directions(name) => {
-                write!(f, "{name}: directions are not the eight of this crate")
-            }
-            Self::NoSteadyState(name) => {
-                write!(f, "{name}: the plan's model has no steady state")
-            }
-        }
-    }
-}
-
-impl std::error::Error for InstanceError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Json(error) => Some(error),
-            Self::Stages(..)
-            | Self::Dynamics(..)
-            | Self::Position(_)
-            | Self::Directions(_)
-            | Self::NoSteadyState(_) => None,
-        }
-    }
 }
 
 impl From<serde_json::Error> for InstanceError {

@@ -33,15 +33,15 @@ pub struct Inputs {
 /// [`FlyError`].
 pub fn record(scenario: &Scenario) -> Result<Vec<Inputs>, FlyError> {
     let mut inputs = Vec::new();
-    fly(scenario, &mut PipeLink::of(scenario), |moment| {
-        let Some(wire) = moment.scan else {
+    fly(scenario, &mut PipeLink::of(scenario), |record| {
+        let Some(wire) = record.scan else {
             return;
         };
         inputs.push(Inputs {
-            time: moment.tick.t,
-            truth: moment.tick.state,
-            state: moment.tick.estimate,
-            conditions: moment.tick.conditions,
+            time: record.tick.t,
+            truth: record.tick.state,
+            state: record.tick.estimate,
+            conditions: record.tick.conditions,
             scan: core_scan(wire),
         });
     })?;

@@ -1,6 +1,7 @@
 //! The first line of a row file: which campaign its rows are of, and which program flew them.
 
 use crate::campaign::{Campaign, Cell, Shard};
+use mpp_sim::scenario::TICKS_PER_SECOND;
 use serde::{Deserialize, Serialize};
 
 /// Version of the rows' layout.
@@ -33,9 +34,11 @@ impl Header {
         shard: Shard,
         hash: impl Fn(&Campaign, &Cell, u64) -> Result<String, E>,
     ) -> Result<Self, E> {
-        const SECONDS: f64 = 2.0;
+        const SECONDS: u32 = 2;
         let mut start = campaign.clone();
-        start.scenario.duration = Some(SECONDS);
+        start.scenario.duration = Some(f64::from(SECONDS));
+        // A fault that begins later is none of this start, and would be refused in so short a flight.
+        start.scenario.faults = campaign.scenario.faults.within(SECONDS * TICKS_PER_SECOND);
         let mut cells = campaign.cells();
         cells.dedup_by_key(|cell| (cell.preset, cell.oracle));
         let hashes = cells.iter().map(|cell| hash(&start, cell, campaign.seed));

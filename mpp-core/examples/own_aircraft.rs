@@ -23,15 +23,15 @@ fn main() -> Result<(), SetupError> {
             moment_elevator: 0.9,
             ..Airframe::REFERENCE
         },
-        actuators: ActuatorLimits {
-            thrust_max: Some(6.0),
-            ..ActuatorLimits::NONE
-        },
         cruise: 10.0,
         body_radius: 0.15,
         stall: Some(0.15),
     };
-    let settings = Settings::flight_of(&aircraft);
+    let actuators = ActuatorLimits {
+        thrust_max: Some(6.0),
+        ..ActuatorLimits::NONE
+    };
+    let settings = Settings::flight_of(&aircraft, &actuators);
     let mut planner = Box::new(Planner::new());
     planner.set_up(&settings)?;
     let (trim, units) = (planner.trim(), settings.units);
@@ -53,7 +53,7 @@ fn main() -> Result<(), SetupError> {
         },
         ..aircraft
     };
-    match planner.set_up(&Settings::flight_of(&heavy)) {
+    match planner.set_up(&Settings::flight_of(&heavy, &actuators)) {
         Err(error) => println!("12 kg: {error}"),
         Ok(()) => unreachable!("6 N do not carry 12 kg"),
     }

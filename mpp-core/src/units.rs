@@ -12,9 +12,10 @@ use crate::vehicle::{
     ActuatorLimits, AirState, Airframe, Conditions, Control, PathControl, PathState, Pose, Trim,
     VehicleState, Wind,
 };
+use mpp_data::Aircraft;
 
 /// Airspeed of level flight for which the planner's numbers were tuned [m/s] (paper, section IV).
-pub const REFERENCE_CRUISE: f64 = 12.0;
+pub const REFERENCE_CRUISE: f64 = Aircraft::REFERENCE.cruise;
 
 /// The sizes of the planner's units.
 #[derive(Clone, Copy, Debug, PartialEq)]

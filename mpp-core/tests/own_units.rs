@@ -9,11 +9,12 @@ use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{ActuatorLimits, Airframe, VehicleState, Wind};
 
-/// The reference aircraft with limits, a body and an elevator with lift, and lengths `scale` times as long.
-fn aircraft(scale: f64) -> Aircraft {
+/// Preset `flight` for the reference aircraft with limits, a body and an elevator with lift, and lengths `scale` times
+/// as long.
+fn flight_of(scale: f64) -> Settings {
     let (time, cube) = (scale.sqrt(), scale.powi(3));
     let base = Airframe::REFERENCE;
-    Aircraft {
+    let aircraft = Aircraft {
         airframe: Airframe {
             mass: base.mass * cube,
             pitch_inertia: base.pitch_inertia * cube * scale * scale,
@@ -26,17 +27,18 @@ fn aircraft(scale: f64) -> Aircraft {
             lift_elevator: 0.02,
             ..base
         },
-        actuators: ActuatorLimits {
-            thrust_max: Some(15.0 * cube),
-            thrust_lag: Some(0.2 * time),
-            elevator_below: Some(6.0),
-            elevator_above: Some(4.0),
-            elevator_rate: Some(40.0 / time),
-        },
         cruise: 12.0 * time,
         body_radius: 0.2 * scale,
         stall: Some(0.25),
-    }
+    };
+    let actuators = ActuatorLimits {
+        thrust_max: Some(15.0 * cube),
+        thrust_lag: Some(0.2 * time),
+        elevator_below: Some(6.0),
+        elevator_above: Some(4.0),
+        elevator_rate: Some(40.0 / time),
+    };
+    Settings::flight_of(&aircraft, &actuators)
 }
 
 /// A scan of a disc of 1 m radius 25 m ahead, of a world that is `scale` times as long.
@@ -59,7 +61,7 @@ fn scan(pitch: f64, scale: f64) -> LidarScan {
 }
 
 fn plan(scale: f64) -> Trajectory {
-    let mut settings = Settings::flight_of(&aircraft(scale));
+    let mut settings = flight_of(scale);
     settings.planner.altitude = 50.0 * scale;
     let own = settings.planner.plane_mut().unwrap();
     own.sight = 45.0 * scale;
@@ -129,7 +131,7 @@ fn a_similar_aircraft_flies_the_similar_plan() {
 #[test]
 fn the_reference_aircraft_has_the_settings_of_the_preset() {
     assert_eq!(
-        Settings::flight_of(&Aircraft::REFERENCE),
+        Settings::flight_of(&Aircraft::REFERENCE, &ActuatorLimits::NONE),
         Settings::flight()
     );
 }

@@ -10,234 +10,126 @@ use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::settings::{Cruise, PlaneSettings, Setting, Settings};
-use mpp_core::vehicle::TrimError;
+use mpp_core::vehicle::{Airframe, TrimError};
 
-/// A number: its name, how to set it, and two absurd values below and above its range.
-type Row = (Setting, fn(&mut Settings, f64), [f64; 2]);
+/// A number: its name, and how to set it.
+type Row = (Setting, Box<dyn Fn(&mut Settings, f64)>);
 
 fn own(settings: &mut Settings) -> &mut PlaneSettings {
     settings.planner.plane_mut().unwrap()
 }
 
-/// The numbers of all presets.
-const SHARED: [Row; 47] = {
+/// The numbers of all presets, beside those of the airframe.
+const SHARED: [(Setting, fn(&mut Settings, f64)); 30] = {
     use Setting::*;
     [
-        (LengthUnit, |s, n| s.units.length = n, [0.0, 1e6]),
-        (TimeUnit, |s, n| s.units.time = n, [0.0, 1e6]),
-        (MassUnit, |s, n| s.units.mass = n, [0.0, 1e9]),
-        (Mass, |s, n| s.airframe.mass = n, [-1.0, 1e6]),
-        (
-            PitchInertia,
-            |s, n| s.airframe.pitch_inertia = n,
-            [0.0, 1e9],
-        ),
-        (WingArea, |s, n| s.airframe.wing_area = n, [-0.25, 1e4]),
-        (
-            MomentLength,
-            |s, n| s.airframe.moment_length = n,
-            [0.0, 1e3],
-        ),
-        (AirDensity, |s, n| s.airframe.air_density = n, [0.0, 1e3]),
-        (LiftZero, |s, n| s.airframe.lift_zero = n, [-1e3, 1e3]),
-        (LiftAlpha, |s, n| s.airframe.lift_alpha = n, [-5.73, 1e3]),
-        (
-            LiftElevator,
-            |s, n| s.airframe.lift_elevator = n,
-            [-1e3, 1e3],
-        ),
-        (DragZero, |s, n| s.airframe.drag_zero = n, [-0.1, 1e3]),
-        (
-            DragInduced,
-            |s, n| s.airframe.drag_induced = n,
-            [-0.05, 1e3],
-        ),
-        (MomentZero, |s, n| s.airframe.moment_zero = n, [-1e3, 1e3]),
-        (MomentAlpha, |s, n| s.airframe.moment_alpha = n, [-1e6, 0.0]),
-        (
-            MomentAlphaRate,
-            |s, n| s.airframe.moment_alpha_rate = n,
-            [-1e6, 0.46],
-        ),
-        (
-            MomentPitchRate,
-            |s, n| s.airframe.moment_pitch_rate = n,
-            [-1e6, 0.1],
-        ),
-        (
-            MomentElevator,
-            |s, n| s.airframe.moment_elevator = n,
-            [0.0, -1e6],
-        ),
-        (
-            MotorThrust,
-            |s, n| s.actuators.thrust_max = Some(n),
-            [0.0, 1e9],
-        ),
-        (
-            ThrustLag,
-            |s, n| s.actuators.thrust_lag = Some(n),
-            [-0.1, 1e4],
-        ),
-        (
-            ElevatorBelow,
-            |s, n| s.actuators.elevator_below = Some(n),
-            [0.0, 1e9],
-        ),
-        (
-            ElevatorAbove,
-            |s, n| s.actuators.elevator_above = Some(n),
-            [0.0, 1e9],
-        ),
-        (
-            ElevatorRate,
-            |s, n| s.actuators.elevator_rate = Some(n),
-            [-1.0, 1e12],
-        ),
-        (
-            CruiseAirspeed,
-            |s, n| s.cruise = Cruise::Airspeed(n),
-            [-12.0, 340.0],
-        ),
-        (
-            LiftAlphaRate,
-            |s, n| s.airframe.lift_alpha_rate = n,
-            [-1.0, 1.0],
-        ),
-        (
-            LiftPitchRate,
-            |s, n| s.airframe.lift_pitch_rate = n,
-            [-1.0, 1.0],
-        ),
-        (DesignThrust, |s, n| s.design_thrust = Some(n), [-1.0, 1e9]),
-        (
-            SpeedNoise,
-            |s, n| s.estimator.process_noise[0] = n,
-            [-1e-9, 1e9],
-        ),
-        (
-            PitchNoise,
-            |s, n| s.estimator.process_noise[1] = n,
-            [-1e-9, 1e9],
-        ),
-        (
-            RateNoise,
-            |s, n| s.estimator.process_noise[2] = n,
-            [-1e-9, 1e9],
-        ),
-        (
-            PathNoise,
-            |s, n| s.estimator.process_noise[3] = n,
-            [-1e-9, 1e9],
-        ),
-        (
-            AirspeedVariance,
-            |s, n| s.estimator.airspeed_variance = n,
-            [0.0, 1e9],
-        ),
-        (
-            PitchVariance,
-            |s, n| s.estimator.pitch_variance = n,
-            [-1e-9, 1e9],
-        ),
-        (
-            InitialVariance,
-            |s, n| s.estimator.initial_variance = n,
-            [0.0, 1e9],
-        ),
-        (Gate, |s, n| s.estimator.gate = n, [0.0, 1e9]),
-        (WindChange, |s, n| s.wind_change = Some(n), [0.0, 1e9]),
-        (SpeedWeight, |s, n| s.regulator.state[0] = n, [-1.0, 1e12]),
-        (PitchWeight, |s, n| s.regulator.state[1] = n, [-1.0, 1e12]),
-        (RateWeight, |s, n| s.regulator.state[2] = n, [-1.0, 1e12]),
-        (PathWeight, |s, n| s.regulator.state[3] = n, [-1.0, 1e12]),
-        (ElevatorWeight, |s, n| s.regulator.elevator = n, [0.0, 1e12]),
-        (CrossTrack, |s, n| s.cross_track = n, [-0.08, 1e3]),
-        (AirspeedHold, |s, n| s.airspeed_hold = n, [-10.0, 1e9]),
-        (Altitude, |s, n| s.planner.altitude = n, [-1e6, 1e6]),
-        (
-            PlanElevatorWeight,
-            |s, n| s.planner.weights.control[0] = n,
-            [-1.0, 1e12],
-        ),
-        (
-            PlanThrustWeight,
-            |s, n| s.planner.weights.control[1] = n,
-            [0.0, 1e12],
-        ),
-        (
-            PlanTerminalWeight,
-            |s, n| s.planner.weights.terminal = n,
-            [-1.0, 1e12],
-        ),
+        (LengthUnit, |s, n| s.units.length = n),
+        (TimeUnit, |s, n| s.units.time = n),
+        (MassUnit, |s, n| s.units.mass = n),
+        (MotorThrust, |s, n| s.actuators.thrust_max = Some(n)),
+        (ThrustLag, |s, n| s.actuators.thrust_lag = Some(n)),
+        (ElevatorBelow, |s, n| s.actuators.elevator_below = Some(n)),
+        (ElevatorAbove, |s, n| s.actuators.elevator_above = Some(n)),
+        (ElevatorRate, |s, n| s.actuators.elevator_rate = Some(n)),
+        (CruiseAirspeed, |s, n| s.cruise = Cruise::Airspeed(n)),
+        (DesignThrust, |s, n| s.design_thrust = Some(n)),
+        (SpeedNoise, |s, n| s.estimator.process_noise[0] = n),
+        (PitchNoise, |s, n| s.estimator.process_noise[1] = n),
+        (RateNoise, |s, n| s.estimator.process_noise[2] = n),
+        (PathNoise, |s, n| s.estimator.process_noise[3] = n),
+        (AirspeedVariance, |s, n| s.estimator.airspeed_variance = n),
+        (PitchVariance, |s, n| s.estimator.pitch_variance = n),
+        (InitialVariance, |s, n| s.estimator.initial_variance = n),
+        (Gate, |s, n| s.estimator.gate = n),
+        (WindChange, |s, n| s.wind_change = Some(n)),
+        (SpeedWeight, |s, n| s.regulator.state[0] = n),
+        (PitchWeight, |s, n| s.regulator.state[1] = n),
+        (RateWeight, |s, n| s.regulator.state[2] = n),
+        (PathWeight, |s, n| s.regulator.state[3] = n),
+        (ElevatorWeight, |s, n| s.regulator.elevator = n),
+        (CrossTrack, |s, n| s.cross_track = n),
+        (AirspeedHold, |s, n| s.airspeed_hold = n),
+        (Altitude, |s, n| s.planner.altitude = n),
+        (PlanElevatorWeight, |s, n| s.planner.weights.control[0] = n),
+        (PlanThrustWeight, |s, n| s.planner.weights.control[1] = n),
+        (PlanTerminalWeight, |s, n| s.planner.weights.terminal = n),
     ]
 };
 
 /// The numbers of the flight planner.
-const FLIGHT: [Row; 13] = {
+const FLIGHT: [(Setting, fn(&mut Settings, f64)); 13] = {
     use Setting::*;
     [
-        (Sight, |s, n| own(s).sight = n, [0.0, 1e9]),
-        (Latency, |s, n| own(s).latency = n, [-0.01, 4.51]),
-        (PenaltyLinear, |s, n| own(s).penalty.linear = n, [0.0, 1e15]),
-        (
-            PenaltyQuadratic,
-            |s, n| own(s).penalty.quadratic = n,
-            [-1.0, 1e15],
-        ),
-        (
-            AngleOfAttackLimit,
-            |s, n| own(s).attitude.angle_of_attack = n,
-            [0.0, 2.0],
-        ),
-        (
-            FlightPathLimit,
-            |s, n| own(s).attitude.flight_path = n,
-            [-0.6, 2.0],
-        ),
-        (Margin, |s, n| own(s).margin = n, [0.0, 1e3]),
-        (BodyRadius, |s, n| own(s).body_radius = n, [-0.1, 1e3]),
-        (Stall, |s, n| own(s).stall = Some(n), [0.0, 2.0]),
-        (Band, |s, n| own(s).band = n, [-10.0, 1e6]),
-        (PlanThrust, |s, n| own(s).thrust_max = n, [0.0, 1e9]),
+        (Sight, |s, n| own(s).sight = n),
+        (Latency, |s, n| own(s).latency = n),
+        (PenaltyLinear, |s, n| own(s).penalty.linear = n),
+        (PenaltyQuadratic, |s, n| own(s).penalty.quadratic = n),
+        (AngleOfAttackLimit, |s, n| {
+            own(s).attitude.angle_of_attack = n
+        }),
+        (FlightPathLimit, |s, n| own(s).attitude.flight_path = n),
+        (Margin, |s, n| own(s).margin = n),
+        (BodyRadius, |s, n| own(s).body_radius = n),
+        (Stall, |s, n| own(s).stall = Some(n)),
+        (Band, |s, n| own(s).band = n),
+        (PlanThrust, |s, n| own(s).thrust_max = n),
         // These two are whole numbers, so that each value here stands for the nearest one.
-        (
-            SqpIterations,
-            |s, n| own(s).sqp_iterations = n as u8,
-            [0.0, 255.0],
-        ),
-        (
-            RefinedCandidates,
-            |s, n| own(s).refined_candidates = n as usize,
-            [51.0, 1e9],
-        ),
+        (SqpIterations, |s, n| own(s).sqp_iterations = n as u8),
+        (RefinedCandidates, |s, n| {
+            own(s).refined_candidates = n as usize
+        }),
     ]
 };
 
 /// The numbers of the paper's method.
-const PAPER: [Row; 2] = {
+const PAPER: [(Setting, fn(&mut Settings, f64)); 2] = {
     use Setting::*;
     [
-        (
-            PaddingNear,
-            |s, n| s.planner.paper_mut().unwrap().padding.near = n,
-            [-1.0, 1e3],
-        ),
-        (
-            PaddingFar,
-            |s, n| s.planner.paper_mut().unwrap().padding.far = n,
-            [-1.0, 1e3],
-        ),
+        (PaddingNear, |s, n| {
+            s.planner.paper_mut().unwrap().padding.near = n
+        }),
+        (PaddingFar, |s, n| {
+            s.planner.paper_mut().unwrap().padding.far = n
+        }),
     ]
 };
 
+/// The numbers of the airframe.
+fn airframe() -> impl Iterator<Item = Row> {
+    let settings = Airframe::SETTINGS.iter().enumerate();
+    settings.map(|(at, setting)| -> Row {
+        let set = move |s: &mut Settings, n| {
+            let mut numbers = s.airframe.numbers();
+            numbers[at] = n;
+            s.airframe = Airframe::of_numbers(numbers);
+        };
+        (*setting, Box::new(set))
+    })
+}
+
 /// Each method's settings with all its numbers.
 fn methods() -> [(Settings, Vec<Row>); 2] {
-    let shared = |own: &[Row]| SHARED.iter().chain(own).copied().collect();
+    let rows = |own: &'static [(Setting, fn(&mut Settings, f64))]| {
+        let plain = SHARED.iter().chain(own);
+        let plain = plain.map(|(setting, set)| -> Row { (*setting, Box::new(set)) });
+        airframe().chain(plain).collect()
+    };
     [
-        (Settings::flight(), shared(&FLIGHT)),
-        (Settings::paper(), shared(&PAPER)),
+        (Settings::flight(), rows(&FLIGHT)),
+        (Settings::paper(), rows(&PAPER)),
     ]
+}
+
+/// Two absurd values of a number, below and above its range.
+fn absurd(setting: Setting) -> [f64; 2] {
+    let [least, most] = setting.range();
+    match setting {
+        // The range is that of the magnitude.
+        Setting::MomentElevator => [0.0, -most - 1.0],
+        // There is no count below 0.
+        Setting::RefinedCandidates => [most + 1.0, 1e9],
+        _ => [least - 1.0, most + 1.0],
+    }
 }
 
 /// Checks that step and planner give the same error.
@@ -251,10 +143,13 @@ fn refused(settings: &Settings) -> SetupError {
 #[test]
 fn every_absurd_number_is_refused_by_its_name() {
     for (preset, rows) in methods() {
-        for (setting, set, absurd) in rows {
+        for (setting, set) in rows {
             let whole = matches!(setting, Setting::SqpIterations | Setting::RefinedCandidates);
             let infinite = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
-            for number in absurd.iter().chain(infinite.iter().filter(|_| !whole)) {
+            for number in absurd(setting)
+                .iter()
+                .chain(infinite.iter().filter(|_| !whole))
+            {
                 let mut settings = preset;
                 set(&mut settings, *number);
                 let error = refused(&settings);
@@ -270,7 +165,7 @@ fn every_absurd_number_is_refused_by_its_name() {
 fn the_table_leaves_no_number_out() {
     let mut named: Vec<Setting> = vec![];
     for (mut settings, rows) in methods() {
-        for (setting, set, _) in &rows {
+        for (setting, set) in &rows {
             set(&mut settings, 77.0);
             if !named.contains(setting) {
                 named.push(*setting);
@@ -299,7 +194,7 @@ fn every_end_of_a_range_is_in_it_and_every_preset_flies() {
         assert!(FlightLoop::new(&preset).is_ok());
     }
     for (preset, rows) in methods() {
-        for (setting, set, _) in rows {
+        for (setting, set) in rows {
             for end in setting.range() {
                 let mut settings = preset;
                 set(&mut settings, end);

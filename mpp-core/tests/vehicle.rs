@@ -38,33 +38,20 @@ fn controls() -> impl Strategy<Value = Control> {
 /// Both named airframes with every parameter up to 30 % wrong, an elevator with lift, a damping by the pitch
 /// rate, and lift by rates.
 fn airframes() -> impl Strategy<Value = Airframe> {
-    let numbers = (
-        prop::array::uniform13(0.7..1.3),
-        -0.03..0.03,
-        -1.0..0.0,
-        -0.1..0.2,
-        -0.1..0.2,
-    );
-    (named(), numbers).prop_map(
-        |(base, (f, lift_elevator, moment_pitch_rate, lift_alpha_rate, lift_pitch_rate))| {
+    let factors = prop::array::uniform::<_, { Airframe::COUNT }>(0.7..1.3);
+    let more = (-0.03..0.03, -1.0..0.0, -0.1..0.2, -0.1..0.2);
+    (named(), factors, more).prop_map(
+        |(base, factors, (lift_elevator, moment_pitch_rate, lift_alpha_rate, lift_pitch_rate))| {
+            let mut numbers = base.numbers();
+            for (number, factor) in numbers.iter_mut().zip(factors) {
+                *number *= factor;
+            }
             Airframe {
-                mass: base.mass * f[0],
-                pitch_inertia: base.pitch_inertia * f[1],
-                wing_area: base.wing_area * f[2],
-                moment_length: base.moment_length * f[3],
-                air_density: base.air_density * f[4],
-                lift_zero: base.lift_zero * f[5],
-                lift_alpha: base.lift_alpha * f[6],
-                lift_alpha_rate,
-                lift_pitch_rate,
                 lift_elevator,
                 moment_pitch_rate,
-                drag_zero: base.drag_zero * f[7],
-                drag_induced: base.drag_induced * f[8],
-                moment_zero: base.moment_zero * f[9],
-                moment_alpha: base.moment_alpha * f[10],
-                moment_alpha_rate: base.moment_alpha_rate * f[11],
-                moment_elevator: base.moment_elevator * f[12],
+                lift_alpha_rate,
+                lift_pitch_rate,
+                ..Airframe::of_numbers(numbers)
             }
         },
     )

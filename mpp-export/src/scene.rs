@@ -7,9 +7,9 @@ use mpp_sim::field::{FieldFile, Point};
 use mpp_sim::flight::fly_with;
 use mpp_sim::inspector::PlanDetail;
 use mpp_sim::log::FlightLog;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Again, Ground};
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::tick_record::TickRecord;
 use serde_json::Value;
 
 /// Points of a circle's outline.
@@ -110,7 +110,7 @@ fn again(log: &FlightLog) -> Option<Vec<LidarScan>> {
 struct Scans(Vec<LidarScan>);
 
 impl Ground for Scans {
-    fn watch(&mut self, moment: &Moment<'_>) {
-        self.0.extend(moment.scan.cloned());
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        self.0.extend(record.scan.cloned());
     }
 }

@@ -7,10 +7,10 @@ use mpp_export::schema::{ALL, Kind, SENSORS, TICKS};
 use mpp_export::table::Table;
 use mpp_export::{ExportError, csv::csv, flight, mcap::mcap, parquet::parquet, rows};
 use mpp_sim::flight::fly;
+use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
-use mpp_sim::witness::Witness;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use std::collections::BTreeMap;
@@ -166,7 +166,7 @@ fn every_value_of_a_row_has_a_column() {
     let row = Row::new(
         cell,
         &log,
-        &Witness::default(),
+        &FlightObserver::default(),
         log.hash().unwrap(),
         Some(1.25),
     );

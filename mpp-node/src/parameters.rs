@@ -98,7 +98,9 @@ impl Tuning {
         convert::check(&self.configure).map_err(ParameterVerdict::SetUp)?;
         convert::check_latency(&self.configure, &self.settings).map_err(ParameterVerdict::SetUp)?;
         if let Some(setting) = self.settings.out_of_range() {
-            return Err(ParameterVerdict::SetUp(convert::out_of_range(setting)));
+            return Err(ParameterVerdict::SetUp(ConfigureVerdict::out_of_range(
+                setting,
+            )));
         }
         Ok(())
     }

@@ -3,7 +3,8 @@
 //! The core reports only its choice. The same planner gets the same scans and states here, so it
 //! goes through the same candidates, one slice at a time.
 
-use crate::moment::Moment;
+use crate::field::Point;
+use crate::tick_record::TickRecord;
 use mpp_core::config::{DIRECTIONS, KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::paper::GridPoint;
@@ -14,9 +15,6 @@ use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use serde::{Deserialize, Serialize};
-
-/// A place `(x, z)` in the world \[m\], to the centimetre.
-pub type Place = (f64, f64);
 
 /// Half of the side of the square to which unbounded corridors are cut \[m\].
 const SQUARE: f64 = 8.0;
@@ -36,24 +34,24 @@ pub struct PlanDetail {
     /// Tick of the cycle's scan.
     pub tick: u32,
     /// Position of the aircraft.
-    pub from: Place,
+    pub from: Point,
     /// Positions where beams ended.
-    pub hits: Vec<Place>,
+    pub hits: Vec<Point>,
     /// Cells that the planner took for occupied and for unknown. They come from the map with
     /// memory, if the preset has one. Otherwise they come from the grid of this one scan, in which
     /// nothing is unknown.
     pub map: Map,
     /// Collocation points of every candidate path.
-    pub paths: Vec<Vec<Place>>,
+    pub paths: Vec<Vec<Point>>,
     /// What came of each of these paths.
     pub judged: Vec<Judged>,
     /// The path from whose program the chosen trajectory comes.
     pub chosen: Option<usize>,
     /// Corridor of the chosen candidate: a polygon for each stage boundary, empty where nothing is
     /// left.
-    pub corridor: Vec<Vec<Place>>,
+    pub corridor: Vec<Vec<Point>>,
     /// The trajectory that was chosen.
-    pub trajectory: Vec<Place>,
+    pub trajectory: Vec<Point>,
 }
 
 /// The planner's judgement of a path after it was refined.
@@ -115,14 +113,14 @@ impl Inspector {
 
     /// The cycle that begins at this moment, if a scan was taken. `tuning` holds the values in
     /// force.
-    pub fn look(&mut self, moment: &Moment<'_>, tuning: &Tuning) -> Option<PlanDetail> {
-        let wire = moment.scan?;
-        let state = moment.tick.estimate;
+    pub fn look(&mut self, record: &TickRecord<'_>, tuning: &Tuning) -> Option<PlanDetail> {
+        let wire = record.scan?;
+        let state = record.tick.estimate;
         let planner = &mut self.planner;
         // The core does the same: values that it refuses were never in force.
         let _ = planner.retune(&tuning.settings.planner);
         let scan = core_scan(wire);
-        planner.begin(moment.tick.t, &state, &moment.tick.conditions, &scan);
+        planner.begin(record.tick.t, &state, &record.tick.conditions, &scan);
 
         let mut detail = PlanDetail {
             tick: wire.tick,
@@ -219,13 +217,13 @@ fn slices(tuning: &Tuning) -> u64 {
     u64::from(configure.latency_ticks) * u64::from(configure.slices_per_tick)
 }
 
-fn place(x: f64, z: f64) -> Place {
+fn place(x: f64, z: f64) -> Point {
     let centimetres = |value: f64| (value * 100.0).round() / 100.0;
     (centimetres(x), centimetres(z))
 }
 
 /// A point of the grid in the world.
-fn world(state: &VehicleState, point: GridPoint) -> Place {
+fn world(state: &VehicleState, point: GridPoint) -> Point {
     let origin = GridPoint::AIRCRAFT;
     place(
         state.x + point.col - origin.col,
@@ -272,7 +270,7 @@ fn map(planner: &Planner, state: &VehicleState, altitude: f64, length: f64) -> M
 
 /// The cells of a raster for which `is` holds. Neighbours in a row are one entry.
 fn rows(
-    low: Place,
+    low: Point,
     cell: f64,
     [rows, cols]: [usize; 2],
     is: impl Fn(usize, usize) -> bool,
@@ -292,7 +290,7 @@ fn rows(
     found
 }
 
-fn hits(scan: &LidarScan, state: &VehicleState) -> Vec<Place> {
+fn hits(scan: &LidarScan, state: &VehicleState) -> Vec<Point> {
     let beams = scan.ranges.iter().enumerate();
     beams
         .filter(|(_, range)| **range > 0.0)
@@ -306,14 +304,14 @@ fn hits(scan: &LidarScan, state: &VehicleState) -> Vec<Place> {
 
 /// The parts that the eight half-planes of each stage boundary leave of a square about its path.
 /// Bounds and cruise are in units of `length` \[m\].
-fn polygons(bounds: &[f64], cruise: f64, path: &[Place], length: f64) -> Vec<Vec<Place>> {
+fn polygons(bounds: &[f64], cruise: f64, path: &[Point], length: f64) -> Vec<Vec<Point>> {
     // The half-planes are relative to level flight from the first place of the path.
     let start = path.first().copied().unwrap_or_default();
     let stages = bounds.chunks(DIRECTIONS).take(KNOTS).zip(path).enumerate();
     stages
         .map(|(stage, (bounds, (x, z)))| {
             let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-            let mut polygon: Vec<Place> = corners
+            let mut polygon: Vec<Point> = corners
                 .iter()
                 .map(|(right, up)| (x + SQUARE * length * right, z + SQUARE * length * up))
                 .collect();
@@ -332,7 +330,7 @@ fn polygons(bounds: &[f64], cruise: f64, path: &[Place], length: f64) -> Vec<Vec
 }
 
 /// The part of a convex polygon where `inside` is not negative.
-fn cut(polygon: &[Place], inside: impl Fn(Place) -> f64) -> Vec<Place> {
+fn cut(polygon: &[Point], inside: impl Fn(Point) -> f64) -> Vec<Point> {
     let mut kept = Vec::new();
     for (from, to) in polygon.iter().zip(polygon.iter().cycle().skip(1)) {
         let (a, b) = (inside(*from), inside(*to));

@@ -25,11 +25,11 @@
 //! scenario                   the parameters of a flight, also as TOML
 //! aircraft, world            plant, field and lidar of one flight, as a scenario describes them
 //! outcome                    the success rule of the paper, and a strict one
-//! entries, moment            the entries of the log, and the data of one tick
+//! entries, tick_record       the entries of the log, and the data of one tick
 //! inspector                  map, candidates and corridor of each planning cycle, for pictures
 //! inquest, orders            the cause of a failure; the orders from people
 //! log                        one flight as JSON, and its hash
-//! witness                    what a campaign notes beside the log
+//! flight_observer            what a campaign notes beside the log
 //! link, oracle, pipe         the link to a core, an all-knowing core, a core in this process
 //! flight                     one flight in lockstep
 //! ```
@@ -58,6 +58,8 @@
 pub mod names;
 
 pub mod random;
+
+mod toml_error;
 
 pub mod field;
 
@@ -93,7 +95,7 @@ pub mod outcome;
 
 pub mod entries;
 
-pub mod moment;
+pub mod tick_record;
 
 pub mod inspector;
 
@@ -103,7 +105,7 @@ pub mod orders;
 
 pub mod log;
 
-pub mod witness;
+pub mod flight_observer;
 
 pub mod link;
 

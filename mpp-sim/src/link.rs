@@ -3,7 +3,6 @@
 use crate::scenario::TICK_US;
 use hil_protocol::{ConfigureVerdict, DecodeError, EncodeError, Message, ParameterVerdict};
 use mpp_core::vehicle::{VehicleState, Wind};
-use std::fmt;
 use std::time::Duration;
 
 /// A link to a core. It carries whole messages in order.
@@ -31,9 +30,10 @@ pub trait Link {
 }
 
 /// The reason why a flight over a link cannot go on.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The other side sent nothing for too long.
+    #[error("the {waiting} waits for {awaited}{}", silence(.patience))]
     Silent {
         /// Side that waits.
         waiting: &'static str,
@@ -43,15 +43,19 @@ pub enum LinkError {
         patience: Option<Duration>,
     },
     /// The other side closed the link.
+    #[error("the link was closed by the other side while waiting for {awaited}")]
     Closed {
         /// Message that was awaited.
         awaited: String,
     },
     /// The received bytes are no valid frame.
-    Frame(DecodeError),
+    #[error("damaged frame from the other side: {0}")]
+    Frame(#[source] DecodeError),
     /// A message does not fit a frame.
-    Encode(EncodeError),
+    #[error("cannot send: {0}")]
+    Encode(#[from] EncodeError),
     /// A message came that must not come here.
+    #[error("message {id} came while waiting for {awaited}")]
     Unexpected {
         /// Message that was awaited.
         awaited: String,
@@ -59,8 +63,13 @@ pub enum LinkError {
         id: u8,
     },
     /// The other side is a harness too.
+    #[error("the other side is a harness too: give the address of a core")]
     NoCore,
     /// The core ticks at another rate, or takes fewer beams than the flight has.
+    #[error(
+        "the core ticks every {tick_us} us and takes {beams_max} beams; this harness needs {TICK_US} us and \
+         {beams} beams"
+    )]
     Unfit {
         /// The core's ticks \[us\].
         tick_us: u32,
@@ -70,98 +79,28 @@ pub enum LinkError {
         beams: usize,
     },
     /// The core restarts again and again at this tick.
+    #[error("the core restarts again and again at tick {0}")]
     Restless(u32),
     /// The core restarted, and refuses a parameter's value that it had before.
+    #[error("the core restarted and now refuses {0} = {1}: {2}")]
     Relapsed(&'static str, f64, ParameterVerdict),
     /// The flight needs an oracle, but the core at the other end is no oracle.
+    #[error("an oracle flies in this process only: leave out the link")]
     NoOracle,
     /// The core refused the configuration.
+    #[error("the core refuses this configuration: {0}")]
     Refused(ConfigureVerdict),
     /// The operating system reports an error. The text names the action that failed.
-    Io(String, std::io::Error),
+    #[error("{0}: {1}")]
+    Io(String, #[source] std::io::Error),
 }
 
-impl fmt::Display for LinkError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Silent {
-                waiting,
-                awaited,
-                patience: Some(patience),
-            } => write!(
-                f,
-                "the {waiting} waits for {awaited}; nothing came for {} s: is the other side still \
-                 running?",
-                patience.as_secs_f64()
-            ),
-            Self::Silent {
-                waiting, awaited, ..
-            } => write!(
-                f,
-                "the {waiting} waits for {awaited}, but no answer was given"
-            ),
-            Self::Closed { awaited } => {
-                write!(
-                    f,
-                    "the link was closed by the other side while waiting for {awaited}"
-                )
-            }
-            Self::Frame(error) => write!(f, "damaged frame from the other side: {error}"),
-            Self::Encode(error) => write!(f, "cannot send: {error}"),
-            Self::Unexpected { awaited, id } => {
-                write!(f, "message {id} came while waiting for {awaited}")
-            }
-            Self::NoCore => {
-                f.write_str("the other side is a harness too: give the address of a core")
-            }
-            Self::Unfit {
-                tick_us,
-                beams_max,
-                beams,
-            } => write!(
-                f,
-                "the core ticks every {tick_us} us and takes {beams_max} beams; this harness needs \
-                 {TICK_US} us and {beams} beams"
-            ),
-            Self::Restless(tick) => {
-                write!(f, "the core restarts again and again at tick {tick}")
-            }
-            Self::Relapsed(name, value, verdict) => write!(
-                f,
-                "the core restarted and now refuses {name} = {value}: {verdict}"
-            ),
-            Self::NoOracle => {
-                f.write_str("an oracle flies in this process only: leave out the link")
-            }
-            Self::Refused(verdict) => {
-                write!(f, "the core refuses this configuration: {verdict}")
-            }
-            Self::Io(doing, error) => write!(f, "{doing}: {error}"),
-        }
-    }
-}
-
-impl core::error::Error for LinkError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Frame(error) => Some(error),
-            Self::Encode(error) => Some(error),
-            Self::Io(_, error) => Some(error),
-            Self::Silent { .. }
-            | Self::Closed { .. }
-            | Self::Unexpected { .. }
-            | Self::NoCore
-            | Self::Unfit { .. }
-            | Self::Restless(_)
-            | Self::Relapsed(..)
-            | Self::NoOracle
-            | Self::Refused(_) => None,
-        }
-    }
-}
-
-impl From<EncodeError> for LinkError {
-    fn from(error: EncodeError) -> Self {
-        Self::Encode(error)
+fn silence(patience: &Option<Duration>) -> String {
+    match patience {
+        Some(patience) => format!(
+            "; nothing came for {} s: is the other side still running?",
+            patience.as_secs_f64()
+        ),
+        None => ", but no answer was given".to_owned(),
     }
 }

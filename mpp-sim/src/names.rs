@@ -1,9 +1,8 @@
 //! Names on the command line, in files and in logs.
 
-use core::fmt;
-
 /// A name that is not known.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("there is no {kind} `{name}`: give {}", .known.join(", "))]
 pub struct UnknownName {
     /// Kind of thing that the name should denote.
     pub kind: &'static str,
@@ -12,15 +11,6 @@ pub struct UnknownName {
     /// The known names.
     pub known: Vec<&'static str>,
 }
-
-impl fmt::Display for UnknownName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { kind, name, known } = self;
-        write!(f, "there is no {kind} `{name}`: give {}", known.join(", "))
-    }
-}
-
-impl core::error::Error for UnknownName {}
 
 /// Finds the element of `all` with this name.
 pub(crate) fn find<T: Copy>(

@@ -1,8 +1,7 @@
 //! The navigation source: positions, and velocities over ground, with rate, errors and delay.
 
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use hil_protocol::{GroundVelocity, Position};
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -78,7 +77,7 @@ pub struct GroundTruth {
 #[derive(Clone, Debug)]
 pub struct NavigationSensor {
     config: NavigationConfig,
-    generator: ChaCha8Rng,
+    generator: Draws,
     /// The wandering error `(x, z)` \[m\].
     wander: (f64, f64),
     /// Sign of the drift.

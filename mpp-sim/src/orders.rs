@@ -6,13 +6,12 @@
 
 use crate::disturbance::Disturbance;
 use crate::field::FieldFile;
-use crate::moment::Moment;
+use crate::tick_record::TickRecord;
 use hil_protocol::ParameterVerdict;
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
-use std::fmt;
 
 /// An order that people may give to a flight.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -81,42 +80,38 @@ pub struct OrderEntry {
 }
 
 /// The reason why an order did not take effect. The flight goes on unchanged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refused {
     /// The core does not know the parameter.
+    #[error("no such parameter")]
     UnknownParameter,
     /// The core does not take the value.
+    #[error("{}", short(.0))]
     Parameter(ParameterVerdict),
     /// The field or the disturbance has a value out of its range.
+    #[error("out of range")]
     Range,
     /// The world of this flight cannot be changed so.
+    #[error("this world cannot be changed so")]
     World,
 }
 
-impl fmt::Display for Refused {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::UnknownParameter => write!(f, "no such parameter"),
-            Self::Range => write!(f, "out of range"),
-            Self::World => write!(f, "this world cannot be changed so"),
-            // The texts are short, because they go over the radio in 50 characters.
-            Self::Parameter(verdict) => match verdict {
-                ParameterVerdict::Accepted => write!(f, "accepted"),
-                ParameterVerdict::Unknown => write!(f, "no such parameter"),
-                ParameterVerdict::NotInPreset => write!(f, "not a parameter of this preset"),
-                ParameterVerdict::Range => write!(f, "out of range"),
-                ParameterVerdict::NotWhole => write!(f, "not a whole step"),
-                ParameterVerdict::InFlight => write!(f, "not in flight"),
-                ParameterVerdict::PathsInFlight => write!(f, "not to or from 0 in flight"),
-                ParameterVerdict::CruiseFixed => write!(f, "to be set before ACT_ELEV_RANGE"),
-                ParameterVerdict::NotConfigured => write!(f, "the core is not configured"),
-                ParameterVerdict::SetUp(why) => write!(f, "cannot fly: {why}"),
-            },
-        }
-    }
+/// The texts are short, because they go over the radio in 50 characters.
+fn short(verdict: &ParameterVerdict) -> String {
+    let text = match verdict {
+        ParameterVerdict::Accepted => "accepted",
+        ParameterVerdict::Unknown => "no such parameter",
+        ParameterVerdict::NotInPreset => "not a parameter of this preset",
+        ParameterVerdict::Range => "out of range",
+        ParameterVerdict::NotWhole => "not a whole step",
+        ParameterVerdict::InFlight => "not in flight",
+        ParameterVerdict::PathsInFlight => "not to or from 0 in flight",
+        ParameterVerdict::CruiseFixed => "to be set before ACT_ELEV_RANGE",
+        ParameterVerdict::NotConfigured => "the core is not configured",
+        ParameterVerdict::SetUp(why) => return format!("cannot fly: {why}"),
+    };
+    text.to_owned()
 }
-
-impl core::error::Error for Refused {}
 
 /// The ground follows a flight and may steer it.
 pub trait Ground {
@@ -150,8 +145,8 @@ pub trait Ground {
     }
 
     /// Watches one tick that was flown.
-    fn watch(&mut self, moment: &Moment<'_>) {
-        let _ = moment;
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        let _ = record;
     }
 }
 
@@ -214,7 +209,7 @@ impl<G: Ground> Ground for Again<G> {
         self.until.is_some_and(|until| tick >= until) || self.ground.interrupts(tick)
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
-        self.ground.watch(moment);
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        self.ground.watch(record);
     }
 }

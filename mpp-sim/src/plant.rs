@@ -4,24 +4,15 @@ use crate::disturbance::Disturbance;
 use mpp_core::vehicle::{Control, VehicleState};
 
 /// The reason why the plant did not step. Its state is unchanged.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum PlantError {
     /// Thrust or elevator is not a number: the controller is broken, and the flight ends.
+    #[error("thrust or elevator command is not a finite number")]
     NonFiniteControl,
     /// The equations left their domain (an airspeed of zero): the flight ends, as one beyond the limit of the flight path.
+    #[error("the aircraft's state is no longer a finite number")]
     NonFiniteState,
 }
-
-impl core::fmt::Display for PlantError {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.write_str(match self {
-            Self::NonFiniteControl => "thrust or elevator command is not a finite number",
-            Self::NonFiniteState => "the aircraft's state is no longer a finite number",
-        })
-    }
-}
-
-impl core::error::Error for PlantError {}
 
 /// The true aircraft, and the air that it flies in.
 pub trait Plant {

@@ -1,8 +1,7 @@
 //! Airspeed and pitch sensors: truth plus Gaussian noise.
 
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use mpp_core::vehicle::VehicleState;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// The values that the air data sensors report at one tick.
@@ -40,8 +39,8 @@ impl AirDataNoise {
 #[derive(Clone, Debug)]
 pub struct AirDataSensors {
     noise: AirDataNoise,
-    airspeed: ChaCha8Rng,
-    pitch: ChaCha8Rng,
+    airspeed: Draws,
+    pitch: Draws,
 }
 
 impl AirDataSensors {

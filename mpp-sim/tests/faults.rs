@@ -6,10 +6,10 @@
 )]
 
 use mpp_sim::flight::{FlyError, fly};
+use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
-use mpp_sim::witness::Witness;
 
 fn scenario(text: &str) -> Scenario {
     let base = "seed = 3\nobstacles = 40\nduration = 4\nreplan_hz = 2.0\n";
@@ -105,12 +105,12 @@ fn a_counter_that_passes_its_greatest_number_changes_no_byte_of_the_flight() {
 fn a_counter_that_jumps_is_noted_at_the_tick_of_the_flight() {
     for jump in ["1.0", "100.0", "-1.0"] {
         let scenario = scenario(&format!("[faults.clock]\nfrom = 2.0\njump = {jump}"));
-        let mut witness = Witness::of(&scenario);
-        let log = fly(&scenario, &mut PipeLink::of(&scenario), |moment| {
-            witness.watch(moment);
+        let mut observer = FlightObserver::of(&scenario);
+        let log = fly(&scenario, &mut PipeLink::of(&scenario), |record| {
+            observer.watch(record);
         });
         let log = log.unwrap();
-        assert!(witness.flagged().is_some_and(|time| time < 0.05), "{jump}");
+        assert!(observer.flagged().is_some_and(|time| time < 0.05), "{jump}");
         assert!(
             log.plans.iter().all(|plan| plan.tick < 400),
             "{:?}",

@@ -3,6 +3,7 @@
 
 pub mod fuzz;
 pub mod golden;
+pub mod project;
 
 #[doc = include_str!("../../docs/embed.md")]
 #[cfg(doctest)]

@@ -1,24 +1,14 @@
 //! Whether the book has every page of `docs`.
 
+use mpp_tests::project::{files, root};
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::PathBuf;
 
 #[test]
 fn the_summary_lists_every_page_once() {
-    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
-    let mut pages = BTreeSet::new();
-    let mut folders = vec![docs.clone()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
-                let name = path.strip_prefix(&docs).unwrap();
-                pages.insert(name.display().to_string());
-            }
-        }
-    }
+    let docs = root().join("docs");
+    let name = |path: &PathBuf| path.strip_prefix(&docs).unwrap().display().to_string();
+    let mut pages: BTreeSet<String> = files(&docs, "md").iter().map(name).collect();
     pages.remove("SUMMARY.md");
     let summary = include_str!("../../docs/SUMMARY.md");
     let links = summary

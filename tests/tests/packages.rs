@@ -3,8 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
+use mpp_tests::project::{PUBLISHED, files, root};
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Runs cargo at the top of the project and returns what it prints. It downloads what the lock file names and no build
@@ -13,7 +14,7 @@ fn cargo(arguments: &[&str]) -> String {
     let output = Command::new(env!("CARGO"))
         .args(arguments)
         .arg("--locked")
-        .current_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(".."))
+        .current_dir(root())
         .output()
         .unwrap();
     let errors = String::from_utf8_lossy(&output.stderr);
@@ -41,18 +42,7 @@ fn every_published_crate_says_what_it_is_and_brings_its_licences() {
         .iter()
         .filter_map(|package| package["name"].as_str())
         .collect();
-    assert_eq!(
-        names,
-        [
-            "mpp-core",
-            "hil-protocol",
-            "mpp-node",
-            "mpp-sim",
-            "mpp-analysis",
-            "mpp-export",
-            "sil-harness"
-        ]
-    );
+    assert_eq!(names, PUBLISHED);
     for package in &published {
         let name = package["name"].as_str().unwrap();
         for key in [
@@ -83,28 +73,19 @@ fn every_published_crate_says_what_it_is_and_brings_its_licences() {
 fn no_published_source_includes_a_file_from_outside_its_crate() {
     let mut found = Vec::new();
     for package in published() {
-        let manifest = package["manifest_path"].as_str().unwrap().to_owned();
-        let root = Path::new(&manifest).parent().unwrap().to_owned();
-        let mut folders = vec![root.join("src")];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(&folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                    continue;
-                }
-                let depth = path.strip_prefix(&root).unwrap().components().count() - 1;
-                let outside = "../".repeat(depth + 1);
-                let text = std::fs::read_to_string(&path).unwrap();
-                let mut includes = text.lines().filter(|line| line.contains("include_"));
-                if includes.any(|line| line.contains(&format!("\"{outside}"))) && !is_test(&path) {
-                    let name = path.strip_prefix(root.parent().unwrap()).unwrap();
-                    found.push(name.display().to_string());
-                }
+        let manifest = Path::new(package["manifest_path"].as_str().unwrap());
+        let folder = manifest.parent().unwrap();
+        for path in files(&folder.join("src"), "rs") {
+            let depth = path.strip_prefix(folder).unwrap().components().count() - 1;
+            let outside = format!("\"{}", "../".repeat(depth + 1));
+            let text = std::fs::read_to_string(&path).unwrap();
+            let mut includes = text.lines().filter(|line| line.contains("include_"));
+            if includes.any(|line| line.contains(&outside)) && !is_test(&path) {
+                found.push(path);
             }
         }
     }
-    assert_eq!(found, Vec::<String>::new());
+    assert_eq!(found, Vec::<PathBuf>::new());
 }
 
 fn is_test(path: &Path) -> bool {

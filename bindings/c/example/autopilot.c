@@ -85,7 +85,7 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_begin_blind(core), MPP_STATUS_NOT_SET_UP);
   EXPECT(mpp_begin_blind(NULL), MPP_STATUS_NULL);
   EXPECT(mpp_finish(core, 0, &plan), MPP_STATUS_NOT_SET_UP);
-  bad = config, bad.aircraft.mass = 0.0 / 0.0;
+  bad = config, bad.aircraft.airframe.mass = 0.0 / 0.0;
   EXPECT(mpp_set_up(core, &bad), MPP_STATUS_OUT_OF_RANGE);
   EXPECT(mpp_refused(core, NULL), MPP_STATUS_NULL);
   EXPECT(mpp_refused(core, &refused), MPP_STATUS_OK);

@@ -134,51 +134,60 @@ typedef enum mpp_counter {
 // A core. Its content is private.
 typedef struct mpp_core mpp_core;
 
-// The aircraft, by its coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`,
-// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`, `M = q S l C_M`,
-// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`, with `q = rho V^2 / 2`.
+// The airframe, by its longitudinal coefficients: `L = q S (C_L + C_La' alpha' + C_Lq theta')`, `D = q S C_D`,
+// `M = q S l C_M` with the dynamic pressure `q = rho v^2 / 2` and
+// `C_L = C_L0 + C_La alpha + C_Le delta_e`, `C_D = C_D0 + K C_L^2`,
+// `C_M = C_M0 + C_Ma alpha + C_Ma' alpha' + C_Mq theta' + C_Me delta_e`.
 //
 // The elevator may be in any unit. Command, limits and derivatives have the same one.
 //
-// The four derivatives by rates are in s/rad: the usual coefficient, which counts per radian of `rate c / (2 V)`,
-// times `c / (2 V)` at cruise. With `c` = 0.2 m and `V` = 15 m/s a usual `C_Mq` of -10 becomes -0.067. The usual
+// The four derivatives by rates are in s/rad: the usual coefficient, which counts per radian of `rate c / (2 v)`,
+// times `c / (2 v)` at cruise. With `c` = 0.2 m and `v` = 15 m/s a usual `C_Mq` of -10 becomes -0.067. The usual
 // number itself is about 150 times too large, and the core does not refuse it. An aircraft file (docs/aircraft.md)
 // takes the usual numbers; `sil-harness aircraft FILE` converts them itself and prints the modes that follow.
-typedef struct mpp_aircraft {
-  // Mass [kg].
+typedef struct mpp_airframe {
+  // Mass `m` [kg].
   double mass;
-  // Moment of inertia in pitch [kg m^2].
+  // Moment of inertia in pitch `I_yy` [kg m^2].
   double pitch_inertia;
   // Wing area `S` [m^2].
   double wing_area;
-  // Reference length of the pitching moment `l` [m].
+  // Reference length of the pitching moment `l` [m]: usually the chord `c`.
   double moment_length;
   // Air density `rho` [kg/m^3].
   double air_density;
-  // `C_L0` [-].
+  // Lift coefficient at zero angle of attack `C_L0` [-].
   double lift_zero;
-  // `C_La` [1/rad].
+  // Lift slope `C_La` [1/rad].
   double lift_alpha;
-  // `C_La'` [s/rad]: the usual coefficient times `c / (2 V)` at cruise.
+  // Lift by the rate of the angle of attack `C_La'` [s/rad]: the usual coefficient times `c / (2 v)` at cruise.
   double lift_alpha_rate;
-  // `C_Lq` [s/rad]: the usual coefficient times `c / (2 V)` at cruise.
+  // Lift by the pitch rate `C_Lq` [s/rad]: the usual coefficient times `c / (2 v)` at cruise.
   double lift_pitch_rate;
-  // `C_Le` [1 per unit of elevator].
+  // Lift of the elevator `C_Le` [1 per unit of elevator].
   double lift_elevator;
-  // `C_D0` [-].
+  // Parasitic drag coefficient `C_D0` [-].
   double drag_zero;
-  // `K` [-].
+  // Induced drag factor `K` [-].
   double drag_induced;
-  // `C_M0` [-].
+  // Pitching moment coefficient at zero angle of attack `C_M0` [-].
   double moment_zero;
-  // `C_Ma` [1/rad], negative.
+  // Pitch stiffness `C_Ma` [1/rad], negative.
   double moment_alpha;
-  // `C_Ma'` [s/rad]: the usual coefficient times `c / (2 V)` at cruise; 0 or negative.
+  // Pitch damping through the rate of the angle of attack `C_Ma'` [s/rad]: the usual coefficient times
+  // `c / (2 v)` at cruise; 0 or negative.
   double moment_alpha_rate;
-  // `C_Mq` [s/rad]: the usual coefficient times `c / (2 V)` at cruise; 0 or negative.
+  // Pitch damping through the pitch rate `C_Mq` [s/rad]: the usual coefficient times `c / (2 v)` at cruise; 0 or
+  // negative.
   double moment_pitch_rate;
-  // `C_Me` [1 per unit of elevator]. If it is positive, a greater elevator raises the nose.
+  // Elevator effectiveness `C_Me` [1 per unit of elevator]. If it is positive, a greater elevator raises the nose.
   double moment_elevator;
+} mpp_airframe;
+
+// The aircraft and the limits of its actuators.
+typedef struct mpp_aircraft {
+  // Mass, inertia and aerodynamics.
+  struct mpp_airframe airframe;
   // Airspeed of level flight [m/s].
   double cruise;
   // Radius of the circle that holds the aircraft [m].

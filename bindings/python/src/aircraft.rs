@@ -1,12 +1,12 @@
 //! Aircraft.
 
-use crate::errors::scenario;
+use crate::errors::{input, scenario};
 use crate::input::{table, text};
 use crate::output::plain;
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::scenario::ScenarioError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
 
 /// An aircraft: one that comes with the project, by its name; a file as docs/aircraft.md describes; or a dict with
 /// the keys of such a file.
@@ -30,6 +30,7 @@ impl Aircraft {
             let name = source.str()?.to_string();
             match AircraftFile::known(&name) {
                 Some(known) => (None, known),
+                None if is_name(source) => return Err(unknown(&name)),
                 None => {
                     let file = AircraftFile::parse(&name, &text(source)?).map_err(scenario)?;
                     (Some(name), file)
@@ -93,4 +94,17 @@ impl Aircraft {
         let numbers = slf.get().numbers(slf.py())?;
         Ok((slf.get_type().into_any(), (numbers,)))
     }
+}
+
+/// Whether a text can only be meant as a name: a file's has an ending or a folder.
+fn is_name(source: &Bound<'_, PyAny>) -> bool {
+    let text = source.cast::<PyString>().map(|text| text.to_string());
+    text.is_ok_and(|text| !text.contains(['.', '/', '\\']))
+}
+
+fn unknown(name: &str) -> PyErr {
+    let known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ");
+    input(format!(
+        "aircraft: there is no `{name}`: give {known}, a file, or a dict of its keys"
+    ))
 }

@@ -7,10 +7,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
 
-/// Stack of the thread \[bytes\]. The core is built on the stack before it moves to its box, and threads of
+/// Stack of the thread [bytes]. The core is built on the stack before it moves to its box, and threads of
 /// Python may have little.
 const STACK: usize = 8 << 20;
-/// Time between two looks at the signals \[s\]: a person does not notice it, and it costs nothing.
+/// Time between two looks at the signals [s]: a person does not notice it, and it costs nothing.
 const PATIENCE: Duration = Duration::from_millis(50);
 
 /// Does some work without the lock of the interpreter. The work gets a flag that is set when Python has a signal

@@ -1,11 +1,10 @@
 //! Many flights side by side, for learning: the agent is the regulator.
 
-use crate::episode::Episode;
+use crate::episode::{Episode, controls, seen};
 use crate::errors::{self, alone, input, state};
 use crate::input::{rows, vector};
 use crate::output::flat;
 use crate::scenario;
-use mpp_analysis::recording;
 use mpp_core::vehicle::Control;
 use mpp_sim::scenario::{Scenario, ScenarioFile, TICKS_PER_SECOND};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
@@ -42,15 +41,15 @@ struct Run {
     /// Every action so far.
     actions: Vec<[f64; 2]>,
     scan: Vec<f32>,
-    /// Airspeed [m/s], pitch \[rad\]; place \[m\]; ticks of position and scan.
+    /// Airspeed [m/s], pitch [rad]; place [m]; ticks of position and scan.
     air: [f64; 2],
     place: [f64; 2],
     ticks: [u32; 2],
 }
 
 /// A copy of one flight. It goes on as the original would, bit for bit, also after pickling.
-#[pyclass(frozen, module = "mpp._native")]
-pub(crate) struct Moment {
+#[pyclass(frozen, module = "mpp._native", name = "Moment")]
+pub(crate) struct SavedFlight {
     plan: Arc<Flights>,
     run: Run,
 }
@@ -167,7 +166,7 @@ impl Batch {
         run.known(py)
     }
 
-    /// What the agents know, a row a flight: ranges of the last scan [m]; airspeed [m/s] and pitch \[rad\]; place
+    /// What the agents know, a row a flight: ranges of the last scan [m], the greatest where nothing came back; airspeed [m/s] and pitch [rad]; place
     /// [m]; ages of place and scan [s].
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let runs = alone(&self.guarded, "environment")?;
@@ -196,17 +195,26 @@ impl Batch {
     }
 
     /// A copy of a flight as it is now.
-    fn save(&self, index: usize) -> PyResult<Moment> {
+    fn save(&self, index: usize) -> PyResult<SavedFlight> {
         let runs = alone(&self.guarded, "environment")?;
         let run = runs.get(index).and_then(Option::as_ref).ok_or_else(unset)?;
-        Ok(Moment {
+        Ok(SavedFlight {
             plan: Arc::clone(&self.plan),
             run: run.clone(),
         })
     }
 
+    /// A copy of all flights, for `copy.deepcopy`.
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let runs = alone(&self.guarded, "environment")?.clone();
+        Ok(Self {
+            plan: Arc::clone(&self.plan),
+            guarded: Mutex::new(runs),
+        })
+    }
+
     /// Goes on from a copy.
-    fn restore(&self, index: usize, moment: &Moment) -> PyResult<()> {
+    fn restore(&self, index: usize, moment: &SavedFlight) -> PyResult<()> {
         let mut runs = alone(&self.guarded, "environment")?;
         if moment.plan.file != self.plan.file || moment.plan.scan_ticks != self.plan.scan_ticks {
             return Err(input("moment: it is of an environment with other keys"));
@@ -220,7 +228,7 @@ impl Batch {
 }
 
 #[pymethods]
-impl Moment {
+impl SavedFlight {
     /// The moment to which these actions lead.
     #[staticmethod]
     fn replayed(file: &str, scan_ticks: u32, seed: u64, actions: Vec<[f64; 2]>) -> PyResult<Self> {
@@ -272,29 +280,11 @@ impl Flights {
                 "lidar_hz: give a rate of which 100 Hz is a whole multiple, such as 10",
             ));
         }
-        let settings = recording::settings(&base).map_err(errors::flight)?;
-        let most = settings
-            .planner
-            .plane()
-            .map_or(f64::INFINITY, |own| own.thrust_max);
-        let (limits, trim) = (base.limits(), base.trim().map_err(errors::set_up)?.control);
-        // The deflection that holds the greatest angle of attack of a plan, and as much again to get there.
-        let airframe = &base.aircraft.known.airframe;
-        let held = airframe.moment_alpha / airframe.moment_elevator;
-        let reach = 2.0
-            * held.abs()
-            * settings
-                .planner
-                .plane()
-                .map_or(0.2, |own| own.attitude.angle_of_attack);
-        let side = |limit: Option<f64>| limit.map_or(reach, |limit| limit.min(reach));
+        let [elevator, thrust] = controls(&base)?;
         Ok(Self {
             scan_ticks: scan_ticks.round() as u32,
-            elevator: [
-                trim.elevator - side(limits.elevator_below),
-                trim.elevator + side(limits.elevator_above),
-            ],
-            thrust: [0.0, limits.thrust_max.map_or(most, |limit| limit.min(most))],
+            elevator,
+            thrust,
             file,
             base,
         })
@@ -303,12 +293,13 @@ impl Flights {
 
 impl Run {
     fn new(plan: &Flights, seed: u64) -> PyResult<Self> {
+        let greatest = plan.base.lidar.range_max as f32;
         let scenario = Scenario {
             seed,
             ..plan.base.clone()
         };
         let mut run = Self {
-            scan: vec![0.0; scenario.lidar.beams],
+            scan: vec![greatest; scenario.lidar.beams],
             episode: Episode::new(scenario, plan.scan_ticks)?,
             seed,
             actions: Vec::new(),
@@ -334,7 +325,8 @@ impl Run {
             self.ticks[0] = position.tick;
         }
         if let Some(scan) = readings.scan {
-            self.scan.copy_from_slice(&scan.ranges);
+            let greatest = self.episode.scenario.lidar.range_max;
+            self.scan = seen(&scan.ranges, greatest).collect();
             self.ticks[1] = scan.tick;
         }
     }

@@ -5,13 +5,15 @@ use crate::errors::{self, input};
 use crate::field::Field;
 use crate::input::whole;
 use crate::scenario;
-use mpp_analysis::campaign::{Campaign as Grid, Cell, Lists, NamedField, Row, Shard};
+use crate::typed::typed;
+use mpp_analysis::campaign::{self, Campaign as Grid, Cell, Lists, NamedField, Row, Shard};
 use mpp_analysis::rows::Header;
 use mpp_sim::flight::fly;
 use mpp_sim::pipe::PipeLink;
-use mpp_sim::witness::Witness;
+use mpp_sim::flight_observer::FlightObserver;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
 /// The flights of a campaign, in their order. `python/mpp/campaigns.py` flies them.
@@ -36,7 +38,8 @@ impl Campaign {
     #[pyo3(signature = (
         keys, *, trials, seed = None, preset = vec![], generator = vec![], obstacles = vec![], paths = vec![],
         replan_hz = vec![], fields = None
-    ))]
+    ), text_signature = "(keys, *, trials, seed=None, preset=(), generator=(), obstacles=(), paths=(), \
+        replan_hz=(), fields=None)")]
     #[expect(
         clippy::too_many_arguments,
         clippy::needless_pass_by_value,
@@ -45,13 +48,13 @@ impl Campaign {
     fn new(
         py: Python<'_>,
         keys: &Bound<'_, PyDict>,
-        trials: i128,
-        seed: Option<i128>,
-        preset: Vec<String>,
-        generator: Vec<String>,
-        obstacles: Vec<i128>,
-        paths: Vec<i128>,
-        replan_hz: Vec<f64>,
+        trials: &Bound<'_, PyAny>,
+        seed: Option<&Bound<'_, PyAny>>,
+        preset: Vec<Bound<'_, PyAny>>,
+        generator: Vec<Bound<'_, PyAny>>,
+        obstacles: Vec<Bound<'_, PyAny>>,
+        paths: Vec<Bound<'_, PyAny>>,
+        replan_hz: Vec<Bound<'_, PyAny>>,
         fields: Option<BTreeMap<String, Py<Field>>>,
     ) -> PyResult<Self> {
         let scenario = scenario::file(keys)?;
@@ -63,15 +66,18 @@ impl Campaign {
                 content: field.get().file.clone(),
             });
         let lists = Lists {
-            preset: parsed(&preset)?,
+            preset: all("preset", &preset)?,
             field: field.collect(),
-            generator: parsed(&generator)?,
-            obstacles: wholes("obstacles", &obstacles)?,
-            paths: wholes("paths", &paths)?,
-            replan_hz,
+            generator: all("generator", &generator)?,
+            obstacles: all("obstacles", &obstacles)?,
+            paths: all("paths", &paths)?,
+            replan_hz: all("replan_hz", &replan_hz)?,
         };
-        let trials = whole("trials", trials)?;
-        let seed = seed.map(|seed| whole("seed", seed)).transpose()?;
+        let trials = typed("trials", trials)?;
+        if trials == 0 {
+            return Err(input("trials: give 1 or more, not 0"));
+        }
+        let seed = seed.map(|seed| typed("seed", seed)).transpose()?;
         let campaign = py.detach(|| Grid::new(scenario, lists, trials, seed));
         campaign.map(Self::of).map_err(errors::scenario)
     }
@@ -125,20 +131,20 @@ impl Campaign {
 /// Flies a flight, for its row.
 fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let scenario = campaign.scenario(cell, seed).map_err(errors::scenario)?;
-    let mut witness = Witness::of(&scenario);
+    let mut observer = FlightObserver::of(&scenario);
     let mut link = PipeLink::of(&scenario);
-    let log = fly(&scenario, &mut link, |moment| witness.watch(moment)).map_err(errors::flight)?;
+    let log = fly(&scenario, &mut link, |record| observer.watch(record)).map_err(errors::flight)?;
     let hash = log.hash().map_err(input)?;
-    Ok(Row::new(cell.clone(), &log, &witness, hash, None))
+    Ok(Row::new(cell.clone(), &log, &observer, hash, None))
 }
 
-fn wholes<T: TryFrom<i128>>(name: &str, values: &[i128]) -> PyResult<Vec<T>> {
-    values.iter().map(|value| whole(name, *value)).collect()
+/// Each of these values of one name.
+fn all<T: DeserializeOwned>(name: &str, values: &[Bound<'_, PyAny>]) -> PyResult<Vec<T>> {
+    values.iter().map(|value| typed(name, value)).collect()
 }
 
-fn parsed<T: std::str::FromStr<Err: std::fmt::Display>>(names: &[String]) -> PyResult<Vec<T>> {
-    names
-        .iter()
-        .map(|name| name.parse().map_err(input))
-        .collect()
+/// The Wilson interval of a share of successes, 95 %.
+#[pyfunction]
+pub(crate) fn wilson(successes: u32, trials: u32) -> (f64, f64) {
+    campaign::wilson(successes, trials)
 }

@@ -1,7 +1,7 @@
 //! A flight for learning in which the agent chooses among the planner's candidates, once each cycle.
 
 use crate::aside::aside;
-use crate::episode::Episode;
+use crate::episode::{Episode, seen};
 use crate::errors::{self, FlightError, alone, input, state};
 use crate::output::flat;
 use crate::scenario;
@@ -94,20 +94,21 @@ impl Choice {
         aside(py, |_| run.fly(&self.plan, action))?
     }
 
-    /// What the agent knows: the scan [m]; airspeed [m/s], pitch and flight path angle \[rad\] and height above the
+    /// What the agent knows: the scan [m], the greatest range where nothing came back; airspeed [m/s], pitch and flight path angle [rad] and height above the
     /// altitude [m] as estimated; the candidates by price, as places from the aircraft [m]; their prices; and which
-    /// of them there are.
+    /// actions there are: the planner's own plan always, and the candidates.
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let run = alone(&self.guarded, "environment")?;
         let run = run.as_ref().ok_or_else(unset)?;
         let at = run.flight.state();
         let mut knots = vec![0.0_f32; MAX_CANDIDATES * KNOTS * 2];
-        let (mut prices, mut mask) = ([MOST; MAX_CANDIDATES], [0_i8; MAX_CANDIDATES]);
+        let (mut prices, mut mask) = ([MOST; MAX_CANDIDATES], [0_i8; MAX_CANDIDATES + 1]);
+        mask[0] = 1;
         let mut offered = Trajectory::new();
         let planner = run.planner.plane();
         for (place, (index, price)) in run.order.iter().enumerate() {
             prices[place] = (*price as f32).min(MOST);
-            mask[place] = 1;
+            mask[place + 1] = 1;
             planner.and_then(|own| own.offer(*index, &mut offered));
             let places = knots[place * KNOTS * 2..].chunks_exact_mut(2);
             for (cell, knot) in places.zip(&offered.knots) {
@@ -148,6 +149,16 @@ impl Choice {
         let run = aside(py, |_| run.clone())?;
         let plan = Arc::clone(&self.plan);
         Ok(Fork { plan, run })
+    }
+
+    /// A copy of the flight, for `copy.deepcopy`.
+    fn __deepcopy__(&self, py: Python<'_>, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let run = alone(&self.guarded, "environment")?;
+        let run = aside(py, |_| run.clone())?;
+        Ok(Self {
+            plan: Arc::clone(&self.plan),
+            guarded: Mutex::new(run),
+        })
     }
 
     /// Goes on from a copy.
@@ -225,7 +236,7 @@ impl Run {
         };
         let settings: Settings = recording::settings(&scenario).map_err(errors::flight)?;
         let mut run = Box::new(Self {
-            scan: vec![0.0; scenario.lidar.beams],
+            scan: vec![scenario.lidar.range_max as f32; scenario.lidar.beams],
             flight: FlightLoop::new(&settings).map_err(errors::set_up)?,
             planner: recording::planner(&settings).map_err(errors::flight)?,
             episode: Episode::new(scenario, plan.base.replan_ticks)?,
@@ -259,7 +270,7 @@ impl Run {
             self.planner.forget();
         }
         if let Some(scan) = readings.scan {
-            self.scan.copy_from_slice(&scan.ranges);
+            self.scan = seen(&scan.ranges, plan.base.lidar.range_max).collect();
             self.plan(time, &scan)?;
         }
         self.episode.step(output.control)

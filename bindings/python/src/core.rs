@@ -61,7 +61,7 @@ impl Core {
     }
 
     /// One step of 10 ms: takes what arrived in this tick, and gives thrust [N] and elevator [-]. Airspeed [m/s] and
-    /// pitch \[rad\] belong together; so do `x` and `z` [m], with their standard deviation `sigma`, and perhaps
+    /// pitch [rad] belong together; so do `x` and `z` [m], with their standard deviation `sigma`, and perhaps
     /// the velocity over ground as x, z and its standard deviation [m/s]. Ages are ticks since the measurement. A scan
     /// holds the ranges [m], 0 where nothing came back; it starts a planning cycle.
     #[pyo3(signature = (

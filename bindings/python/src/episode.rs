@@ -1,7 +1,8 @@
 //! A flight without a core: plant, field and sensors of a scenario, one tick at a time. It is the world of
 //! `mpp_sim::flight::fly`, and the loop is the caller's.
 
-use crate::errors::{FlightError, input};
+use crate::errors::{self, FlightError, input};
+use mpp_analysis::recording;
 use mpp_core::vehicle::{Control, VehicleState, Wind};
 use mpp_sim::aircraft::Aircraft;
 use mpp_sim::faults::FaultyLidar;
@@ -31,6 +32,33 @@ pub(crate) struct Episode {
     pub(crate) end: Option<Outcome>,
 }
 
+/// What the actions -1 and 1 of an agent mean: elevator, and thrust [N].
+pub(crate) fn controls(base: &Scenario) -> PyResult<[[f64; 2]; 2]> {
+    let settings = recording::settings(base).map_err(errors::flight)?;
+    let own = settings.planner.plane();
+    let most = own.map_or(f64::INFINITY, |own| own.thrust_max);
+    let (limits, trim) = (base.limits(), base.trim().map_err(errors::set_up)?.control);
+    // The deflection that holds the greatest angle of attack of a plan, and as much again to get there.
+    let airframe = &base.aircraft.known.airframe;
+    let held = airframe.moment_alpha / airframe.moment_elevator;
+    let reach = 2.0 * held.abs() * own.map_or(0.2, |own| own.attitude.angle_of_attack);
+    let side = |limit: Option<f64>| limit.map_or(reach, |limit| limit.min(reach));
+    Ok([
+        [
+            trim.elevator - side(limits.elevator_below),
+            trim.elevator + side(limits.elevator_above),
+        ],
+        [0.0, limits.thrust_max.map_or(most, |limit| limit.min(most))],
+    ])
+}
+
+/// Ranges of a scan as an agent gets them: where nothing came back they are the greatest range, which is next to what
+/// stands far away, and not 0, which is next to what stands before the nose.
+pub(crate) fn seen(ranges: &[f32], greatest: f64) -> impl Iterator<Item = f32> {
+    let greatest = greatest as f32;
+    (ranges.iter()).map(move |range| if *range > 0.0 { *range } else { greatest })
+}
+
 /// What arrives from the sensors in a tick.
 pub(crate) struct Readings {
     pub(crate) frame: hil_protocol::SensorFrame,
@@ -47,7 +75,7 @@ impl Episode {
             return Err(input(advice));
         }
         Ok(Self {
-            plant: Aircraft::new(&scenario).map_err(crate::errors::set_up)?,
+            plant: Aircraft::new(&scenario).map_err(errors::set_up)?,
             field: scenario.field(),
             lidar: FaultyLidar::new(scenario.seed, scenario.lidar, faults.lidar),
             sensing: Sensing::new(&scenario),
@@ -85,7 +113,7 @@ impl Episode {
         }
     }
 
-    /// Time \[s\], true place \[m\], and the outcome.
+    /// Time [s], true place [m], and the outcome.
     pub(crate) fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (dict, at) = (PyDict::new(py), self.state());
         dict.set_item(intern!(py, "t"), Scenario::time(self.tick))?;

@@ -68,7 +68,7 @@ impl Field {
         Self::checked(FieldFile::of(&scenario.field().obstacles))
     }
 
-    /// A field of arrays \[m\]: circles as rows of x, z, radius; polygons as arrays of corners x, z; ground and
+    /// A field of arrays [m]: circles as rows of x, z, radius; polygons as arrays of corners x, z, whose last may repeat the first; ground and
     /// ceiling as lines of points x, z.
     #[staticmethod]
     #[pyo3(signature = (circles = None, polygons = None, ground = None, ceiling = None))]
@@ -96,10 +96,7 @@ impl Field {
             velocity: (0.0, 0.0),
         };
         let polygon = |array: Bound<'_, PyAny>| {
-            PyResult::Ok(Polygon {
-                points: points("polygons", &array)?,
-                velocity: (0.0, 0.0),
-            })
+            points("polygons", &array).map(Polygon::of_ring)
         };
         Self::checked(FieldFile {
             circle: circles
@@ -143,7 +140,7 @@ impl Field {
         PyArray2::from_vec2(py, &rows).map_err(input)
     }
 
-    /// Distances from points, rows of x, z, to the nearest edge at a time \[s\]; negative inside [m].
+    /// Distances from points, rows of x, z, to the nearest edge at a time [s]; negative inside [m].
     #[pyo3(signature = (points, time = 0.0))]
     fn clearance<'py>(
         &self,
@@ -169,7 +166,7 @@ impl Field {
         ))
     }
 
-    /// Distances along rays from a place at angles above the horizon \[rad\] to the first obstacle [m]; infinite
+    /// Distances along rays from a place at angles above the horizon [rad] to the first obstacle [m]; infinite
     /// where there is none.
     #[pyo3(signature = (x, z, angles, time = 0.0))]
     fn ranges<'py>(

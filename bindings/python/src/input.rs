@@ -1,10 +1,10 @@
 //! Python values to numbers.
 
 use crate::errors::input;
+use crate::typed::typed;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use pythonize::depythonize;
 use serde::de::DeserializeOwned;
 
 /// A value of a table, as numbers, texts, lists and dicts. Numbers and arrays of NumPy become Python's.
@@ -20,17 +20,17 @@ pub(crate) fn table<T: DeserializeOwned>(what: &str, keys: &Bound<'_, PyDict>) -
     let own = PyDict::new(keys.py());
     for (key, value) in keys {
         if !value.is_none() {
-            own.set_item(key, plain(&value)?)?;
+            own.set_item(key, value)?;
         }
     }
-    depythonize(&own).map_err(|error| input(format!("{what}: {error}")))
+    typed(what, &own)
 }
 
 /// The text of a file.
 pub(crate) fn text(path: &Bound<'_, PyAny>) -> PyResult<String> {
     let paths = path.py().import("pathlib")?;
     let path = paths.call_method1("Path", (path,))?;
-    path.call_method1("read_text", ("utf-8",))?.extract()
+    path.call_method1("read_text", ("utf-8-sig",))?.extract()
 }
 
 /// An array of numbers with this many axes, as `f64`.

@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! errors          exceptions for the errors of core and simulation
-//! input, output   Python values to numbers, and back
+//! input, typed, output   Python values to numbers and to the types of files, and back
 //! aside           long work on a thread of its own, while Python runs on
 //! aircraft, field, lidar, scenario    what a flight is made of
 //! flight, campaign                    whole flights
@@ -30,15 +30,19 @@ mod look;
 mod output;
 mod planner;
 mod scenario;
+mod typed;
 mod world;
 
 /// The module `mpp._native`.
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "Python's name")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
+    #[pymodule_export]
     use super::{
-        aircraft::Aircraft, batch::Batch, batch::Moment, campaign::Campaign, choice::Choice,
-        choice::Fork, core::Core, field::Field, flight::Flight, flight::fly, lidar::Lidar,
-        planner::Planner, world::World,
+        aircraft::Aircraft, batch::Batch, batch::SavedFlight, campaign::Campaign, campaign::wilson,
+        choice::Choice, choice::Fork, core::Core, field::Field, flight::Flight, flight::fly,
+        lidar::Lidar, planner::Planner, world::World,
     };
 }

@@ -25,7 +25,7 @@ pub(crate) fn columns<'py>(
     Ok(dict)
 }
 
-/// The knots of a trajectory as columns: time \[s\], state, and the controls from each knot on.
+/// The knots of a trajectory as columns: time [s], state, and the controls from each knot on.
 pub(crate) fn knots<'py>(py: Python<'py>, plan: &Trajectory) -> PyResult<Bound<'py, PyDict>> {
     let column = |pick: fn(&Reference) -> f64| plan.knots.iter().map(pick).collect::<Vec<f64>>();
     let times = (0..plan.knots.len()).map(|knot| plan.start + plan.stage_period * knot as f64);

@@ -5,9 +5,9 @@ use crate::errors::{self, alone, input};
 use crate::input::{finite, vector};
 use crate::{look, scenario};
 use mpp_analysis::recording;
-use mpp_core::vehicle::Conditions;
 use mpp_core::planner::Verdict;
 use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
 use mpp_sim::inspector::core_scan;
 use mpp_sim::lidar::LidarConfig;
@@ -40,14 +40,15 @@ impl Planner {
         })
     }
 
-    /// One cycle at a time \[s\] on the ranges of a scan \[m\], 0 where nothing came back, from a state: position
-    /// \[m\], airspeed [m/s] and angles \[rad\], by default those of level flight; in a wind [m/s]. `pitch` must
+    /// One cycle at a time [s] on the ranges of a scan [m], 0 where nothing came back, from a state: position
+    /// [m], airspeed [m/s] and angles [rad], by default those of level flight; in a wind [m/s]. `pitch` must
     /// be that at which the scan was taken. Gives the verdict, "feasible", "least-violating" or "nothing", and the
     /// totals of the cycle.
     #[pyo3(signature = (
         ranges, *, time = 0.0, x = 0.0, z = ALTITUDE, airspeed = None, pitch = None, pitch_rate = 0.0,
         flight_path = 0.0, wind = (0.0, 0.0)
-    ))]
+    ), text_signature = "($self, ranges, *, time=0.0, x=0.0, z=50.0, airspeed=None, pitch=None, pitch_rate=0.0, \
+        flight_path=0.0, wind=(0.0, 0.0))")]
     #[expect(clippy::too_many_arguments, reason = "they are the state")]
     fn plan<'py>(
         &self,

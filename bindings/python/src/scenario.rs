@@ -6,11 +6,11 @@ use crate::field::Field;
 use crate::input::{plain, text};
 use crate::lidar::Lidar;
 use crate::output;
+use crate::typed::typed;
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
-use pythonize::depythonize;
 
 /// The scenario that the keys describe.
 pub(crate) fn build(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
@@ -54,7 +54,7 @@ pub(crate) fn file(keys: &Bound<'_, PyDict>) -> PyResult<ScenarioFile> {
             all.set_item(key, table_of(&name, &value)?)?;
         }
     }
-    depythonize(&all).map_err(|error| input(format!("scenario: {error}")))
+    typed("", &all)
 }
 
 /// The value of a key as it stands in a scenario file.

@@ -86,7 +86,7 @@ impl World {
         Ok(stage.is_open())
     }
 
-    /// The true state: time \[s\], position \[m\], airspeed [m/s], angles \[rad\], and the wind [m/s].
+    /// The true state: time [s], position [m], airspeed [m/s], angles [rad], and the wind [m/s].
     #[getter]
     fn state<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let stage = alone(&self.guarded, "world")?;

@@ -19,14 +19,26 @@ def planner():
     ("keys", "message"),
     [
         ({"sed": 1}, "unknown field `sed`"),
-        ({"seed": -1}, "negative"),
+        ({"seed": -1}, r"^seed: give a whole number from 0 to 2\*\*64 - 1, not -1$"),
+        ({"seed": 10**30}, "^seed: give a whole number from 0"),
+        ({"obstacles": 20.5}, "^obstacles: give a whole number from 0 .*, not 20.5$"),
+        ({"obstacles": "x"}, "^obstacles: give a whole number from 0 .*, not 'x'$"),
+        ({"obstacles": True}, "^obstacles: give a whole number .*, not True$"),
+        ({"replan_hz": "4"}, "^replan_hz: give a number, not '4'$"),
+        ({"oracle": 1}, "^oracle: give True or False, not 1$"),
+        ({"preset": 7}, "^preset: give a name, not 7$"),
+        ({"faults": {"scan": {"delay_ms": -20}}}, r"^faults\.scan\.delay_ms: give a whole number .*, not -20$"),
+        ({"faults": {"gusts": 3}}, r"^faults\.gusts: give a dict of its keys, not 3$"),
+        ({"lidar": {3: 4}}, "^lidar: give texts for keys, not 3$"),
+        ({"field": {"polygon": [{"points": [[0.0, "a"]]}]}}, r"^field\.polygon\.0\.points\.0\.1: give a number, not 'a'$"),
+        ({"aircraft": "f16"}, "^aircraft: there is no `f16`: give reference, .*cessna182, a file"),
         ({"obstacles": 10**9}, "at most 1000"),
         ({"duration": 0}, "give 0.01 to 3600 s"),
         ({"replan_hz": NAN}, "replan_hz"),
         ({"preset": "best"}, "unknown variant `best`"),
         ({"generator": "maze"}, "unknown variant `maze`"),
         ({"generator": {"name": "paper", "gap": 3.0}}, "generator.gap: leave it out"),
-        ({"lidar": 3}, "scenario"),
+        ({"lidar": 3}, "^lidar: give a dict of its keys, not 3$"),
         ({"lidar": {"beams": 1000}}, "lidar.beams"),
         ({"body_radius": NAN}, "body_radius"),
         ({"field": {"circle": [{"x": NAN, "z": 50.0, "radius": 1.0}]}}, "circle 1"),
@@ -57,8 +69,12 @@ def test_an_aircraft_that_cannot_fly():
     numbers = mpp.Aircraft("example").numbers
     with pytest.raises(mpp.InputError, match="aircraft.mass"):
         mpp.Aircraft({**numbers, "mass": -1.0})
-    with pytest.raises(mpp.InputError, match="missing field"):
+    with pytest.raises(mpp.InputError, match="^aircraft: missing field"):
         mpp.Aircraft({"mass": 1.0})
+    with pytest.raises(mpp.InputError, match="^aircraft.mass: give a number, not 'heavy'"):
+        mpp.Aircraft({**numbers, "mass": "heavy"})
+    with pytest.raises(mpp.InputError, match="there is no `boeing`: give reference"):
+        mpp.Aircraft("boeing")
 
 
 @pytest.mark.parametrize(

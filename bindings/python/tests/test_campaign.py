@@ -59,6 +59,12 @@ def test_a_number_of_numpy_is_a_single_value():
     assert one == mpp.campaign(**keys, obstacles=10, replan_hz=10.0)
 
 
+def test_rows_show_their_number_their_successes_and_the_interval(rows):
+    assert all(row["strict"] for row in rows)
+    assert repr(rows) == "<Rows: 12 flights, 12 strict successes, 100.0 % [75.8, 100.0]>"
+    assert repr(rows[:0]) == "<Rows: no flights>"
+
+
 def test_progress_is_told(rows):
     told = []
     mpp.campaign(**GRID, progress=lambda done, total: told.append((done, total)))
@@ -91,8 +97,17 @@ def test_fields_are_cells_and_campaigns_travel():
 def test_a_campaign_that_makes_no_sense():
     with pytest.raises(mpp.InputError, match="replan_hz"):
         mpp.campaign(trials=1, replan_hz=3.0)
-    with pytest.raises(mpp.InputError, match="preset"):
-        mpp.campaign(trials=1, preset="best")
+    for key, value, message in (
+        ("preset", "best", "preset: unknown variant `best`"),
+        ("obstacles", "x", "obstacles: give a whole number from 0 .*, not 'x'"),
+        ("obstacles", [20, 20.5], "obstacles: give a whole number from 0 .*, not 20.5"),
+        ("replan_hz", "fast", "replan_hz: give a number, not 'fast'"),
+        ("seed", "x", "seed: give a whole number from 0 .*, not 'x'"),
+        ("trials", 0, "trials: give 1 or more, not 0"),
+        ("trials", 2.5, "trials: give a whole number from 0 .*, not 2.5"),
+    ):
+        with pytest.raises(mpp.InputError, match=f"^{message}"):
+            mpp.campaign(**{"trials": 1, key: value})
     with pytest.raises(mpp.InputError, match="workers: give 1 or more"):
         mpp.campaign(trials=1, workers=-1)
     with pytest.raises(mpp.InputError, match="index: give"):

@@ -1,5 +1,6 @@
 """The Gymnasium environments."""
 
+import copy
 import pickle
 import threading
 import time
@@ -39,6 +40,52 @@ def test_gymnasiums_own_checks_pass(name):
         for known in ("A Box observation space", "the casting"):
             warnings.filterwarnings("ignore", message=f".*{known}.*")
         check_env(gymnasium.make(name).unwrapped)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_copy_goes_on_by_itself(name):
+    env = gymnasium.make(name, duration=6).unwrapped
+    env.reset(seed=5)
+    steps = [env.action_space.sample() * 0 for _ in range(3)]
+    env.step(steps[0])
+    copied = copy.deepcopy(env)
+    for a, b in zip(flown(env, steps), flown(copied, steps), strict=True):
+        assert equal(a[0], b[0]) and a[1:] == b[1:]
+    # The original went on; the copy draws the seeds that it would have drawn.
+    assert copied.reset()[1]["seed"] == env.reset()[1]["seed"]
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=2)
+    many.reset(seed=1)
+    actions = np.zeros((2, 2))
+    assert equal(copy.deepcopy(many).step(actions)[0], many.step(actions)[0])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_options_that_mean_nothing_are_refused(name):
+    env = gymnasium.make(name, duration=1)
+    env.reset(seed=1, options={})
+    with pytest.raises(mpp.InputError, match="options: give none, not {'obstacles': 3}"):
+        env.reset(options={"obstacles": 3})
+    with pytest.raises(mpp.InputError, match="options: give none"):
+        gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(options={"obstacles": 3})
+
+
+def test_the_mask_has_an_entry_for_each_action():
+    env = gymnasium.make("mpp/Choice-v0").unwrapped
+    observation, _ = env.reset(seed=1)
+    mask = env.action_masks()
+    assert mask.shape == (env.action_space.n,) and mask.dtype == bool
+    assert mask[0] and (mask == observation["mask"]).all()
+    # The rest has no price of its own.
+    assert (observation["price"][mask[1:]] < 1e6).all() and (observation["price"][~mask[1:]] == 1e6).all()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_return_is_not_an_obstacle_before_the_nose(name):
+    env = gymnasium.make(name, obstacles=0, lidar={"range_max": 30.0})
+    assert (env.reset(seed=1)[0]["lidar"] == 30.0).all()
+    wall = {"polygon": [{"points": [[1.0, 40.0], [2.0, 40.0], [2.0, 60.0], [1.0, 60.0]]}]}
+    near = gymnasium.make(name, field=wall).reset(seed=1)[0]["lidar"]
+    assert 0.0 < near.min() < 2.0
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -113,7 +160,7 @@ def test_another_choice_is_another_flight_and_no_candidate_keeps_the_plan():
     ends = []
     for action in (0, 2, env.action_space.n - 1):
         observation, _ = env.reset(seed=1)
-        assert observation["mask"].sum() > 2 and (np.diff(observation["price"]) >= 0.0).all()
+        assert observation["mask"].sum() > 3 and (np.diff(observation["price"]) >= 0.0).all()
         ends.append(env.step(action)[4]["z"])
     assert len(set(ends)) == 3
 

@@ -51,6 +51,13 @@ def test_polygons_ground_and_ceiling_bound_a_tunnel():
     assert np.allclose(tunnel.ranges(0.0, 50.0, [0.0, -np.pi / 2, np.pi / 2]), [20.0, 10.0, 10.0])
 
 
+def test_a_ring_may_be_closed_as_shapely_gives_it():
+    ring = [[20.0, 48.0], [22.0, 48.0], [22.0, 52.0]]
+    opened, closed = (mpp.Field.of_arrays(polygons=[one]) for one in (ring, [*ring, ring[0]]))
+    assert opened.table == closed.table == mpp.Field({"polygon": [{"points": [*ring, ring[0]]}]}).table
+    assert len(opened.table["polygon"][0]["points"]) == 3
+
+
 def test_a_lidar_scans_a_field():
     field = mpp.Field.of_arrays(circles=[[20.0, 50.0, 1.0]])
     lidar = mpp.Lidar(beams=51, field_of_view_deg=90.0, range_max=40.0)

@@ -7,10 +7,10 @@ use mpp_sim::entries::{Columns, PlanEntry};
 use mpp_sim::flight::Flight;
 use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{Header, Summary};
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order, OrderEntry, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::tick_record::TickRecord;
 use mpp_sim::world::World;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -141,12 +141,12 @@ impl Ground for Tower {
         }
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
-        if moment.scan.is_some() {
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        if record.scan.is_some() {
             self.news.planning.push((self.clock)() - self.began);
         }
-        self.news.ticks.push(moment.tick);
-        self.news.plans.extend(moment.plan.cloned());
+        self.news.ticks.push(record.tick);
+        self.news.plans.extend(record.plan.cloned());
         let Some(tuning) = self.tuning.as_ref().filter(|_| self.details) else {
             return;
         };
@@ -155,7 +155,7 @@ impl Ground for Tower {
             self.inspector = Inspector::new(tuning).ok();
         }
         let inspector = self.inspector.as_mut();
-        let detail = inspector.and_then(|inspector| inspector.look(moment, tuning));
+        let detail = inspector.and_then(|inspector| inspector.look(record, tuning));
         self.news.details.extend(detail);
     }
 }

@@ -2,49 +2,6 @@
 #![no_std]
 #![no_main]
 
-use cortex_m::peripheral::SCB;
-use cortex_m_rt::{entry, exception};
-use firmware::serial::{self, PACE};
-use firmware::{board, processor, protection, tasks, uart};
+use firmware::{board, uart};
 
-#[entry]
-fn main() -> ! {
-    if let Some(mut peripherals) = cortex_m::Peripherals::take() {
-        protection::start(&mut peripherals.MPU, &board::REGIONS);
-        // SAFETY: no interrupt is enabled yet.
-        unsafe {
-            tasks::set_up(PACE);
-            tasks::step_side().announce(serial::send);
-        }
-        processor::set_priorities(&mut peripherals);
-        board::start_watchdog();
-        processor::start_ticking(&mut peripherals, board::TICK);
-        uart::start();
-    }
-    planner_thread()
-}
-
-#[unsafe(no_mangle)]
-extern "C" fn planner_thread() -> ! {
-    // SAFETY: only `main` calls this function, and the restart after it has dropped the thread.
-    unsafe {
-        tasks::plan(SCB::set_pendst, || {
-            processor::sleep_unless(tasks::has_order)
-        })
-    }
-}
-
-/// The interrupt of the step. It comes every 10 ms, after the last byte of a frame, and after an answer of
-/// the planner.
-#[exception]
-fn SysTick() {
-    // SAFETY: this is the step's interrupt.
-    unsafe {
-        serial::step(board::feed_watchdog, uart::kick);
-    }
-}
-
-#[exception]
-unsafe fn DefaultHandler(irqn: i16) {
-    uart::interrupt(irqn);
-}
+firmware::serial_image!(board, uart, |_| {});

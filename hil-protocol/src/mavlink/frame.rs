@@ -1,7 +1,7 @@
 //! One frame: the places of its parts, and the check whether it is intact.
 
+use super::data::{MessageData, checksum};
 use super::messages::MavMessage;
-use mavlink_core::{MavlinkVersion, Message, MessageData, calculate_crc};
 
 /// Size of the longest frame: MAVLink 2 with full payload and signature \[bytes\].
 pub const MAX_FRAME: usize = V2_HEADER + 255 + CHECKSUM + SIGNATURE;
@@ -36,23 +36,19 @@ pub struct Frame<'a> {
     pub payload: &'a [u8],
     /// Bytes of the whole frame.
     pub bytes: &'a [u8],
-    version: MavlinkVersion,
 }
 
 impl Frame<'_> {
     /// The message, if the frame contains one of type `M`.
     #[must_use]
     pub fn decode<M: MessageData>(&self) -> Option<M> {
-        if self.id != M::ID {
-            return None;
-        }
-        M::deser(self.version, self.payload).ok()
+        (self.id == M::ID).then(|| M::deser(self.payload))
     }
 
     /// Whether a signature ends the frame. The function does not check the signature.
     #[must_use]
     pub fn is_signed(&self) -> bool {
-        self.version == MavlinkVersion::V2 && self.bytes.get(2) == Some(&SIGNED)
+        matches!(self.bytes, [STX_V2, _, SIGNED, ..])
     }
 }
 
@@ -90,7 +86,6 @@ pub(super) fn claim(bytes: &[u8]) -> Claim<'_> {
         ] => {
             let tail = if *flags & SIGNED == 0 { 0 } else { SIGNATURE };
             let header = Header {
-                version: MavlinkVersion::V2,
                 length: V2_HEADER,
                 sequence: *sequence,
                 system: *system,
@@ -101,7 +96,6 @@ pub(super) fn claim(bytes: &[u8]) -> Claim<'_> {
         }
         [STX_V1, length, sequence, system, component, id, ..] => {
             let header = Header {
-                version: MavlinkVersion::V1,
                 length: V1_HEADER,
                 sequence: *sequence,
                 system: *system,
@@ -116,7 +110,6 @@ pub(super) fn claim(bytes: &[u8]) -> Claim<'_> {
 }
 
 struct Header {
-    version: MavlinkVersion,
     length: usize,
     sequence: u8,
     system: u8,
@@ -136,8 +129,8 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
         return Claim::Incomplete;
     };
     let sum = u16::from_le_bytes([*low, *high]);
-    match extra_crc(header.id) {
-        Some(extra) if calculate_crc(checked, extra) == sum => {}
+    match MavMessage::extra_crc(header.id) {
+        Some(extra) if checksum(checked, extra) == sum => {}
         None if is_some_messages(checked, sum) => return Claim::Unknown(total),
         _ => return Claim::Damaged(total),
     }
@@ -148,7 +141,6 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
         id: header.id,
         payload: body,
         bytes: frame,
-        version: header.version,
     })
 }
 
@@ -158,17 +150,10 @@ fn judge<'a>(bytes: &'a [u8], header: &Header, payload: usize, tail: usize) -> C
 /// effect on the checksum is an entry of the CRC's table. The high byte of this entry differs for each of
 /// the 256 values, so the function computes the entry from the high byte and compares.
 fn is_some_messages(checked: &[u8], sum: u16) -> bool {
-    let effect = calculate_crc(checked, 0) ^ sum;
+    let effect = checksum(checked, 0) ^ sum;
     let high = effect >> 8;
     let mixed = high ^ high >> 5;
     effect == mixed << 8 ^ mixed << 3 ^ mixed >> 4
-}
-
-/// The additional byte in the checksum of a message; `None` if the dialect does not have the message.
-fn extra_crc(id: u32) -> Option<u8> {
-    MavMessage::all_ids()
-        .contains(&id)
-        .then(|| MavMessage::extra_crc(id))
 }
 
 #[cfg(test)]
@@ -183,7 +168,7 @@ mod tests {
             bytes[length] = factor.wrapping_mul(factor ^ 0x5A);
             let checked = &bytes[..length];
             for extra in 0..=u8::MAX {
-                assert!(is_some_messages(checked, calculate_crc(checked, extra)));
+                assert!(is_some_messages(checked, checksum(checked, extra)));
             }
             let right = (0..=u16::MAX).filter(|sum| is_some_messages(checked, *sum));
             assert_eq!(right.count(), 256);

@@ -111,18 +111,18 @@ impl Framer {
             let Some(rest @ [_, ..]) = self.bytes.get(start..end) else {
                 break;
             };
-            let (step, counter) = match verdict(rest, ended) {
-                Verdict::Wait => break,
-                Verdict::Frame(frame) => {
+            let (step, counter) = match check(rest, ended) {
+                FrameCheck::Wait => break,
+                FrameCheck::Frame(frame) => {
                     take(&frame);
                     (frame.bytes.len(), &mut self.counters.frames)
                 }
-                Verdict::Unknown(length) => (length, &mut self.counters.unknown),
-                Verdict::Damaged(length) => {
+                FrameCheck::Unknown(length) => (length, &mut self.counters.unknown),
+                FrameCheck::Damaged(length) => {
                     self.boundary.get_or_insert(start + length);
                     (1, &mut self.counters.damaged)
                 }
-                Verdict::Noise => (1, &mut self.counters.noise),
+                FrameCheck::Noise => (1, &mut self.counters.noise),
             };
             *counter = counter.saturating_add(1);
             start += step;
@@ -165,7 +165,7 @@ impl Default for Framer {
     }
 }
 
-enum Verdict<'a> {
+enum FrameCheck<'a> {
     /// The framer needs more bytes to decide.
     Wait,
     Noise,
@@ -174,17 +174,17 @@ enum Verdict<'a> {
     Frame(Frame<'a>),
 }
 
-fn verdict(bytes: &[u8], ended: bool) -> Verdict<'_> {
+fn check(bytes: &[u8], ended: bool) -> FrameCheck<'_> {
     match claim(bytes) {
-        Claim::No => Verdict::Noise,
-        Claim::Damaged(length) => Verdict::Damaged(length),
-        Claim::Intact(frame) => Verdict::Frame(frame),
-        Claim::Incomplete if ended => Verdict::Noise,
-        Claim::Incomplete => Verdict::Wait,
+        Claim::No => FrameCheck::Noise,
+        Claim::Damaged(length) => FrameCheck::Damaged(length),
+        Claim::Intact(frame) => FrameCheck::Frame(frame),
+        Claim::Incomplete if ended => FrameCheck::Noise,
+        Claim::Incomplete => FrameCheck::Wait,
         Claim::Unknown(length) => match is_followed(bytes.get(length..), ended) {
-            None => Verdict::Wait,
-            Some(true) => Verdict::Unknown(length),
-            Some(false) => Verdict::Damaged(length),
+            None => FrameCheck::Wait,
+            Some(true) => FrameCheck::Unknown(length),
+            Some(false) => FrameCheck::Damaged(length),
         },
     }
 }

@@ -1,8 +1,8 @@
 //! Conversion of messages to frames.
 
+use super::data::{MessageData, checksum};
 use super::frame::{CHECKSUM, MAX_FRAME, SIGNED, STX_V2, V2_HEADER};
 use super::signing::Signer;
-use mavlink_core::{MavlinkVersion, MessageData, calculate_crc};
 
 /// One complete MAVLink 2 frame, ready to be sent.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -61,7 +61,7 @@ impl Sender {
 
     fn build<M: MessageData>(&mut self, message: &M, flags: u8) -> Datagram {
         let mut payload = [0; 255];
-        let length = message.ser(MavlinkVersion::V2, &mut payload);
+        let length = message.ser(&mut payload);
         let payload = payload.get(..length).unwrap_or_default();
         let [a, b, c, _] = M::ID.to_le_bytes();
         let header: [u8; V2_HEADER] = [
@@ -84,8 +84,8 @@ impl Sender {
         datagram.push(&header);
         datagram.push(payload);
         let checked = datagram.as_bytes().get(1..).unwrap_or_default();
-        let checksum: [u8; CHECKSUM] = calculate_crc(checked, M::EXTRA_CRC).to_le_bytes();
-        datagram.push(&checksum);
+        let sum: [u8; CHECKSUM] = checksum(checked, M::EXTRA_CRC).to_le_bytes();
+        datagram.push(&sum);
         datagram
     }
 }

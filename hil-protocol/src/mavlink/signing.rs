@@ -2,7 +2,6 @@
 //! content of a frame.
 
 use super::frame::{Frame, SIGNATURE};
-use core::fmt;
 use sha2::{Digest, Sha256};
 
 /// Number of senders whose last time a verifier stores.
@@ -66,31 +65,22 @@ impl Signer {
 }
 
 /// The reason why a signature is not valid.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Refusal {
     /// The frame has no signature.
+    #[error("the frame has no signature: give the sender the key")]
     Unsigned,
     /// The signature was made with another key, or for another frame.
+    #[error("the signature does not fit key and frame: give the sender this key")]
     WrongKey,
     /// The signature is not newer than the last one of its sender, or a new sender is more than a minute
     /// behind our own time. The frame may be a repetition.
+    #[error("the signature is not newer than the last: set the sender's clock")]
     Old,
     /// There are more senders than the verifier can store.
+    #[error("more senders sign than are remembered: use fewer of them")]
     TooManySenders,
 }
-
-impl fmt::Display for Refusal {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Unsigned => "the frame has no signature: give the sender the key",
-            Self::WrongKey => "the signature does not fit key and frame: give the sender this key",
-            Self::Old => "the signature is not newer than the last: set the sender's clock",
-            Self::TooManySenders => "more senders sign than are remembered: use fewer of them",
-        })
-    }
-}
-
-impl core::error::Error for Refusal {}
 
 /// Checks the signatures of received frames.
 #[derive(Clone)]

@@ -1,10 +1,8 @@
 //! The messages: one struct for each message, and the enum [`Message`] of all of them.
 
-pub(crate) mod aircraft;
 pub(crate) mod flight;
 pub(crate) mod report;
 pub(crate) mod session;
-pub(crate) mod setting;
 mod size;
 pub(crate) mod verdict;
 

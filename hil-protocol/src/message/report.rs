@@ -102,11 +102,16 @@ impl Rejection {
 
 /// The reason why the core did not use an input. [`Display`](fmt::Display) says what is wrong and what to
 /// do. The order goes over the wire: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum RejectionCause {
     /// A measurement is infinite or not a number.
+    #[error("a measurement is not a finite number: check the sensors")]
     NonFiniteSensor,
     /// A measurement is too far from what the estimator expected.
+    #[error(
+        "{} too far from the estimate: check the sensors",
+        gated(*.airspeed, *.pitch)
+    )]
     InnovationGate {
         /// Whether the airspeed is too far away.
         airspeed: bool,
@@ -114,6 +119,7 @@ pub enum RejectionCause {
         pitch: bool,
     },
     /// The number of beams in a scan differs from the configured one.
+    #[error("the scan has {found} beams instead of {expected}: send what was configured")]
     ScanLength {
         /// Configured number of beams.
         expected: u16,
@@ -121,18 +127,24 @@ pub enum RejectionCause {
         found: u16,
     },
     /// A range is infinite or not a number.
+    #[error("the range of beam {beam} is not a finite number: send 0 where nothing came back")]
     ScanNotFinite {
         /// The first such beam, counted from 0.
         beam: u16,
     },
     /// A range is negative or beyond the lidar's reach.
+    #[error(
+        "the range of beam {beam} is negative or beyond the lidar's reach: send 0 where nothing came back"
+    )]
     ScanRange {
         /// The first such beam, counted from 0.
         beam: u16,
     },
     /// The received bytes are not a message.
+    #[error("the core received no message: {0}")]
     Frame(DecodeError),
     /// A tick does not follow the last one, or a scan and its sensor frame have different ticks.
+    #[error("tick {found} came instead of tick {expected}: send every tick once")]
     TickOrder {
         /// The expected tick.
         expected: u32,
@@ -140,28 +152,40 @@ pub enum RejectionCause {
         found: u32,
     },
     /// A measurement or a scan came before an accepted [`Configure`](crate::Configure).
+    #[error("the core is not configured: send a configuration first")]
     NotConfigured,
     /// The core did not expect this message: only the core sends it, or it does not fit this moment.
+    #[error("message {id} has no place here: follow the order of a session")]
     UnexpectedMessage {
         /// Number of the message, one of [`id`](crate::id).
         id: u8,
     },
     /// A scan came while the planner still worked on the previous one.
+    #[error("the planner still works on the scan before: replan less often, or with less latency")]
     PlannerBusy,
     /// More bytes came than the core could take in.
+    #[error("{count} bytes came faster than the core takes them in: send more slowly")]
     BytesLost {
         /// Number of lost bytes.
         count: u32,
     },
     /// The planner was stuck. The core restarted it, and its cycle gave no trajectory.
+    #[error("the planner was stuck and started anew: the last plan is flown on, report the fault")]
     PlannerRestarted,
     /// An angle of a scan is infinite or not a number.
+    #[error("an angle of the scan is not a finite number: check the lidar")]
     ScanAngle,
     /// A scan has the same ranges as the one before, to the last bit. The lidar is frozen.
+    #[error("the scan repeats the one before to the last bit: the lidar is frozen, check it")]
     ScanRepeated,
     /// A scan has no return, although the map knows obstacles in its fan. The lidar is blind.
+    #[error("no beam returns although the map knows obstacles ahead: the lidar is blind, check it")]
     ScanBlind,
     /// A task of the core trapped or hung. The core restarted the planner, or itself if the step was the task.
+    #[error(
+        "{task} was restarted, because {fault} (address {address:#010x}, fault {count} in a row): report the \
+         fault"
+    )]
     Trapped {
         /// The task.
         task: CoreTask,
@@ -173,6 +197,9 @@ pub enum RejectionCause {
         count: u8,
     },
     /// After several faults in a row the core flies on without its planner, until its power goes off.
+    #[error(
+        "after several faults in a row the core flies without its planner: land, and switch the power off"
+    )]
     PlannerOff,
 }
 
@@ -186,131 +213,42 @@ pub enum CoreTask {
 }
 
 /// The reason why a task of the core could not go on. The order goes over the wire: append only.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, thiserror::Error)]
 pub enum CoreFault {
     /// Another reason than the following ones.
+    #[error("the processor could not go on")]
     Other = 0,
     /// The stack grew beyond its memory.
+    #[error("its stack grew too large")]
     Stack = 1,
     /// An access that the memory's protection does not allow.
+    #[error("it used memory that is not for this use")]
     Memory = 2,
     /// An access that no memory and no device answered.
+    #[error("it used an address without memory")]
     Bus = 3,
     /// An instruction that does not exist, or not in this state of the processor.
+    #[error("it came to an instruction that does not exist")]
     Instruction = 4,
     /// The task did not come to an end in time.
+    #[error("it did not come to an end")]
     Hang = 5,
 }
 
-impl fmt::Display for RejectionCause {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NonFiniteSensor => {
-                write!(f, "a measurement is not a finite number: check the sensors")
-            }
-            Self::InnovationGate { airspeed, pitch } => {
-                let which = match (airspeed, pitch) {
-                    (true, true) => "airspeed and pitch are",
-                    (true, false) => "the airspeed is",
-                    (false, true) => "the pitch is",
-                    (false, false) => "a measurement is",
-                };
-                write!(f, "{which} too far from the estimate: check the sensors")
-            }
-            Self::ScanLength { expected, found } => write!(
-                f,
-                "the scan has {found} beams instead of {expected}: send what was configured"
-            ),
-            Self::ScanNotFinite { beam } => write!(
-                f,
-                "the range of beam {beam} is not a finite number: send 0 where nothing came back"
-            ),
-            Self::ScanRange { beam } => write!(
-                f,
-                "the range of beam {beam} is negative or beyond the lidar's reach: send 0 where \
-                 nothing came back"
-            ),
-            Self::Frame(error) => write!(f, "the core received no message: {error}"),
-            Self::TickOrder { expected, found } => {
-                write!(
-                    f,
-                    "tick {found} came instead of tick {expected}: send every tick once"
-                )
-            }
-            Self::NotConfigured => {
-                write!(f, "the core is not configured: send a configuration first")
-            }
-            Self::UnexpectedMessage { id } => {
-                write!(
-                    f,
-                    "message {id} has no place here: follow the order of a session"
-                )
-            }
-            Self::PlannerBusy => write!(
-                f,
-                "the planner still works on the scan before: replan less often, or with less latency"
-            ),
-            Self::BytesLost { count } => write!(
-                f,
-                "{count} bytes came faster than the core takes them in: send more slowly"
-            ),
-            Self::PlannerRestarted => write!(
-                f,
-                "the planner was stuck and started anew: the last plan is flown on, report the fault"
-            ),
-            Self::ScanAngle => {
-                write!(
-                    f,
-                    "an angle of the scan is not a finite number: check the lidar"
-                )
-            }
-            Self::ScanRepeated => write!(
-                f,
-                "the scan repeats the one before to the last bit: the lidar is frozen, check it"
-            ),
-            Self::ScanBlind => write!(
-                f,
-                "no beam returns although the map knows obstacles ahead: the lidar is blind, check it"
-            ),
-            Self::Trapped {
-                task,
-                fault,
-                address,
-                count,
-            } => write!(
-                f,
-                "{task} was restarted, because {fault} (address {address:#010x}, fault {count} in a row): \
-                 report the fault"
-            ),
-            Self::PlannerOff => write!(
-                f,
-                "after several faults in a row the core flies without its planner: land, and switch the \
-                 power off"
-            ),
-        }
+fn gated(airspeed: bool, pitch: bool) -> &'static str {
+    match (airspeed, pitch) {
+        (true, true) => "airspeed and pitch are",
+        (true, false) => "the airspeed is",
+        (false, true) => "the pitch is",
+        (false, false) => "a measurement is",
     }
 }
-
-impl core::error::Error for RejectionCause {}
 
 impl fmt::Display for CoreTask {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Step => "the core",
             Self::Planner => "the planner",
-        })
-    }
-}
-
-impl fmt::Display for CoreFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Other => "the processor could not go on",
-            Self::Stack => "its stack grew too large",
-            Self::Memory => "it used memory that is not for this use",
-            Self::Bus => "it used an address without memory",
-            Self::Instruction => "it came to an instruction that does not exist",
-            Self::Hang => "it did not come to an end",
         })
     }
 }

@@ -1,8 +1,8 @@
 //! The opening of a session: the two sides, the configuration, and the parameters.
 
-use super::aircraft::{ActuatorLimits, Aircraft};
 use super::size;
 use super::verdict::{ConfigureVerdict, ParameterVerdict};
+use mpp_data::{ActuatorLimits, Aircraft};
 use serde::{Deserialize, Serialize};
 
 /// The first message in both directions.
@@ -69,13 +69,13 @@ pub struct Configure {
 impl Configure {
     /// Size of the longest payload \[bytes\].
     pub const MAX_SIZE: usize = size::BYTE
-        + Aircraft::MAX_SIZE
+        + size::AIRCRAFT
         + 2 * size::U16
         + 3 * size::U32
         + size::U64
         + size::F32
         + size::F64
-        + ActuatorLimits::MAX_SIZE;
+        + size::ACTUATOR_LIMITS;
 }
 
 /// A named set of the planner's parameters. The order goes over the wire: append only.

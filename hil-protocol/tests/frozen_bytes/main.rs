@@ -168,8 +168,10 @@ fn every_setting_out_of_range() {
         PathWeight, ElevatorWeight, CrossTrack, AirspeedHold, PlanElevatorWeight, PlanThrustWeight,
         PlanTerminalWeight, Latency, PenaltyQuadratic, SqpIterations, RefinedCandidates, PaddingNear, PaddingFar,
         ElevatorAbove, LiftElevator, MomentPitchRate, BodyRadius, Stall, LengthUnit, TimeUnit, MassUnit,
-        LiftAlphaRate, LiftPitchRate,
+        LiftAlphaRate, LiftPitchRate, CruiseAirspeed, WindChange, Altitude, Sight, PenaltyLinear,
+        AngleOfAttackLimit, FlightPathLimit, Margin, Band, PlanThrust,
     ];
+    assert_eq!(places, Setting::ALL);
     for (place, setting) in places.into_iter().enumerate() {
         let mut bytes = [0; 2];
         assert_eq!(

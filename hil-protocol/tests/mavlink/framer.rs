@@ -2,8 +2,9 @@
 
 use crate::oracle::{Shape, Span, crc, shape, unknown};
 use crate::streams::{Maker, Stream};
-use hil_protocol::mavlink::messages::{HEARTBEAT_DATA, MavMessage};
+use hil_protocol::mavlink::messages::HEARTBEAT_DATA;
 use hil_protocol::mavlink::{Frame, Framer, MAX_FRAME, Sender};
+use mavlink::dialects::common::MavMessage as Common;
 use mavlink::{MAVLinkMessageRaw, MavlinkReader};
 
 /// A frame that came out of the framer.
@@ -31,11 +32,11 @@ fn found(stream: &[u8], piece: usize) -> Vec<Found> {
     found
 }
 
-/// The frames that the stock reader finds.
+/// The frames of the common dialect that the stock reader finds.
 fn stock(stream: &[u8]) -> Vec<Vec<u8>> {
     let mut reader = MavlinkReader::new(stream);
     let mut found = Vec::new();
-    while let Ok(message) = reader.read_any_raw_message::<MavMessage>() {
+    while let Ok(message) = reader.read_any_raw_message::<Common>() {
         found.push(match message {
             MAVLinkMessageRaw::V1(raw) => raw.raw_bytes().to_vec(),
             MAVLinkMessageRaw::V2(raw) => raw.raw_bytes().to_vec(),
@@ -199,7 +200,9 @@ fn the_stock_reader_finds_no_more_planted_frames() {
         let Stream { bytes, planted } = Maker::new(seed).mixed(30);
         let found = places(&bytes, &found(&bytes, bytes.len()));
         let stock = stock(&bytes);
-        for span in planted {
+        // The scan is ours alone.
+        let common = |span: &Span| bytes[span.start + 7..].first_chunk() != Some(&[0x54, 0xD3, 0]);
+        for span in planted.into_iter().filter(common) {
             let theirs_too = stock.iter().any(|frame| frame == &bytes[span.clone()]);
             let ours_too = found.contains(&span);
             theirs += usize::from(theirs_too);

@@ -26,10 +26,10 @@ pub(crate) fn crc(bytes: &[u8], seed: u8) -> u16 {
 pub(crate) fn seed(id: u32) -> Option<u8> {
     use hil_protocol::mavlink::messages::MavMessage as Ours;
     use mavlink::dialects::common::MavMessage as Common;
-    Ours::all_ids().contains(&id).then(|| match id {
+    match id {
         54100.. => Ours::extra_crc(id),
-        _ => Common::extra_crc(id),
-    })
+        _ => Ours::IDS.contains(&id).then(|| Common::extra_crc(id)),
+    }
 }
 
 /// The kind of a whole frame at a place.

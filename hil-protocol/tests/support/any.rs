@@ -1,343 +1,151 @@
-//! Any message, including floats of every bit pattern.
+//! Any message, including floats of every bit pattern. Each is read from its fields, which stand here in the order
+//! of the wire.
 
-use super::aircraft::{aircraft, limits};
 use hil_protocol::*;
-use proptest::array::{uniform3, uniform4, uniform5, uniform6};
+use proptest::array::{uniform, uniform2, uniform3, uniform4, uniform5, uniform6};
 use proptest::collection::vec;
 use proptest::num::{f32, f64};
+use proptest::option;
 use proptest::prelude::*;
-use proptest::sample::select;
+use proptest::sample::{Select, select};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
 
 pub(crate) fn message() -> impl Strategy<Value = Message> {
     prop_oneof![
-        hello().prop_map(Message::Hello),
-        configure().prop_map(Message::Configure),
+        of(hello()).prop_map(Message::Hello),
+        of(configure()).prop_map(Message::Configure),
         verdict().prop_map(|verdict| Message::ConfigureReply(ConfigureReply { verdict })),
-        sensor_frame().prop_map(Message::SensorFrame),
-        lidar_scan().prop_map(Message::LidarScan),
-        actuator_command().prop_map(Message::ActuatorCommand),
-        step_report().prop_map(Message::StepReport),
-        plan_report().prop_map(Message::PlanReport),
-        (any::<u32>(), cause())
-            .prop_map(|(tick, cause)| Message::Rejection(Rejection { tick, cause })),
-        (any::<u8>(), f64::ANY).prop_map(|(parameter, value)| Message::SetParameter(
-            SetParameter { parameter, value }
-        )),
-        parameter_reply().prop_map(Message::ParameterReply),
-        plan_trajectory().prop_map(Message::PlanTrajectory),
-        plan_controls().prop_map(Message::PlanControls),
-        health_report().prop_map(Message::HealthReport),
+        of(sensor_frame()).prop_map(Message::SensorFrame),
+        of(lidar_scan()).prop_map(Message::LidarScan),
+        of(actuator_command()).prop_map(Message::ActuatorCommand),
+        of(step_report()).prop_map(Message::StepReport),
+        of(plan_report()).prop_map(Message::PlanReport),
+        of((any::<u32>(), cause())).prop_map(Message::Rejection),
+        of((any::<u8>(), f64::ANY)).prop_map(Message::SetParameter),
+        of((any::<u8>(), parameter_verdict())).prop_map(Message::ParameterReply),
+        of(plan_trajectory()).prop_map(Message::PlanTrajectory),
+        of(plan_controls()).prop_map(Message::PlanControls),
+        of(any::<(u32, [u32; HealthReport::NAMES.len()])>()).prop_map(Message::HealthReport),
     ]
 }
 
-fn hello() -> impl Strategy<Value = Hello> {
-    let roles = select(&[Role::Harness, Role::Core]);
-    (
-        roles,
-        any::<[u8; 3]>(),
-        any::<u32>(),
-        any::<u16>(),
-        any::<u16>(),
-    )
-        .prop_map(
-            |(role, software, tick_period_us, beams_max, stages)| Hello {
-                role,
-                software,
-                tick_period_us,
-                beams_max,
-                stages,
-            },
-        )
+/// The value with these fields.
+fn of<T: DeserializeOwned + Debug>(
+    fields: impl Strategy<Value: Serialize>,
+) -> impl Strategy<Value = T> {
+    fields.prop_map(|fields| {
+        let mut bytes = [0; MAX_FRAME];
+        postcard::from_bytes(postcard::to_slice(&fields, &mut bytes).unwrap()).unwrap()
+    })
 }
 
-fn configure() -> impl Strategy<Value = Configure> {
-    let presets = select(&[Preset::Reference, Preset::Paper, Preset::Flight]);
-    let ticks = any::<[u32; 3]>();
-    let rest = (any::<u64>(), any::<u16>(), f32::ANY, f64::ANY, limits());
-    (presets, aircraft(), any::<u16>(), ticks, rest).prop_map(
-        |(preset, aircraft, paths, ticks, (seed, beams, range_max, altitude, actuators))| {
-            Configure {
-                preset,
-                aircraft,
-                paths,
-                replan_period_ticks: ticks[0],
-                latency_ticks: ticks[1],
-                slices_per_tick: ticks[2],
-                seed,
-                beams,
-                range_max,
-                altitude,
-                actuators,
-            }
-        },
-    )
+/// A list of at most so many elements.
+fn list<T: Debug, const MOST: usize>(
+    element: impl Strategy<Value = T>,
+) -> impl Strategy<Value = heapless::Vec<T, MOST>> {
+    vec(element, 0..=MOST).prop_map(|list| list.into_iter().collect())
+}
+
+/// Any variant without fields.
+fn plain<T: DeserializeOwned + Clone + Debug + 'static>() -> Select<T> {
+    let all = (0..=u8::MAX).filter_map(|number| postcard::from_bytes(&[number]).ok());
+    select(all.collect::<Vec<T>>())
+}
+
+fn hello() -> impl Strategy<Value: Serialize> {
+    let numbers = any::<([u8; 3], u32, u16, u16)>();
+    (plain::<Role>(), numbers)
+}
+
+fn configure() -> impl Strategy<Value: Serialize> {
+    let aircraft = (
+        uniform::<_, { Airframe::COUNT + 2 }>(f64::ANY),
+        option::of(f64::ANY),
+    );
+    let numbers = any::<(u16, [u32; 3], u64, u16)>();
+    let limits = uniform5(option::of(f64::ANY));
+    let rest = (f32::ANY, f64::ANY, limits);
+    (plain::<Preset>(), aircraft, numbers, rest)
 }
 
 fn verdict() -> impl Strategy<Value = ConfigureVerdict> {
     prop_oneof![
-        any::<u16>().prop_map(|max| ConfigureVerdict::TooManyPaths { max }),
-        any::<u16>().prop_map(|max| ConfigureVerdict::Beams { max }),
-        select(&[
-            ConfigureVerdict::Accepted,
-            ConfigureVerdict::ReplanPeriod,
-            ConfigureVerdict::Latency,
-            ConfigureVerdict::NonFinite,
-            ConfigureVerdict::NotTrimmable,
-            ConfigureVerdict::SlicesPerTick,
-            ConfigureVerdict::RangeMax,
-            ConfigureVerdict::AlreadyConfigured,
-            ConfigureVerdict::Actuators,
-            ConfigureVerdict::PresetNotBuilt,
-            ConfigureVerdict::PathsZero,
-            ConfigureVerdict::ThrustTooLow,
-            ConfigureVerdict::CruiseAirspeed,
-            ConfigureVerdict::AirframeNotFinite,
-            ConfigureVerdict::NotCarried,
-            ConfigureVerdict::NoElevator,
-            ConfigureVerdict::RegulatorNotFinite,
-            ConfigureVerdict::RegulatorSingular,
-            ConfigureVerdict::RegulatorNotConverged,
-            ConfigureVerdict::RegulatorNotStabilising,
-            ConfigureVerdict::PlanModel,
-            ConfigureVerdict::PlanWeights,
-            ConfigureVerdict::Penalty,
-            ConfigureVerdict::Margin,
-            ConfigureVerdict::Band,
-            ConfigureVerdict::PlanThrust,
-            ConfigureVerdict::WindChange,
-            ConfigureVerdict::AngleOfAttackLimit,
-            ConfigureVerdict::FlightPathLimit,
-            ConfigureVerdict::OtherPreset,
-            ConfigureVerdict::Unstable,
-            ConfigureVerdict::OutOfRange(Setting::Mass),
-            ConfigureVerdict::OutOfRange(Setting::PaddingFar),
-            ConfigureVerdict::ImageDamaged,
-        ]),
+        1 => any::<u16>().prop_map(|max| ConfigureVerdict::TooManyPaths { max }),
+        1 => any::<u16>().prop_map(|max| ConfigureVerdict::Beams { max }),
+        1 => plain().prop_map(ConfigureVerdict::OutOfRange),
+        3 => plain(),
     ]
 }
 
-fn parameter_reply() -> impl Strategy<Value = ParameterReply> {
-    use ParameterVerdict::*;
-    let verdicts = prop_oneof![
-        select(&[
-            Accepted,
-            Unknown,
-            Range,
-            NotWhole,
-            InFlight,
-            NotConfigured,
-            NotInPreset,
-            PathsInFlight,
-            CruiseFixed,
-        ]),
-        verdict().prop_map(SetUp),
-    ];
-    (any::<u8>(), verdicts).prop_map(|(parameter, verdict)| ParameterReply { parameter, verdict })
+fn parameter_verdict() -> impl Strategy<Value = ParameterVerdict> {
+    prop_oneof![plain(), verdict().prop_map(ParameterVerdict::SetUp)]
 }
 
-fn plan_controls() -> impl Strategy<Value = PlanControls> {
-    let knots = vec(proptest::array::uniform2(f32::ANY), 0..=MAX_KNOTS);
-    (any::<u32>(), knots).prop_map(|(scan_tick, knots)| PlanControls {
-        scan_tick,
-        knots: knots.into_iter().collect(),
-    })
+fn plan_controls() -> impl Strategy<Value: Serialize> {
+    (any::<u32>(), list::<_, MAX_KNOTS>(uniform2(f32::ANY)))
 }
 
-fn plan_trajectory() -> impl Strategy<Value = PlanTrajectory> {
-    let knots = vec(proptest::array::uniform3(f32::ANY), 0..=MAX_KNOTS);
-    (any::<u32>(), f32::ANY, knots).prop_map(|(scan_tick, period, knots)| PlanTrajectory {
-        scan_tick,
-        period,
-        knots: knots.into_iter().collect(),
-    })
+fn plan_trajectory() -> impl Strategy<Value: Serialize> {
+    let knots = list::<_, MAX_KNOTS>(uniform3(f32::ANY));
+    (any::<u32>(), f32::ANY, knots)
 }
 
-fn sensor_frame() -> impl Strategy<Value = SensorFrame> {
+fn sensor_frame() -> impl Strategy<Value: Serialize> {
+    let air = (any::<u32>(), f64::ANY, f64::ANY);
+    let velocity = option::of(uniform3(f32::ANY));
+    let position = (any::<u32>(), uniform2(f64::ANY), f32::ANY, velocity);
+    (any::<u32>(), option::of(air), option::of(position))
+}
+
+fn lidar_scan() -> impl Strategy<Value: Serialize> {
+    let ranges = list::<_, MAX_BEAMS>(f32::ANY);
+    (any::<u32>(), f32::ANY, f32::ANY, ranges)
+}
+
+fn actuator_command() -> impl Strategy<Value: Serialize> {
+    (any::<u32>(), f64::ANY, f64::ANY, plain::<ControlMode>())
+}
+
+fn step_report() -> impl Strategy<Value: Serialize> {
+    let estimate = (uniform4(f64::ANY), uniform5(f64::ANY));
+    let rest = (uniform6(f64::ANY), any::<u32>());
     (
         any::<u32>(),
-        prop::option::of(air_data()),
-        prop::option::of(position()),
-    )
-        .prop_map(|(tick, air, position)| SensorFrame {
-            tick,
-            air,
-            position,
-        })
-}
-
-fn air_data() -> impl Strategy<Value = AirData> {
-    (any::<u32>(), f64::ANY, f64::ANY).prop_map(|(tick, airspeed, pitch)| AirData {
-        tick,
-        airspeed,
-        pitch,
-    })
-}
-
-fn position() -> impl Strategy<Value = Position> {
-    let velocity = uniform3(f32::ANY).prop_map(|[x, z, sigma]| GroundVelocity { x, z, sigma });
-    (
-        any::<u32>(),
-        (f64::ANY, f64::ANY),
-        f32::ANY,
-        prop::option::of(velocity),
-    )
-        .prop_map(|(tick, (x, z), sigma, velocity)| Position {
-            tick,
-            x,
-            z,
-            sigma,
-            velocity,
-        })
-}
-
-fn lidar_scan() -> impl Strategy<Value = LidarScan> {
-    (
-        any::<u32>(),
-        f32::ANY,
-        f32::ANY,
-        vec(f32::ANY, 0..=MAX_BEAMS),
-    )
-        .prop_map(|(tick, angle_min, angle_increment, ranges)| LidarScan {
-            tick,
-            angle_min,
-            angle_increment,
-            ranges: ranges.into_iter().collect(),
-        })
-}
-
-fn actuator_command() -> impl Strategy<Value = ActuatorCommand> {
-    let modes = select(&[ControlMode::TrimHold, ControlMode::Tracking]);
-    (any::<u32>(), f64::ANY, f64::ANY, modes).prop_map(|(tick, thrust, elevator, mode)| {
-        ActuatorCommand {
-            tick,
-            thrust,
-            elevator,
-            mode,
-        }
-    })
-}
-
-fn step_report() -> impl Strategy<Value = StepReport> {
-    (
-        any::<u32>(),
-        uniform4(f64::ANY),
-        uniform5(f64::ANY),
-        uniform6(f64::ANY),
-        any::<u32>(),
-        sensor_states(),
-    )
-        .prop_map(
-            |(tick, estimate, [x, z, ahead, up, lift], reference, age, sensors)| StepReport {
-                tick,
-                estimate,
-                position: [x, z],
-                wind: [ahead, up],
-                lift,
-                reference,
-                plan_age_ticks: age,
-                sensors,
-            },
-        )
-}
-
-fn sensor_states() -> impl Strategy<Value = SensorStates> {
-    let state = || {
-        select(&[
-            SensorState::Healthy,
-            SensorState::Suspected,
-            SensorState::Excluded,
-            SensorState::Recovering,
-        ])
-    };
-    let all = [state(), state(), state(), state(), state(), state()];
-    all.prop_map(
-        |[airspeed, pitch, position, lidar, elevator, motor]| SensorStates {
-            airspeed,
-            pitch,
-            position,
-            lidar,
-            elevator,
-            motor,
-        },
+        estimate,
+        rest,
+        uniform6(plain::<SensorState>()),
     )
 }
 
-fn health_report() -> impl Strategy<Value = HealthReport> {
-    any::<(u32, [u32; HealthReport::NAMES.len()])>()
-        .prop_map(|(tick, counters)| HealthReport { tick, counters })
-}
-
-fn plan_report() -> impl Strategy<Value = PlanReport> {
-    let outcomes = select(&[
-        PlanOutcome::Adopted,
-        PlanOutcome::LeastViolating,
-        PlanOutcome::KeptPrevious,
-        PlanOutcome::TrimHold,
-    ]);
-    let counts = (any::<[u32; 3]>(), any::<[u16; 3]>());
-    (outcomes, counts, f64::ANY, f64::ANY, any::<bool>()).prop_map(
-        |(outcome, (long, short), cost, violation, complete)| PlanReport {
-            scan_tick: long[0],
-            used_from_tick: long[1],
-            outcome,
-            candidates: short[0],
-            feasible: short[1],
-            tree_runs: short[2],
-            slices: long[2],
-            cost,
-            violation,
-            complete,
-        },
-    )
+fn plan_report() -> impl Strategy<Value: Serialize> {
+    let ticks = any::<(u32, u32)>();
+    let counts = any::<([u16; 3], u32)>();
+    let costs = (f64::ANY, f64::ANY, any::<bool>());
+    (ticks, plain::<PlanOutcome>(), counts, costs)
 }
 
 fn cause() -> impl Strategy<Value = RejectionCause> {
+    use RejectionCause::*;
+    let task = (plain(), plain(), any::<u32>(), any::<u8>());
     prop_oneof![
-        any::<(bool, bool)>()
-            .prop_map(|(airspeed, pitch)| RejectionCause::InnovationGate { airspeed, pitch }),
-        any::<(u16, u16)>()
-            .prop_map(|(expected, found)| RejectionCause::ScanLength { expected, found }),
-        any::<u16>().prop_map(|beam| RejectionCause::ScanNotFinite { beam }),
-        any::<u16>().prop_map(|beam| RejectionCause::ScanRange { beam }),
-        any::<(u32, u32)>()
-            .prop_map(|(expected, found)| RejectionCause::TickOrder { expected, found }),
-        any::<u8>().prop_map(|id| RejectionCause::UnexpectedMessage { id }),
-        decode_error().prop_map(RejectionCause::Frame),
-        select(&[
-            RejectionCause::NonFiniteSensor,
-            RejectionCause::NotConfigured,
-            RejectionCause::PlannerBusy,
-            RejectionCause::PlannerRestarted,
-            RejectionCause::ScanAngle,
-            RejectionCause::ScanRepeated,
-            RejectionCause::ScanBlind,
-            RejectionCause::PlannerOff,
-        ]),
-        (
-            select(&[CoreTask::Step, CoreTask::Planner]),
-            core_fault(),
-            any::<u32>(),
-            any::<u8>()
-        )
-            .prop_map(|(task, fault, address, count)| RejectionCause::Trapped {
-                task,
-                fault,
-                address,
-                count,
-            }),
-        any::<u32>().prop_map(|count| RejectionCause::BytesLost { count }),
+        any::<(bool, bool)>().prop_map(|(airspeed, pitch)| InnovationGate { airspeed, pitch }),
+        any::<(u16, u16)>().prop_map(|(expected, found)| ScanLength { expected, found }),
+        any::<u16>().prop_map(|beam| ScanNotFinite { beam }),
+        any::<u16>().prop_map(|beam| ScanRange { beam }),
+        any::<(u32, u32)>().prop_map(|(expected, found)| TickOrder { expected, found }),
+        any::<u8>().prop_map(|id| UnexpectedMessage { id }),
+        decode_error().prop_map(Frame),
+        plain(),
+        task.prop_map(|(task, fault, address, count)| Trapped {
+            task,
+            fault,
+            address,
+            count
+        }),
+        any::<u32>().prop_map(|count| BytesLost { count }),
     ]
-}
-
-fn core_fault() -> impl Strategy<Value = CoreFault> {
-    select(&[
-        CoreFault::Other,
-        CoreFault::Stack,
-        CoreFault::Memory,
-        CoreFault::Bus,
-        CoreFault::Instruction,
-        CoreFault::Hang,
-    ])
 }
 
 fn decode_error() -> impl Strategy<Value = DecodeError> {
@@ -346,12 +154,6 @@ fn decode_error() -> impl Strategy<Value = DecodeError> {
         any::<u8>().prop_map(|id| DecodeError::UnknownId { id }),
         any::<u8>().prop_map(|id| DecodeError::Payload { id }),
         any::<u8>().prop_map(|id| DecodeError::TrailingBytes { id }),
-        select(&[
-            DecodeError::TooLong,
-            DecodeError::Cobs,
-            DecodeError::TooShort,
-            DecodeError::Magic,
-            DecodeError::Crc,
-        ]),
+        plain(),
     ]
 }

@@ -1,6 +1,5 @@
 //! Code that the tests share: an oracle for frames, and any message.
 
-mod aircraft;
 pub(crate) mod any;
 pub(crate) mod oracle;
 

@@ -99,7 +99,7 @@ fn of_lift(model: &AircraftModel) -> [Option<Doubt>; 3] {
 
 /// What level flight leaves to motor and elevator.
 fn of_actuators(model: &AircraftModel) -> [Option<Doubt>; 2] {
-    let (actuators, needed) = (&model.known.actuators, model.trim.control);
+    let (actuators, needed) = (&model.actuators, model.trim.control);
     let weight = model.known.airframe.mass * GRAVITY;
     let motor = |most: f64| {
         let ratio = most / weight;

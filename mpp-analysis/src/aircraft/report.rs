@@ -3,7 +3,6 @@
 use super::doubts::doubts;
 use super::{Doubt, Modes};
 use mpp_core::config::{STAGE_PERIOD, STAGES};
-use mpp_core::settings::Settings;
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
 use serde::Serialize;
@@ -69,10 +68,10 @@ impl AircraftReport {
         let a = &known.airframe;
         let balance = a.balanced();
         let modes = Modes::of(known, trim);
-        let settings = Settings::flight_of(known);
+        let settings = model.settings();
         let own = settings.planner.plane();
         let allowed = own.map_or(0.0, |own| own.attitude.angle_of_attack);
-        let balanced = known.actuators.angle_of_attack(a);
+        let balanced = model.actuators.angle_of_attack(a);
         let [down, up] = balanced;
         let turning = allowed
             .min(down)
@@ -80,7 +79,7 @@ impl AircraftReport {
             .min(known.stall.unwrap_or(f64::INFINITY));
         let pressure_area = 0.5 * a.air_density * known.cruise.powi(2) * a.wing_area;
         let weight = a.mass * GRAVITY;
-        let climb = known.actuators.thrust_max.map(|thrust| {
+        let climb = model.actuators.thrust_max.map(|thrust| {
             let excess = (thrust - trim.control.thrust) / weight;
             excess.clamp(-1.0, 1.0).asin().to_degrees()
         });

@@ -121,8 +121,8 @@ impl fmt::Display for QpReport {
     }
 }
 
-/// One solver's answer to one program.
-struct Answer {
+/// One solver's run on one program.
+struct SolverRun {
     time_us: f64,
     iterations: usize,
     /// Whether the solver calls the program feasible; `None` if it has no verdict.
@@ -166,9 +166,9 @@ pub fn run_qp(
         let other = ask_clarabel(instance, &full)?;
         // A solution that breaks rows costs less than it should, so it is no measure for the other
         // solver.
-        let cost = |answer: &Answer| {
-            let keeps_rows = answer.row_error <= MEASURE;
-            instance.cost.or(answer.cost.filter(|_| keeps_rows))
+        let cost = |run: &SolverRun| {
+            let keeps_rows = run.row_error <= MEASURE;
+            instance.cost.or(run.cost.filter(|_| keeps_rows))
         };
         ours.add(&own, truth, cost(&other));
         theirs.add(&other, truth, cost(&own));
@@ -222,7 +222,7 @@ fn ask_condense(instance: &Instance) -> Result<(Box<Condensed>, f64), QpBenchErr
     Ok((condensed, best * 1e6))
 }
 
-fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> Answer {
+fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> SolverRun {
     let problem = instance.problem();
     let mut solver = Box::new(Solver::new());
     let mut solution = Box::new(Solution::new());
@@ -238,7 +238,7 @@ fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> Answer {
     }
     let (cost, row_error) = full.evaluate(&solution);
     let solved = status == Status::Optimal;
-    Answer {
+    SolverRun {
         time_us: best * 1e6,
         iterations: solver.iterations(),
         feasible: match status {
@@ -251,7 +251,7 @@ fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> Answer {
     }
 }
 
-fn ask_clarabel(instance: &Instance, full: &FullForm) -> Result<Answer, QpBenchError> {
+fn ask_clarabel(instance: &Instance, full: &FullForm) -> Result<SolverRun, QpBenchError> {
     let timed = || -> Result<_, QpBenchError> {
         let mut solver = clarabel(instance, full)?;
         let begin = Instant::now();
@@ -273,7 +273,7 @@ fn ask_clarabel(instance: &Instance, full: &FullForm) -> Result<Answer, QpBenchE
         solution.status,
         SolverStatus::PrimalInfeasible | SolverStatus::AlmostPrimalInfeasible
     );
-    Ok(Answer {
+    Ok(SolverRun {
         time_us: best * 1e6,
         iterations: solution.iterations as usize,
         feasible: (solved || infeasible).then_some(solved),
@@ -286,7 +286,7 @@ fn ask_clarabel(instance: &Instance, full: &FullForm) -> Result<Answer, QpBenchE
     })
 }
 
-/// Collects one solver's answers.
+/// Collects one solver's runs.
 struct Tally {
     report: SolverReport,
     times: Vec<f64>,
@@ -305,17 +305,17 @@ impl Tally {
         }
     }
 
-    fn add(&mut self, answer: &Answer, truth: Option<bool>, cost: Option<f64>) {
-        self.times.push(answer.time_us);
-        self.iterations.push(answer.iterations);
+    fn add(&mut self, run: &SolverRun, truth: Option<bool>, cost: Option<f64>) {
+        self.times.push(run.time_us);
+        self.iterations.push(run.iterations);
         let report = &mut self.report;
-        report.verdict_errors += usize::from(truth.is_some() && answer.feasible != truth);
+        report.verdict_errors += usize::from(truth.is_some() && run.feasible != truth);
         if truth == Some(true)
-            && let (Some(own), Some(best)) = (answer.cost, cost)
+            && let (Some(own), Some(best)) = (run.cost, cost)
         {
             let error = (own - best).abs() / best.abs().max(1.0);
             report.worst_objective_error = report.worst_objective_error.max(error);
-            report.worst_row_error = report.worst_row_error.max(answer.row_error);
+            report.worst_row_error = report.worst_row_error.max(run.row_error);
         }
     }
 

@@ -97,7 +97,8 @@ impl FaultReport {
         for (number, variant) in campaign.faults.iter().enumerate() {
             for cell in &variant.cells {
                 let (clean, faulty) = (of(None, cell), of(Some(number), cell));
-                let row = FaultRow::new(variant.fault.name, cell, &clean, &faulty);
+                let kind = cell.kind(campaign.scene());
+                let row = FaultRow::new(variant.fault.name, (cell, kind), &clean, &faulty);
                 let oracle = campaign.oracle_beside(cell);
                 let oracle = oracle.map(|cell| of(Some(number), &cell));
                 faults.push(FaultRow {
@@ -114,7 +115,12 @@ impl FaultReport {
 
 impl FaultRow {
     /// The row of flights without and with a fault, seed for seed.
-    fn new(name: &'static str, cell: &Cell, clean: &[&Flown], faulty: &[&Flown]) -> Self {
+    fn new(
+        name: &'static str,
+        (cell, kind): (&Cell, String),
+        clean: &[&Flown],
+        faulty: &[&Flown],
+    ) -> Self {
         let both = || clean.iter().zip(faulty);
         let count = |is: fn(bool, bool) -> bool| {
             both()
@@ -133,7 +139,7 @@ impl FaultRow {
             generator: cell.generator,
             obstacles: cell.obstacles,
             replan_hz: cell.replan_hz,
-            kind: cell.kind(),
+            kind,
             pairs,
             clean: count(|clean, _| clean),
             faulty: count(|_, faulty| faulty),

@@ -5,6 +5,7 @@
 use super::grid::{Campaign, Cell, Lists};
 use mpp_sim::names::UnknownName;
 use mpp_sim::scenario::{Scenario, ScenarioError, ScenarioFile};
+use mpp_sim::scene::Scene;
 
 /// A fault with a name, as a scenario file that goes over the campaign's scenario.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -136,6 +137,11 @@ pub struct FaultCampaign {
 const DEFAULT_PAIRS: [(usize, f64); 2] = [(20, 1.0), (40, 4.0)];
 
 impl FaultCampaign {
+    /// The scene in every field.
+    pub(super) fn scene(&self) -> Option<Scene> {
+        self.clean.scenario.scene
+    }
+
     /// A campaign with `trials` pairs for each fault and cell. The cells are those of lists and scenario. If these
     /// name no obstacles, no rate, no scene and no field, the cells are 20 obstacles at 1 Hz and 40 obstacles at
     /// 4 Hz. A fault whose file names obstacles or a rate has these in each cell.

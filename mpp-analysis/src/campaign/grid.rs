@@ -5,6 +5,7 @@ use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{
     GeneratorTable, ORACLE_REPLAN_HZ, Preset, Scenario, ScenarioError, ScenarioFile,
 };
+use mpp_sim::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
@@ -52,14 +53,15 @@ impl Cell {
             == (&other.field, other.generator, other.obstacles)
     }
 
-    /// The kind of its fields, for a table: file, generator, or both.
+    /// The kind of its fields, for a table: file, the scene of its campaign, and generator, as far as they are there.
     #[must_use]
-    pub fn kind(&self) -> String {
-        match &self.field {
-            None => self.generator.to_string(),
-            Some(file) if self.obstacles == 0 => file.clone(),
-            Some(file) => format!("{file}, {}", self.generator),
+    pub fn kind(&self, scene: Option<Scene>) -> String {
+        let mut parts: Vec<String> = self.field.iter().cloned().collect();
+        parts.extend(scene.map(|scene| scene.to_string()));
+        if parts.is_empty() || self.obstacles > 0 {
+            parts.push(self.generator.to_string());
         }
+        parts.join(", ")
     }
 }
 
@@ -164,7 +166,7 @@ impl Campaign {
             field: listed(lists.field),
             generator: listed_or(lists.generator, base.generator.name),
             obstacles: listed_or(lists.obstacles, base.obstacles),
-            paths: listed_or(lists.paths, base.paths),
+            paths: listed_or(lists.paths, scenario.paths.unwrap_or(base.paths)),
             replan_hz: listed_or(lists.replan_hz, base.replan_hz()),
             trials,
             seed: seed.unwrap_or(base.seed),
@@ -327,16 +329,9 @@ impl Shard {
 }
 
 /// A text that names no part of a campaign.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("give i/n with i from 1 to n, such as 2/8")]
 pub struct NoShard;
-
-impl fmt::Display for NoShard {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("give i/n with i from 1 to n, such as 2/8")
-    }
-}
-
-impl std::error::Error for NoShard {}
 
 impl FromStr for Shard {
     type Err = NoShard;

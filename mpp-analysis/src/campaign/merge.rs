@@ -3,28 +3,16 @@
 use super::grid::{Campaign, Cell};
 use super::row::Row;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Two rows differ about one flight, so they come from different programs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("the files disagree about --seed {seed} {cell}: they come from different programs")]
 pub struct Disagreement {
     /// Cell of the flight.
     pub cell: Cell,
     /// Seed of the flight.
     pub seed: u64,
 }
-
-impl fmt::Display for Disagreement {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { cell, seed } = self;
-        write!(
-            f,
-            "the files disagree about --seed {seed} {cell}: they come from different programs"
-        )
-    }
-}
-
-impl std::error::Error for Disagreement {}
 
 /// The rows of a campaign from several files, each flight once, in the order of cells and seeds.
 ///

@@ -2,7 +2,7 @@
 
 use super::row::Row;
 use super::stats::wilson;
-use crate::ceiling::Verdict;
+use crate::ceiling::Feasibility;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -71,7 +71,7 @@ pub struct AgainstCeiling {
 impl AgainstCeiling {
     /// Pairs rows with the verdicts about their seeds' fields. A seed without a row is left out.
     #[must_use]
-    pub fn new(rows: &[&Row], verdicts: &[(u64, Verdict)]) -> Self {
+    pub fn new(rows: &[&Row], verdicts: &[(u64, Feasibility)]) -> Self {
         let strict: BTreeMap<u64, bool> = rows
             .iter()
             .map(|row| (row.seed, row.summary.strict))
@@ -82,9 +82,9 @@ impl AgainstCeiling {
                 continue;
             };
             match verdict {
-                Verdict::Blocked(_) => pairs.blocked += 1,
-                Verdict::Undecided => pairs.undecided += 1,
-                Verdict::Passable => {
+                Feasibility::Blocked(_) => pairs.blocked += 1,
+                Feasibility::Undecided => pairs.undecided += 1,
+                Feasibility::Passable => {
                     pairs.passable += 1;
                     pairs.flown += u32::from(*strict);
                 }

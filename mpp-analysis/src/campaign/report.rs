@@ -5,7 +5,7 @@ use super::grid::{Campaign, Cell};
 use super::pairs::{AgainstCeiling, AgainstOracle};
 use super::row::Row;
 use super::stats::wilson;
-use crate::ceiling::Verdict;
+use crate::ceiling::Feasibility;
 use mpp_sim::outcome::Class;
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
@@ -118,7 +118,7 @@ impl Report {
 
 impl Report {
     /// Sets the flights of every cell with these fields beside the verdicts about the fields.
-    pub fn set_beside(&mut self, fields: &Cell, rows: &[Row], verdicts: &[(u64, Verdict)]) {
+    pub fn set_beside(&mut self, fields: &Cell, rows: &[Row], verdicts: &[(u64, Feasibility)]) {
         for report in &mut self.cells {
             if report.cell.has_fields_of(fields) {
                 let own: Vec<&Row> = rows.iter().filter(|row| row.cell == report.cell).collect();

@@ -1,9 +1,9 @@
 //! One flight of a campaign.
 
 use super::grid::Cell;
+use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::log::{FlightLog, Summary};
 use mpp_sim::outcome::Outcome;
-use mpp_sim::witness::Witness;
 use serde::{Deserialize, Serialize};
 
 /// One flight: its cell, its seed and its summary.
@@ -35,7 +35,7 @@ impl Row {
     pub fn new(
         cell: Cell,
         log: &FlightLog,
-        witness: &Witness,
+        observer: &FlightObserver,
         log_hash: String,
         core_ms: Option<f64>,
     ) -> Self {
@@ -44,7 +44,7 @@ impl Row {
             seed: log.header.seed,
             success: log.summary.outcome == Outcome::Survived,
             summary: log.summary,
-            known_collision: witness.known_collision(log),
+            known_collision: observer.known_collision(log),
             log_hash,
             core_ms,
         }

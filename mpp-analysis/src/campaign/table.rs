@@ -8,7 +8,9 @@ use std::fmt;
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let kinds: Vec<String> = self.cells.iter().map(|cell| cell.cell.kind()).collect();
+        let scene = self.campaign.scenario.scene;
+        let kinds = self.cells.iter().map(|cell| cell.cell.kind(scene));
+        let kinds: Vec<String> = kinds.collect();
         let wide = kinds.iter().map(String::len).max().unwrap_or(0).max(5);
         writeln!(
             f,

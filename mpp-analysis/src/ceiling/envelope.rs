@@ -1,7 +1,6 @@
 //! The envelope: the flights about which the ceiling speaks, and how tightly they can turn.
 
 use super::CeilingError;
-use mpp_core::settings::Settings;
 use mpp_core::vehicle::{AirState, Airframe, GRAVITY};
 use mpp_sim::outcome::{FLIGHT_PATH_LIMIT, PITCH_LIMIT};
 use mpp_sim::scenario::Scenario;
@@ -43,7 +42,7 @@ impl Envelope {
         let aircraft = &scenario.aircraft;
         let (units, limits) = (aircraft.units(), scenario.limits());
         let trim = aircraft.trim.state.angle_of_attack();
-        let settings = Settings::flight_of(&aircraft.known);
+        let settings = aircraft.settings();
         let plans = settings
             .planner
             .plane()

@@ -43,7 +43,7 @@ const ROOM: f64 = 0.8;
 /// The verdict about a field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum Feasibility {
     /// No flight of the envelope reaches this place \[m\].
     Blocked(f64),
     /// A flight of the simulated aircraft passes.
@@ -121,22 +121,22 @@ const EFFORTS: [Effort; 4] = [
 ///
 /// # Errors
 /// [`CeilingError`] if the field or the aircraft is none that can be judged.
-pub fn decide(scenario: &Scenario, margin: f64) -> Result<Verdict, CeilingError> {
+pub fn decide(scenario: &Scenario, margin: f64) -> Result<Feasibility, CeilingError> {
     let question = Question::new(scenario, margin)?;
     let [first, harder @ ..] = &EFFORTS;
     if question.witness(first).is_some() {
-        return Ok(Verdict::Passable);
+        return Ok(Feasibility::Passable);
     }
     if let Some(place) = PROOFS.iter().find_map(|proof| question.blocked_at(proof)) {
-        return Ok(Verdict::Blocked(place));
+        return Ok(Feasibility::Blocked(place));
     }
     let passes = harder
         .iter()
         .any(|effort| question.witness(effort).is_some());
     Ok(if passes {
-        Verdict::Passable
+        Feasibility::Passable
     } else {
-        Verdict::Undecided
+        Feasibility::Undecided
     })
 }
 

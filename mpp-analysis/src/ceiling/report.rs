@@ -1,7 +1,7 @@
 //! Verdicts about many fields.
 
-use super::Verdict;
-use crate::campaign::{Cell, wilson};
+use super::Feasibility;
+use crate::campaign::{Campaign, Cell, wilson};
 use serde::Serialize;
 use std::fmt;
 
@@ -34,15 +34,16 @@ pub struct CeilingReport {
 }
 
 impl CeilingCell {
-    /// The verdicts about the fields of a cell.
+    /// The verdicts about the fields of a cell of a campaign.
     #[must_use]
-    pub fn new(cell: &Cell, margin: f64, verdicts: &[Verdict]) -> Self {
-        let count = |is: fn(&Verdict) -> bool| verdicts.iter().filter(|one| is(one)).count() as u32;
+    pub fn new(campaign: &Campaign, cell: &Cell, margin: f64, verdicts: &[Feasibility]) -> Self {
+        let count =
+            |is: fn(&Feasibility) -> bool| verdicts.iter().filter(|one| is(one)).count() as u32;
         let fields = verdicts.len() as u32;
-        let blocked = count(|one| matches!(one, Verdict::Blocked(_)));
-        let passable = count(|one| *one == Verdict::Passable);
+        let blocked = count(|one| matches!(one, Feasibility::Blocked(_)));
+        let passable = count(|one| *one == Feasibility::Passable);
         Self {
-            field: cell.kind(),
+            field: cell.kind(campaign.scenario.scene),
             obstacles: cell.obstacles,
             margin,
             fields,

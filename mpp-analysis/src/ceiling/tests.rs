@@ -40,8 +40,8 @@ fn walls(open: &[(f64, f64, f64)]) -> Scenario {
 
 #[test]
 fn an_empty_field_is_passable_and_a_closed_one_is_blocked_at_its_wall() {
-    assert_eq!(decide(&walls(&[]), 0.0), Ok(Verdict::Passable));
-    let Ok(Verdict::Blocked(place)) = decide(&walls(&[(60.0, 51.0, 49.0)]), 0.0) else {
+    assert_eq!(decide(&walls(&[]), 0.0), Ok(Feasibility::Passable));
+    let Ok(Feasibility::Blocked(place)) = decide(&walls(&[(60.0, 51.0, 49.0)]), 0.0) else {
         panic!("a wall without a gap");
     };
     assert!((59.4..60.6).contains(&place), "{place}");
@@ -82,7 +82,7 @@ fn the_papers_fields_are_passable() {
     for seed in 1..4 {
         assert_eq!(
             decide(&scenario(GeneratorName::Paper, 40, seed), 0.3),
-            Ok(Verdict::Passable)
+            Ok(Feasibility::Passable)
         );
     }
 }

@@ -4,9 +4,12 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatte
 use plotters::prelude::*;
 use std::ops::Range;
 
-/// The least distance of ticks, and the number of greater ones that are tried: up to ten million.
+/// The least distance of ticks, and the number of greater ones that are tried: as many as a range may need.
 const FINEST: f64 = 0.1;
-const MOST_STEPS: usize = 24;
+const MOST_STEPS: usize = 1000;
+/// Greatest distance of a drawn place from the start of its axis, in lengths of the axis. What is farther away, is
+/// drawn there.
+const BEYOND: f64 = 100.0;
 
 /// One axis: its label, its range and the distance of its ticks. An axis with an empty label has no
 /// numbers either.
@@ -54,6 +57,7 @@ impl Ranged for Axis {
 
     fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
         let share = (value - self.range.start) / (self.range.end - self.range.start);
+        let share = share.clamp(-BEYOND, BEYOND);
         first + (f64::from(last - first) * share).round() as i32
     }
 
@@ -91,6 +95,8 @@ mod tests {
             (600.0, 5, 200.0),
             (7_000.0, 8, 1_000.0),
             (86_400.0, 5, 20_000.0),
+            (1e14, 4, 5e13),
+            (1e18, 8, 2e17),
         ] {
             let axis = Axis::tight("x", 0.0..end, ticks);
             let points = axis.key_points(10);
@@ -98,8 +104,20 @@ mod tests {
                 points.len() > 2 && points.len() <= ticks as usize + 1,
                 "{points:?}"
             );
-            assert!((points[1] - step).abs() < 1e-9, "{points:?}");
-            assert_eq!(axis.format_ext(&points[1]), format!("{step}"));
+            assert!((points[1] / step - 1.0).abs() < 1e-9, "{points:?}");
+            assert_eq!(axis.format_ext(&points[1]), format!("{:.0}", points[1]));
+        }
+        let axis = Axis::tight("x", f64::MIN..f64::MAX, 5);
+        assert!(axis.key_points(10).len() <= 6);
+        assert_eq!(axis.map(&f64::NAN, (0, 100)), 0);
+    }
+
+    #[test]
+    fn what_is_far_beyond_an_axis_is_drawn_within_the_numbers_of_pixels() {
+        let axis = Axis::tight("x", 0.0..10.0, 5);
+        assert_eq!(axis.map(&15.0, (100, 200)), 250);
+        for (value, pixel) in [(1e300, 10_100), (f64::NEG_INFINITY, -9_900)] {
+            assert_eq!(axis.map(&value, (100, 200)), pixel);
         }
     }
 }

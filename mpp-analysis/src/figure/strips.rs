@@ -20,6 +20,8 @@ const STRIP: f64 = 300.0;
 const BEYOND: f64 = 60.0;
 /// Greatest number of strips.
 const MOST_STRIPS: f64 = 8.0;
+/// How far beyond the flown path the reference is shown, at world scale 1 \[m\]. Only absurd positions lead it farther.
+const STRAY: f64 = 100.0;
 /// Least height of a strip's plot \[px\].
 const LEAST_PLOT: f64 = 100.0;
 /// Least room that is shown around the field \[m\].
@@ -36,14 +38,19 @@ pub(super) fn field_panels(log: &FlightLog, closest: Option<&Closest>) -> Vec<(P
         Curve::planned(REFERENCE, &t.ref_x, &t.ref_z, &unbroken(log)),
     ];
     let mut shapes = field::drawn(log);
-    let points = || curves.iter().flat_map(Curve::points);
+    let shown = |pick: fn(&(f64, f64)) -> f64| {
+        let flown = bounds(curves[0].points().map(pick));
+        let near = widened(flown, STRAY * log.header.world_scale);
+        let points = curves.iter().flat_map(Curve::points);
+        points.map(move |point| pick(point).max(near.start).min(near.end))
+    };
     // A field that goes on far beyond the flight is not shown to its end.
-    let reach = bounds(points().map(|p| p.0)).end + BEYOND;
+    let reach = bounds(shown(|p| p.0)).end + BEYOND;
     shapes.retain(|shape| lies_in(shape, &(f64::NEG_INFINITY..reach)));
     let edges = |pick: fn(&(f64, f64)) -> f64| {
         let extents = shapes.iter().flat_map(field::extent);
         let room = extents.flat_map(move |(p, room)| [pick(&p) - room, pick(&p) + room]);
-        widened(bounds(points().map(pick).chain(room)), FIELD_MARGIN)
+        widened(bounds(shown(pick).chain(room)), FIELD_MARGIN)
     };
     let (x, z) = (edges(|p| p.0), edges(|p| p.1));
     let length = x.end - x.start;
@@ -98,11 +105,11 @@ fn lies_in(shape: &Shape, x: &Range<f64>) -> bool {
     extent.is_empty() || (low < x.end && high > x.start)
 }
 
-/// The height of a strip that shows these ranges to scale \[px\].
+/// The height of a strip that shows these ranges to scale, at most as high as wide \[px\].
 fn strip_height(x: &Range<f64>, z: &Range<f64>) -> u32 {
     let (width, plot) = panel::plot_size((CANVAS.0, FIELD_HEIGHT), true);
     let frame = f64::from(FIELD_HEIGHT) - plot;
-    (frame + ((z.end - z.start) * width / (x.end - x.start)).max(LEAST_PLOT)) as u32
+    (frame + ((z.end - z.start) * width / (x.end - x.start)).clamp(LEAST_PLOT, width)) as u32
 }
 
 /// The tick ranges over which the reference is one plan's, from one replan to the next.

@@ -5,15 +5,10 @@ use super::strips::{CANVAS, FIELD_HEIGHT, field_panels};
 use super::*;
 use crate::campaign::{Campaign, Lists, Report};
 use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{Airframe, Control, Trim, VehicleState};
+use mpp_core::vehicle::{Airframe, Control};
 use mpp_sim::dynamics::{Aerodynamics, Dynamics};
 use mpp_sim::entries::{Columns, PlanEntry, Tick};
-use mpp_sim::faults::Faults;
-use mpp_sim::field::{FieldFile, ObstacleField};
-use mpp_sim::generator::Generator;
-use mpp_sim::lidar::LidarConfig;
 use mpp_sim::log::{FlightLog, Header, SCHEMA, Summary};
-use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::outcome::{Class, Outcome, Score};
 use mpp_sim::scenario::{Preset, Scenario, ScenarioFile};
 use mpp_sim::scene::Scene;
@@ -23,21 +18,18 @@ use plotters::prelude::Ranged;
 /// A flight with swinging thrust and elevator, and with a reference of straight pieces.
 fn example(count: usize, obstacles: usize) -> FlightLog {
     const DT: f64 = 0.01;
-    let airframe = Airframe::REFERENCE;
-    let trim = Trim::at_speed(&airframe, 12.0, 0.0).unwrap();
-    let state = VehicleState {
-        x: 0.0,
-        z: 50.0,
-        air: trim.state,
+    let scenario = Scenario {
+        obstacles,
+        ..Scenario::new(Preset::Paper, 1)
     };
-    let more = Aerodynamics::NONE;
+    let (trim, state) = (scenario.trim().unwrap(), scenario.start().unwrap());
     let mut plant = Dynamics {
-        airframe,
-        more,
+        airframe: Airframe::REFERENCE,
+        more: Aerodynamics::NONE,
         state,
     };
     let mut sensors = AirDataSensors::new(1, AirDataNoise::PAPER);
-    let field = ObstacleField::new(Generator::PAPER.obstacles(1, obstacles, 50.0, 20.0));
+    let field = scenario.field();
     let mut score = Score::new(50.0, 11.0, 0.0);
     let mut ticks = Columns::default();
     let mut wanted = state;
@@ -82,27 +74,8 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
     FlightLog {
         schema: SCHEMA,
         header: Header {
-            package_version: "0.0.0".into(),
-            seed: 1,
-            obstacles,
-            generator: Generator::PAPER,
-            paths: 25,
-            preset: "paper".into(),
-            aircraft: mpp_sim::aircraft_file::AircraftModel::reference().file,
-            world_scale: 1.0,
-            replan_hz: 1.0,
             latency: 0.0,
-            slices_per_tick: None,
-            duration: 20.0,
-            lidar: LidarConfig::PAPER,
-            air_data: AirDataNoise::PAPER,
-            navigation: NavigationConfig::IDEAL,
-            faults: Faults::default(),
-            scene: None,
-            oracle: false,
-            known_map: false,
-            body_radius: 0.0,
-            field: FieldFile::of(&field.obstacles),
+            ..Header::of(&scenario, &field)
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
         rejections: Vec::new(),
@@ -189,6 +162,27 @@ fn a_flight_of_ten_minutes_is_drawn_in_strips_to_scale() {
     }
     assert!(shown > 7196.0 && shown < 7400.0, "{shown}");
     assert!(flight_svg(&log).unwrap().contains("Downrange distance (m)"));
+}
+
+/// A broken sensor gives such references, and a broken log such flights.
+#[test]
+fn absurd_positions_make_no_great_picture() {
+    let plain = flight_svg(&example(600, 20)).unwrap();
+    for absurd in [1e6, 1e14, -1e18, 1e300] {
+        let mut log = example(600, 20);
+        for row in 300..500 {
+            log.ticks.ref_x[row] = Some(absurd * row as f64);
+            log.ticks.ref_z[row] = Some(-absurd);
+            log.ticks.ref_pitch[row] = Some(absurd);
+        }
+        let stray = flight_svg(&log).unwrap();
+        // The flight is still to be seen.
+        assert!(field_panels(&log, None).len() <= 2, "{absurd}");
+        (log.ticks.x[550], log.ticks.z[550]) = (absurd, absurd);
+        for svg in [stray, flight_svg(&log).unwrap()] {
+            assert!(svg.len() < 4 * plain.len(), "{absurd}: {} B", svg.len());
+        }
+    }
 }
 
 #[test]

@@ -7,9 +7,9 @@ use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
 use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{FlightLog, LogError};
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Again, Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::tick_record::TickRecord;
 
 /// Returns the page of a flight, or of two side by side, and whether it shows the details of all planning cycles. To
 /// get the details, a flight is flown again; they count only if the result is the same to the last byte.
@@ -36,26 +36,26 @@ pub fn details(log: &FlightLog) -> Option<Vec<PlanDetail>> {
         .scenario()
         .ok()
         .filter(|asked| !asked.is_advised())?;
-    let witness = Witness {
+    let inspector = CycleInspector {
         inspector: None,
         tuning: None,
         details: Vec::new(),
     };
     // A flight that lasts longer than its log is not the same flight.
     let until = u32::try_from(log.ticks.t.len()).ok()?;
-    let mut again = Again::new(Some(log.orders.clone()), witness).until(Some(until));
+    let mut again = Again::new(Some(log.orders.clone()), inspector).until(Some(until));
     let flown = fly_with(&scenario, &mut PipeLink::new(), &mut again).ok()?;
     (flown.hash().ok()? == log.hash().ok()?).then_some(again.ground.details)
 }
 
 /// Inspects every cycle of a flight.
-struct Witness {
+struct CycleInspector {
     inspector: Option<Inspector>,
     tuning: Option<Tuning>,
     details: Vec<PlanDetail>,
 }
 
-impl Ground for Witness {
+impl Ground for CycleInspector {
     fn begin(&mut self, tuning: &Tuning, _: &VehicleState) {
         self.tuning = Some(*tuning);
     }
@@ -64,7 +64,7 @@ impl Ground for Witness {
         self.tuning = Some(*tuning);
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
+    fn watch(&mut self, record: &TickRecord<'_>) {
         let Some(tuning) = &self.tuning else {
             return;
         };
@@ -74,6 +74,6 @@ impl Ground for Witness {
         }
         let inspector = self.inspector.as_mut();
         self.details
-            .extend(inspector.and_then(|inspector| inspector.look(moment, tuning)));
+            .extend(inspector.and_then(|inspector| inspector.look(record, tuning)));
     }
 }

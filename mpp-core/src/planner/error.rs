@@ -3,7 +3,7 @@
 use crate::config::MAX_PATHS;
 use crate::control::RiccatiError;
 use crate::qp::CondenseError;
-use crate::settings::{PlannerSettings, Setting, Settings};
+use crate::settings::{OutOfRange, PlannerSettings, Setting, Settings};
 use crate::vehicle::{Trim, TrimError};
 
 /// The reason why step or planner cannot be set up. The vehicle then does not start.
@@ -31,10 +31,7 @@ pub enum SetupError {
     #[error("there is no room for that many paths: ask for at most {}", MAX_PATHS)]
     TooManyPaths,
     /// A number of the settings is outside of its range, or is not finite.
-    #[error(
-        "the setting {setting} is out of range: give a number from {least} to {most}, unit {unit}",
-        setting = .0, least = .0.range()[0], most = .0.range()[1], unit = .0.unit()
-    )]
+    #[error("{}", OutOfRange(*.0))]
     OutOfRange(Setting),
     /// The greatest thrust of motor or plans does not carry level flight.
     #[error(

@@ -4,59 +4,14 @@ use super::{Cruise, Method, PlaneSettings, PlannerSettings, Settings};
 use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
 use crate::qp::Weights;
-use crate::units::{REFERENCE_CRUISE, Units};
-use crate::vehicle::{ActuatorLimits, Airframe};
-
-/// The numbers of an aircraft that the core needs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Aircraft {
-    /// Mass, inertia and aerodynamics.
-    pub airframe: Airframe,
-    /// Limits of motor and elevator.
-    pub actuators: ActuatorLimits,
-    /// Airspeed of level flight [m/s].
-    pub cruise: f64,
-    /// Radius of the circle that holds the aircraft \[m\].
-    pub body_radius: f64,
-    /// Distance of the stall from the angle of attack of level flight \[rad\], if it is known.
-    pub stall: Option<f64>,
-}
-
-impl Aircraft {
-    /// The aircraft for which the numbers of preset `flight` were tuned.
-    pub const REFERENCE: Self = Self {
-        airframe: Airframe::REFERENCE,
-        actuators: ActuatorLimits::NONE,
-        cruise: REFERENCE_CRUISE,
-        body_radius: 0.0,
-        stall: None,
-    };
-
-    /// Angle of attack that changes the lift by the weight, over that of the reference aircraft [-].
-    #[must_use]
-    pub fn angle_unit(&self) -> f64 {
-        let (own, reference) = (self.airframe.balanced(), Airframe::REFERENCE);
-        (own.level_lift(self.cruise) * reference.lift_alpha)
-            / (reference.level_lift(REFERENCE_CRUISE) * own.lift_alpha)
-    }
-
-    /// Command of the elevator with the effect that a unit of the command has on the reference aircraft.
-    #[must_use]
-    pub fn elevator_unit(&self) -> f64 {
-        let (own, reference) = (&self.airframe, Airframe::REFERENCE);
-        let angle = self.angle_unit();
-        libm::fabs(
-            angle * (own.moment_alpha * reference.moment_elevator)
-                / (reference.moment_alpha * own.moment_elevator),
-        )
-    }
-}
+use crate::units::Units;
+use mpp_data::{ActuatorLimits, Aircraft};
 
 impl Settings {
-    /// Preset `flight` for an aircraft. Tuned lengths, times and weights are those of the reference aircraft,
+    /// Preset `flight` for an aircraft with these limits of its actuators. Tuned lengths, times and weights are those of the reference aircraft,
     /// in the units of this one.
     #[must_use]
-    pub fn flight_of(aircraft: &Aircraft) -> Self {
+    pub fn flight_of(aircraft: &Aircraft, actuators: &ActuatorLimits) -> Self {
         let base = Self::flight();
         let units = Units::of(aircraft.cruise, aircraft.airframe.mass);
         let (angle, elevator) = (aircraft.angle_unit(), aircraft.elevator_unit());
@@ -69,7 +24,7 @@ impl Settings {
         Self {
             units,
             airframe: aircraft.airframe,
-            actuators: aircraft.actuators,
+            actuators: *actuators,
             cruise: Cruise::Airspeed(aircraft.cruise),
             estimator: EkfTuning {
                 process_noise: [

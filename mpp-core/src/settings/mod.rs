@@ -11,9 +11,8 @@ use crate::paper::PaperSettings;
 use crate::qp::Weights;
 use crate::units::Units;
 use crate::vehicle::{ActuatorLimits, Airframe, JacobianForm, Trim, TrimError};
-pub use aircraft::Aircraft;
+pub use mpp_data::{Aircraft, OutOfRange, Setting};
 pub use plane::{AttitudeLimits, PlaneSettings};
-pub use range::Setting;
 
 /// The level flight from which plans deviate.
 #[derive(Clone, Copy, Debug, PartialEq)]

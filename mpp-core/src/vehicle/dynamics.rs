@@ -4,7 +4,7 @@
 //! lift, weight and thrust gives `(L - m g cos(gamma) + T sin(alpha)) / (m v)` instead. The authors' code
 //! integrates this second form too.
 
-use super::{Airframe, GRAVITY};
+use mpp_data::{Airframe, Control, GRAVITY};
 use nalgebra::Vector4;
 
 /// Motion through the air. The estimator estimates it, and the regulator controls it.
@@ -68,15 +68,6 @@ impl VehicleState {
     pub fn is_finite(&self) -> bool {
         self.x.is_finite() && self.z.is_finite() && self.air.is_finite()
     }
-}
-
-/// The command to the actuators.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Control {
-    /// Thrust `T` along the body axis \[N\].
-    pub thrust: f64,
-    /// Elevator command `delta_e` [-].
-    pub elevator: f64,
 }
 
 /// Time derivative of the motion through the air, in the units of [`AirState`] per second.

@@ -1,9 +1,7 @@
 //! The aircraft: parameters, equations of motion, Jacobians and steady flight.
 
-mod airframe;
 mod conditions;
 mod dynamics;
-mod limits;
 mod linearize;
 mod point_mass;
 mod pose;
@@ -11,13 +9,12 @@ mod thrust_lag;
 mod trim;
 mod wind;
 
-pub use airframe::{Airframe, GRAVITY};
 pub use conditions::Conditions;
-pub use dynamics::{AirState, Control, VehicleState, air_rate, vehicle_rate};
+pub use dynamics::{AirState, VehicleState, air_rate, vehicle_rate};
 pub(crate) use dynamics::{Directions, air_rate_along};
-pub use limits::ActuatorLimits;
 pub(crate) use linearize::linearize_along;
 pub use linearize::{JacobianForm, Linearization, linearize};
+pub use mpp_data::{ActuatorLimits, Airframe, Control, GRAVITY};
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
 pub use thrust_lag::ThrustLag;

@@ -5,6 +5,8 @@ mod brute_force;
 mod conditions;
 mod degenerate;
 mod dense;
+#[path = "../common/draw.rs"]
+mod draw;
 mod ends;
 mod invariances;
 mod optimality;

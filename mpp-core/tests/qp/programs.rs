@@ -1,5 +1,6 @@
 //! Random programs about random tubes, with their rows and costs evaluated with the model alone.
 
+pub(crate) use crate::draw::Draw;
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::paper::StageModel;
@@ -8,8 +9,6 @@ use mpp_core::qp::{
 };
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::linearize;
-use rand_core::{Rng, SeedableRng};
-use rand_pcg::Pcg64Mcg;
 
 /// The model of a preset, and its condensed form.
 pub(crate) struct Setup {
@@ -192,24 +191,7 @@ pub(crate) fn priced(problem: &Problem, solution: &Solution, penalty: &Penalty) 
     solution.cost + price
 }
 
-/// Seeded random numbers.
-pub(crate) struct Draw(Pcg64Mcg);
-
 impl Draw {
-    pub(crate) fn new(seed: u64) -> Self {
-        Self(Pcg64Mcg::seed_from_u64(seed))
-    }
-
-    /// A uniform random number in [0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
-        f64::from(self.0.next_u32()) / (f64::from(u32::MAX) + 1.0)
-    }
-
-    /// A uniform random number between two numbers.
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
     /// A uniform random whole number below a number.
     pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.unit() * count as f64) as usize

@@ -1,13 +1,10 @@
 //! Conversion between the messages of the link and the types of the core.
 
-mod aircraft;
-
 use crate::duration;
-use aircraft::{actuators, aircraft};
 use hil_protocol::{
     Configure, ConfigureVerdict, ControlMode, LidarScan as WireScan, PlanControls, PlanOutcome,
     PlanTrajectory, Preset, RejectionCause, SensorFrame as WireFrame, SensorState, SensorStates,
-    Setting as WireSetting, StepReport,
+    StepReport,
 };
 use mpp_core::config::{KNOTS, MAX_BEAMS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::control::RiccatiError;
@@ -18,15 +15,14 @@ use mpp_core::planner::SetupError;
 use mpp_core::qp::CondenseError;
 use mpp_core::sense::Measurement;
 use mpp_core::sense::{AirData, GroundVelocity, LidarScan, Position, ScanError, SensorFrame};
-use mpp_core::settings::{Aircraft, Setting, Settings};
+use mpp_core::settings::{Setting, Settings};
 use mpp_core::trajectory::{Reference, Trajectory};
 use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{Control, TrimError, VehicleState};
 
 /// The settings that a configuration asks for, or the first fault of the configuration.
 pub(crate) fn settings(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
-    let aircraft = aircraft(&configure.aircraft, &configure.actuators);
-    let mut settings = preset(configure.preset, &aircraft)?;
+    let mut settings = preset(configure)?;
     settings.planner.paths = usize::from(configure.paths);
     settings.planner.altitude = configure.altitude;
     settings.planner.seed = configure.seed;
@@ -53,21 +49,24 @@ pub(crate) fn check_latency(
 ) -> Result<(), ConfigureVerdict> {
     let horizon = STAGES as f64 * STAGE_PERIOD * settings.units.time;
     if duration(configure.latency_ticks) > horizon {
-        return Err(ConfigureVerdict::OutOfRange(WireSetting::Latency));
+        return Err(ConfigureVerdict::OutOfRange(Setting::Latency));
     }
     Ok(())
 }
 
-/// The settings of a preset for an aircraft, if this build contains its planner. The paper's presets have a
+/// The settings of the preset for the aircraft, if this build contains its planner. The paper's presets have a
 /// cruise of their own and know no limits.
-fn preset(preset: Preset, aircraft: &Aircraft) -> Result<Settings, ConfigureVerdict> {
+fn preset(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
     #[cfg(feature = "paper")]
     let of_paper = |settings: Settings| Settings {
-        airframe: aircraft.airframe,
+        airframe: configure.aircraft.airframe,
         ..settings
     };
-    match preset {
-        Preset::Flight => Ok(Settings::flight_of(aircraft)),
+    match configure.preset {
+        Preset::Flight => Ok(Settings::flight_of(
+            &configure.aircraft,
+            &configure.actuators,
+        )),
         #[cfg(feature = "paper")]
         Preset::Reference => Ok(of_paper(Settings::reference())),
         #[cfg(feature = "paper")]
@@ -99,7 +98,7 @@ pub(crate) fn check(configure: &Configure) -> Result<(), ConfigureVerdict> {
     if !configure.altitude.is_finite() {
         return Err(ConfigureVerdict::NonFinite);
     }
-    if !actuators(&configure.actuators).is_valid() {
+    if !configure.actuators.is_valid() {
         return Err(ConfigureVerdict::Actuators);
     }
     Ok(())
@@ -121,41 +120,10 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
         SetupError::TooManyPaths => ConfigureVerdict::TooManyPaths {
             max: MAX_PATHS as u16,
         },
-        SetupError::OutOfRange(setting) => out_of_range(setting),
+        SetupError::OutOfRange(setting) => ConfigureVerdict::out_of_range(setting),
         SetupError::NoPaths => ConfigureVerdict::PathsZero,
         SetupError::OtherMethod => ConfigureVerdict::OtherPreset,
         SetupError::ThrustTooLow => ConfigureVerdict::ThrustTooLow,
-    }
-}
-
-/// The verdict on a number that is outside of its range. Some numbers have a verdict of their own.
-pub(crate) fn out_of_range(setting: Setting) -> ConfigureVerdict {
-    macro_rules! verdict {
-        ($($own:ident => $verdict:ident),*; $($setting:ident)*) => {
-            match setting {
-                $(Setting::$own => ConfigureVerdict::$verdict,)*
-                $(Setting::$setting => ConfigureVerdict::OutOfRange(WireSetting::$setting),)*
-            }
-        };
-    }
-    verdict! {
-        CruiseAirspeed => CruiseAirspeed,
-        Altitude => NonFinite,
-        Sight => RangeMax,
-        PenaltyLinear => Penalty,
-        Margin => Margin,
-        Band => Band,
-        PlanThrust => PlanThrust,
-        WindChange => WindChange,
-        AngleOfAttackLimit => AngleOfAttackLimit,
-        FlightPathLimit => FlightPathLimit;
-        Mass PitchInertia WingArea MomentLength AirDensity LiftZero LiftAlpha DragZero DragInduced
-        MomentZero MomentAlpha MomentAlphaRate MomentElevator MotorThrust ThrustLag
-        ElevatorBelow ElevatorAbove LiftElevator MomentPitchRate BodyRadius Stall LengthUnit TimeUnit MassUnit
-        ElevatorRate DesignThrust SpeedNoise PitchNoise RateNoise PathNoise AirspeedVariance PitchVariance
-        InitialVariance Gate SpeedWeight PitchWeight RateWeight PathWeight ElevatorWeight CrossTrack
-        AirspeedHold PlanElevatorWeight PlanThrustWeight PlanTerminalWeight Latency PenaltyQuadratic SqpIterations
-        RefinedCandidates PaddingNear PaddingFar LiftAlphaRate LiftPitchRate
     }
 }
 

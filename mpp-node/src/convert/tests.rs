@@ -6,15 +6,6 @@ use super::*;
 use std::format;
 use std::vec::Vec;
 
-#[test]
-fn the_reference_aircraft_of_the_link_is_that_of_the_core() {
-    let wire = hil_protocol::Aircraft::REFERENCE;
-    let none = hil_protocol::ActuatorLimits::NONE;
-    assert_eq!(aircraft(&wire, &none), Aircraft::REFERENCE);
-    let same = Settings::flight_of(&Aircraft::REFERENCE);
-    assert_eq!(same, Settings::flight());
-}
-
 /// The report of the counters has the names of the core's counters, in their order.
 #[test]
 fn the_counters_have_their_names() {
@@ -54,24 +45,6 @@ fn every_failed_set_up_has_a_verdict_of_its_own() {
         let mut earlier = verdicts.clone().take(index);
         assert!(!earlier.any(|other| other == verdict), "{verdict}");
     }
-}
-
-/// A verdict that says what to give says the range that the core checks.
-#[test]
-fn the_ranges_in_the_texts_of_verdicts_are_those_of_the_settings() {
-    let mut compared = 0;
-    for setting in Setting::ALL {
-        let text = format!("{}", out_of_range(*setting));
-        let Some((_, advice)) = text.split_once(": give ") else {
-            continue;
-        };
-        let words = advice.split(' ').collect::<Vec<_>>();
-        let told = [words[0], words[2]].map(|number| number.parse::<f64>());
-        let range = setting.range().map(Ok);
-        assert!(words[1] == "to" && told == range, "{setting}: {text}");
-        compared += 1;
-    }
-    assert_eq!(compared, 9);
 }
 
 #[test]

@@ -6,8 +6,10 @@ mod numbers;
 mod similar;
 
 use crate::file_error::ScenarioError;
+use mpp_core::vehicle::Airframe;
 pub use numbers::AircraftModel;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 
 /// The content of an aircraft file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -179,6 +181,42 @@ impl AircraftFile {
     /// [`ScenarioError::Toml`].
     pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
         toml::from_str(text).map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))
+    }
+
+    /// The airframe in the form that the core knows: derivatives per radian and per unit of the elevator's command,
+    /// derivatives by rates per radian and second at cruise.
+    #[must_use]
+    pub fn airframe(&self) -> Airframe {
+        let per_radian = |derivative: f64| match self.derivatives {
+            Angle::Radian => derivative,
+            Angle::Degree => derivative * 180.0 / PI,
+        };
+        let per_command = |derivative: f64| match self.elevator.unit {
+            ElevatorUnit::Command => derivative,
+            ElevatorUnit::Rad => per_radian(derivative),
+            ElevatorUnit::Deg => per_radian(derivative) * PI / 180.0,
+        };
+        let time = self.chord / (2.0 * self.cruise);
+        Airframe {
+            mass: self.mass,
+            pitch_inertia: self.pitch_inertia,
+            wing_area: self.wing_area,
+            moment_length: self.chord,
+            air_density: self.air_density,
+            lift_zero: self.lift.zero,
+            lift_alpha: per_radian(self.lift.alpha),
+            lift_alpha_rate: per_radian(self.lift.alpha_rate) * time,
+            lift_pitch_rate: per_radian(self.lift.pitch_rate) * time,
+            lift_elevator: per_command(self.elevator.lift),
+            drag_zero: self.drag.zero,
+            drag_induced: self.drag.induced,
+            moment_zero: self.moment.zero,
+            moment_alpha: per_radian(self.moment.alpha),
+            moment_alpha_rate: per_radian(self.moment.alpha_rate) * time
+                + per_radian(self.moment.alpha_rate_time),
+            moment_pitch_rate: per_radian(self.moment.pitch_rate) * time,
+            moment_elevator: per_command(self.elevator.moment),
+        }
     }
 
     /// The aircraft with a name that comes with the project.

@@ -1,13 +1,12 @@
 //! From an aircraft file to the numbers of core and plant.
 
-use super::{AircraftFile, Angle, ElevatorUnit};
+use super::AircraftFile;
 use crate::file_error::{ScenarioError, ensure};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;
-use mpp_core::vehicle::{ActuatorLimits, Airframe, Trim};
-use std::f64::consts::PI;
+use mpp_core::vehicle::{ActuatorLimits, Trim};
 
 /// An aircraft as core and plant need it.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +15,8 @@ pub struct AircraftModel {
     pub file: AircraftFile,
     /// What the core is told.
     pub known: Aircraft,
+    /// The limits that the core is told.
+    pub actuators: ActuatorLimits,
     /// Level flight.
     pub trim: Trim,
 }
@@ -27,7 +28,7 @@ impl AircraftModel {
     /// [`ScenarioError::Value`] with the key of the first number that makes no sense.
     pub fn new(file: AircraftFile) -> Result<Self, ScenarioError> {
         check(&file)?;
-        let airframe = airframe(&file);
+        let airframe = file.airframe();
         let trim = Trim::at_speed(&airframe, file.cruise, 0.0)
             .map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
         let (elevator, alpha) = (trim.control.elevator, trim.state.angle_of_attack());
@@ -59,42 +60,25 @@ impl AircraftModel {
         ensure(!stalls, "aircraft.lift.stall", advice)?;
         let known = Aircraft {
             airframe,
-            actuators,
             cruise: file.cruise,
             body_radius: file.body_radius,
             stall: file.lift.stall.map(|stall| stall - alpha),
         };
-        let flies = FlightLoop::new(&Settings::flight_of(&known));
+        let model = Self {
+            file,
+            known,
+            actuators,
+            trim,
+        };
+        let flies = FlightLoop::new(&model.settings());
         flies.map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
-        Ok(Self { file, known, trim })
+        Ok(model)
     }
 
-    /// The aircraft in the form that goes to the core.
+    /// Preset `flight` for the aircraft.
     #[must_use]
-    pub fn told(&self) -> hil_protocol::Aircraft {
-        let a = &self.known.airframe;
-        hil_protocol::Aircraft {
-            mass: a.mass,
-            pitch_inertia: a.pitch_inertia,
-            wing_area: a.wing_area,
-            moment_length: a.moment_length,
-            air_density: a.air_density,
-            lift_zero: a.lift_zero,
-            lift_alpha: a.lift_alpha,
-            lift_alpha_rate: a.lift_alpha_rate,
-            lift_pitch_rate: a.lift_pitch_rate,
-            lift_elevator: a.lift_elevator,
-            drag_zero: a.drag_zero,
-            drag_induced: a.drag_induced,
-            moment_zero: a.moment_zero,
-            moment_alpha: a.moment_alpha,
-            moment_alpha_rate: a.moment_alpha_rate,
-            moment_pitch_rate: a.moment_pitch_rate,
-            moment_elevator: a.moment_elevator,
-            cruise: self.known.cruise,
-            body_radius: self.known.body_radius,
-            stall: self.known.stall,
-        }
+    pub fn settings(&self) -> Settings {
+        Settings::flight_of(&self.known, &self.actuators)
     }
 
     /// The units in which the planner reckons for this aircraft.
@@ -113,41 +97,6 @@ impl AircraftModel {
     pub fn reference() -> Self {
         let file = AircraftFile::known("reference").expect("it is a known aircraft");
         Self::new(file).expect("it flies")
-    }
-}
-
-/// The airframe of a file in the form that the core knows: derivatives per radian and per unit of the
-/// elevator's command, dampings per radian and second at cruise.
-fn airframe(file: &AircraftFile) -> Airframe {
-    let per_radian = |derivative: f64| match file.derivatives {
-        Angle::Radian => derivative,
-        Angle::Degree => derivative * 180.0 / PI,
-    };
-    let per_command = |derivative: f64| match file.elevator.unit {
-        ElevatorUnit::Command => derivative,
-        ElevatorUnit::Rad => per_radian(derivative),
-        ElevatorUnit::Deg => per_radian(derivative) * PI / 180.0,
-    };
-    let time = file.chord / (2.0 * file.cruise);
-    Airframe {
-        mass: file.mass,
-        pitch_inertia: file.pitch_inertia,
-        wing_area: file.wing_area,
-        moment_length: file.chord,
-        air_density: file.air_density,
-        lift_zero: file.lift.zero,
-        lift_alpha: per_radian(file.lift.alpha),
-        lift_alpha_rate: per_radian(file.lift.alpha_rate) * time,
-        lift_pitch_rate: per_radian(file.lift.pitch_rate) * time,
-        lift_elevator: per_command(file.elevator.lift),
-        drag_zero: file.drag.zero,
-        drag_induced: file.drag.induced,
-        moment_zero: file.moment.zero,
-        moment_alpha: per_radian(file.moment.alpha),
-        moment_alpha_rate: per_radian(file.moment.alpha_rate) * time
-            + per_radian(file.moment.alpha_rate_time),
-        moment_pitch_rate: per_radian(file.moment.pitch_rate) * time,
-        moment_elevator: per_command(file.elevator.moment),
     }
 }
 

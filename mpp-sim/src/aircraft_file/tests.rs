@@ -1,5 +1,5 @@
 use super::*;
-use mpp_core::settings::{Aircraft, Settings};
+use mpp_core::settings::Aircraft;
 use mpp_core::units::Units;
 use mpp_core::vehicle::Airframe;
 
@@ -12,8 +12,7 @@ fn every_known_aircraft_flies_level_and_is_told_to_the_core() {
     for (name, _) in AircraftFile::KNOWN {
         let model = known(name);
         assert_eq!(model.file.name, name);
-        let told = model.told();
-        assert!((told.cruise - model.trim.state.airspeed).abs() < 1e-12);
+        assert!((model.known.cruise - model.trim.state.airspeed).abs() < 1e-12);
         // A log holds the aircraft as JSON.
         let text = serde_json::to_string(&model.file).unwrap();
         assert_eq!(
@@ -27,10 +26,6 @@ fn every_known_aircraft_flies_level_and_is_told_to_the_core() {
 fn the_first_two_are_those_of_the_core_to_the_last_bit() {
     assert_eq!(known("reference").known, Aircraft::REFERENCE);
     assert_eq!(known("paper").known.airframe, Airframe::PAPER);
-    assert_eq!(
-        AircraftModel::reference().told(),
-        hil_protocol::Aircraft::REFERENCE
-    );
 }
 
 /// Published derivatives, by hand: C_mq c / 2v, and an elevator per degree.
@@ -126,7 +121,7 @@ fn similar_aircraft_are_one_aircraft_in_own_units() {
     let own = |scale: f64| {
         let model = AircraftModel::new(file.similar(scale)).unwrap();
         let units: Units = model.units();
-        let settings = Settings::flight_of(&model.known);
+        let settings = model.settings();
         let flight = units.own_settings(settings.planner.plane().unwrap());
         let a = units.own_airframe(&model.known.airframe);
         [
@@ -140,10 +135,7 @@ fn similar_aircraft_are_one_aircraft_in_own_units() {
             flight.body_radius,
             flight.band,
             flight.thrust_max,
-            units
-                .own_actuators(&model.known.actuators)
-                .elevator_rate
-                .unwrap(),
+            units.own_actuators(&model.actuators).elevator_rate.unwrap(),
             settings.regulator.elevator,
             settings.cross_track * units.length,
         ]
@@ -167,10 +159,7 @@ fn the_unit_of_the_command_is_a_unit() {
         assert!((many - 7.0 * one).abs() < 1e-9 * many.abs().max(1.0));
         let unit = other.known.elevator_unit() / model.known.elevator_unit();
         assert!((unit - 7.0).abs() < 1e-9);
-        let (a, b) = (
-            Settings::flight_of(&model.known),
-            Settings::flight_of(&other.known),
-        );
+        let (a, b) = (model.settings(), other.settings());
         let weights = a.regulator.elevator / b.regulator.elevator;
         assert!((weights - 49.0).abs() < 1e-6);
         assert_eq!(a.planner.weights, b.planner.weights);

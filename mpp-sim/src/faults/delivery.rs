@@ -1,56 +1,30 @@
 //! Faults on a measurement's way: measurements that do not come, come seldom, or come late.
 
-use super::window::{TICKS_PER_SECOND, Timed, Window, ticks_of};
-use serde::{Deserialize, Serialize};
+use super::window::{TICKS_PER_SECOND, Timed, fault_table, ticks_of};
 use std::collections::VecDeque;
 
-/// The faults of a measurement's way; each may be absent. A measurement keeps the stamp of the tick at which
-/// it was taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct DeliveryFault {
-    /// Time at which the fault begins \[s\]; by default the start of the flight.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<f64>,
-    /// Time at which the fault ends \[s\]; by default it does not end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-    /// Whether no measurement comes.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub missing: bool,
-    /// Time from a measurement until it arrives \[ms\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub delay_ms: Option<u32>,
-    /// Greatest number of measurements in a second \[Hz\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rate_hz: Option<f64>,
+fault_table! {
+    /// The faults of a measurement's way; each may be absent. A measurement keeps the stamp of the tick at which
+    /// it was taken.
+    pub struct DeliveryFault {
+        /// Whether no measurement comes.
+        pub missing: bool,
+        /// Time from a measurement until it arrives \[ms\].
+        pub delay_ms: Option<u32>,
+        /// Greatest number of measurements in a second \[Hz\].
+        pub rate_hz: Option<f64>,
+    }
 }
 
-impl Timed for DeliveryFault {
-    fn window(&self) -> Window {
-        Window {
-            from: self.from,
-            until: self.until,
-        }
-    }
-
-    fn timeless(&self) -> Self {
-        Self {
-            from: None,
-            until: None,
-            ..*self
-        }
-    }
-
-    fn flaw(&self) -> Option<&'static str> {
+impl DeliveryFault {
+    pub(super) fn wrong_key(&self) -> Option<&'static str> {
         let delay = self.delay_ms.is_none_or(|delay| ticks_of(delay).is_some());
         let rate = self.rate_hz.is_none_or(|rate| period(rate).is_some());
-        let flaw = match (delay, rate) {
+        match (delay, rate) {
             (false, _) => Some("give a `delay_ms` that is a multiple of 10 and at most 10000"),
             (_, false) => Some("give a `rate_hz` of which 100 is a whole multiple"),
             _ => None,
-        };
-        self.window().flaw().or(flaw)
+        }
     }
 }
 

@@ -11,8 +11,7 @@
 //! have the covariances of the continuous process at any lag. The filters' axes follow the wind,
 //! which is taken as level: longitudinal is downrange, vertical is up.
 
-use crate::random::{self, Stream};
-use rand_chacha::ChaCha8Rng;
+use crate::random::{self, Draws, Stream};
 use serde::{Deserialize, Serialize};
 
 /// The height at which the spectra are evaluated \[m\]. It is the height of the flights.
@@ -47,7 +46,7 @@ pub struct Gusts {
     sigma: (f64, f64),
     longitudinal: Lag,
     vertical: DoubleLag,
-    generator: ChaCha8Rng,
+    generator: Draws,
 }
 
 impl Gusts {
@@ -90,14 +89,14 @@ struct Lag {
 }
 
 impl Lag {
-    fn new(tau: f64, dt: f64, generator: &mut ChaCha8Rng) -> Self {
+    fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
         Self {
             value: random::gaussian(generator),
             decay: libm::exp(-dt / tau),
         }
     }
 
-    fn advance(&mut self, generator: &mut ChaCha8Rng) {
+    fn advance(&mut self, generator: &mut Draws) {
         let kick = (1.0 - self.decay * self.decay).sqrt();
         self.value = self.decay * self.value + kick * random::gaussian(generator);
     }
@@ -118,7 +117,7 @@ struct DoubleLag {
 }
 
 impl DoubleLag {
-    fn new(tau: f64, dt: f64, generator: &mut ChaCha8Rng) -> Self {
+    fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
         let (first, other) = (random::gaussian(generator), random::gaussian(generator));
         Self {
             first,
@@ -133,7 +132,7 @@ impl DoubleLag {
         (root * self.first + (1.0 - root) * self.second) / 2_f64.sqrt()
     }
 
-    fn advance(&mut self, generator: &mut ChaCha8Rng) {
+    fn advance(&mut self, generator: &mut Draws) {
         let Self { decay, ratio, .. } = *self;
         let squared = decay * decay;
         // P - F P F' and its Cholesky factor.

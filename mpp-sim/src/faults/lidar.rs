@@ -3,9 +3,8 @@
 use crate::disturbance::Disturbance;
 use crate::field::Field;
 use crate::lidar::{FanLidar, Lidar, LidarConfig, RANGE_MIN};
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use mpp_core::vehicle::VehicleState;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// The shares of the beams that fail.
@@ -24,7 +23,7 @@ pub struct LidarFaultConfig {
 pub struct LidarFaults {
     config: LidarFaultConfig,
     range_max: f64,
-    generator: ChaCha8Rng,
+    generator: Draws,
 }
 
 impl LidarFaults {

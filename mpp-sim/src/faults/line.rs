@@ -1,48 +1,23 @@
 //! Faults of the line to the core: ticks whose messages are lost, and a clock that is wrong.
 
-use super::window::{TICKS_PER_SECOND, Timed, Window};
-use crate::random::{self, Stream};
-use rand_chacha::ChaCha8Rng;
+use super::window::{TICKS_PER_SECOND, Timed, Window, fault_table};
+use crate::random::{self, Draws, Stream};
 use serde::{Deserialize, Serialize};
 
-/// The faults of the link; each may be absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct LinkFault {
-    /// Time at which the fault begins \[s\]; by default the start of the flight.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<f64>,
-    /// Time at which the fault ends \[s\]; by default it does not end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-    /// Whether every message is lost.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub silent: bool,
-    /// Share of the ticks whose measurements are lost, and share of the commands that are lost [-].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub loss: Option<f64>,
+fault_table! {
+    /// The faults of the link; each may be absent.
+    pub struct LinkFault {
+        /// Whether every message is lost.
+        pub silent: bool,
+        /// Share of the ticks whose measurements are lost, and share of the commands that are lost [-].
+        pub loss: Option<f64>,
+    }
 }
 
-impl Timed for LinkFault {
-    fn window(&self) -> Window {
-        Window {
-            from: self.from,
-            until: self.until,
-        }
-    }
-
-    fn timeless(&self) -> Self {
-        Self {
-            from: None,
-            until: None,
-            ..*self
-        }
-    }
-
-    fn flaw(&self) -> Option<&'static str> {
+impl LinkFault {
+    fn wrong_key(&self) -> Option<&'static str> {
         let sound = (0.0..=1.0).contains(&self.loss.unwrap_or(0.0));
-        let flaw = (!sound).then_some("give a `loss` from 0 to 1");
-        self.window().flaw().or(flaw)
+        (!sound).then_some("give a `loss` from 0 to 1")
     }
 }
 
@@ -59,7 +34,7 @@ pub struct Passage {
 #[derive(Clone, Debug)]
 pub struct Line {
     fault: LinkFault,
-    generator: ChaCha8Rng,
+    generator: Draws,
 }
 
 impl Line {
@@ -122,10 +97,9 @@ impl Timed for ClockFault {
         }
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn wrong_key(&self) -> Option<&'static str> {
         let sound = self.jump.unwrap_or(0.0).abs() <= 1e6;
-        let flaw = (!sound).then_some("give a `jump` of -1000000 to 1000000 s");
-        self.window().flaw().or(flaw)
+        (!sound).then_some("give a `jump` of -1000000 to 1000000 s")
     }
 }
 

@@ -155,6 +155,29 @@ impl Faults {
         })
     }
 
+    /// These faults without the tables that cannot act in a flight of so many ticks.
+    #[must_use]
+    pub fn within(mut self, ticks: u32) -> Self {
+        fn keep<T: Timed>(fault: &mut T, ticks: u32) {
+            let table = table("", fault);
+            if table.window.idle(table.acts, ticks).is_some() {
+                *fault = T::default();
+            }
+        }
+        keep(&mut self.airspeed, ticks);
+        keep(&mut self.pitch, ticks);
+        keep(&mut self.air, ticks);
+        keep(&mut self.x, ticks);
+        keep(&mut self.z, ticks);
+        keep(&mut self.position, ticks);
+        keep(&mut self.scan, ticks);
+        keep(&mut self.elevator, ticks);
+        keep(&mut self.thrust, ticks);
+        keep(&mut self.link, ticks);
+        keep(&mut self.clock, ticks);
+        self
+    }
+
     /// The first flaw of a table with times. The advice names the key of the table.
     fn table_flaw(&self) -> Option<(&'static str, &'static str)> {
         let mut tables = self.tables().into_iter();
@@ -194,7 +217,7 @@ fn table(name: &'static str, fault: &impl Timed) -> Table {
         absent: is_absent(fault),
         acts: !is_absent(&fault.timeless()),
         window: fault.window(),
-        flaw: fault.flaw(),
+        flaw: fault.window().flaw().or(fault.wrong_key()),
     }
 }
 
@@ -248,6 +271,7 @@ mod tests {
         ] {
             let (found, why) = of(table).idle(2000).unwrap();
             assert!(found == name && why.starts_with(advice), "{found}: {why}");
+            assert_eq!(of(table).within(2000), Faults::default(), "{table}");
         }
         for table in [
             "[scan]\nfrom = 19.99\nshow = \"zeros\"",
@@ -255,6 +279,7 @@ mod tests {
             "[clock]\nstart = 9",
         ] {
             assert_eq!(of(table).idle(2000), None, "{table}");
+            assert_eq!(of(table).within(2000), of(table), "{table}");
         }
     }
 }

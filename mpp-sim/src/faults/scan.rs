@@ -1,7 +1,7 @@
 //! Faults of whole scans: a lidar that shows something else, and scans that do not come or come late.
 
 use super::delivery::{Delivery, DeliveryFault};
-use super::window::{Timed, Window};
+use super::window::{Timed, fault_table};
 use hil_protocol::LidarScan;
 use serde::{Deserialize, Serialize};
 
@@ -17,51 +17,28 @@ pub enum Show {
     Frozen,
 }
 
-/// The faults of whole scans; each may be absent.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct ScanFault {
-    /// Time at which the fault begins \[s\]; by default the start of the flight.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<f64>,
-    /// Time at which the fault ends \[s\]; by default it does not end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-    /// Ranges that stand in the place of the measured ones.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub show: Option<Show>,
-    /// Angle by which the lidar is turned nose-up without saying so \[deg\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotation_deg: Option<f64>,
-    /// Whether no scan comes.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub missing: bool,
-    /// Time from a scan until it arrives \[ms\].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub delay_ms: Option<u32>,
-    /// Whether each scan arrives only when the next one is taken.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub one_late: bool,
+fault_table! {
+    /// The faults of whole scans; each may be absent.
+    pub struct ScanFault {
+        /// Ranges that stand in the place of the measured ones.
+        pub show: Option<Show>,
+        /// Angle by which the lidar is turned nose-up without saying so \[deg\].
+        pub rotation_deg: Option<f64>,
+        /// Whether no scan comes.
+        pub missing: bool,
+        /// Time from a scan until it arrives \[ms\].
+        pub delay_ms: Option<u32>,
+        /// Whether each scan arrives only when the next one is taken.
+        pub one_late: bool,
+    }
 }
 
-impl Timed for ScanFault {
-    fn window(&self) -> Window {
-        self.delivery().window()
-    }
-
-    fn timeless(&self) -> Self {
-        Self {
-            from: None,
-            until: None,
-            ..*self
-        }
-    }
-
-    fn flaw(&self) -> Option<&'static str> {
+impl ScanFault {
+    fn wrong_key(&self) -> Option<&'static str> {
         let turned = self.rotation_deg.unwrap_or(0.0);
         let flaw = (!(-180.0..=180.0).contains(&turned))
             .then_some("give a `rotation_deg` of -180 to 180 deg");
-        self.delivery().flaw().or(flaw)
+        self.delivery().wrong_key().or(flaw)
     }
 }
 

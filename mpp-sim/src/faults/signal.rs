@@ -1,76 +1,47 @@
 //! Faults of one signal: a sensor that reports another value, or an actuator that gives another one.
 
-use super::window::{Timed, Window, is_absent};
-use crate::random::{self, Stream};
+use super::window::{Timed, fault_table, is_absent};
+use crate::random::{self, Draws, Stream};
 use mpp_core::config::TICK_PERIOD;
-use rand_chacha::ChaCha8Rng;
-use serde::{Deserialize, Serialize};
 
-/// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
-/// `quantum`, `frozen`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SignalFault {
-    /// Time at which the fault begins \[s\]; by default the start of the flight.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub from: Option<f64>,
-    /// Time at which the fault ends \[s\]; by default it does not end.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub until: Option<f64>,
-    /// Factor on the value [-].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub scale: Option<f64>,
-    /// Constant error, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub bias: Option<f64>,
-    /// Error that grows from the beginning of the fault on, in units of the signal per second.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub ramp: Option<f64>,
-    /// Standard deviation of additional white noise, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub noise: Option<f64>,
-    /// Step between the values that the signal can have, in the unit of the signal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub quantum: Option<f64>,
-    /// Whether the signal keeps the first value that it has within the fault.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
-    pub frozen: bool,
+fault_table! {
+    /// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
+    /// `quantum`, `frozen`.
+    pub struct SignalFault {
+        /// Factor on the value [-].
+        pub scale: Option<f64>,
+        /// Constant error, in the unit of the signal.
+        pub bias: Option<f64>,
+        /// Error that grows from the beginning of the fault on, in units of the signal per second.
+        pub ramp: Option<f64>,
+        /// Standard deviation of additional white noise, in the unit of the signal.
+        pub noise: Option<f64>,
+        /// Step between the values that the signal can have, in the unit of the signal.
+        pub quantum: Option<f64>,
+        /// Whether the signal keeps the first value that it has within the fault.
+        pub frozen: bool,
+    }
 }
 
-impl Timed for SignalFault {
-    fn window(&self) -> Window {
-        Window {
-            from: self.from,
-            until: self.until,
-        }
-    }
+/// Greatest number of a fault. What follows from one that is much greater is not finite.
+const MOST: f64 = 1e9;
 
-    fn timeless(&self) -> Self {
-        Self {
-            from: None,
-            until: None,
-            ..*self
-        }
-    }
-
-    fn flaw(&self) -> Option<&'static str> {
-        let finite = |value: Option<f64>| value.is_none_or(f64::is_finite);
+impl SignalFault {
+    fn wrong_key(&self) -> Option<&'static str> {
+        let bounded = |value: Option<f64>| value.is_none_or(|it| it.abs() <= MOST);
         let (noise, quantum) = (self.noise.unwrap_or(0.0), self.quantum.unwrap_or(1.0));
         let keys = [
-            (finite(self.scale), "give a finite `scale`"),
-            (finite(self.bias), "give a finite `bias`"),
-            (finite(self.ramp), "give a finite `ramp`"),
+            (bounded(self.scale), "give a `scale` of at most 1e9"),
+            (bounded(self.bias), "give a `bias` of at most 1e9"),
+            (bounded(self.ramp), "give a `ramp` of at most 1e9"),
+            ((0.0..=MOST).contains(&noise), "give a `noise` of 0 to 1e9"),
             (
-                noise >= 0.0 && noise.is_finite(),
-                "give a `noise` of 0 or more",
-            ),
-            (
-                quantum > 0.0 && quantum.is_finite(),
-                "give a `quantum` above 0",
+                quantum > 0.0 && quantum <= MOST,
+                "give a `quantum` above 0, and at most 1e9",
             ),
         ];
         let flaw = keys.into_iter().find(|(sound, _)| !sound);
-        self.window().flaw().or(flaw.map(|(_, advice)| advice))
+        flaw.map(|(_, advice)| advice)
     }
 }
 
@@ -93,7 +64,7 @@ impl SignalFault {
 #[derive(Clone, Debug)]
 pub struct Signal {
     fault: SignalFault,
-    generator: ChaCha8Rng,
+    generator: Draws,
     /// The value that a frozen signal keeps.
     kept: Option<f64>,
 }

@@ -10,9 +10,59 @@ pub(super) trait Timed: Default + PartialEq {
     /// The table without its times: what fails at them.
     fn timeless(&self) -> Self;
 
-    /// What is wrong with the table.
-    fn flaw(&self) -> Option<&'static str>;
+    /// What is wrong with its keys other than the times.
+    fn wrong_key(&self) -> Option<&'static str>;
 }
+
+/// Declares the table of a fault: its times, and what fails at them. A method `wrong_key` checks the latter.
+/// The table cannot hold the times as a part of its own, because serde's `flatten` takes unknown keys.
+macro_rules! fault_table {
+    (
+        $(#[$about:meta])*
+        pub struct $table:ident {
+            $($(#[$meaning:meta])* pub $key:ident: $type:ty,)*
+        }
+    ) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        pub struct $table {
+            /// Time at which the fault begins \[s\]; by default the start of the flight.
+            #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
+            pub from: Option<f64>,
+            /// Time at which the fault ends \[s\]; by default it does not end.
+            #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
+            pub until: Option<f64>,
+            $(
+                $(#[$meaning])*
+                #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
+                pub $key: $type,
+            )*
+        }
+
+        impl $crate::faults::window::Timed for $table {
+            fn window(&self) -> $crate::faults::window::Window {
+                $crate::faults::window::Window {
+                    from: self.from,
+                    until: self.until,
+                }
+            }
+
+            fn timeless(&self) -> Self {
+                Self {
+                    from: None,
+                    until: None,
+                    ..*self
+                }
+            }
+
+            fn wrong_key(&self) -> Option<&'static str> {
+                self.wrong_key()
+            }
+        }
+    };
+}
+pub(super) use fault_table;
 
 /// The ticks at which a fault acts, by the keys `from` and `until` of its table \[s\]. Without them it acts
 /// during the whole flight.

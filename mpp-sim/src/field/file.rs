@@ -4,7 +4,7 @@
 use super::geometry::Point;
 use super::obstacle::Obstacle;
 use super::shape::Shape;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The content of a field file, by kinds of obstacles.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -65,6 +65,7 @@ pub struct Capsule {
 #[serde(deny_unknown_fields)]
 pub struct Polygon {
     /// Its corners, in either direction \[m\].
+    #[serde(deserialize_with = "ring")]
     pub points: Vec<Point>,
     /// Velocity, downrange and up [m/s]; not written if it is 0.
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -94,6 +95,28 @@ pub struct Line {
 
 fn is_zero(velocity: &Point) -> bool {
     *velocity == (0.0, 0.0)
+}
+
+impl Polygon {
+    /// A polygon at rest. Its last corner may repeat the first one, as in GeoJSON and WKT, and is left out then.
+    #[must_use]
+    pub fn of_ring(points: Vec<Point>) -> Self {
+        Self {
+            points: opened(points),
+            velocity: (0.0, 0.0),
+        }
+    }
+}
+
+fn ring<'a, D: Deserializer<'a>>(input: D) -> Result<Vec<Point>, D::Error> {
+    Vec::deserialize(input).map(opened)
+}
+
+fn opened(mut ring: Vec<Point>) -> Vec<Point> {
+    if ring.len() > 1 && ring.first() == ring.last() {
+        ring.pop();
+    }
+    ring
 }
 
 impl FieldFile {

@@ -1,19 +1,18 @@
 //! Tests of distances, rays and files, against dense samples of the shapes.
 
 use super::*;
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use proptest::prelude::*;
-use rand_chacha::ChaCha8Rng;
 
 /// Number of samples along a motion or a ray.
 const SAMPLES: usize = 4000;
 
-fn uniform(generator: &mut ChaCha8Rng, low: f64, high: f64) -> f64 {
+fn uniform(generator: &mut Draws, low: f64, high: f64) -> f64 {
     low + (high - low) * random::uniform(generator)
 }
 
 /// Points around the origin, at rising angles: the corners of a simple polygon.
-fn star(generator: &mut ChaCha8Rng, corners: usize) -> Vec<Point> {
+fn star(generator: &mut Draws, corners: usize) -> Vec<Point> {
     let angle = |k: usize| core::f64::consts::TAU * k as f64 / corners as f64;
     (0..corners)
         .map(|k| {
@@ -25,7 +24,7 @@ fn star(generator: &mut ChaCha8Rng, corners: usize) -> Vec<Point> {
 }
 
 /// A line with rising downrange distances.
-fn profile(generator: &mut ChaCha8Rng, points: usize) -> Vec<Point> {
+fn profile(generator: &mut Draws, points: usize) -> Vec<Point> {
     let place = |k: usize| -6.0 + 12.0 * k as f64 / points as f64;
     (0..points)
         .map(|k| (place(k), uniform(generator, -3.0, 3.0)))
@@ -35,7 +34,7 @@ fn profile(generator: &mut ChaCha8Rng, points: usize) -> Vec<Point> {
 /// One shape of each kind about the origin.
 fn shapes(seed: u64) -> Vec<Shape> {
     let random = &mut random::generator(seed, Stream::Field);
-    let place = |random: &mut ChaCha8Rng| (uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
+    let place = |random: &mut Draws| (uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0));
     let (thin, count) = (uniform(random, 0.01, 0.2), 3 + (seed % 6) as usize);
     let centre = place(random);
     let ends = vec![place(random), place(random)];

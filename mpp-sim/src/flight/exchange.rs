@@ -1,7 +1,7 @@
 //! The exchange of one tick over a link that may lose it, under a tick counter that may be wrong.
 
 use super::receiver::Receiver;
-use super::session::{Answer, Session};
+use super::session::{Session, StepReply};
 use crate::entries::RejectionEntry;
 use crate::faults::{ClockFault, Line, Passage};
 use crate::link::LinkError;
@@ -34,7 +34,7 @@ impl Exchange {
         self.line.passage(tick)
     }
 
-    /// Sends what comes to the core, and gives its answer. Without an answer, and if the command is lost, the
+    /// Sends what comes to the core, and gives its reply. Without a reply, and if the command is lost, the
     /// receiver in the aircraft decides. For the log the reports are never lost.
     pub(super) fn tick(
         &mut self,
@@ -42,7 +42,7 @@ impl Exchange {
         passage: Passage,
         scan: Option<LidarScan>,
         frame: SensorFrame,
-    ) -> Result<Answer, LinkError> {
+    ) -> Result<StepReply, LinkError> {
         let now = frame.tick;
         let unanswered = self.unanswered.take();
         let scan = scan.or(unanswered);
@@ -50,7 +50,7 @@ impl Exchange {
             self.unanswered.clone_from(&scan);
         }
         let known = session.told.rejections.len();
-        let mut answer = if passage.to_core {
+        let mut reply = if passage.to_core {
             session.fly(
                 scan.map(|scan| self.stamped(scan)).as_ref(),
                 self.frame(frame),
@@ -58,20 +58,20 @@ impl Exchange {
         } else {
             None
         };
-        if let Some(answer) = &mut answer {
-            self.restore(answer, now);
+        if let Some(reply) = &mut reply {
+            self.restore(reply, now);
         }
-        match answer.as_ref().filter(|_| passage.to_aircraft) {
-            Some(answer) => self.receiver.hear(answer),
+        match reply.as_ref().filter(|_| passage.to_aircraft) {
+            Some(reply) => self.receiver.hear(reply),
             None => self.receiver.miss(now),
         }
         for entry in session.told.rejections.iter_mut().skip(known) {
             self.restore_entry(entry, now);
         }
         let command = self.receiver.command();
-        Ok(match answer {
-            Some(answer) => Answer { command, ..answer },
-            None => Answer {
+        Ok(match reply {
+            Some(reply) => StepReply { command, ..reply },
+            None => StepReply {
                 command,
                 step: None,
                 plan: None,
@@ -103,23 +103,23 @@ impl Exchange {
     }
 
     /// Gives the reports the ticks of the flight.
-    fn restore(&self, answer: &mut Answer, now: u32) {
+    fn restore(&self, reply: &mut StepReply, now: u32) {
         let flown = |shown: &mut u32| *shown = self.clock.flown(*shown, now).unwrap_or(*shown);
-        answer.command.tick = now;
-        if let Some(step) = &mut answer.step {
+        reply.command.tick = now;
+        if let Some(step) = &mut reply.step {
             step.tick = now;
         }
-        if let Some(health) = &mut answer.health {
+        if let Some(health) = &mut reply.health {
             health.tick = now;
         }
-        if let Some(plan) = &mut answer.plan {
+        if let Some(plan) = &mut reply.plan {
             flown(&mut plan.scan_tick);
             flown(&mut plan.used_from_tick);
         }
-        if let Some(trajectory) = &mut answer.trajectory {
+        if let Some(trajectory) = &mut reply.trajectory {
             flown(&mut trajectory.scan_tick);
         }
-        if let Some(controls) = &mut answer.controls {
+        if let Some(controls) = &mut reply.controls {
             flown(&mut controls.scan_tick);
         }
     }

@@ -4,9 +4,9 @@ use crate::entries::PlanEntry;
 use crate::field::{Field, Point};
 use crate::inquest::Inquest;
 use crate::log::Summary;
-use crate::moment::Moment;
 use crate::outcome::{Outcome, Score};
 use crate::scenario::{ALTITUDE, Scenario};
+use crate::tick_record::TickRecord;
 use mpp_core::vehicle::VehicleState;
 
 /// Watches a flight and summarises it.
@@ -39,13 +39,13 @@ impl Judge {
     /// level trim.
     pub(super) fn watch(
         &mut self,
-        moment: &Moment<'_>,
+        record: &TickRecord<'_>,
         field: &dyn Field,
         after: &VehicleState,
         holds_trim: bool,
     ) {
-        let before = &moment.tick.state;
-        self.inquest.watch(moment);
+        let before = &record.tick.state;
+        self.inquest.watch(record);
         self.holds_trim = holds_trim;
         self.end = self.score.update(field, before, after);
         self.last = ((before.x, before.z), (after.x, after.z));

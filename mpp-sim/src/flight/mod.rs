@@ -12,12 +12,12 @@ mod steering;
 use crate::entries::{PlanEntry, Tick, finite};
 use crate::link::Link;
 use crate::log::{FlightLog, Header};
-use crate::moment::Moment;
 use crate::orders::Ground;
 use crate::outcome::Outcome;
 use crate::plant::PlantError;
 use crate::scenario::Scenario;
 use crate::sensors::Measurement;
+use crate::tick_record::TickRecord;
 use crate::world::World;
 pub use error::FlyError;
 use exchange::Exchange;
@@ -27,16 +27,16 @@ use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 pub use sensing::Sensing;
-use session::{Answer, Session, Told};
+use session::{Session, StepReply, Told};
 use std::collections::BTreeMap;
 use steering::Steering;
 
 /// A ground that watches the flight and gives no orders.
 struct Onlooker<F>(F);
 
-impl<F: FnMut(&Moment<'_>)> Ground for Onlooker<F> {
-    fn watch(&mut self, moment: &Moment<'_>) {
-        (self.0)(moment);
+impl<F: FnMut(&TickRecord<'_>)> Ground for Onlooker<F> {
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        (self.0)(record);
     }
 }
 
@@ -47,7 +47,7 @@ impl<F: FnMut(&Moment<'_>)> Ground for Onlooker<F> {
 pub fn fly(
     scenario: &Scenario,
     link: &mut dyn Link,
-    watch: impl FnMut(&Moment<'_>),
+    watch: impl FnMut(&TickRecord<'_>),
 ) -> Result<FlightLog, FlyError> {
     fly_with(scenario, link, &mut Onlooker(watch))
 }
@@ -82,14 +82,14 @@ pub fn fly_in(
     Ok(flight.log(world))
 }
 
-/// What the aircraft measured in a tick, and the core's answer.
+/// What the aircraft measured in a tick, and the core's reply.
 struct Exchanged {
     /// The state before the tick.
     before: VehicleState,
     measured: Measurement,
     /// The scan of this tick, unless the link lost it.
     seen: Option<LidarScan>,
-    answer: Answer,
+    reply: StepReply,
 }
 
 /// A flight that the caller flies tick by tick. World, link and ground are the same in each call.
@@ -159,8 +159,8 @@ impl Flight {
             return Ok(false);
         }
         let exchanged = self.exchange(world, link)?;
-        let (wind, answer) = (world.plant.wind(), &exchanged.answer);
-        let applied = match world.plant.step(control(answer)) {
+        let (wind, reply) = (world.plant.wind(), &exchanged.reply);
+        let applied = match world.plant.step(control(reply)) {
             // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
             Err(PlantError::NonFiniteState) => {
                 self.judge.end = Some(Outcome::FlightPathLimit);
@@ -171,7 +171,7 @@ impl Flight {
         let tick = Tick {
             applied,
             wind,
-            ..logged(self.flown(), &exchanged.before, exchanged.measured, answer)
+            ..logged(self.flown(), &exchanged.before, exchanged.measured, reply)
         };
         self.watch(&tick, &exchanged, world, ground);
         Ok(true)
@@ -228,13 +228,13 @@ impl Flight {
         let passage = self.exchange.passage(flown);
         let seen = shown.clone().filter(|_| passage.to_core);
         let scan = sensing.scan(flown, shown);
-        let mut answer = self.exchange.tick(&mut session, passage, scan, frame)?;
-        self.steering.limit(&mut answer.command);
+        let mut reply = self.exchange.tick(&mut session, passage, scan, frame)?;
+        self.steering.limit(&mut reply.command);
         Ok(Exchanged {
             before,
             measured,
             seen,
-            answer,
+            reply,
         })
     }
 
@@ -246,26 +246,26 @@ impl Flight {
         world: &World,
         ground: &mut dyn Ground,
     ) {
-        let answer = &exchanged.answer;
-        let plan = answer.plan.as_ref().map(plan_entry);
-        let moment = Moment {
+        let reply = &exchanged.reply;
+        let plan = reply.plan.as_ref().map(plan_entry);
+        let record = TickRecord {
             tick,
             scan: exchanged.seen.as_ref(),
             plan: plan.as_ref(),
-            report: answer.plan.as_ref(),
-            trajectory: answer.trajectory.as_ref(),
-            sensors: answer.step.map_or(self.trust, |step| step.sensors),
-            health: answer.health.as_ref(),
+            report: reply.plan.as_ref(),
+            trajectory: reply.trajectory.as_ref(),
+            sensors: reply.step.map_or(self.trust, |step| step.sensors),
+            health: reply.health.as_ref(),
             rejections: &self.told.rejections,
         };
         let flown = self.judge.flown;
-        let holds_trim = answer.command.mode == ControlMode::TrimHold;
+        let holds_trim = reply.command.mode == ControlMode::TrimHold;
         let (field, after) = (world.field.as_ref(), world.plant.state());
-        self.judge.watch(&moment, field, after, holds_trim);
-        ground.watch(&moment);
-        self.log.note_sensors(&self.trust, &moment.sensors, flown);
-        self.trust = moment.sensors;
-        if let Some(health) = moment.health {
+        self.judge.watch(&record, field, after, holds_trim);
+        ground.watch(&record);
+        self.log.note_sensors(&self.trust, &record.sensors, flown);
+        self.trust = record.sensors;
+        if let Some(health) = record.health {
             self.log.health = counters(health);
         }
         self.log.ticks.push(tick);
@@ -336,10 +336,10 @@ fn plan_entry(report: &PlanReport) -> PlanEntry {
     }
 }
 
-fn logged(number: u32, state: &VehicleState, measured: Measurement, answer: &Answer) -> Tick {
+fn logged(number: u32, state: &VehicleState, measured: Measurement, reply: &StepReply) -> Tick {
     let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
-    let tracking = answer.command.mode == ControlMode::Tracking;
-    let reference = answer.step.filter(|_| tracking).map(|step| {
+    let tracking = reply.command.mode == ControlMode::Tracking;
+    let reference = reply.step.filter(|_| tracking).map(|step| {
         let [x, z, rest @ ..] = step.reference;
         VehicleState {
             x,
@@ -351,12 +351,12 @@ fn logged(number: u32, state: &VehicleState, measured: Measurement, answer: &Ans
         t: Scenario::time(number),
         state: *state,
         measured,
-        estimate: answer.step.map_or(*state, |step| VehicleState {
+        estimate: reply.step.map_or(*state, |step| VehicleState {
             x: step.position[0],
             z: step.position[1],
             air: air(step.estimate),
         }),
-        conditions: answer.step.map_or(Conditions::STILL, |step| Conditions {
+        conditions: reply.step.map_or(Conditions::STILL, |step| Conditions {
             wind: Wind {
                 x: step.wind[0],
                 z: step.wind[1],
@@ -364,16 +364,16 @@ fn logged(number: u32, state: &VehicleState, measured: Measurement, answer: &Ans
             lift: step.lift,
         }),
         reference,
-        control: control(answer),
-        applied: control(answer),
+        control: control(reply),
+        applied: control(reply),
         wind: (0.0, 0.0),
     }
 }
 
 /// The control that the core commands.
-fn control(answer: &Answer) -> Control {
+fn control(reply: &StepReply) -> Control {
     Control {
-        thrust: answer.command.thrust,
-        elevator: answer.command.elevator,
+        thrust: reply.command.thrust,
+        elevator: reply.command.elevator,
     }
 }

@@ -1,6 +1,6 @@
 //! The receiver of commands in the aircraft. When it hears nothing it flies the rest of the plan by itself.
 
-use super::session::Answer;
+use super::session::StepReply;
 use crate::scenario::{Preset, Scenario};
 use hil_protocol::{ActuatorCommand, ControlMode, PlanControls};
 use mpp_core::config::TICK_PERIOD;
@@ -55,10 +55,10 @@ impl Receiver {
     }
 
     /// Takes in what the core sent in a tick.
-    pub(super) fn hear(&mut self, answer: &Answer) {
-        self.command = answer.command;
+    pub(super) fn hear(&mut self, reply: &StepReply) {
+        self.command = reply.command;
         self.silent = 0;
-        if let (Some(report), Some(trajectory)) = (&answer.plan, &answer.trajectory) {
+        if let (Some(report), Some(trajectory)) = (&reply.plan, &reply.trajectory) {
             self.plan = Some(Plan {
                 start: if self.from_scan {
                     report.scan_tick
@@ -71,10 +71,10 @@ impl Receiver {
                 is_flown: true,
             });
         }
-        if let (Some(plan), Some(controls)) = (&mut self.plan, &answer.controls) {
+        if let (Some(plan), Some(controls)) = (&mut self.plan, &reply.controls) {
             plan.controls = Some(controls.clone()).filter(|_| controls.scan_tick == plan.scan);
         }
-        if let (Some(plan), Some(step)) = (&mut self.plan, &answer.step) {
+        if let (Some(plan), Some(step)) = (&mut self.plan, &reply.step) {
             let flown = step.tick.wrapping_sub(step.plan_age_ticks);
             plan.is_flown = flown == plan.scan;
         }
@@ -140,10 +140,10 @@ mod tests {
         Receiver::new(&scenario).expect("the default aircraft has a trim")
     }
 
-    /// The answer of a tick in which the plan of the scan at `flown` is flown.
-    fn answer(tick: u32, flown: u32) -> Answer {
+    /// The reply of a tick in which the plan of the scan at `flown` is flown.
+    fn reply(tick: u32, flown: u32) -> StepReply {
         let state = SensorState::Healthy;
-        Answer {
+        StepReply {
             command: TRACKING,
             step: Some(StepReport {
                 tick,
@@ -170,12 +170,12 @@ mod tests {
     }
 
     /// The same with a plan of three knots, 0.5 s apart, that is flown from the next tick on.
-    fn with_plan(tick: u32) -> Answer {
+    fn with_plan(tick: u32) -> StepReply {
         let controls = PlanControls {
             scan_tick: tick,
             knots: [[8.0, 3.0], [9.0, 4.0], [0.0, 2.0]].into_iter().collect(),
         };
-        Answer {
+        StepReply {
             plan: Some(PlanReport {
                 scan_tick: tick,
                 used_from_tick: tick + 1,
@@ -194,7 +194,7 @@ mod tests {
                 knots: [[0.0; 3]; 3].into_iter().collect(),
             }),
             controls: Some(controls),
-            ..answer(tick, tick)
+            ..reply(tick, tick)
         }
     }
 
@@ -220,7 +220,7 @@ mod tests {
         assert_eq!(flown[75], (3.0, 9.0));
         let trim = (receiver.trim.elevator, receiver.trim.thrust);
         assert_eq!(flown[109], trim);
-        receiver.hear(&answer(SCAN + 111, SCAN + 111));
+        receiver.hear(&reply(SCAN + 111, SCAN + 111));
         assert_eq!(receiver.command(), TRACKING);
     }
 
@@ -232,11 +232,11 @@ mod tests {
         };
         // It heard no plan.
         let mut deaf = receiver();
-        deaf.hear(&answer(SCAN, SCAN));
+        deaf.hear(&reply(SCAN, SCAN));
         assert!(kept(&mut deaf));
         // It did not hear its commands.
         let mut half = receiver();
-        half.hear(&Answer {
+        half.hear(&StepReply {
             controls: None,
             ..with_plan(SCAN)
         });
@@ -244,13 +244,13 @@ mod tests {
         // A newer plan was lost.
         let mut outdated = receiver();
         outdated.hear(&with_plan(SCAN - 50));
-        outdated.hear(&answer(SCAN, SCAN - 25));
+        outdated.hear(&reply(SCAN, SCAN - 25));
         assert!(kept(&mut outdated));
         // The core holds trim.
         let mut trimmed = receiver();
-        let mut answer = with_plan(SCAN);
-        answer.command.mode = ControlMode::TrimHold;
-        trimmed.hear(&answer);
+        let mut reply = with_plan(SCAN);
+        reply.command.mode = ControlMode::TrimHold;
+        trimmed.hear(&reply);
         assert!(kept(&mut trimmed));
     }
 }

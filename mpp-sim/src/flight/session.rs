@@ -18,8 +18,8 @@ use mpp_node::parameters::PARAMETERS;
 /// The number of restarts that a core may make before one answer.
 const RESTARTS: usize = 3;
 
-/// The core's answer to one tick.
-pub(super) struct Answer {
+/// The core's reply to one tick.
+pub(super) struct StepReply {
     pub(super) command: ActuatorCommand,
     pub(super) step: Option<StepReport>,
     pub(super) plan: Option<PlanReport>,
@@ -115,7 +115,7 @@ impl Session<'_> {
         &mut self,
         scan: Option<&LidarScan>,
         frame: SensorFrame,
-    ) -> Result<Option<Answer>, LinkError> {
+    ) -> Result<Option<StepReply>, LinkError> {
         let scan = scan.map(|scan| Message::LidarScan(scan.clone()));
         let questions: Vec<_> = scan
             .into_iter()
@@ -132,7 +132,7 @@ impl Session<'_> {
                         controls,
                         health,
                     } = std::mem::take(draft);
-                    return Part::Last(Some(Answer {
+                    return Part::Last(Some(StepReply {
                         command: *command,
                         step,
                         plan,

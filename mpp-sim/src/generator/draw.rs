@@ -2,8 +2,7 @@
 
 use super::config::{Generator, GeneratorName};
 use crate::field::{Obstacle, Point, Shape, evenly_spaced};
-use crate::random::{self, Stream};
-use rand_chacha::ChaCha8Rng;
+use crate::random::{self, Draws, Stream};
 
 /// Downrange distance of the first obstacle from the start \[m\] (the authors' code).
 const FIRST: f64 = 25.0;
@@ -94,12 +93,12 @@ pub(super) fn field(
 }
 
 /// A uniform number from `-half` to `half`.
-fn within(half: f64, generator: &mut ChaCha8Rng) -> f64 {
+fn within(half: f64, generator: &mut Draws) -> f64 {
     half * (2.0 * random::uniform(generator) - 1.0)
 }
 
 /// Places of a Poisson process from `first` to `last`, `count` of them over 215 m on average.
-fn poisson(first: f64, last: f64, count: usize, generator: &mut ChaCha8Rng) -> Vec<f64> {
+fn poisson(first: f64, last: f64, count: usize, generator: &mut Draws) -> Vec<f64> {
     let mut places = Vec::new();
     if count == 0 {
         return places;
@@ -117,12 +116,7 @@ fn poisson(first: f64, last: f64, count: usize, generator: &mut ChaCha8Rng) -> V
 }
 
 /// Clusters at random places. The last one may be smaller.
-fn forest(
-    generator: &Generator,
-    count: usize,
-    altitude: f64,
-    random: &mut ChaCha8Rng,
-) -> Vec<Obstacle> {
+fn forest(generator: &Generator, count: usize, altitude: f64, random: &mut Draws) -> Vec<Obstacle> {
     let Generator {
         radius,
         spread,
@@ -153,7 +147,7 @@ fn wander(
     places: impl Iterator<Item = f64>,
     altitude: f64,
     half: f64,
-    generator: &mut ChaCha8Rng,
+    generator: &mut Draws,
 ) -> Vec<Point> {
     let mut before = (0.0, altitude);
     places
@@ -171,7 +165,7 @@ fn slalom(
     generator: &Generator,
     places: impl Iterator<Item = f64>,
     altitude: f64,
-    random: &mut ChaCha8Rng,
+    random: &mut Draws,
 ) -> Vec<Obstacle> {
     let Generator { radius, gap, .. } = *generator;
     let mut side = if random::uniform(random) < 0.5 {
@@ -203,7 +197,7 @@ fn upright(x: f64, half: f64, low: f64, high: f64) -> Obstacle {
 }
 
 /// A thin circle, or a bar in a random direction.
-fn bar(centre: Point, generator: &Generator, random: &mut ChaCha8Rng) -> Obstacle {
+fn bar(centre: Point, generator: &Generator, random: &mut Draws) -> Obstacle {
     let Generator { radius, length, .. } = *generator;
     if length <= 0.0 {
         return Obstacle::circle(centre.0, centre.1, radius);

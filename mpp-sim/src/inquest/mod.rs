@@ -17,9 +17,9 @@
 
 use crate::field::{Field, Obstacle, Point};
 use crate::lidar::RANGE_MIN;
-use crate::moment::Moment;
 use crate::outcome::Class;
 use crate::scenario::Scenario;
+use crate::tick_record::TickRecord;
 use hil_protocol::LidarScan;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::VehicleState;
@@ -129,13 +129,13 @@ pub(crate) struct Inquest {
 
 impl Inquest {
     /// Records one tick.
-    pub(crate) fn watch(&mut self, moment: &Moment<'_>) {
-        let (t, state) = (moment.tick.t, moment.tick.state);
-        if let Some(scan) = moment.scan {
+    pub(crate) fn watch(&mut self, record: &TickRecord<'_>) {
+        let (t, state) = (record.tick.t, record.tick.state);
+        if let Some(scan) = record.scan {
             let scan = scan.clone();
             self.sights.push(Sight { t, state, scan });
         }
-        if let (Some(report), Some(trajectory)) = (moment.report, moment.trajectory) {
+        if let (Some(report), Some(trajectory)) = (record.report, record.trajectory) {
             let knots = trajectory.knots.iter();
             self.plans.push(Plan {
                 made: Scenario::time(report.scan_tick),
@@ -154,7 +154,7 @@ impl Inquest {
     pub(crate) fn seen_before(&self, field: &[Obstacle], place: Point, t_end: f64) -> Option<f64> {
         let clearance = |index: &usize| field[*index].clearance(place, t_end);
         let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)))?;
-        self.first_seen(field)[hit].map(|t| t_end - t)
+        self.first_met(field, hit).map(|t| t_end - t)
     }
 
     /// The failure of a flight that ended at `t_end` \[s\], of a body of a radius \[m\]. `last` holds the
@@ -192,13 +192,12 @@ impl Inquest {
         t_end: f64,
         body_radius: f64,
     ) -> Failure {
-        let seen = self.first_seen(field);
         let times = [t_end - TICK_PERIOD, t_end];
         let clearance = |index: &usize| field[*index].clearance_of_motion(last.0, last.1, times);
         let hit = (0..field.len()).min_by(|a, b| clearance(a).total_cmp(&clearance(b)));
         // A field that does not consist of circles may have none. Then no beam has met the obstacle
         // that was hit.
-        let first_met = hit.and_then(|hit| seen[hit]);
+        let first_met = hit.and_then(|hit| self.first_met(field, hit));
         let mut failure = Failure {
             cause: Cause::NoPlan,
             seen_before: first_met.map(|t| t_end - t),
@@ -226,9 +225,7 @@ impl Inquest {
             .iter()
             .rfind(|plan| plan.feasible)
             .zip(hit)
-            .is_some_and(|(plan, hit)| {
-                leads_into_the_dark(plan, field, &seen, &field[hit], body_radius)
-            })
+            .is_some_and(|(plan, hit)| self.leads_into_the_dark(plan, field, hit, body_radius))
         {
             Cause::BlindAlley
         } else {
@@ -237,55 +234,59 @@ impl Inquest {
         failure
     }
 
-    /// Time at which a beam first met each obstacle \[s\].
-    fn first_seen(&self, field: &[Obstacle]) -> Vec<Option<f64>> {
-        let mut seen = vec![None; field.len()];
-        for sight in &self.sights {
-            for index in met(sight, field) {
-                seen[index].get_or_insert(sight.t);
-            }
-        }
-        seen
+    /// Time at which a beam first met one obstacle \[s\].
+    fn first_met(&self, field: &[Obstacle], index: usize) -> Option<f64> {
+        let meeting = self.sights.iter().find(|sight| meets(sight, field, index));
+        meeting.map(|sight| sight.t)
+    }
+
+    /// Whether a plan passes nearer than [`MARGIN`] to an obstacle that no beam had met yet and that
+    /// stands within [`ALLEY`] of the one that was hit.
+    fn leads_into_the_dark(
+        &self,
+        plan: &Plan,
+        field: &[Obstacle],
+        hit: usize,
+        body_radius: f64,
+    ) -> bool {
+        let middle = field[hit].middle();
+        let near = |one: &Obstacle| (one.middle() - middle).abs() <= ALLEY;
+        let passed = |one: &Obstacle| passes(one, plan) - body_radius < MARGIN;
+        let unseen = |index| {
+            let met = self.first_met(field, index);
+            met.is_none_or(|t| t > plan.made)
+        };
+        let mut obstacles = field.iter().enumerate();
+        obstacles.any(|(index, one)| near(one) && passed(one) && unseen(index))
     }
 }
 
-/// The obstacles from which a scan's returns come.
-fn met(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
+/// Whether a return of a scan comes from this obstacle: nothing else is nearer on its beam.
+fn meets(sight: &Sight, field: &[Obstacle], index: usize) -> bool {
     let Sight { t, state, scan } = sight;
-    let obstacle_of = |(beam, range): (usize, &f32)| {
+    let met = |(beam, range): (usize, &f32)| {
         let range = f64::from(*range);
         let increment = f64::from(scan.angle_increment) * beam as f64;
         let angle = state.air.pitch + f64::from(scan.angle_min) + increment;
         let (up, ahead) = libm::sincos(angle);
-        let entries = field.iter().enumerate().filter_map(|(index, obstacle)| {
-            let entry = obstacle.range((state.x, state.z), (ahead, up), *t)?;
-            Some((index, entry.max(RANGE_MIN)))
-        });
-        let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let told = range > 0.0 && (range - entry).abs() <= RETURN_OFF + RETURN_OFF_SHARE * entry;
-        told.then_some(nearest)
+        let entry = |one: &Obstacle| {
+            let entry = one.range((state.x, state.z), (ahead, up), *t)?;
+            Some(entry.max(RANGE_MIN))
+        };
+        let own = entry(&field[index]).filter(|_| range > 0.0);
+        let Some(own) =
+            own.filter(|own| (range - own).abs() <= RETURN_OFF + RETURN_OFF_SHARE * own)
+        else {
+            return false;
+        };
+        // Of two that are as near, the return comes from the first.
+        let hides = |(other, one): (usize, &Obstacle)| {
+            let order = entry(one).map(|entry| entry.total_cmp(&own));
+            other != index && order.is_some_and(|order| order.then(other.cmp(&index)).is_lt())
+        };
+        !field.iter().enumerate().any(hides)
     };
-    scan.ranges
-        .iter()
-        .enumerate()
-        .filter_map(obstacle_of)
-        .collect()
-}
-
-/// Whether a plan passes nearer than [`MARGIN`] to an obstacle that no beam had met yet and that
-/// stands within [`ALLEY`] of the one that was hit.
-fn leads_into_the_dark(
-    plan: &Plan,
-    field: &[Obstacle],
-    seen: &[Option<f64>],
-    hit: &Obstacle,
-    body_radius: f64,
-) -> bool {
-    let obstacles = field.iter().zip(seen);
-    obstacles
-        .filter(|(_, seen)| seen.is_none_or(|t| t > plan.made))
-        .filter(|(obstacle, _)| (obstacle.middle() - hit.middle()).abs() <= ALLEY)
-        .any(|(obstacle, _)| passes(obstacle, plan) - body_radius < MARGIN)
+    scan.ranges.iter().enumerate().any(met)
 }
 
 /// Least distance of a plan from an obstacle \[m\], at the times at which the plan is flown.

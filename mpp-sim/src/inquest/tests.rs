@@ -75,6 +75,48 @@ fn a_plan_that_kept_clear_was_not_tracked() {
     assert!((failure.off_plan.unwrap() - 1.9).abs() < 1e-9);
 }
 
+/// The obstacles from which a scan's returns come: the nearest one on each beam.
+fn nearest_on_each_beam(sight: &Sight, field: &[Obstacle]) -> Vec<usize> {
+    let scan = &sight.scan;
+    let nearest = |(beam, range): (usize, &f32)| {
+        let turned = f64::from(scan.angle_increment) * beam as f64;
+        let (up, ahead) = libm::sincos(sight.state.air.pitch + f64::from(scan.angle_min) + turned);
+        let entries = field.iter().enumerate().filter_map(|(index, one)| {
+            let entry = one.range((sight.state.x, sight.state.z), (ahead, up), sight.t)?;
+            Some((index, entry.max(RANGE_MIN)))
+        });
+        let (nearest, entry) = entries.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let range = f64::from(*range);
+        let told = range > 0.0 && (range - entry).abs() <= RETURN_OFF + RETURN_OFF_SHARE * entry;
+        told.then_some(nearest)
+    };
+    (scan.ranges.iter().enumerate())
+        .filter_map(nearest)
+        .collect()
+}
+
+/// Obstacles that hide each other, that move, that stand twice at one place, and one around the aircraft.
+#[test]
+fn an_obstacle_is_met_where_nothing_nearer_is() {
+    let mut obstacles = Scenario::new(Preset::Flight, 3).field().obstacles;
+    obstacles.push(obstacles[4].clone());
+    obstacles.push(Obstacle::circle(24.0, 50.0, 1.5));
+    obstacles[2].velocity = (-3.0, 1.0);
+    let field = field(&obstacles);
+    let sights = sights(&field, 0.0);
+    let obstacles = field.obstacles();
+    let first = |index: &usize| {
+        let meets = |sight: &&Sight| nearest_on_each_beam(sight, obstacles).contains(index);
+        sights.iter().find(meets).map(|sight| sight.t)
+    };
+    let expected: Vec<_> = (0..obstacles.len()).map(|index| first(&index)).collect();
+    assert!(expected.contains(&None) && expected.iter().flatten().any(|t| *t > 1.0));
+    let plans = Vec::new();
+    let inquest = Inquest { sights, plans };
+    let met = (0..obstacles.len()).map(|index| inquest.first_met(obstacles, index));
+    assert_eq!(met.collect::<Vec<_>>(), expected);
+}
+
 #[test]
 fn what_no_beam_met_was_hidden() {
     // The screen stands directly in front of the wall. The aircraft passes it only after the last

@@ -3,10 +3,9 @@
 
 use crate::disturbance::Disturbance;
 use crate::field::{Field, Point, Shape, evenly_spaced};
-use crate::random::{self, Stream};
+use crate::random::{self, Draws, Stream};
 use hil_protocol::LidarScan;
 use mpp_core::vehicle::VehicleState;
-use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 /// Least range that is reported \[m\], because 0 means no return. A sensor inside an obstacle
@@ -199,7 +198,7 @@ fn authors_hit(from: Point, direction: Point, centre: Point, radius: f64) -> Opt
 #[derive(Clone, Debug)]
 pub struct FanLidar {
     config: LidarConfig,
-    generator: ChaCha8Rng,
+    generator: Draws,
 }
 
 impl FanLidar {

@@ -25,7 +25,6 @@ use hil_protocol::SensorStates;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Version of the log's layout.
 pub const SCHEMA: u32 = 4;
@@ -269,45 +268,17 @@ impl FlightLog {
 }
 
 /// The reason why bytes are no log, or why a log cannot be written.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum LogError {
     /// The bytes are not a log, or a value cannot be written.
-    Json(serde_json::Error),
+    #[error("flight log: {0}")]
+    Json(#[from] serde_json::Error),
     /// The log has the layout of another version; holds that version.
+    #[error("flight log has schema {0}, this program reads {SCHEMA}")]
     Schema(u32),
     /// The header says what cannot be flown.
-    Header(ScenarioError),
-}
-
-impl fmt::Display for LogError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Json(error) => write!(f, "flight log: {error}"),
-            Self::Header(error) => write!(f, "flight log: header.{error}"),
-            Self::Schema(found) => {
-                write!(
-                    f,
-                    "flight log has schema {found}, this program reads {SCHEMA}"
-                )
-            }
-        }
-    }
-}
-
-impl core::error::Error for LogError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Json(error) => Some(error),
-            Self::Header(error) => Some(error),
-            Self::Schema(_) => None,
-        }
-    }
-}
-
-impl From<serde_json::Error> for LogError {
-    fn from(error: serde_json::Error) -> Self {
-        Self::Json(error)
-    }
+    #[error("flight log: header.{0}")]
+    Header(#[source] ScenarioError),
 }
 
 #[cfg(test)]

@@ -17,8 +17,9 @@ use crate::sensors::AirDataNoise;
 use core::fmt;
 use core::str::FromStr;
 use hil_protocol::Configure;
-use mpp_core::config::TICK_PERIOD;
-use mpp_core::settings::Settings;
+use mpp_core::config::{MAX_PATHS, TICK_PERIOD};
+use mpp_core::planner::plane::MAX_CANDIDATES;
+use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::vehicle::{ActuatorLimits, Trim, TrimError, VehicleState};
 use serde::{Deserialize, Serialize};
 
@@ -44,6 +45,9 @@ pub const TICK_US: u32 = 1000 * TICK_MS;
 /// Replanning rate of an oracle \[Hz\]; see [`crate::oracle`].
 pub const ORACLE_REPLAN_HZ: f64 = 10.0;
 
+/// Number of candidate paths if nobody gives one: the paper's.
+const USUAL_PATHS: u16 = 25;
+
 /// The named sets of parameters and rules.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -67,6 +71,27 @@ impl Preset {
             Self::Reference => "reference",
             Self::Paper => "paper",
             Self::Flight => "flight",
+        }
+    }
+
+    /// The most candidate paths that a cycle finds.
+    #[must_use]
+    pub fn most_paths(self) -> usize {
+        match self {
+            Self::Reference | Self::Paper => MAX_PATHS,
+            Self::Flight => MAX_CANDIDATES,
+        }
+    }
+
+    /// The number of paths of a flight for which this number was asked: the usual one stands for all that are more than a
+    /// cycle finds. Such flights are the same, and so have the same log.
+    #[must_use]
+    pub fn flown_paths(self, asked: u16) -> u16 {
+        let more = self.most_paths() + 1..=MAX_PATHS;
+        if more.contains(&usize::from(asked)) {
+            USUAL_PATHS
+        } else {
+            asked
         }
     }
 
@@ -161,7 +186,7 @@ impl Scenario {
             preset,
             aircraft: AircraftModel::reference(),
             world_scale: 1.0,
-            paths: 25,
+            paths: USUAL_PATHS,
             replan_ticks: TICKS_PER_SECOND,
             latency_ticks: 1,
             slices_per_tick: u32::MAX,
@@ -193,6 +218,12 @@ impl Scenario {
         }
     }
 
+    /// The most candidates of a cycle, as the preset finds them.
+    #[must_use]
+    pub fn most_candidates(&self) -> usize {
+        usize::from(self.paths).min(self.preset.most_paths())
+    }
+
     /// Whether the core gets advice of an [`crate::oracle`], which knows more than the sensors tell.
     #[must_use]
     pub fn is_advised(&self) -> bool {
@@ -220,7 +251,7 @@ impl Scenario {
     /// The limits of the actuators: those of the aircraft, or the narrower ones among the scenario's faults.
     #[must_use]
     pub fn limits(&self) -> ActuatorLimits {
-        let own = self.aircraft.known.actuators;
+        let own = self.aircraft.actuators;
         let more = self.faults.actuators.limits();
         let least = |a: Option<f64>, b: Option<f64>| [a, b].into_iter().flatten().reduce(f64::min);
         ActuatorLimits {
@@ -292,9 +323,9 @@ impl Scenario {
                 Preset::Paper => hil_protocol::Preset::Paper,
                 Preset::Flight => hil_protocol::Preset::Flight,
             },
-            aircraft: hil_protocol::Aircraft {
+            aircraft: Aircraft {
                 body_radius: self.body_radius,
-                ..self.aircraft.told()
+                ..self.aircraft.known
             },
             paths: self.paths,
             replan_period_ticks: self.replan_ticks,
@@ -304,7 +335,7 @@ impl Scenario {
             beams: u16::try_from(self.lidar.beams).unwrap_or(u16::MAX),
             range_max: self.lidar.farthest() as f32,
             altitude: ALTITUDE,
-            actuators: told(self.limits()),
+            actuators: self.limits(),
         }
     }
 
@@ -318,23 +349,5 @@ impl Scenario {
     #[must_use]
     pub fn time(tick: u32) -> f64 {
         f64::from(tick) * TICK_PERIOD
-    }
-}
-
-/// Limits in the form that goes to the core.
-fn told(limits: ActuatorLimits) -> hil_protocol::ActuatorLimits {
-    let ActuatorLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
-    } = limits;
-    hil_protocol::ActuatorLimits {
-        thrust_max,
-        thrust_lag,
-        elevator_below,
-        elevator_above,
-        elevator_rate,
     }
 }

@@ -3,15 +3,15 @@
 use super::error::CampaignError;
 use hil_protocol::Message;
 use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row, Shard};
-use mpp_analysis::ceiling::{Verdict, decide};
+use mpp_analysis::ceiling::{Feasibility, decide};
 use mpp_analysis::rows::Header;
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_sim::flight::{FlyError, fly};
+use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::Scenario;
-use mpp_sim::witness::Witness;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
@@ -63,16 +63,16 @@ pub fn run_faults(
 ) -> Result<Vec<(FaultJob, Flown)>, CampaignError> {
     let fly_one = |job: FaultJob| {
         let scenario = campaign.scenario(&job).map_err(CampaignError::Scenario)?;
-        let (log, witness, _) = witnessed(&scenario).map_err(|error| {
+        let (log, observer, _) = observed(&scenario).map_err(|error| {
             let fault = campaign.name(&job).unwrap_or("no fault");
             CampaignError::Faulty(fault, Box::new(job.cell.clone()), job.seed, error)
         })?;
         done()?;
         let flown = Flown {
             strict: log.summary.strict,
-            known_collision: witness.known_collision(&log),
-            flagged: witness.flagged(),
-            told: witness.told().clone(),
+            known_collision: observer.known_collision(&log),
+            flagged: observer.flagged(),
+            told: observer.told().clone(),
         };
         Ok((job, flown))
     };
@@ -90,7 +90,7 @@ pub fn decide_all(
     margin: f64,
     threads: usize,
     done: impl Fn() -> Result<(), CampaignError> + Sync,
-) -> Result<Vec<(u64, Verdict)>, CampaignError> {
+) -> Result<Vec<(u64, Feasibility)>, CampaignError> {
     let decide_one = |seed: u64| {
         let scenario = campaign
             .scenario(cell, seed)
@@ -120,14 +120,14 @@ fn useful(threads: usize, jobs: usize) -> usize {
 }
 
 /// Flies a scenario in this process. Also gives the time for which the core worked.
-fn witnessed(scenario: &Scenario) -> Result<(FlightLog, Witness, Duration), FlyError> {
+fn observed(scenario: &Scenario) -> Result<(FlightLog, FlightObserver, Duration), FlyError> {
     let mut link = Stopwatch {
         link: PipeLink::of(scenario),
         elapsed: Duration::ZERO,
     };
-    let mut witness = Witness::of(scenario);
-    let log = fly(scenario, &mut link, |moment| witness.watch(moment))?;
-    Ok((log, witness, link.elapsed))
+    let mut observer = FlightObserver::of(scenario);
+    let log = fly(scenario, &mut link, |record| observer.watch(record))?;
+    Ok((log, observer, link.elapsed))
 }
 
 /// Flies one row.
@@ -135,13 +135,13 @@ fn flown(campaign: &Campaign, cell: &Cell, seed: u64, timed: bool) -> Result<Row
     let scenario = campaign
         .scenario(cell, seed)
         .map_err(CampaignError::Scenario)?;
-    let (log, witness, elapsed) = witnessed(&scenario)
+    let (log, observer, elapsed) = observed(&scenario)
         .map_err(|error| CampaignError::Flight(Box::new(cell.clone()), seed, error))?;
     let hash = log
         .hash()
         .map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
     let core_ms = timed.then_some(elapsed.as_secs_f64() * 1e3);
-    Ok(Row::new(cell.clone(), &log, &witness, hash, core_ms))
+    Ok(Row::new(cell.clone(), &log, &observer, hash, core_ms))
 }
 
 /// A link that measures how long the core works. In this process the core works during `send`.

@@ -65,7 +65,7 @@ struct Success {
 }
 
 #[derive(Debug, Serialize)]
-struct Answer {
+struct AircraftOutput {
     aircraft: AircraftReport,
     flights: Vec<Success>,
 }
@@ -82,42 +82,53 @@ pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
         let name = file.name.clone();
         vec![Variant { name, file }]
     };
-    let mut answer = Answer {
+    let mut output = AircraftOutput {
         aircraft: AircraftReport::new(&model),
         flights: Vec::new(),
     };
     if !args.json {
-        data(&answer.aircraft)?;
+        data(&output.aircraft)?;
     }
     if args.flights > 0 {
         for variant in &variants {
             let flown = fly_variant(args, variant)?;
             if !args.json {
-                flown.iter().try_for_each(print)?;
+                flown.iter().map(line).try_for_each(data)?;
             }
-            answer.flights.extend(flown);
+            output.flights.extend(flown);
         }
     }
     if args.json {
-        data(serde_json::to_string(&answer).map_err(|error| Failure::new(FAILURE, error))?)?;
+        data(serde_json::to_string(&output).map_err(|error| Failure::new(FAILURE, error))?)?;
     }
     Ok(0)
 }
 
-fn print(success: &Success) -> Result<(), Failure> {
+fn line(success: &Success) -> String {
     let (low, high) = success.interval;
-    data(format_args!(
-        "{}{}: {} obstacles at {:.3} Hz: {} of {} strict successes [{:.1}, {:.1} %], {} collisions",
+    format!(
+        "{}{}: {} obstacles at {} Hz: {} of {} strict successes [{:.1}, {:.1} %], {}",
         success.aircraft,
         if success.oracle { ", oracle" } else { "" },
         success.obstacles,
-        success.replan_hz,
+        six_digits(success.replan_hz),
         success.strict,
         success.flights,
         100.0 * low,
         100.0 * high,
-        success.collisions
-    ))
+        match success.collisions {
+            1 => "1 collision".to_owned(),
+            count => format!("{count} collisions"),
+        }
+    )
+}
+
+/// A rate with six significant digits: enough that --replan-hz takes it.
+fn six_digits(rate: f64) -> String {
+    let whole = format!("{:.0}", rate.trunc());
+    let before = if whole == "0" { 0 } else { whole.len() };
+    let text = format!("{rate:.*}", 6_usize.saturating_sub(before));
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Flies one aircraft past each number of obstacles.
@@ -184,4 +195,46 @@ fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
     })?;
     let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
     merge(campaign, rows).map_err(|error| Failure::new(FAILURE, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_that_is_printed_can_be_given_back() {
+        for ticks in (1..2000).chain([5000, 65_535]) {
+            let rate = 100.0 / f64::from(ticks);
+            let printed = six_digits(rate);
+            let file = format!("replan_hz = {printed}\nduration = 3600");
+            let scenario = ScenarioFile::parse("", &file).unwrap().build();
+            if ticks <= 2000 {
+                assert_eq!(scenario.unwrap().replan_ticks, ticks, "{printed}");
+            }
+        }
+        assert_eq!(six_digits(1.0), "1");
+        assert_eq!(six_digits(100.0 / 133.0), "0.75188");
+        assert_eq!(six_digits(100.0), "100");
+    }
+
+    #[test]
+    fn one_collision_is_told_as_one() {
+        let told = |collisions| {
+            line(&Success {
+                aircraft: "zagi".to_owned(),
+                obstacles: 20,
+                replan_hz: 100.0 / 133.0,
+                oracle: false,
+                flights: 50,
+                strict: 49,
+                interval: wilson(49, 50),
+                collisions,
+            })
+        };
+        assert_eq!(
+            told(1),
+            "zagi: 20 obstacles at 0.75188 Hz: 49 of 50 strict successes [89.5, 99.6 %], 1 collision"
+        );
+        assert!(told(0).ends_with(", 0 collisions"));
+    }
 }

@@ -5,7 +5,7 @@ use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{Item, item, preset, seed, threads};
+use super::values::{Item, item, preset, seed, threads, whole};
 use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
@@ -41,13 +41,13 @@ pub(super) struct CampaignArgs {
     #[command(flatten)]
     field: FieldArgs,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(clap::value_parser!(u16)))]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(whole::<u16>()), allow_negative_numbers = true)]
     pub(super) paths: Vec<u16>,
     /// Presets, a list [default: the scenario's]
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>())]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>(), allow_negative_numbers = true)]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies. With --faults it flies with the faults
@@ -134,11 +134,12 @@ pub(super) fn failure(error: &CampaignError) -> Failure {
         | CampaignError::Stopped
         | CampaignError::Log(..)
         | CampaignError::Full(..)
+        | CampaignError::Open(..)
         | CampaignError::Interrupted(_)
         | CampaignError::Disagree(_) => FAILURE,
         CampaignError::Scenario(_)
         | CampaignError::Ceiling(_)
-        | CampaignError::File(..)
+        | CampaignError::Read(..)
         | CampaignError::NoFile(_)
         | CampaignError::NoRowFile(_)
         | CampaignError::Line(..)

@@ -62,7 +62,9 @@ pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
                 None => failure(&error),
             })?;
             let of_cell: Vec<_> = verdicts.into_iter().map(|(_, verdict)| verdict).collect();
-            report.cells.push(CeilingCell::new(cell, margin, &of_cell));
+            report
+                .cells
+                .push(CeilingCell::new(&campaign, cell, margin, &of_cell));
         }
     }
     progress.finish_and_clear();

@@ -1,7 +1,7 @@
 //! `core`: runs the flight core as a process of its own.
 
 use super::answer::{Failure, LINK, USAGE, talk};
-use super::values::seconds;
+use super::values::{place, seconds};
 use crate::files::read_field;
 use crate::link::{PATIENCE, serve};
 use mpp_sim::oracle::Oracle;
@@ -13,7 +13,7 @@ use std::time::Duration;
 #[command(after_help = super::help::CORE_EXAMPLES)]
 pub(super) struct CoreArgs {
     /// Address to listen on, HOST:PORT; port 0 takes a free one
-    #[arg(long, default_value = "127.0.0.1:5790")]
+    #[arg(long, default_value = "127.0.0.1:5790", value_parser = place)]
     listen: String,
     /// End after the first harness that configured a flight
     #[arg(long)]

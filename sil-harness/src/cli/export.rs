@@ -14,9 +14,9 @@ use std::path::{Path, PathBuf};
 pub(super) struct ExportArgs {
     /// Log of a flight, or row file of a campaign
     file: PathBuf,
-    /// Format; MCAP and Parquet need a build with the cargo feature `formats`
-    #[arg(long, value_enum, default_value_t = Format::Csv)]
-    format: Format,
+    /// Format; MCAP and Parquet need a build with the cargo feature `formats` [default: by the ending of --out, else CSV]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
     /// Table of a flight, for CSV and Parquet [default: ticks]
     #[arg(long, value_enum)]
     table: Option<FlightTable>,
@@ -33,6 +33,27 @@ enum Format {
     Mcap,
     /// One table with units in its metadata
     Parquet,
+}
+
+impl Format {
+    /// The format that a file's ending asks for, whichever way it is written.
+    fn of(file: &Path) -> Option<Self> {
+        let ending = file.extension()?.to_str()?;
+        Self::from_str(ending, true).ok()
+    }
+}
+
+impl ExportArgs {
+    /// The format of the flag or of the ending; the two must not differ.
+    fn format(&self) -> Result<Format, Failure> {
+        match (self.format, self.out.as_deref().and_then(Format::of)) {
+            (Some(flag), Some(ending)) if flag != ending => Err(Failure::new(
+                USAGE,
+                "--format, --out: the ending is that of another format: leave --format out, or give another ending",
+            )),
+            (flag, ending) => Ok(flag.or(ending).unwrap_or(Format::Csv)),
+        }
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -59,8 +80,9 @@ impl FlightTable {
 }
 
 pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
-    let bytes = bytes(args)?;
-    let out = match (&args.out, args.format) {
+    let format = args.format()?;
+    let bytes = bytes(args, format)?;
+    let out = match (&args.out, format) {
         (Some(out), _) => out.clone(),
         (None, Format::Csv) => return data_bytes(&bytes).map(|()| 0),
         (None, Format::Mcap) => args.file.with_extension("mcap"),
@@ -76,22 +98,22 @@ pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn bytes(args: &ExportArgs) -> Result<Vec<u8>, Failure> {
+fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
     let usage = |why: &str| Failure::new(USAGE, format!("{}: {why}", args.file.display()));
     let text = read_recorded(&args.file).map_err(|error| Failure::new(USAGE, error))?;
     if is_row_file(&text) {
         if args.table.is_some() {
             return Err(usage("a row file has one table: leave --table out"));
         }
-        if args.format == Format::Mcap {
+        if format == Format::Mcap {
             return Err(usage(
                 "a row file has no times: take --format csv or parquet",
             ));
         }
-        return of_table(&row_table(&args.file, &text)?, args.format);
+        return of_table(&row_table(&args.file, &text)?, format);
     }
     let log = parse_log(&args.file, &text).map_err(|error| Failure::new(USAGE, error))?;
-    match (args.format, args.table) {
+    match (format, args.table) {
         (Format::Mcap, Some(_)) => Err(usage("MCAP holds every table: leave --table out")),
         (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),
         (format, table) => {

@@ -32,37 +32,27 @@ pub(super) fn file_name(scenario: &Scenario, orders: &[OrderEntry]) -> String {
     }
     let seconds = f64::from(scenario.ticks) / f64::from(TICKS_PER_SECOND);
     let latency = scenario.latency_ticks * TICK_MS;
-    for (differs, part) in [
-        (
-            scenario.obstacles != usual.obstacles,
-            format!("o{}", scenario.obstacles),
-        ),
-        (
-            scenario.paths != usual.paths,
-            format!("p{}", scenario.paths),
-        ),
-        (
-            scenario.replan_ticks != usual.replan_ticks,
-            format!("{}hz", scenario.replan_hz()),
-        ),
-        (
-            scenario.latency_ticks != usual.latency_ticks,
-            format!("{latency}ms"),
-        ),
-        (
-            scenario.slices_per_tick != usual.slices_per_tick,
-            format!("{}slices", scenario.slices_per_tick),
-        ),
-        (scenario.ticks != usual.ticks, format!("{seconds}s")),
-        (
-            scenario.aircraft != usual.aircraft,
-            scenario.aircraft.file.name.clone(),
-        ),
-    ] {
+    let mut part = |differs: bool, text: String| {
         if differs {
-            name += &format!("-{part}");
+            name += &format!("-{text}");
         }
-    }
+    };
+    let Scenario {
+        obstacles,
+        paths,
+        slices_per_tick: slices,
+        ..
+    } = scenario;
+    part(*obstacles != usual.obstacles, format!("o{obstacles}"));
+    part(*paths != usual.paths, format!("p{paths}"));
+    let other_rate = scenario.replan_ticks != usual.replan_ticks;
+    part(other_rate, format!("{}hz", scenario.replan_hz()));
+    let late = scenario.latency_ticks != usual.latency_ticks;
+    part(late, format!("{latency}ms"));
+    part(*slices != usual.slices_per_tick, format!("{slices}slices"));
+    part(scenario.ticks != usual.ticks, format!("{seconds}s"));
+    let other_aircraft = scenario.aircraft != usual.aircraft;
+    part(other_aircraft, scenario.aircraft.file.name.clone());
     let (mut rest, usual) = (rest(scenario), rest(&usual));
     if !orders.is_empty() {
         rest.extend(serde_json::to_vec(orders).unwrap_or_default());

@@ -6,10 +6,10 @@ use super::file_name::file_name;
 use super::ground::GroundArgs;
 use super::help::{CORE, OUTPUT, PLANNER, WORLD};
 use super::loudness::{Loudness, progress_bar};
-use super::scenario::{ScenarioArgs, replace};
+use super::scenario::{ScenarioArgs, other, replace};
 use super::signals::Signals;
-use super::values::{generator, preset, seconds, seed};
-use crate::files::{read_field, write_field, write_log, write_whole};
+use super::values::{generator, place, preset, seconds, seed, whole};
+use crate::files::{FileError, read_field, try_directory, write_field, write_log, write_whole};
 use crate::link::{FifoLink, PATIENCE, TcpLink};
 use mpp_analysis::figure::flight_svg;
 use mpp_sim::field::FieldFile;
@@ -42,17 +42,17 @@ pub(super) struct FlyArgs {
     #[arg(long, help_heading = WORLD, value_parser = generator())]
     generator: Option<GeneratorName>,
     /// Number of obstacles between 25 m and 240 m downrange [default: 20]
-    #[arg(long, help_heading = WORLD)]
+    #[arg(long, help_heading = WORLD, value_parser = whole::<usize>(), allow_negative_numbers = true)]
     obstacles: Option<usize>,
     /// Number of candidate paths of a planning cycle; with 0 the core tracks the shortest path
     /// itself, without refinement [default: 25]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, value_parser = whole::<u16>(), allow_negative_numbers = true)]
     paths: Option<u16>,
     /// Preset, which is a set of parameters and rules [default: flight]
     #[arg(long, help_heading = PLANNER, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true)]
     replan_hz: Option<f64>,
     /// Let an oracle fly, which knows the true field and state and replans at 10 Hz of the reference aircraft
     #[arg(long, help_heading = CORE, conflicts_with = "link")]
@@ -112,25 +112,18 @@ impl FlyArgs {
         let flown = (log.header.scenario()).map_err(|error| usage(error.to_string()))?;
         let rate = |hz: f64| (hz - flown.replan_hz()).abs() > 1e-9;
         let flags = [
-            ("--seed", self.seed.is_some_and(|seed| seed != flown.seed)),
+            ("--seed", other(self.seed, flown.seed)),
             ("--field", self.other_field(&flown)?),
-            (
-                "--generator",
-                self.generator
-                    .is_some_and(|name| name != flown.generator.name),
-            ),
-            (
-                "--obstacles",
-                self.obstacles.is_some_and(|count| count != flown.obstacles),
-            ),
+            ("--generator", other(self.generator, flown.generator.name)),
+            ("--obstacles", other(self.obstacles, flown.obstacles)),
             (
                 "--paths",
-                self.paths.is_some_and(|count| count != flown.paths),
+                other(
+                    self.paths.map(|paths| flown.preset.flown_paths(paths)),
+                    flown.paths,
+                ),
             ),
-            (
-                "--preset",
-                self.preset.is_some_and(|preset| preset != flown.preset),
-            ),
+            ("--preset", other(self.preset, flown.preset)),
             ("--replan-hz", self.replan_hz.is_some_and(rate)),
             ("--oracle", self.oracle && !flown.oracle),
         ];
@@ -161,7 +154,7 @@ impl FlyArgs {
 fn connect(text: &str, patience: Option<Duration>) -> Result<Box<dyn Link>, Failure> {
     let failed = |error| Failure::new(LINK, error);
     match text.split_once(':') {
-        Some(("tcp", address)) => Ok(Box::new(
+        Some(("tcp", address)) if place(address).is_ok() => Ok(Box::new(
             TcpLink::connect(address, patience.unwrap_or(PATIENCE)).map_err(failed)?,
         )),
         Some(("fifo", _)) if patience.is_some() => Err(Failure::new(
@@ -190,7 +183,7 @@ struct ResultLine<'a> {
     summary: Summary,
     rejections: usize,
     log_hash: &'a str,
-    log: String,
+    log: Option<String>,
     figure: Option<String>,
 }
 
@@ -202,25 +195,27 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
         None => args.scenario()?,
     };
     let signals = Signals::heed()?;
+    let failed = |error: FileError| Failure::new(FAILURE, error);
+    try_directory(&args.out).map_err(failed)?;
     let mut link = args.connect(&scenario)?;
     if let Some(path) = &args.save_field {
         let field = FieldFile::of(&scenario.field().obstacles);
-        write_field(path, &field).map_err(|error| Failure::new(FAILURE, error))?;
+        write_field(path, &field).map_err(failed)?;
     }
+    let progress = progress_bar(u64::from(scenario.ticks), "ticks");
+    let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
     talk(format_args!(
         "flying seed {} past {} obstacles, preset {}, {} paths, core {}",
         scenario.seed,
         scenario.field().obstacles.len(),
         scenario.preset.name(),
-        scenario.paths,
+        scenario.most_candidates(),
         match args.link.as_deref() {
             None if scenario.oracle => "an oracle in this process",
             place => place.unwrap_or("in this process"),
         },
     ));
     args.loudness.tell(|| flown_conditions(&scenario));
-    let progress = progress_bar(u64::from(scenario.ticks), "ticks");
-    let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
     let result = fly_with(&scenario, link.as_mut(), &mut crew);
     // The files first: nothing that goes wrong at the end of a link costs the log.
     let kept = result.as_ref().ok().map(|log| {
@@ -230,8 +225,12 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     let interrupted = crew.ground.interrupted();
     let ended = crew.ground.end(&result);
     let log = result.map_err(|error| Failure::new(exit_code(&error), error))?;
-    let code = match kept {
-        Some(kept) => report(args, &log, &kept?)?,
+    let code = match kept.transpose()? {
+        Some(kept) => {
+            let code = report(args, &log, &kept)?;
+            kept.written?;
+            code
+        }
         None => FAILURE,
     };
     ended?;
@@ -249,10 +248,12 @@ fn exit_code(error: &FlyError) -> u8 {
 
 /// What a flight left on the disk.
 struct Kept {
-    log: PathBuf,
+    log: Option<PathBuf>,
     /// None of a flight that ended before its first tick.
     figure: Option<PathBuf>,
     hash: String,
+    /// The reason why a file is missing. It does not cost the result.
+    written: Result<(), Failure>,
 }
 
 /// Writes the log, then the picture.
@@ -260,25 +261,33 @@ fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
     let failed = |what: &Path, why: String| {
         Failure::new(FAILURE, format!("cannot write {}: {why}", what.display()))
     };
-    std::fs::create_dir_all(out).map_err(|error| failed(out, error.to_string()))?;
-    let flown = !log.ticks.t.is_empty();
-    let kept = Kept {
-        log: out.join(format!("{name}.json")),
-        figure: flown.then(|| out.join(format!("{name}.svg"))),
-        hash: log
-            .hash()
-            .map_err(|error| Failure::new(FAILURE, error.to_string()))?,
+    let hash = log.hash().map_err(|error| Failure::new(FAILURE, error))?;
+    let file = |ending: &str| out.join(format!("{name}.{ending}"));
+    let mut kept = Kept {
+        log: None,
+        figure: None,
+        hash,
+        written: Ok(()),
     };
-    write_log(&kept.log, log).map_err(|error| Failure::new(FAILURE, error))?;
-    if let Some(figure) = &kept.figure {
-        let svg = flight_svg(log).map_err(|error| failed(figure, error.to_string()))?;
-        write_whole(figure, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
-    }
+    let mut write = || {
+        let path = file("json");
+        write_log(&path, log).map_err(|error| Failure::new(FAILURE, error))?;
+        kept.log = Some(path);
+        if !log.ticks.t.is_empty() {
+            let path = file("svg");
+            let svg = flight_svg(log).map_err(|error| failed(&path, error.to_string()))?;
+            write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
+            kept.figure = Some(path);
+        }
+        Ok(())
+    };
+    kept.written = write();
     Ok(kept)
 }
 
 /// Prints the result.
 fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
+    let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let line = ResultLine {
         seed: log.header.seed,
         preset: &log.header.preset,
@@ -288,15 +297,17 @@ fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
         summary: log.summary,
         rejections: log.rejections.len(),
         log_hash: &kept.hash,
-        log: kept.log.display().to_string(),
-        figure: kept.figure.as_ref().map(|path| path.display().to_string()),
+        log: shown(&kept.log),
+        figure: shown(&kept.figure),
     };
     if args.json {
         let text = serde_json::to_string(&line).map_err(|error| Failure::new(FAILURE, error))?;
         data(text)?;
     } else {
-        let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
-        talk(format_args!("log {}, picture {figure}", line.log));
+        if let Some(file) = &line.log {
+            let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
+            talk(format_args!("log {file}, picture {figure}"));
+        }
         data(text_line(&line))?;
     }
     args.loudness.tell(|| told_plans(log));

@@ -25,8 +25,7 @@ Words of the result:
   strict       the flight survived and never left the altitude band of +-11 m
   clearance    least distance to the edge of an obstacle
   replans      planning cycles whose plan was delivered
-  candidates   refined trajectories, over all replans. --paths is the most paths that a cycle may take. Preset
-               flight finds at most 7, and refines the best of them again: so 25 paths may give
+  candidates   refined trajectories, over all replans. A cycle refines its best paths again: so 7 paths may give
                11 candidates a replan
   feasible     candidates that meet every limit
   rejections   inputs that the core refused, such as a damaged frame or an old scan; the log has the causes
@@ -87,8 +86,8 @@ Examples:
 pub(super) const EXPORT: &str = "\
 Examples:
   sil-harness export out/flight-seed1.json > ticks.csv
-  sil-harness export out/flight-seed1.json --format mcap --out flight.mcap     # for Foxglove
-  sil-harness export rows.jsonl --format parquet --out rows.parquet
+  sil-harness export out/flight-seed1.json --out flight.mcap     # for Foxglove
+  sil-harness export rows.jsonl --out rows.parquet
 
 docs/logs.md has every table and column with unit and frame.";
 

@@ -3,7 +3,7 @@
 
 use super::answer::{Failure, USAGE};
 use super::help::{PLANNER, WORLD};
-use super::values::{Item, generator, item, navigation, scene};
+use super::values::{Item, generator, navigation, scene, whole};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
 use mpp_analysis::campaign::{Lists, NamedField};
 use mpp_sim::generator::GeneratorName;
@@ -25,7 +25,7 @@ pub(super) struct ScenarioArgs {
     aircraft: Option<String>,
     /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's
     /// speed squared]
-    #[arg(long, help_heading = WORLD, value_name = "FACTOR")]
+    #[arg(long, help_heading = WORLD, value_name = "FACTOR", allow_negative_numbers = true)]
     world_scale: Option<f64>,
     /// Lidar (TOML, as docs/lidars/example.toml); its keys take precedence over the scenario's
     #[arg(long, help_heading = WORLD, value_name = "FILE")]
@@ -34,13 +34,13 @@ pub(super) struct ScenarioArgs {
     #[arg(long, help_heading = WORLD, value_parser = navigation())]
     navigation: Option<NavigationSource>,
     /// Simulated time from the start of a planning cycle until its plan is flown [ms], a multiple of 10 [default: 10]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true, value_parser = whole::<u32>())]
     latency_ms: Option<u32>,
     /// Planner slices that run between two ticks [default: all that the cycle needs]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true, value_parser = whole::<u32>())]
     slices_per_tick: Option<u32>,
     /// Length of the flight [s], a multiple of 0.01 [default: 20]
-    #[arg(long, help_heading = WORLD)]
+    #[arg(long, help_heading = WORLD, allow_negative_numbers = true)]
     duration: Option<f64>,
 }
 
@@ -83,30 +83,23 @@ impl ScenarioArgs {
     ) -> Result<[(&'static str, bool); 8], Failure> {
         let lidar = self.lidar()?;
         let other_lidar = lidar.is_some_and(|table| table.over(flown.lidar) != flown.lidar);
-        let other = |asked: Option<u32>, is: u32| asked.is_some_and(|asked| asked != is);
-        let slices = other(self.slices_per_tick, flown.slices_per_tick);
         let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
             read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
         });
         let seconds = (self.duration).is_some_and(|asked| (asked - flown.duration()).abs() > 1e-6);
+        let navigation = self.navigation.map(NavigationSource::config);
+        let latency_ms = flown.latency_ticks * TICK_MS;
         Ok([
             ("--lidar", other_lidar),
             ("--scene", self.scene.is_some() && self.scene != flown.scene),
             ("--aircraft", aircraft),
+            ("--world-scale", other(self.world_scale, flown.world_scale)),
+            ("--navigation", other(navigation, flown.navigation)),
+            ("--latency-ms", other(self.latency_ms, latency_ms)),
             (
-                "--world-scale",
-                (self.world_scale).is_some_and(|scale| (scale - flown.world_scale).abs() > 0.0),
+                "--slices-per-tick",
+                other(self.slices_per_tick, flown.slices_per_tick),
             ),
-            (
-                "--navigation",
-                self.navigation
-                    .is_some_and(|source| source.config() != flown.navigation),
-            ),
-            (
-                "--latency-ms",
-                other(self.latency_ms, flown.latency_ticks * TICK_MS),
-            ),
-            ("--slices-per-tick", slices),
             ("--duration", seconds),
         ])
     }
@@ -128,7 +121,7 @@ pub(super) struct FieldArgs {
     #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(generator()))]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<usize>())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(whole::<usize>()), allow_negative_numbers = true)]
     obstacles: Vec<usize>,
 }
 
@@ -148,6 +141,11 @@ impl FieldArgs {
             ..Lists::default()
         })
     }
+}
+
+/// Whether a flag asks for another value than this one.
+pub(super) fn other<T: Copy + PartialEq>(flag: Option<T>, flown: T) -> bool {
+    flag.is_some_and(|asked| asked != flown)
 }
 
 /// Takes a flag's value if it was given.

@@ -48,6 +48,42 @@ where
     Item(|text: &str| text.parse::<T>())
 }
 
+/// Reads a whole number that is not negative.
+pub(super) fn whole<T>() -> impl TypedValueParser<Value = T>
+where
+    T: FromStr + Clone + Send + Sync + 'static,
+{
+    |text: &str| {
+        text.parse::<T>().map_err(|_| match text.parse::<u64>() {
+            Ok(_) => "give a smaller number",
+            Err(_) => "give a whole number of 0 or more",
+        })
+    }
+}
+
+/// Reads HOST:PORT.
+pub(super) fn place(text: &str) -> Result<String, String> {
+    let host = |host: &str| {
+        let bracketed = host.starts_with('[') && host.ends_with(']');
+        !host.is_empty() && (bracketed || !host.contains(':'))
+    };
+    let parts = text.rsplit_once(':');
+    let sound = parts.is_some_and(|(name, port)| host(name) && port.parse::<u16>().is_ok());
+    let advice = || "give HOST:PORT, such as 127.0.0.1:8088".to_owned();
+    sound.then(|| text.to_owned()).ok_or_else(advice)
+}
+
+/// Reads udp:HOST:PORT, or `usual` for the usual addresses.
+pub(super) fn datagrams(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    let sound = text == "usual"
+        || text
+            .strip_prefix("udp:")
+            .is_some_and(|it| place(it).is_ok());
+    let advice = || "give udp:HOST:PORT, such as udp:127.0.0.1:14550".to_owned();
+    sound.then(|| text.to_owned()).ok_or_else(advice)
+}
+
 /// Most threads that a command starts. Each has a stack of 8 MB.
 const MOST_THREADS: i64 = 1024;
 

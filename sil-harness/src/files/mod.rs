@@ -6,74 +6,51 @@ use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
-use std::fmt;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 /// The reason why a file cannot be used. The message names the file.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file cannot be read.
-    Read(PathBuf, io::Error),
+    #[error("cannot read {path}: {1}", path = .0.display())]
+    Read(PathBuf, #[source] io::Error),
     /// There is no aircraft with this name, and no file that can be read.
-    Aircraft(String, io::Error),
+    #[error(
+        "there is no aircraft `{0}`, and no such file can be read ({1}): give {known} or a file",
+        known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ")
+    )]
+    Aircraft(String, #[source] io::Error),
     /// The file cannot be written.
-    Write(PathBuf, io::Error),
+    #[error("cannot write {path}: {1}", path = .0.display())]
+    Write(PathBuf, #[source] io::Error),
     /// The file is no scenario; the error names the file.
-    Scenario(ScenarioError),
+    #[error("{0}")]
+    Scenario(#[source] ScenarioError),
     /// The file is no field; the error names the file.
-    Field(FieldError),
+    #[error("{0}")]
+    Field(#[source] FieldError),
+    /// The file has rows of a campaign, where a flight's log is wanted.
+    #[error("{path} is a row file: give a flight's log, which fly writes", path = .0.display())]
+    Rows(PathBuf),
     /// The file is no flight log, or the log cannot be written.
-    Log(PathBuf, LogError),
+    #[error("{path}: {1}", path = .0.display())]
+    Log(PathBuf, #[source] LogError),
     /// The file holds no programs.
-    Instances(PathBuf, InstanceError),
+    #[error("{path}: {1}", path = .0.display())]
+    Instances(PathBuf, #[source] InstanceError),
     /// The directory holds no programs.
+    #[error(
+        "{}: no programs: give a file of instances or a directory with case_*.json",
+        .0.display()
+    )]
     NoInstances(PathBuf),
     /// The directory holds no recorded data.
+    #[error(
+        "{} holds no .json files: give the directory of the recorded reference",
+        .0.display()
+    )]
     NoRecords(PathBuf),
-}
-
-impl fmt::Display for FileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Read(path, error) => write!(f, "cannot read {}: {error}", path.display()),
-            Self::Aircraft(name, error) => {
-                let known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ");
-                write!(
-                    f,
-                    "there is no aircraft `{name}`, and no such file can be read ({error}): give {known} or a file"
-                )
-            }
-            Self::Write(path, error) => write!(f, "cannot write {}: {error}", path.display()),
-            Self::Scenario(error) => write!(f, "{error}"),
-            Self::Field(error) => write!(f, "{error}"),
-            Self::Log(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::Instances(path, error) => write!(f, "{}: {error}", path.display()),
-            Self::NoInstances(path) => write!(
-                f,
-                "{}: no programs: give a file of instances or a directory with case_*.json",
-                path.display()
-            ),
-            Self::NoRecords(path) => write!(
-                f,
-                "{} holds no .json files: give the directory of the recorded reference",
-                path.display()
-            ),
-        }
-    }
-}
-
-impl std::error::Error for FileError {
-    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
-        match self {
-            Self::Read(_, error) | Self::Aircraft(_, error) | Self::Write(_, error) => Some(error),
-            Self::Scenario(error) => Some(error),
-            Self::Field(error) => Some(error),
-            Self::Log(_, error) => Some(error),
-            Self::Instances(_, error) => Some(error),
-            Self::NoInstances(_) | Self::NoRecords(_) => None,
-        }
-    }
 }
 
 /// Greatest size of a file that people write: scenarios, parameters, keys \[bytes\].
@@ -85,7 +62,8 @@ pub const MOST_RECORDED: u64 = 1 << 30;
 /// Greatest number of bytes from a pipe or a device, which may have no end.
 const MOST_STREAMED: u64 = 64 << 20;
 
-/// Reads a text of at most so many bytes. A pipe or a device gives fewer.
+/// Reads a text of at most so many bytes. A pipe or a device gives fewer. A byte order mark, which some editors write,
+/// is no part of it.
 ///
 /// # Errors
 /// The error of the operating system; or the file is longer, or is no text.
@@ -102,9 +80,13 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
         let why = format!("it has more than {most} bytes: give another file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
     }
-    String::from_utf8(bytes).map_err(|_| {
+    let text = String::from_utf8(bytes).map_err(|_| {
         let why = "it is no UTF-8 text: give another file";
         io::Error::new(io::ErrorKind::InvalidData, why)
+    })?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
     })
 }
 
@@ -205,8 +187,11 @@ pub fn read_recorded(path: &Path) -> Result<String, FileError> {
 /// The flight's log that a text of this file holds.
 ///
 /// # Errors
-/// [`FileError::Log`].
+/// [`FileError::Log`] or [`FileError::Rows`].
 pub fn parse_log(path: &Path, text: &str) -> Result<FlightLog, FileError> {
+    if is_row_file(text) {
+        return Err(FileError::Rows(path.to_owned()));
+    }
     FlightLog::from_json(text.as_bytes()).map_err(|error| FileError::Log(path.to_owned(), error))
 }
 
@@ -214,6 +199,20 @@ pub fn parse_log(path: &Path, text: &str) -> Result<FlightLog, FileError> {
 #[must_use]
 pub fn is_row_file(text: &str) -> bool {
     text.starts_with("{\"rows\":")
+}
+
+/// Makes a directory if there is none, and writes and removes a file there: a flight should not end to find that its log
+/// has no place.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn try_directory(directory: &Path) -> Result<(), FileError> {
+    let failed = |error| FileError::Write(directory.to_owned(), error);
+    std::fs::create_dir_all(directory).map_err(failed)?;
+    let probe = beside(&directory.join("probe"));
+    std::fs::write(&probe, "")
+        .and_then(|()| std::fs::remove_file(&probe))
+        .map_err(failed)
 }
 
 /// Writes a flight's log: exactly the bytes that are hashed.

@@ -61,6 +61,17 @@ fn a_file_that_is_not_there_is_named() {
     );
 }
 
+#[test]
+fn a_folder_is_tried_before_it_is_needed() {
+    let folder = std::env::temp_dir().join(format!("mpp-tried-{}", std::process::id()));
+    try_directory(&folder.join("deep")).unwrap();
+    assert_eq!(std::fs::read_dir(folder.join("deep")).unwrap().count(), 0);
+    std::fs::write(folder.join("file"), "").unwrap();
+    let error = try_directory(&folder.join("file")).unwrap_err().to_string();
+    assert!(error.starts_with("cannot write "), "{error}");
+    std::fs::remove_dir_all(folder).unwrap();
+}
+
 /// What was there stays until the new bytes are, and nothing else is left behind.
 #[test]
 fn a_file_is_written_whole_or_not_at_all() {

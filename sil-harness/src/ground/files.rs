@@ -70,9 +70,9 @@ impl Request {
     }
 }
 
-/// What an answer says.
-pub(super) struct Answer {
-    /// How many answers to this request came before.
+/// What a reply says.
+pub(super) struct FileReply {
+    /// How many replies to this request came before.
     pub(super) number: u16,
     pub(super) offset: u32,
     pub(super) data: Vec<u8>,
@@ -80,7 +80,7 @@ pub(super) struct Answer {
     pub(super) is_last: bool,
 }
 
-impl Answer {
+impl FileReply {
     pub(super) fn of(data: Vec<u8>) -> Self {
         Self {
             number: 0,
@@ -111,13 +111,13 @@ impl Files {
         general.sum()
     }
 
-    /// The answers to a request, or why there is none.
+    /// The replies to a request, or why there is none.
     pub(super) fn answer(
         &mut self,
         request: &Request,
         from: Address,
-    ) -> Result<Vec<Answer>, Refusal> {
-        let one = |data| Ok(vec![Answer::of(data)]);
+    ) -> Result<Vec<FileReply>, Refusal> {
+        let one = |data| Ok(vec![FileReply::of(data)]);
         match request.opcode {
             opcode::TERMINATE => {
                 self.open
@@ -162,7 +162,7 @@ impl Files {
     }
 
     /// The names and lengths of the files, from the one at the offset on. All of them fit into one answer.
-    fn list(&self, request: &Request) -> Result<Answer, Refusal> {
+    fn list(&self, request: &Request) -> Result<FileReply, Refusal> {
         if !matches!(request.path.as_str(), "" | "/" | ".") {
             return Err(Refusal::NotFound);
         }
@@ -176,9 +176,9 @@ impl Files {
         let entries = rest
             .iter()
             .map(|file| format!("F{}\t{}\0", file.name, file.bytes.len()));
-        Ok(Answer {
+        Ok(FileReply {
             offset: request.offset,
-            ..Answer::of(entries.collect::<String>().into_bytes())
+            ..FileReply::of(entries.collect::<String>().into_bytes())
         })
     }
 
@@ -201,22 +201,22 @@ impl Files {
 }
 
 /// The part of a file at the offset of a request, or a later one.
-fn part(file: &File, request: &Request, number: u16) -> Result<Answer, Refusal> {
+fn part(file: &File, request: &Request, number: u16) -> Result<FileReply, Refusal> {
     let length = request.length();
     let start = (request.offset as usize).saturating_add(usize::from(number) * length);
     let rest = file.bytes.get(start..).unwrap_or_default();
     if rest.is_empty() {
         return Err(Refusal::EndOfFile);
     }
-    Ok(Answer {
+    Ok(FileReply {
         number,
         offset: start as u32,
-        ..Answer::of(rest.iter().take(length).copied().collect())
+        ..FileReply::of(rest.iter().take(length).copied().collect())
     })
 }
 
 /// Some parts of a file after each other. The station asks for those behind them.
-fn burst(file: &File, request: &Request) -> Result<Vec<Answer>, Refusal> {
+fn burst(file: &File, request: &Request) -> Result<Vec<FileReply>, Refusal> {
     let mut parts = vec![part(file, request, 0)?];
     parts.extend((1..BURST).map_while(|number| part(file, request, number).ok()));
     if let Some(last) = parts.last_mut() {

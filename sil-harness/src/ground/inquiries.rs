@@ -7,8 +7,8 @@ use super::vehicle::{Severity, Vehicle};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
 use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory};
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::Mode;
+use mpp_sim::tick_record::TickRecord;
 
 /// MAV_TYPE_FIXED_WING.
 const FIXED_WING: u8 = 1;
@@ -264,8 +264,8 @@ impl Vehicle {
         });
     }
 
-    pub(super) fn report_scan(&mut self, moment: &Moment<'_>) {
-        let (Some(scan), Some(tuning)) = (moment.scan, self.tuning) else {
+    pub(super) fn report_scan(&mut self, record: &TickRecord<'_>) {
+        let (Some(scan), Some(tuning)) = (record.scan, self.tuning) else {
             return;
         };
         let centimetres = |metres: f32| (metres * 100.0).round() as u16;

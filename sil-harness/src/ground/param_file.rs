@@ -1,24 +1,17 @@
 //! Parameter files, as ground stations read and write them: a name and a value in each line.
 
 use mpp_node::parameters::{PARAMETERS, Tuning};
-use std::fmt::{self, Write};
+use std::fmt::Write;
 
 /// An error in a parameter file.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("line {line}: `{text}` is not NAME,VALUE")]
 pub struct ParamFileError {
     /// The line, counted from 1.
     pub line: usize,
     /// Text of the line, or its beginning.
     pub text: String,
 }
-
-impl fmt::Display for ParamFileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "line {}: `{}` is not NAME,VALUE", self.line, self.text)
-    }
-}
-
-impl std::error::Error for ParamFileError {}
 
 /// Greatest length of a name, and of a line's part in a message \[letters\]. No parameter has a name of
 /// more than 16.

@@ -1,7 +1,7 @@
 //! Answers about files and logs. There are no logs. A station that gets no answer waits for seconds.
 
 use super::demands::Address;
-use super::files::{Answer, DATA, HEAD, Request};
+use super::files::{DATA, FileReply, HEAD, Request};
 use super::vehicle::Vehicle;
 use hil_protocol::mavlink::messages::{
     FILE_TRANSFER_PROTOCOL_DATA, LOG_ENTRY_DATA, LOG_REQUEST_LIST_DATA,
@@ -31,24 +31,24 @@ impl Vehicle {
             return;
         }
         match self.files.answer(&request, to) {
-            Ok(answers) => {
-                for answer in &answers {
-                    self.send_file_answer(&request, ACK, answer, to);
+            Ok(replies) => {
+                for reply in &replies {
+                    self.send_file_reply(&request, ACK, reply, to);
                 }
             }
             Err(refusal) => {
-                let answer = Answer::of(vec![refusal as u8]);
-                self.send_file_answer(&request, NAK, &answer, to);
+                let reply = FileReply::of(vec![refusal as u8]);
+                self.send_file_reply(&request, NAK, &reply, to);
             }
         }
     }
 
-    fn send_file_answer(&mut self, request: &Request, opcode: u8, answer: &Answer, to: Address) {
-        let after = answer.number.wrapping_add(1);
+    fn send_file_reply(&mut self, request: &Request, opcode: u8, reply: &FileReply, to: Address) {
+        let after = reply.number.wrapping_add(1);
         let sequence = request.sequence.wrapping_add(after).to_le_bytes();
-        let offset = answer.offset.to_le_bytes();
-        let size = answer.data.len() as u8;
-        let last = u8::from(answer.is_last);
+        let offset = reply.offset.to_le_bytes();
+        let size = reply.data.len() as u8;
+        let last = u8::from(reply.is_last);
         let head = [opcode, size, request.opcode, last, 0];
         let mut payload = [0; HEAD + DATA];
         let bytes = sequence
@@ -56,7 +56,7 @@ impl Vehicle {
             .chain([&request.session])
             .chain(&head)
             .chain(&offset)
-            .chain(&answer.data);
+            .chain(&reply.data);
         for (place, byte) in payload.iter_mut().zip(bytes) {
             *place = *byte;
         }

@@ -7,8 +7,8 @@ use super::vehicle::Vehicle;
 use crate::files::{MOST_WRITTEN, read_text, write_soon};
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order, Refused};
+use mpp_sim::tick_record::TickRecord;
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::net::{Ipv4Addr, SocketAddr, ToSocketAddrs, UdpSocket};
@@ -271,9 +271,9 @@ impl Ground for Transport {
         self.vehicle.is_armed()
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
+    fn watch(&mut self, record: &TickRecord<'_>) {
         let since_start = self.vehicle.microseconds();
-        self.vehicle.observe(moment);
+        self.vehicle.observe(record);
         self.deliver(since_start);
     }
 }

@@ -16,9 +16,9 @@ use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, Framer, Key, Sender};
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
 use mpp_node::parameters::{self, Tuning};
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Mode, Order, Refused};
 use mpp_sim::scenario::{TICK_MS, TICK_US};
+use mpp_sim::tick_record::TickRecord;
 use std::collections::VecDeque;
 use std::net::SocketAddr;
 
@@ -266,23 +266,23 @@ impl Vehicle {
     }
 
     /// Takes one tick of the flight.
-    pub fn observe(&mut self, moment: &Moment<'_>) {
+    pub fn observe(&mut self, record: &TickRecord<'_>) {
         self.flying = true;
         // A station sees what the aircraft believes, as it would from a real one.
-        self.state = moment.tick.estimate;
-        self.estimate = moment.tick.estimate.air;
-        self.thrust = moment.tick.control.thrust;
-        self.wind = moment.tick.conditions.wind;
-        for entry in moment.rejections.iter().skip(self.rejections) {
+        self.state = record.tick.estimate;
+        self.estimate = record.tick.estimate.air;
+        self.thrust = record.tick.control.thrust;
+        self.wind = record.tick.conditions.wind;
+        for entry in record.rejections.iter().skip(self.rejections) {
             self.note_fault(&entry.cause);
         }
-        self.rejections = moment.rejections.len();
-        self.report_sensors(&moment.sensors);
-        self.report_scan(moment);
-        if let Some(report) = moment.report {
+        self.rejections = record.rejections.len();
+        self.report_sensors(&record.sensors);
+        self.report_scan(record);
+        if let Some(report) = record.report {
             self.report_plan(report);
         }
-        if let Some(trajectory) = moment.trajectory {
+        if let Some(trajectory) = record.trajectory {
             self.send_trajectory(trajectory);
         }
         self.pass();

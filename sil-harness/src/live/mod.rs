@@ -19,8 +19,8 @@ use mpp_node::parameters::Tuning;
 use mpp_sim::entries::Columns;
 use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{FlightLog, Header};
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Order, OrderEntry};
+use mpp_sim::tick_record::TickRecord;
 use serde::Serialize;
 pub use shared::Wish;
 use shared::{Shared, State};
@@ -101,14 +101,14 @@ impl Live {
     }
 
     /// Takes one tick that was flown with these values in force.
-    pub fn watch(&mut self, moment: &Moment<'_>, tuning: &Tuning) {
-        self.batch.push(moment.tick);
+    pub fn watch(&mut self, record: &TickRecord<'_>, tuning: &Tuning) {
+        self.batch.push(record.tick);
         self.approach
-            .reach((moment.tick.state.x, moment.tick.state.z));
+            .reach((record.tick.state.x, record.tick.state.z));
         if self.batch.t.len() >= BATCH {
             self.flush();
         }
-        if let Some(plan) = moment.plan {
+        if let Some(plan) = record.plan {
             self.tell("plan", plan);
         }
         // The inspector does not exist before the first tick: until then any parameter may change.
@@ -116,7 +116,7 @@ impl Live {
             self.inspector = Inspector::new(tuning).ok();
         }
         let inspector = self.inspector.as_mut();
-        let detail: Option<PlanDetail> = inspector.and_then(|i| i.look(moment, tuning));
+        let detail: Option<PlanDetail> = inspector.and_then(|i| i.look(record, tuning));
         if let Some(detail) = detail {
             self.tell("detail", &detail);
         }

@@ -20,29 +20,66 @@ pub(super) struct Request {
     pub(super) last_event: Option<String>,
 }
 
+/// Why there is no request.
+#[derive(Debug)]
+pub(super) enum NoRequest {
+    /// Nothing can be answered.
+    Gone(io::Error),
+    /// What came gets this status and this text for an answer.
+    Refused(&'static str, &'static str),
+}
+
+impl From<io::Error> for NoRequest {
+    fn from(error: io::Error) -> Self {
+        Self::Gone(error)
+    }
+}
+
 /// Reads a head with `read`, which waits no longer than it is told; `elapsed` is the time since the
 /// browser connected.
 pub(super) fn head(
     mut read: impl FnMut(&mut [u8], Duration) -> io::Result<usize>,
     mut elapsed: impl FnMut() -> Duration,
-) -> io::Result<Request> {
+) -> Result<Request, NoRequest> {
     let mut bytes = Vec::new();
     let mut buffer = [0; 1024];
-    while !bytes.ends_with(b"\r\n\r\n") {
+    loop {
         let left = QUESTION.saturating_sub(elapsed());
         if left.is_zero() {
-            return Err(ErrorKind::TimedOut.into());
+            return Err(io::Error::from(ErrorKind::TimedOut).into());
         }
         let count = read(&mut buffer, left)?;
         bytes.extend(buffer.iter().take(count));
-        if count == 0 || bytes.len() > HEAD {
-            return Err(ErrorKind::InvalidData.into());
+        let end = end_of_head(&bytes);
+        if end.unwrap_or(bytes.len()) > HEAD {
+            let status = "431 Request Header Fields Too Large";
+            return Err(NoRequest::Refused(status, "give a head of at most 8 kB"));
+        }
+        if let Some(end) = end {
+            return parse(&String::from_utf8_lossy(
+                bytes.get(..end).unwrap_or_default(),
+            ));
+        }
+        if count == 0 {
+            return Err(io::Error::from(ErrorKind::UnexpectedEof).into());
         }
     }
-    Ok(parse(&String::from_utf8_lossy(&bytes)))
 }
 
-fn parse(head: &str) -> Request {
+/// Length of a head up to its empty line \[bytes\], if it has come. Some programs end lines without a carriage return.
+fn end_of_head(bytes: &[u8]) -> Option<usize> {
+    let length = |end: &[u8]| {
+        let at = bytes.windows(end.len()).position(|window| window == end);
+        at.map(|at| at + end.len())
+    };
+    [length(b"\n\r\n"), length(b"\n\n")]
+        .into_iter()
+        .flatten()
+        .min()
+}
+
+fn parse(head: &str) -> Result<Request, NoRequest> {
+    let wrong = |why| Err(NoRequest::Refused("400 Bad Request", why));
     let mut lines = head.lines();
     let mut words = lines.next().unwrap_or_default().split_whitespace();
     let mut word = || words.next().unwrap_or_default().to_owned();
@@ -52,16 +89,22 @@ fn parse(head: &str) -> Request {
         ..Request::default()
     };
     for (name, value) in lines.filter_map(|line| line.split_once(':')) {
-        let value = Some(value.trim().to_owned());
-        match name.to_ascii_lowercase().as_str() {
-            "host" => request.host = value,
-            "origin" => request.origin = value,
-            "x-token" => request.token = value,
-            "last-event-id" => request.last_event = value,
-            _ => {}
+        let value = value.trim().to_owned();
+        let place = match name.to_ascii_lowercase().as_str() {
+            "host" => &mut request.host,
+            "origin" => &mut request.origin,
+            "x-token" => &mut request.token,
+            "last-event-id" => &mut request.last_event,
+            "content-length" if value != "0" => return wrong("give a request without a body"),
+            "transfer-encoding" => return wrong("give a request without a body"),
+            _ => continue,
+        };
+        // Which of two holds, programs do not agree about.
+        if place.replace(value).is_some() {
+            return wrong("give each line of the head once");
         }
     }
-    request
+    Ok(request)
 }
 
 #[cfg(test)]
@@ -80,7 +123,13 @@ mod tests {
             token: Some("c".to_owned()),
             last_event: Some("d-1".to_owned()),
         };
-        for size in [1, 7, 1000] {
+        let bare = String::from_utf8_lossy(text).replace('\r', "");
+        for (text, size) in [
+            (&text[..], 1),
+            (text, 7),
+            (text, 1000),
+            (bare.as_bytes(), 5),
+        ] {
             let mut bits = text.chunks(size);
             let read = |buffer: &mut [u8], _| {
                 let bit = bits.next().unwrap();
@@ -102,12 +151,33 @@ mod tests {
             seconds += 1;
             Duration::from_secs(seconds)
         };
-        let error = head(drip, clock).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::TimedOut);
+        let gone = |result: Result<Request, NoRequest>| match result.unwrap_err() {
+            NoRequest::Gone(error) => error.kind(),
+            refused => panic!("{refused:?}"),
+        };
+        assert_eq!(gone(head(drip, clock)), ErrorKind::TimedOut);
         assert_eq!(seconds, QUESTION.as_secs());
-        let error = head(drip, || Duration::ZERO).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::InvalidData);
-        let error = head(|_, _| Ok(0), || Duration::ZERO).unwrap_err();
-        assert_eq!(error.kind(), ErrorKind::InvalidData);
+        let end = head(|_, _| Ok(0), || Duration::ZERO);
+        assert_eq!(gone(end), ErrorKind::UnexpectedEof);
+        let endless = head(drip, || Duration::ZERO).unwrap_err();
+        assert!(matches!(endless, NoRequest::Refused(status, _) if status.starts_with("431")));
+    }
+
+    #[test]
+    fn a_body_and_a_line_that_comes_twice_are_refused() {
+        for (line, advice) in [
+            ("Host: b", "each line of the head once"),
+            ("hOST: a", "each line of the head once"),
+            ("Content-Length: 3", "without a body"),
+            ("Transfer-Encoding: chunked", "without a body"),
+        ] {
+            let refused = parse(&format!("GET / HTTP/1.1\r\nHost: a\r\n{line}\r\n\r\n"));
+            let Err(NoRequest::Refused(status, why)) = refused else {
+                panic!("{line}: {refused:?}");
+            };
+            assert!(status.starts_with("400") && why.contains(advice), "{why}");
+        }
+        // Browsers send this with a POST that has no body.
+        assert!(parse("POST / HTTP/1.1\r\nHost: a\r\nContent-Length: 0\r\n\r\n").is_ok());
     }
 }

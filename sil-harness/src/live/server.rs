@@ -1,11 +1,11 @@
 //! The server of the live page: it answers requests, each on a thread of its own.
 
-use super::request::{Request, head};
+use super::request::{NoRequest, Request, head};
 use super::shared::{Shared, Wish};
 use crate::pace;
 use mpp_analysis::picture::live_page;
 use std::io::{self, Read, Write};
-use std::net::{TcpListener, TcpStream};
+use std::net::{Shutdown, TcpListener, TcpStream};
 use std::sync::{Arc, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -44,7 +44,7 @@ fn welcome(stream: TcpStream, shared: &Arc<Shared>) {
     if stream.set_write_timeout(Some(PATIENCE)).is_err() {
         return;
     }
-    let Some(place) = Place::take(shared) else {
+    let Some(place) = ViewerPlace::take(shared) else {
         let again = "too many pages look at this flight: close one";
         let _ = respond(&stream, "503 Service Unavailable", "text/plain", again);
         return;
@@ -59,9 +59,9 @@ fn welcome(stream: TcpStream, shared: &Arc<Shared>) {
 }
 
 /// One of the [`PLACES`], until it is dropped.
-struct Place(Arc<Shared>);
+struct ViewerPlace(Arc<Shared>);
 
-impl Place {
+impl ViewerPlace {
     fn take(shared: &Arc<Shared>) -> Option<Self> {
         let mut state = shared.lock();
         (state.places < PLACES).then(|| {
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-impl Drop for Place {
+impl Drop for ViewerPlace {
     fn drop(&mut self) {
         self.0.lock().places -= 1;
     }
@@ -84,7 +84,11 @@ fn answer(mut stream: &TcpStream, shared: &Shared) -> io::Result<()> {
         stream.set_read_timeout(Some(patience))?;
         stream.read(buffer)
     };
-    let request = head(read, || begin.elapsed())?;
+    let request = match head(read, || begin.elapsed()) {
+        Ok(request) => request,
+        Err(NoRequest::Gone(error)) => return Err(error),
+        Err(NoRequest::Refused(status, why)) => return dismiss(stream, status, why),
+    };
     if !shared.door.admits(&request, stream.local_addr()?) {
         let why = "this page is not the flight's own: open the address that the harness printed";
         return respond(stream, "403 Forbidden", "text/plain", why);
@@ -121,10 +125,29 @@ fn obey(stream: &TcpStream, shared: &Shared, path: &str) -> io::Result<()> {
     respond(stream, "204 No Content", "text/plain", "")
 }
 
+/// Refuses what has not come whole. Reads some of the rest: what is not read might take the answer with it.
+fn dismiss(mut stream: &TcpStream, status: &str, why: &str) -> io::Result<()> {
+    const MOST: usize = 64;
+    const REST: Duration = Duration::from_millis(500);
+    respond(stream, status, "text/plain", why)?;
+    stream.shutdown(Shutdown::Write)?;
+    stream.set_read_timeout(Some(REST))?;
+    let mut buffer = [0; 4096];
+    for _ in 0..MOST {
+        if stream.read(&mut buffer)? == 0 {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// No other page may hold this one in a frame, where people would press its buttons unknowingly, and nothing may keep
+/// its token.
 fn respond(mut stream: &TcpStream, status: &str, kind: &str, body: &str) -> io::Result<()> {
     write!(
         stream,
-        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nConnection: close\r\n\r\n{body}",
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+         Content-Security-Policy: frame-ancestors 'none'\r\nX-Frame-Options: DENY\r\nConnection: close\r\n\r\n{body}",
         body.len()
     )
 }

@@ -36,6 +36,43 @@ fn csv_goes_to_the_standard_output_or_into_a_file() {
     std::fs::remove_dir_all(out).unwrap();
 }
 
+/// People name the file that they want. Without the feature `formats` only CSV can be had, and this is said.
+#[test]
+fn the_ending_of_a_file_says_its_format() {
+    let (_, out) = run("endings", &["fly", "--duration", "1"]);
+    let log = out.join("flight-seed1-1s.json");
+    let to = |name: &str, flags: &[&str]| {
+        let file = out.join(name);
+        let output = export(&[&["--out", file.to_str().unwrap()], flags].concat(), &log);
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        (output.status.code(), talk, std::fs::read(file).ok())
+    };
+    for (name, format, magic) in [
+        ("x.mcap", "MCAP", &b"\x89MCAP"[..]),
+        ("x.PARQUET", "Parquet", b"PAR1"),
+    ] {
+        let (code, talk, bytes) = to(name, &[]);
+        if cfg!(feature = "formats") {
+            assert!(
+                bytes.is_some_and(|bytes| bytes.starts_with(magic)),
+                "{talk}"
+            );
+        } else {
+            assert_eq!((code, bytes), (Some(2), None), "{talk}");
+            assert!(talk.contains(&format!("built without {format}")), "{talk}");
+        }
+        let (code, talk, bytes) = to(&format!("2{name}"), &["--format", "csv"]);
+        assert_eq!((code, bytes), (Some(2), None), "{talk}");
+        assert!(talk.contains("leave --format out"), "{talk}");
+    }
+    for name in ["x.csv", "x.txt", "x"] {
+        let (code, _, bytes) = to(name, &[]);
+        assert_eq!(code, Some(0));
+        assert!(bytes.unwrap().starts_with(b"t,x,z,"), "{name}");
+    }
+    std::fs::remove_dir_all(out).unwrap();
+}
+
 /// A pipe gives its bytes once only.
 #[cfg(unix)]
 #[test]

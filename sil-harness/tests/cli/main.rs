@@ -1,6 +1,7 @@
 //! The command line as a user meets it: exit codes, what is printed where, what is written.
 
 mod aircraft;
+mod brought;
 mod ceiling;
 mod export;
 mod json;

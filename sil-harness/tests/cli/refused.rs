@@ -68,11 +68,40 @@ fn an_unknown_aircraft_is_refused_with_the_known_ones() {
 }
 
 #[test]
-fn a_flag_that_nothing_would_read_is_refused() {
+fn a_row_file_is_no_log() {
+    let rows = scratch("rows-for-logs.jsonl");
+    std::fs::write(&rows, "{\"rows\":3}\n").unwrap();
+    for command in ["replay", "fly --orders"] {
+        let talk = refused(&format!("{command} {}", rows.display()));
+        assert!(
+            talk.contains("is a row file: give a flight's log"),
+            "{talk}"
+        );
+    }
+    std::fs::remove_file(rows).unwrap();
+}
+
+#[test]
+fn a_flag_that_nothing_could_follow_is_refused() {
     for (command, hint) in [
         ("fly --instance 3", "without --mavlink, --live or --tlog"),
         ("fly --patience 3", "--link"),
         ("fly --patience 3 --link fifo:none", "leave it out"),
+        ("fly --obstacles -3", "give a whole number of 0 or more"),
+        ("fly --paths -1", "give a whole number of 0 or more"),
+        ("fly --paths 99999", "give a smaller number"),
+        ("fly --obstacles some", "give a whole number of 0 or more"),
+        (
+            "campaign --obstacles -3",
+            "give a whole number of 0 or more",
+        ),
+        ("fly --replan-hz -4", "replan_hz: give a rate"),
+        ("fly --duration -1", "duration: give 0.01"),
+        ("campaign --report none.jsonl", "cannot read none.jsonl"),
+        (
+            "fly --generator endless --obstacles 200 --duration 900",
+            "about 12591, and may have 5000",
+        ),
     ] {
         let talk = refused(command);
         assert!(talk.contains(hint), "{talk}");

@@ -86,6 +86,8 @@ fn a_log_that_does_not_fit_leaves_the_one_before() {
     assert_eq!(again.status.code(), Some(1), "{}", talk(&again));
     assert!(talk(&again).contains("cannot write"), "{}", talk(&again));
     assert_eq!(files(), before);
+    // The flight was flown, so its result is told.
+    assert_eq!(again.stdout, first.stdout);
     std::fs::remove_dir_all(directory).unwrap();
 }
 

@@ -111,7 +111,7 @@ fn a_folder_that_takes_no_file_is_named() {
         place,
     ];
     let output = run_in(Path::new("/"), &arguments);
-    assert_eq!(output.status.code(), Some(2), "{}", talk(&output));
+    assert_eq!(output.status.code(), Some(1), "{}", talk(&output));
     let told = talk(&output);
     let expected = format!("cannot open {place}: ");
     assert!(

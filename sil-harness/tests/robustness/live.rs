@@ -93,6 +93,56 @@ fn only_the_flights_own_page_changes_its_pace() {
 }
 
 #[test]
+fn the_page_stands_in_no_frame_and_is_not_kept() {
+    let live = open();
+    for request in ["GET /", "GET /nothing", "POST /control?pause=1"] {
+        let answer = answer(ask(&live, request, ""));
+        let (head, _) = answer.split_once("\r\n\r\n").unwrap();
+        for line in [
+            "Cache-Control: no-store",
+            "Content-Security-Policy: frame-ancestors 'none'",
+            "X-Frame-Options: DENY",
+        ] {
+            assert!(head.lines().any(|found| found == line), "{request}: {head}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_request_is_told_so_at_once() {
+    let live = open();
+    let (host, token) = (live.address(), token(&live));
+    let pause = format!("POST /control?pause=1 HTTP/1.1\r\nX-Token: {token}\r\nHost: {host}\r\n");
+    let long = format!("X-Long: {}\r\n", "a".repeat(20_000));
+    for (lines, rest, expected) in [
+        ("Host: evil.example\r\n", "", "400"),
+        ("Content-Length: 7\r\n", "pause=1", "400"),
+        ("Content-Length: 100000\r\n", "pause=1", "400"),
+        (
+            "Transfer-Encoding: chunked\r\n",
+            "1\r\na\r\n0\r\n\r\n",
+            "400",
+        ),
+        (long.as_str(), "", "431"),
+    ] {
+        let mut stream = TcpStream::connect(host).unwrap();
+        let request = format!("{pause}{lines}\r\n{rest}");
+        stream.write_all(request.as_bytes()).unwrap();
+        stream.shutdown(std::net::Shutdown::Write).unwrap();
+        let answer = answer(stream);
+        assert_eq!(status(&answer), expected, "{answer}");
+        assert!(answer.contains("\r\n\r\ngive "), "{answer}");
+        assert_eq!(live.wish(), AS_STARTED, "{lines}");
+    }
+    // Lines without a carriage return are read as well.
+    let mut stream = TcpStream::connect(host).unwrap();
+    let bare = format!("{pause}\r\n").replace('\r', "");
+    stream.write_all(bare.as_bytes()).unwrap();
+    assert_eq!(status(&answer(stream)), "204");
+    assert!(live.wish().pause);
+}
+
+#[test]
 fn a_speed_out_of_range_is_refused_with_the_range() {
     let live = open();
     let token = format!("X-Token: {}\r\n", token(&live));

@@ -1,6 +1,6 @@
 //! Random numbers with a liking for the edges.
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 /// A generator that gives the same numbers for the same seed and round.

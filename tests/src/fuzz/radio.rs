@@ -4,7 +4,6 @@ use super::draw::Draw;
 use super::{ROUND, Report};
 use hil_protocol::mavlink::messages::{COMMAND_LONG_DATA, HEARTBEAT_DATA, PARAM_SET_DATA};
 use hil_protocol::mavlink::{Framer, Key, MAX_FRAME, MessageData, Sender, Signer, Verifier};
-use mavlink_core::MavlinkVersion;
 
 /// The time of the verifier's start [10 us since 2015-01-01].
 const START: u64 = 1 << 44;
@@ -82,13 +81,13 @@ fn any_message(draw: &mut Draw, sender: &mut Sender, signer: Option<&mut Signer>
     }
 }
 
-fn frame<M: MessageData + Default>(
+fn frame<M: MessageData>(
     draw: &mut Draw,
     sender: &mut Sender,
     signer: Option<&mut Signer>,
 ) -> Vec<u8> {
     let payload: Vec<u8> = (0..64).map(|_| draw.bits() as u8).collect();
-    let message = M::deser(MavlinkVersion::V2, &payload).unwrap_or_default();
+    let message = M::deser(&payload);
     let frame = match signer {
         Some(signer) => sender.signed_frame(&message, signer),
         None => sender.frame(&message),

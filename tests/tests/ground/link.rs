@@ -1,11 +1,11 @@
 //! Tests the link itself: bad, silent, signed, recorded.
 
 use crate::radio::{CONFIG, Channel, HERE, Radio, command, heartbeat, scenario, write};
+use chacha20::ChaCha8Rng;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
 use mpp_sim::flight::fly;
 use mpp_sim::pipe::PipeLink;
-use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
 

@@ -6,10 +6,10 @@ use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::tick_record::TickRecord;
 use sil_harness::ground::tlog::TlogWriter;
 use sil_harness::ground::vehicle::{Outgoing, Vehicle, VehicleConfig};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -180,23 +180,22 @@ impl Radio {
         for datagram in self.datagrams(THERE, &outgoing) {
             let heard = &mut self.heard_there;
             Framer::new().receive_datagram(&datagram, |frame| {
-                heard.push((now, frame.bytes[4], message(frame.id, frame.payload)));
+                heard.push((
+                    now,
+                    frame.bytes[4],
+                    MavMessage::parse(frame.id, frame.payload).unwrap(),
+                ));
             });
         }
         let datagrams = self.datagrams(HERE, &outgoing);
         for datagram in (self.down)(datagrams) {
             let heard = &mut self.heard;
             self.framer.receive_datagram(&datagram, |frame| {
-                heard.push((now, message(frame.id, frame.payload)));
+                heard.push((now, MavMessage::parse(frame.id, frame.payload).unwrap()));
             });
         }
         self.notes.extend(self.vehicle.take_notes());
     }
-}
-
-fn message(id: u32, payload: &[u8]) -> MavMessage {
-    use mavlink_core::{MavlinkVersion, Message};
-    MavMessage::parse(MavlinkVersion::V2, id, payload).unwrap()
 }
 
 impl Ground for Radio {
@@ -226,9 +225,9 @@ impl Ground for Radio {
         false
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
+    fn watch(&mut self, record: &TickRecord<'_>) {
         let (now, since_start) = (self.vehicle.now(), self.vehicle.microseconds());
-        self.vehicle.observe(moment);
+        self.vehicle.observe(record);
         self.listen(now, since_start);
     }
 }

@@ -4,13 +4,13 @@ use crate::radio::{CONFIG, Radio, scenario};
 use hil_protocol::LidarScan;
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::flight::fly_with;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::tick_record::TickRecord;
 
 /// A radio, with the data that plant and core gave.
-struct Witness {
+struct RecordingRadio {
     radio: Radio,
     scans: Vec<LidarScan>,
     knots: Vec<(u32, Vec<[f32; 3]>)>,
@@ -18,7 +18,7 @@ struct Witness {
     missed: usize,
 }
 
-impl Ground for Witness {
+impl Ground for RecordingRadio {
     fn begin(
         &mut self,
         tuning: &mpp_node::parameters::Tuning,
@@ -31,37 +31,37 @@ impl Ground for Witness {
         self.radio.orders(tick)
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
-        self.scans.extend(moment.scan.cloned());
+    fn watch(&mut self, record: &TickRecord<'_>) {
+        self.scans.extend(record.scan.cloned());
         self.knots
-            .extend(moment.trajectory.map(|t| (t.scan_tick, t.knots.to_vec())));
-        self.missed += usize::from(moment.report.is_some_and(|report| !report.complete));
-        self.radio.watch(moment);
+            .extend(record.trajectory.map(|t| (t.scan_tick, t.knots.to_vec())));
+        self.missed += usize::from(record.report.is_some_and(|report| !report.complete));
+        self.radio.watch(record);
     }
 }
 
-fn witnessed(scenario: &Scenario) -> (Witness, mpp_sim::log::FlightLog) {
-    let mut witness = Witness {
+fn recorded(scenario: &Scenario) -> (RecordingRadio, mpp_sim::log::FlightLog) {
+    let mut radio = RecordingRadio {
         radio: Radio::new(&CONFIG),
         scans: Vec::new(),
         knots: Vec::new(),
         missed: 0,
     };
-    let log = fly_with(scenario, &mut PipeLink::new(), &mut witness).unwrap();
-    (witness, log)
+    let log = fly_with(scenario, &mut PipeLink::new(), &mut radio).unwrap();
+    (radio, log)
 }
 
 #[test]
 fn scans_and_plans_are_those_of_the_flight() {
     let (
-        Witness {
+        RecordingRadio {
             radio,
             scans,
             knots,
             ..
         },
         log,
-    ) = witnessed(&scenario());
+    ) = recorded(&scenario());
     let told = radio.all(|message| match message {
         MavMessage::MPP_LIDAR_SCAN(scan) => Some(scan.clone()),
         _ => None,
@@ -127,7 +127,7 @@ fn scans_and_plans_are_those_of_the_flight() {
 
 #[test]
 fn motion_is_that_of_the_log() {
-    let (Witness { radio, .. }, log) = witnessed(&scenario());
+    let (RecordingRadio { radio, .. }, log) = recorded(&scenario());
     let positions = radio.all(|message| match message {
         MavMessage::LOCAL_POSITION_NED(position) => Some(position.clone()),
         _ => None,
@@ -167,7 +167,7 @@ fn every_cycle_without_a_feasible_plan_is_told() {
         ticks: 1200,
         ..Scenario::new(Preset::Paper, 1)
     };
-    let (Witness { radio, .. }, log) = witnessed(&dense);
+    let (RecordingRadio { radio, .. }, log) = recorded(&dense);
     let without = log
         .plans
         .iter()
@@ -187,7 +187,7 @@ fn every_cycle_without_a_feasible_plan_is_told() {
         ticks: 1200,
         ..Scenario::new(Preset::Paper, 1)
     };
-    let (Witness { radio, missed, .. }, _) = witnessed(&starved);
+    let (RecordingRadio { radio, missed, .. }, _) = recorded(&starved);
     let told = radio
         .texts()
         .iter()
@@ -199,7 +199,7 @@ fn every_cycle_without_a_feasible_plan_is_told() {
 
 #[test]
 fn the_distance_is_the_nearest_return() {
-    let (Witness { radio, scans, .. }, _) = witnessed(&scenario());
+    let (RecordingRadio { radio, scans, .. }, _) = recorded(&scenario());
     let told = radio.all(|message| match message {
         MavMessage::DISTANCE_SENSOR(distance) => Some(distance.current_distance),
         _ => None,

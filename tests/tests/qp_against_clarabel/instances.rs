@@ -1,6 +1,7 @@
 //! Generated programs. They have random obstacle fields, the tree's paths through them, the
 //! corridors around these paths, and random motions at the start.
 
+use chacha20::ChaCha8Rng;
 use mpp_core::corridor::Corridor;
 use mpp_core::paper::PaperSettings;
 use mpp_core::paper::StageModel;
@@ -10,7 +11,6 @@ use mpp_core::paper::{GridPoint, OccupancyGrid};
 use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageState, Weights};
 use mpp_core::settings::{AttitudeLimits, Settings};
 use mpp_core::vehicle::{AirState, Trim, linearize};
-use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 /// Number of paths that are taken from one tree.

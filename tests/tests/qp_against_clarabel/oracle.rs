@@ -7,8 +7,8 @@ use mpp_analysis::bench::{Form, FullForm};
 use mpp_analysis::instance;
 use mpp_core::qp::{Penalty, Solution};
 
-/// Clarabel's answer.
-pub(crate) struct Answer {
+/// Clarabel's run on one program.
+pub(crate) struct ClarabelRun {
     pub(crate) status: SolverStatus,
     pub(crate) cost: f64,
 }
@@ -25,10 +25,10 @@ fn full_form(
     FullForm::new(&program, form)
 }
 
-fn ask(full: &FullForm) -> Answer {
+fn ask(full: &FullForm) -> ClarabelRun {
     let mut solver = full.clarabel().unwrap();
     solver.solve();
-    Answer {
+    ClarabelRun {
         status: solver.solution.status,
         cost: solver.solution.obj_val + full.constant,
     }
@@ -36,7 +36,7 @@ fn ask(full: &FullForm) -> Answer {
 
 /// Solves the program with hard rows, or with a slack for each soft row that the controls can
 /// change.
-pub(crate) fn solve(preset: &Preset, instance: &Instance, penalty: Option<Penalty>) -> Answer {
+pub(crate) fn solve(preset: &Preset, instance: &Instance, penalty: Option<Penalty>) -> ClarabelRun {
     ask(&full_form(preset, instance, penalty, Form::Optimum))
 }
 

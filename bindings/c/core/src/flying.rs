@@ -251,11 +251,6 @@ impl MppCore {
 /// The code of a failed set-up, and the number that is out of its range.
 fn of_set_up(error: SetupError) -> (MppStatus, Option<Setting>) {
     let number = match error {
-        // The planner's units follow from mass and cruise.
-        SetupError::OutOfRange(Setting::MassUnit) => Some(Setting::Mass),
-        SetupError::OutOfRange(Setting::LengthUnit | Setting::TimeUnit) => {
-            Some(Setting::CruiseAirspeed)
-        }
         SetupError::OutOfRange(setting) => Some(setting),
         _ => None,
     };

@@ -177,10 +177,9 @@ impl MppStatus {
         match verdict {
             V::Accepted => Self::Ok,
             V::TooManyPaths { .. } | V::PathsZero => Self::Paths,
-            V::ReplanPeriod
-            | V::Latency
-            | V::SlicesPerTick
-            | V::OutOfRange(hil_protocol::Setting::Latency) => Self::Period,
+            V::ReplanPeriod | V::Latency | V::SlicesPerTick | V::OutOfRange(Setting::Latency) => {
+                Self::Period
+            }
             V::Beams { .. } => Self::Beams,
             V::RangeMax => Self::Range,
             V::NonFinite => Self::Altitude,

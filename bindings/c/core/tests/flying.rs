@@ -337,7 +337,10 @@ fn a_refused_number_has_its_name_and_range() {
         assert_eq!(flight.set_up(&config), status);
         flight.refused()
     };
-    let (name, range) = refuse(|config| config.aircraft.mass = -3.0, MppStatus::OutOfRange);
+    let (name, range) = refuse(
+        |config| config.aircraft.airframe.mass = -3.0,
+        MppStatus::OutOfRange,
+    );
     assert_eq!((name.as_str(), range), ("airframe.mass", [0.01, 1e5]));
     let (name, _) = refuse(
         |config| config.aircraft.cruise = 500.0,
@@ -347,7 +350,7 @@ fn a_refused_number_has_its_name_and_range() {
     let (name, _) = refuse(|config| config.altitude = 1e6, MppStatus::Altitude);
     assert_eq!(name, "planner.altitude");
     let (name, _) = refuse(|config| config.range_max = 1e6, MppStatus::Range);
-    assert_eq!(name, "sight");
+    assert_eq!(name, "the range of the lidar (sight)");
     // What no range refuses has no name.
     for (change, status) in [
         (
@@ -357,7 +360,7 @@ fn a_refused_number_has_its_name_and_range() {
         (|config| config.latency_ticks = 451, MppStatus::Period),
         (|config| config.aircraft.thrust_max = 1.0, MppStatus::Thrust),
         (
-            |config| config.aircraft.moment_pitch_rate = -10.0,
+            |config| config.aircraft.airframe.moment_pitch_rate = -10.0,
             MppStatus::Ok,
         ),
         (|config| config.latency_ticks = 450, MppStatus::Ok),

@@ -1,7 +1,7 @@
 """The MPP flight planner, its simulation and its campaigns. docs/python.md of the project describes this package."""
 
 from . import errors
-from ._native import Aircraft, Campaign, Core, Field, Flight, Lidar, Planner, World, fly
+from ._native import Aircraft, Campaign, Core, Field, Flight, Lidar, Planner, World, __version__, fly
 from .campaigns import Rows, campaign
 from .errors import BusyError, FlightError, InputError, Interrupted, MppError, SetUpError, StateError
 
@@ -22,6 +22,7 @@ __all__ = [
     "SetUpError",
     "StateError",
     "World",
+    "__version__",
     "campaign",
     "errors",
     "fly",

@@ -20,7 +20,10 @@ __all__ = [
     "Planner",
     "World",
     "fly",
+    "wilson",
 ]
+
+__version__: str
 
 _Path = str | PathLike[str]
 _Floats = NDArray[numpy.float64]
@@ -103,6 +106,7 @@ class Flight:
     def __len__(self) -> int: ...
 
 def fly(**keys: Any) -> Flight: ...
+def wilson(successes: int, trials: int) -> tuple[float, float]: ...
 @final
 class Campaign:
     def __new__(
@@ -111,11 +115,11 @@ class Campaign:
         *,
         trials: int,
         seed: int | None = None,
-        preset: Sequence[str] = ...,
-        generator: Sequence[str] = ...,
-        obstacles: Sequence[int] = ...,
-        paths: Sequence[int] = ...,
-        replan_hz: Sequence[float] = ...,
+        preset: Sequence[str] = (),
+        generator: Sequence[str] = (),
+        obstacles: Sequence[int] = (),
+        paths: Sequence[int] = (),
+        replan_hz: Sequence[float] = (),
         fields: dict[str, Field] | None = None,
     ) -> Campaign: ...
     @staticmethod
@@ -171,12 +175,12 @@ class Planner:
         *,
         time: float = 0.0,
         x: float = 0.0,
-        z: float = ...,
+        z: float = 50.0,
         airspeed: float | None = None,
         pitch: float | None = None,
         pitch_rate: float = 0.0,
         flight_path: float = 0.0,
-        wind: tuple[float, float] = ...,
+        wind: tuple[float, float] = (0.0, 0.0),
     ) -> dict[str, Any]:
         """`pitch` must be that at which the scan was taken."""
     def forget(self) -> None: ...
@@ -219,6 +223,7 @@ class Batch:
     def observe_one(self) -> dict[str, NDArray[numpy.float32]]: ...
     def observe(self) -> dict[str, NDArray[numpy.float32]]: ...
     def truth(self, index: int) -> dict[str, Any]: ...
+    def __deepcopy__(self, memo: dict[int, Any], /) -> Batch: ...
     def save(self, index: int) -> Moment: ...
     def restore(self, index: int, moment: Moment) -> None: ...
 
@@ -237,5 +242,6 @@ class Choice:
     def step(self, action: int) -> tuple[float, bool, bool]: ...
     def observe(self) -> dict[str, NDArray[Any]]: ...
     def truth(self) -> dict[str, Any]: ...
+    def __deepcopy__(self, memo: dict[int, Any], /) -> Choice: ...
     def save(self) -> Fork: ...
     def restore(self, fork: Fork) -> None: ...

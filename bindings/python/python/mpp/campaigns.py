@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from ._native import Campaign, Field
+from ._native import Campaign, Field, wilson
 from .errors import InputError, Interrupted
 
 if TYPE_CHECKING:
@@ -48,6 +48,15 @@ class Rows(Sequence[dict[str, Any]]):
 
     def __eq__(self, other: object) -> bool:
         return self.lines == other.lines if isinstance(other, Rows) else NotImplemented
+
+    def __repr__(self) -> str:
+        flown = len(self)
+        if not flown:
+            return "<Rows: no flights>"
+        strict = sum('"strict":true' in line for line in self.lines)
+        low, high = (100.0 * share for share in wilson(strict, flown))
+        share = 100.0 * strict / flown
+        return f"<Rows: {flown} flights, {strict} strict successes, {share:.1f} % [{low:.1f}, {high:.1f}]>"
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a `pandas.DataFrame`."""

@@ -58,6 +58,11 @@ def _seed(value: Any) -> int:
     return seed
 
 
+def _refuse(options: dict[str, Any] | None) -> None:
+    if options:
+        raise InputError(f"options: give none, not {options!r}: keys of a scenario go to gymnasium.make")
+
+
 def _seeds(value: Any, count: int) -> list[int | None]:
     """A seed for each flight: numbers from a first one on, or those of a list."""
     if value is None:
@@ -87,7 +92,7 @@ def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
 class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
     """Elevator and thrust, one step a tick of 10 ms.
 
-    Observation: `lidar`, ranges of the last scan [m], 0 where nothing came back; `air`, measured airspeed [m/s] and
+    Observation: `lidar`, ranges of the last scan [m], the greatest where nothing came back; `air`, measured airspeed [m/s] and
     pitch [rad]; `position`, measured, downrange and up [m]; `age` of position and scan [s].
     Action: elevator and thrust from -1 to 1; `controls` holds what they mean. The middle of the elevator is about
     level trim, the least thrust is 0.
@@ -106,6 +111,7 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         seed = None if seed is None else _seed(seed)
+        _refuse(options)
         super().reset(seed=seed)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if seed is None else seed])
@@ -149,6 +155,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         None. Flights that start anew later draw theirs from a generator that a seed, or a list without None, sets.
         """
         seeds = _seeds(seed, self.num_envs)
+        _refuse(options)
         listed = isinstance(seed, Sized)
         super().reset(seed=None if listed else seeds[0])
         given = [one for one in seeds if one is not None]
@@ -176,9 +183,9 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
 class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
     """A choice among the candidates of the planner, one step a planning cycle.
 
-    Observation: `lidar`, the scan [m]; `state`, estimated airspeed [m/s], pitch and flight path angle [rad] and
-    height above the altitude [m]; `candidates` by price, as places from the aircraft [m]; `price` of each; `mask`,
-    which of them there are.
+    Observation: `lidar`, as that of `ControlEnv`; `state`, estimated airspeed [m/s], pitch and flight path angle [rad]
+    and height above the altitude [m]; `candidates` by price, as places from the aircraft [m]; `price` of each; `mask`,
+    which actions there are.
     Action: 0 is the planner's own best plan, which `mpp.fly` flies; k is the candidate with the k-th lowest price. A
     number beyond the candidates keeps the last plan.
     Reward: as that of `ControlEnv`.
@@ -196,7 +203,7 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
                 "state": _box((4,)),
                 "candidates": _box((most, knots, 2)),
                 "price": _box((most,), 0.0),
-                "mask": spaces.MultiBinary(most),
+                "mask": spaces.MultiBinary(1 + most),
             }
         )
         self.observation_space = observation
@@ -206,6 +213,7 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
         seed = None if seed is None else _seed(seed)
+        _refuse(options)
         super().reset(seed=seed)
         choice = _of(self._choice)
         choice.reset(_drawn(self.np_random) if seed is None else seed)
@@ -221,6 +229,11 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
             raise InputError(f"action: give 0 to {most}, not {action!r}")
         reward, failed, ended = choice.step(number)
         return choice.observe(), reward, failed, ended, choice.truth()
+
+    def action_masks(self) -> NDArray[numpy.bool_]:
+        """Which actions there are: the mask of the observation, as agents with masks ask for it."""
+        mask: NDArray[numpy.bool_] = _of(self._choice).observe()["mask"].astype(bool)
+        return mask
 
     def save(self) -> State[Fork]:
         """The state of the environment, to go on from it any number of times."""

@@ -4,7 +4,7 @@ use super::file::FieldFile;
 use super::geometry::{Point, between_segments, cross, edges, legs, minus};
 use super::obstacle::Obstacle;
 use super::shape::Shape;
-use std::fmt;
+use crate::toml_error::place_and_cause;
 
 /// Greatest number of points that a field may have: corners, points of lines, centres. A lidar beam
 /// looks at each of them.
@@ -17,13 +17,16 @@ const MAX_COORDINATE: f64 = 1e5;
 const MAX_SPEED: f64 = 1e3;
 
 /// The reason why a text is no field.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum FieldError {
     /// The text with this name is no field; the message names line and key.
-    Toml(String, Box<toml::de::Error>),
+    #[error("field {0}{why}", why = place_and_cause(.1))]
+    Toml(String, #[source] Box<toml::de::Error>),
     /// The file with this name holds no obstacle.
+    #[error("field {0} holds no obstacle: give one, or leave the field out and give --obstacles 0")]
     Empty(String),
     /// The file has an obstacle that cannot be flown past.
+    #[error("field{of}{name}, {key}: {advice}", of = if .name.is_empty() { "" } else { " " })]
     Obstacle {
         /// Name of the file; empty for a field that is part of something else.
         name: String,
@@ -32,42 +35,6 @@ pub enum FieldError {
         /// What to do.
         advice: String,
     },
-}
-
-/// Greatest length of a message that repeats a line of the file \[bytes\].
-const LONGEST_MESSAGE: usize = 1000;
-
-impl fmt::Display for FieldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Toml(name, error) => {
-                let text = error.to_string();
-                // The parser repeats the line, however long it is.
-                if text.len() <= LONGEST_MESSAGE {
-                    return write!(f, "field {name}: {}", text.trim_end());
-                }
-                let place = error.span().map_or(0, |span| span.start);
-                write!(f, "field {name}, byte {place}: {}", error.message())
-            }
-            Self::Empty(name) => write!(
-                f,
-                "field {name} holds no obstacle: give one, or leave the field out and give --obstacles 0"
-            ),
-            Self::Obstacle { name, key, advice } if name.is_empty() => {
-                write!(f, "field, {key}: {advice}")
-            }
-            Self::Obstacle { name, key, advice } => write!(f, "field {name}, {key}: {advice}"),
-        }
-    }
-}
-
-impl core::error::Error for FieldError {
-    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
-        match self {
-            Self::Toml(_, error) => Some(error),
-            Self::Empty(_) | Self::Obstacle { .. } => None,
-        }
-    }
 }
 
 impl FieldError {

@@ -105,6 +105,19 @@ fn a_bad_file_is_refused_by_file_and_key() {
     }
 }
 
+/// GeoJSON, WKT and shapely write rings so.
+#[test]
+fn the_last_corner_may_repeat_the_first() {
+    let open =
+        "[[polygon]]\npoints = [[30.0, 0.0], [40.0, 0.0], [30.0, 9.0]]\nvelocity = [1.0, 0.0]";
+    let closed = open.replace("9.0]]", "9.0], [30.0, 0.0]]");
+    let parsed = |text: &str| FieldFile::parse("ring.toml", text).unwrap();
+    assert_eq!(parsed(&closed), parsed(open));
+    assert_eq!(parsed(open).polygon[0].points.len(), 3);
+    let few = refused("[[polygon]]\npoints = [[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]]");
+    assert!(few.contains("give 3 to"), "{few}");
+}
+
 #[test]
 fn what_covers_the_start_is_refused() {
     let file = FieldFile::of(&[

@@ -57,7 +57,7 @@ pub struct ScenarioFile {
     /// Challenge scene; by default there is no scene.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scene: Option<Scene>,
-    /// Candidate paths of a cycle; by default 25.
+    /// Candidate paths of a cycle; by default 25. Preset `flight` has no more than 7: a greater number is used as 7.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub paths: Option<u16>,
     /// Replanning rate \[Hz\]; by default 1.
@@ -150,7 +150,9 @@ impl ScenarioFile {
             body_radius: self.body_radius.unwrap_or(aircraft.known.body_radius),
             aircraft,
             world_scale,
-            paths: self.paths.unwrap_or(base.paths),
+            paths: self
+                .paths
+                .map_or(base.paths, |paths| preset.flown_paths(paths)),
             replan_ticks,
             latency_ticks: match self.latency_ms {
                 Some(latency) => latency_ticks(latency, replan_ticks)?,
@@ -189,9 +191,10 @@ impl ScenarioFile {
 
 fn replan_ticks(rate: f64) -> Result<u32, ScenarioError> {
     let period = f64::from(TICKS_PER_SECOND) / rate;
-    // A rate with many digits gives a period with rounding errors.
+    // A rate that was printed has lost its last digits.
+    const ROUNDING: f64 = 0.01;
     let whole = (0.5..=f64::from(u16::MAX)).contains(&period)
-        && (period - period.round()).abs() < 1e-9 * period;
+        && (period - period.round()).abs() <= ROUNDING;
     let advice = format!(
         "give a rate of which {TICKS_PER_SECOND} Hz is a whole multiple, such as 0.5, 1, 2, 4, 5 or 10"
     );
@@ -267,9 +270,11 @@ fn check_field(scenario: &Scenario) -> Result<(), ScenarioError> {
     let generator = &scenario.generator;
     generator::check(generator, body)?;
     let expected = generator.expected(scenario.obstacles, scenario.duration());
-    let few = expected <= 0.5 * MAX_VERTICES as f64;
-    let advice =
-        format!("give fewer, or fly for less time: the field would have about {expected:.0}");
+    let most = 0.5 * MAX_VERTICES as f64;
+    let few = expected <= most;
+    let advice = format!(
+        "give fewer, or fly for less time: the field would have about {expected:.0}, and may have {most:.0}"
+    );
     ensure(few, "obstacles", advice)?;
     let is_circle = |one: &Obstacle| matches!(one.shape, Shape::Circle { .. });
     let circles = scenario.field().obstacles.iter().all(is_circle);

@@ -80,6 +80,18 @@ fn unknown_keys_are_refused_by_name() {
     }
 }
 
+/// A rate that was printed, and more paths than a cycle of preset `flight` finds.
+#[test]
+fn numbers_are_taken_for_what_is_flown() {
+    let built = |text: &str| ScenarioFile::parse("", text).unwrap().build().unwrap();
+    assert_eq!(built("replan_hz = 0.75188").replan_ticks, 133);
+    for (paths, flown, most) in [(3, 3, 3), (7, 7, 7), (8, 25, 7), (25, 25, 7), (50, 25, 7)] {
+        let flight = built(&format!("paths = {paths}"));
+        assert_eq!((flight.paths, flight.most_candidates()), (flown, most));
+    }
+    assert_eq!(built("preset = \"paper\"\npaths = 50").paths, 50);
+}
+
 #[test]
 fn nonsense_is_refused_by_key() {
     for (text, key) in [
@@ -97,6 +109,7 @@ fn nonsense_is_refused_by_key() {
         ("world_scale = 1e10", "world_scale"),
         ("obstacles = 1001", "obstacles"),
         ("paths = 51", "paths"),
+        ("preset = \"paper\"\npaths = 51", "paths"),
         ("slices_per_tick = 0", "slices_per_tick"),
         ("[lidar]\nbeams = 0", "lidar.beams"),
         ("[lidar]\nbeams = 129", "lidar.beams"),
@@ -131,6 +144,8 @@ fn nonsense_is_refused_by_key() {
             "duration = 3600\nobstacles = 900\n[generator]\nname = \"endless\"",
             "obstacles",
         ),
+        ("[faults.x]\nnoise = 1e308", "faults.x"),
+        ("[faults.z]\nbias = -1e10", "faults.z"),
         ("[generator]\nradius = 0.0", "generator.radius"),
         ("[generator]\nvelocity = [nan, 0.0]", "generator.velocity"),
         (

@@ -49,7 +49,7 @@ impl RowFile {
     /// [`CampaignError`]; the file then stays as it was.
     pub fn open(path: &Path, header: &Header) -> Result<(Self, Vec<Row>), CampaignError> {
         let name = path.display().to_string();
-        let failed = |error| CampaignError::File(name.clone(), error);
+        let failed = |error| CampaignError::Open(name.clone(), error);
         // A device or a pipe has no rows to go on with, and might be read for ever.
         if path.metadata().is_ok_and(|found| !found.is_file()) {
             return Err(CampaignError::NoFile(name));
@@ -156,7 +156,7 @@ fn known(name: &str, bytes: &[u8], header: &Header) -> Result<(usize, Vec<Row>),
 /// [`CampaignError`].
 pub fn read(path: &Path) -> Result<(Header, Vec<Row>), CampaignError> {
     let name = path.display().to_string();
-    let text = read_text(path, MOST_RECORDED).map_err(|error| CampaignError::File(name, error))?;
+    let text = read_text(path, MOST_RECORDED).map_err(|error| CampaignError::Read(name, error))?;
     parse_rows(path, &text)
 }
 

@@ -78,6 +78,22 @@ fn a_full_disk_keeps_whole_rows_whichever_thread_comes_next() {
     }
 }
 
+/// By the start of its flights a row file knows the program that flew them. Most of these faults begin later.
+#[test]
+fn every_named_fault_has_a_header() {
+    let faults = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/scenarios/faults");
+    let mut count = 0;
+    for file in std::fs::read_dir(faults).unwrap() {
+        let path = file.unwrap().path();
+        let scenario = crate::files::read_scenario(&path).unwrap();
+        let campaign = Campaign::new(scenario, Lists::default(), 1, None).unwrap();
+        let header = header(campaign, Shard::WHOLE);
+        assert!(header.is_ok(), "{}: {header:?}", path.display());
+        count += 1;
+    }
+    assert!(count > 30);
+}
+
 #[test]
 fn a_file_that_is_none_of_ours_is_refused_and_left_as_it_was() {
     let header = header(short(), Shard::WHOLE).unwrap();

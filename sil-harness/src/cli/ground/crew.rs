@@ -10,8 +10,8 @@ use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::FlyError;
 use mpp_sim::log::FlightLog;
-use mpp_sim::moment::Moment;
 use mpp_sim::orders::{Ground, Order, Refused};
+use mpp_sim::tick_record::TickRecord;
 
 /// The ground of a flight that the command line started.
 pub(in crate::cli) struct Crew {
@@ -118,13 +118,13 @@ impl Ground for Crew {
         self.signals.raised().is_some()
     }
 
-    fn watch(&mut self, moment: &Moment<'_>) {
+    fn watch(&mut self, record: &TickRecord<'_>) {
         self.progress.inc(1);
         if let Some(transport) = &mut self.transport {
-            transport.watch(moment);
+            transport.watch(record);
         }
         if let (Some(live), Some(tuning)) = (&mut self.live, &self.tuning) {
-            live.watch(moment, tuning);
+            live.watch(record, tuning);
             let interrupted = || self.signals.raised().is_some();
             let speed = self.pacer.obey(live, interrupted);
             if let (Some(speed), Some(transport)) = (speed, &mut self.transport) {

@@ -5,6 +5,7 @@ mod pacer;
 
 use super::answer::{Failure, LINK, USAGE, talk};
 use super::signals::Signals;
+use super::values::{datagrams, place};
 use crate::files::{MOST_WRITTEN, read_log, read_text};
 use crate::ground::param_file;
 use crate::ground::transport::{Transport, address, signing_time, usual_addresses};
@@ -31,7 +32,7 @@ pub(super) struct GroundArgs {
     /// Answer MAVLink ground stations at udp:HOST:PORT [default: udp:127.0.0.1:14550 and :14540].
     /// Without --mavlink-key whoever reaches the socket may command, even end the flight: every
     /// program on this machine, and everybody on the network if HOST is another machine
-    #[arg(long, num_args = 0..=1, default_missing_value = "usual", value_name = "UDP", value_delimiter = ',')]
+    #[arg(long, num_args = 0..=1, default_missing_value = "usual", value_name = "UDP", value_delimiter = ',', value_parser = datagrams)]
     mavlink: Vec<String>,
     /// Number N of this vehicle among several: system N + 1, program port 14540 + N
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=253))]
@@ -39,8 +40,8 @@ pub(super) struct GroundArgs {
     /// Wait at the start until a ground station arms the vehicle
     #[arg(long)]
     hold: bool,
-    /// Obey only commands signed with the passphrase in this file's first line; FILE.state beside it
-    /// keeps the newest signed times, so that nothing recorded is obeyed again
+    /// Obey only commands signed with the passphrase in this file's first line, without blanks at its end; FILE.state
+    /// beside it keeps the newest signed times, so that nothing recorded is obeyed again
     #[arg(long, value_name = "FILE")]
     mavlink_key: Option<PathBuf>,
     /// Record the telemetry in this file as it comes, in place of what the file holds. A flight that
@@ -55,7 +56,7 @@ pub(super) struct GroundArgs {
     orders: Option<PathBuf>,
     /// Show the flight live on a page at this address; the default speed is then real time, and
     /// --mavlink is on
-    #[arg(long, num_args = 0..=1, default_missing_value = "127.0.0.1:8088", value_name = "HOST:PORT")]
+    #[arg(long, num_args = 0..=1, default_missing_value = "127.0.0.1:8088", value_name = "HOST:PORT", value_parser = place)]
     live: Option<String>,
     /// Speed relative to real time, 0.01 to 1000, or max [default: max; 1 with --mavlink or --live]
     #[arg(long, value_parser = speed)]
@@ -182,7 +183,8 @@ impl GroundArgs {
         };
         let text = read_text(path, MOST_WRITTEN)
             .map_err(|error| unusable("--mavlink-key", path, error))?;
-        let passphrase = text.lines().next().unwrap_or_default();
+        // Editors and shells leave blanks at the end, which nobody sees.
+        let passphrase = text.lines().next().unwrap_or_default().trim_end();
         if passphrase.is_empty() {
             return Err(unusable(
                 "--mavlink-key",
@@ -275,6 +277,32 @@ mod tests {
     struct Line {
         #[command(flatten)]
         ground: GroundArgs,
+    }
+
+    /// Editors leave a mark before the text and blanks behind it, which nobody sees.
+    #[test]
+    fn a_passphrase_is_what_is_seen_of_it() {
+        let file = std::env::temp_dir().join(format!("mpp-passphrase-{}", std::process::id()));
+        let key = |text: &str| {
+            std::fs::write(&file, text).unwrap();
+            let line = ["fly", "--mavlink-key", file.to_str().unwrap()];
+            let read = Line::parse_from(line).ground.key();
+            read.map_err(|failure| failure.message)
+                .unwrap()
+                .unwrap()
+                .0
+                .0
+        };
+        let plain = key("correct horse");
+        for text in [
+            "correct horse\n",
+            "correct horse \t\r\nmore",
+            "\u{feff}correct horse\n",
+        ] {
+            assert!(key(text) == plain, "{text:?}");
+        }
+        assert!(key(" correct horse") != plain && key("correct  horse") != plain);
+        std::fs::remove_file(&file).unwrap();
     }
 
     #[test]

@@ -3,9 +3,9 @@
 use crate::field::Point;
 use crate::inquest::Inquest;
 use crate::log::FlightLog;
-use crate::moment::Moment;
 use crate::outcome::Outcome;
 use crate::scenario::Scenario;
+use crate::tick_record::TickRecord;
 use hil_protocol::{SensorState, SensorStates};
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ pub const KNOWN: f64 = 1.0;
 
 /// Watches one flight.
 #[derive(Default)]
-pub struct Witness {
+pub struct FlightObserver {
     inquest: Inquest,
     /// The first tick of the faults.
     onset: u32,
@@ -30,8 +30,8 @@ pub struct Witness {
     flagged: Option<f64>,
 }
 
-impl Witness {
-    /// A witness of a flight of this scenario.
+impl FlightObserver {
+    /// An observer of a flight of this scenario.
     #[must_use]
     pub fn of(scenario: &Scenario) -> Self {
         Self {
@@ -41,17 +41,17 @@ impl Witness {
     }
 
     /// Records one tick.
-    pub fn watch(&mut self, moment: &Moment<'_>) {
-        self.inquest.watch(moment);
-        self.place = (moment.tick.state.x, moment.tick.state.z);
+    pub fn watch(&mut self, record: &TickRecord<'_>) {
+        self.inquest.watch(record);
+        self.place = (record.tick.state.x, record.tick.state.z);
         let since = self.ticks.checked_sub(self.onset);
         self.ticks += 1;
-        let tells = failed(&moment.sensors);
-        let said = moment.rejections.len() > self.rejections || tells.len() > self.tells;
+        let tells = failed(&record.sensors);
+        let said = record.rejections.len() > self.rejections || tells.len() > self.tells;
         if let Some(since) = since.filter(|_| said) {
             self.flagged.get_or_insert(Scenario::time(since));
         }
-        (self.rejections, self.tells) = (moment.rejections.len(), tells.len());
+        (self.rejections, self.tells) = (record.rejections.len(), tells.len());
         self.told.extend(tells);
     }
 

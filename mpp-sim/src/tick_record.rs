@@ -4,7 +4,7 @@ use crate::entries::{PlanEntry, RejectionEntry, Tick};
 use hil_protocol::{HealthReport, LidarScan, PlanReport, PlanTrajectory, SensorStates};
 
 /// The data of one tick.
-pub struct Moment<'a> {
+pub struct TickRecord<'a> {
     /// The tick as logged.
     pub tick: &'a Tick,
     /// The scan taken at this tick, as the lidar shows it, if one was taken. It may arrive at the core later.

@@ -1,9 +1,19 @@
-//! Limits of motor and elevator, as far as the core knows them.
+//! The commands to motor and elevator, and their limits.
 
-use super::{Airframe, Control};
+use crate::Airframe;
+use serde::{Deserialize, Serialize};
+
+/// The command to the actuators.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Control {
+    /// Thrust `T` along the body axis \[N\].
+    pub thrust: f64,
+    /// Elevator command `delta_e` [-].
+    pub elevator: f64,
+}
 
 /// Limits of the actuators. `None` means no limit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ActuatorLimits {
     /// Greatest thrust \[N\]. The least thrust is always 0.
     pub thrust_max: Option<f64>,
