@@ -43,9 +43,9 @@ impl Region {
     /// The region that the next slice of the planner belongs to.
     #[must_use]
     pub fn of(phase: Phase) -> Self {
-        use mpp_core::planner::plane::Phase as Flight;
         #[cfg(feature = "paper")]
         use mpp_core::paper::Phase as Paper;
+        use mpp_core::planner::plane::Phase as Flight;
         match phase {
             Phase::Plane(Flight::Map) => Self::Remember,
             Phase::Plane(Flight::Lattice) => Self::Lattice,

@@ -44,7 +44,7 @@ def parser():
     one.add_argument("--force", action="store_true", help="also disarm in flight: the motor stops")
     actions.add_parser("mode").add_argument("mode", choices=sorted(MODES), type=str.upper)
     one = actions.add_parser("altitude", help="change the height to which the aircraft returns")
-    one.add_argument("metres", type=float)
+    one.add_argument("metres", type=float, help="above the ground of the start")
     actions.add_parser("terminate", help="end the flight")
     one = actions.add_parser("interval", help="set the rate of a message")
     one.add_argument("message")
@@ -91,10 +91,12 @@ def connected(args):
 
 
 def run_monitor(vehicle, args):
+    vehicle.ask_for_plans()
     monitor.monitor(vehicle, sys.stdout, args.seconds, args.once)
 
 
 def run_record(vehicle, args):
+    vehicle.ask_for_plans()
     count = record.record(vehicle, args.file, args.seconds)
     print(f"{count} frames in {args.file}", file=sys.stderr)
 
@@ -125,7 +127,7 @@ def run_command(vehicle, args):
     elif args.action == "mode":
         demand = mavlink.MAV_CMD_DO_SET_MODE, mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED, MODES[args.mode]
     elif args.action == "altitude":
-        demand = mavlink.MAV_CMD_DO_CHANGE_ALTITUDE, args.metres
+        demand = mavlink.MAV_CMD_DO_CHANGE_ALTITUDE, args.metres, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT
     elif args.action == "terminate":
         demand = mavlink.MAV_CMD_DO_FLIGHTTERMINATION, 1
     else:

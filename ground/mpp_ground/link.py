@@ -1,6 +1,8 @@
 """A connection to one vehicle. Commands and parameters get an answer, or they fail with an error."""
 
+import contextlib
 import hashlib
+import math
 import struct
 import threading
 import time
@@ -24,6 +26,18 @@ INTEGERS = {
     mavlink.MAV_PARAM_TYPE_UINT16: "<Hxx", mavlink.MAV_PARAM_TYPE_INT16: "<hxx",
     mavlink.MAV_PARAM_TYPE_UINT32: "<I", mavlink.MAV_PARAM_TYPE_INT32: "<i",
 }
+
+
+# The messages about scans and plans. A station that does not know them counts each as lost, so they come on request.
+PLANS = [mavlink.MAVLINK_MSG_ID_MPP_LIDAR_SCAN, mavlink.MAVLINK_MSG_ID_MPP_PLAN_STATUS,
+         mavlink.MAVLINK_MSG_ID_MPP_TRAJECTORY]
+# MAV_PARAM_ERROR_DOES_NOT_EXIST
+NO_SUCH_PARAMETER = 1
+
+
+def downrange(position):
+    """The distance flown of a LOCAL_POSITION_NED, whatever the heading."""
+    return math.hypot(position.x, position.y)
 
 
 def parameter_value(message):
@@ -51,6 +65,7 @@ class Vehicle:
             self.master.setup_signing(hashlib.sha256(passphrase.encode()).digest(), sign_outgoing=True)
         self.patience = patience
         self.stopped = threading.Event()
+        self.asked = False
         self.system = self.find(system)
         self.master.target_system, self.master.target_component = self.system, COMPONENT
         self.beat()
@@ -76,8 +91,18 @@ class Vehicle:
         while not self.stopped.wait(1.0):
             self.beat()
 
+    def ask_for_plans(self):
+        """Asks for the messages about scans and plans. A vehicle with a key does not hear who has none."""
+        self.asked = True
+        with contextlib.suppress(GroundError):
+            for number in PLANS:
+                self.command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, 1, patience=2.0)
+
     def close(self):
         self.stopped.set()
+        # The next program at this address may not know them.
+        for number in PLANS if self.asked else []:
+            self.send_command(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, -1)
         self.master.close()
 
     def receive(self, types=None, timeout=1.0):
@@ -89,9 +114,9 @@ class Vehicle:
                 return message
         return None
 
-    def ask(self, send, types, accept, what):
+    def ask(self, send, types, accept, what, patience=None):
         """Sends once a second, because datagrams get lost, until an answer comes that `accept` takes."""
-        end = time.monotonic() + self.patience
+        end = time.monotonic() + (patience or self.patience)
         while (now := time.monotonic()) < end:
             send()
             deadline = min(now + 1.0, end)
@@ -101,15 +126,18 @@ class Vehicle:
                     return message
         raise GroundError(f"no answer to {what}")
 
-    def command(self, command, *parameters):
-        """Sends a command. Returns the name of the acknowledgement's result."""
+    def send_command(self, command, *parameters):
         values = [float(value) for value in parameters] + [0.0] * (7 - len(parameters))
-        mav = self.master.mav
+        self.master.mav.command_long_send(self.system, COMPONENT, command, 0, *values)
+
+    def command(self, command, *parameters, patience=None):
+        """Sends a command. Returns the name of the acknowledgement's result."""
         ack = self.ask(
-            lambda: mav.command_long_send(self.system, COMPONENT, command, 0, *values),
+            lambda: self.send_command(command, *parameters),
             "COMMAND_ACK",
             lambda ack: ack.command == command,
             command_name(command),
+            patience,
         )
         return RESULTS.get(ack.result, str(ack.result))
 
@@ -151,26 +179,28 @@ class Vehicle:
                     return dict(found[index] for index in range(count))
         raise GroundError(f"{len(found)} of {count or 'the'} parameters came")
 
+    def ask_parameter(self, name, send, what):
+        """Sends until the value in force comes."""
+        def accept(answer):
+            # Of an error with another number the value came first.
+            return answer.param_id == name and getattr(answer, "error", NO_SUCH_PARAMETER) == NO_SUCH_PARAMETER
+
+        answer = self.ask(send, ["PARAM_VALUE", "PARAM_ERROR"], accept, f"{what} of {name}")
+        if answer.get_type() == "PARAM_ERROR":
+            raise GroundError(f"{name}: no such parameter")
+        return parameter_value(answer)
+
     def read(self, name):
         mav = self.master.mav
-        return parameter_value(self.ask(
-            lambda: mav.param_request_read_send(self.system, COMPONENT, name.encode(), -1),
-            "PARAM_VALUE",
-            lambda value: value.param_id == name,
-            f"a read of {name}",
-        ))
+        ask = lambda: mav.param_request_read_send(self.system, COMPONENT, name.encode(), -1)
+        return self.ask_parameter(name, ask, "a read")
 
     def write(self, name, value):
         """Sets a parameter. Raises an error if the value in force is different."""
         mav = self.master.mav
         real32 = mavlink.MAV_PARAM_TYPE_REAL32
-        answer = self.ask(
-            lambda: mav.param_set_send(self.system, COMPONENT, name.encode(), value, real32),
-            "PARAM_VALUE",
-            lambda answer: answer.param_id == name,
-            f"a write of {name}",
-        )
-        in_force = parameter_value(answer)
+        ask = lambda: mav.param_set_send(self.system, COMPONENT, name.encode(), value, real32)
+        in_force = self.ask_parameter(name, ask, "a write")
         if abs(in_force - value) > 1e-6 * max(1.0, abs(value)):
             raise GroundError(f"{name} stays {in_force:g}: {value:g} is refused{self.why(name)}")
         return in_force

@@ -3,7 +3,7 @@
 import math
 import time
 
-from .link import mavlink
+from .link import downrange, mavlink
 
 MODES = {10: "AUTO", 7: "CRUISE"}
 OUTCOMES = ["adopted", "least violating", "kept previous", "trim hold"]
@@ -41,7 +41,7 @@ def table(system, latest, rates, texts):
         rows.append(("state", f"{mode}, {'armed' if armed else 'disarmed'}"))
     if position := latest.get("LOCAL_POSITION_NED"):
         rows.append(("time", f"{position.time_boot_ms / 1e3:.2f} s"))
-        rows.append(("position", f"{position.x:.1f} m downrange, {-position.z:.1f} m high"))
+        rows.append(("position", f"{downrange(position):.1f} m downrange, {-position.z:.1f} m high"))
     if hud := latest.get("VFR_HUD"):
         rows.append(("air", f"{hud.airspeed:.1f} m/s, climb {hud.climb:+.1f} m/s, throttle {hud.throttle} %"))
     if attitude := latest.get("ATTITUDE"):

@@ -2,10 +2,12 @@
 
 import math
 
-from .link import GroundError
+from .link import GroundError, downrange
 
 from pymavlink import mavutil
 
+# Least span of the heights as a share of that of the distances: about that of the panel.
+LEAST_HEIGHT = 0.15
 STYLE = {"path": "#d95f02", "plan": "#7570b3", "return": "#999999"}
 
 
@@ -34,7 +36,7 @@ def returns(found):
             if range_cm != 0xFFFF:
                 angle = pitch + scan.angle_min + beam * scan.angle_increment
                 reach = range_cm / 100
-                points.append((at.x + reach * math.cos(angle), -at.z + reach * math.sin(angle)))
+                points.append((downrange(at) + reach * math.cos(angle), -at.z + reach * math.sin(angle)))
     return points
 
 
@@ -46,7 +48,12 @@ def plot(tlog, out):
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    found = read(tlog)
+    figure = draw(read(tlog), pyplot)
+    figure.savefig(out, dpi=150)
+    pyplot.close(figure)
+
+
+def draw(found, pyplot):
     figure, (side, speed, pitch, plans) = pyplot.subplots(
         4, 1, figsize=(11, 9), layout="constrained"
     )
@@ -56,8 +63,11 @@ def plot(tlog, out):
         label = "plans" if number == 0 else None
         side.plot(plan.x[: plan.count], plan.z[: plan.count], lw=0.8, color=STYLE["plan"], label=label)
     positions = found["LOCAL_POSITION_NED"]
-    side.plot([p.x for p in positions], [-p.z for p in positions], lw=2, color=STYLE["path"], label="flown")
-    side.set(xlabel="downrange [m]", ylabel="height [m]", aspect="equal")
+    side.plot([downrange(p) for p in positions], [-p.z for p in positions], lw=2, color=STYLE["path"], label="flown")
+    # Both axes have one scale, so a calm flight needs room above and below to be more than a line.
+    (left, right), (low, high) = side.get_xlim(), side.get_ylim()
+    more = max(0.0, LEAST_HEIGHT * (right - left) - (high - low)) / 2
+    side.set(xlabel="downrange [m]", ylabel="height [m]", aspect="equal", ylim=(low - more, high + more))
     side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.02), ncols=3, frameon=False)
 
     # VFR_HUD has no time of its own.
@@ -71,5 +81,4 @@ def plot(tlog, out):
     status = found["MPP_PLAN_STATUS"]
     plans.plot([m._timestamp - start for m in status], [m.feasible for m in status], "o-", ms=3, color=STYLE["plan"])
     plans.set(xlabel="time [s]", ylabel="feasible [-]")
-    figure.savefig(out, dpi=150)
-    pyplot.close(figure)
+    return figure

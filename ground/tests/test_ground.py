@@ -37,6 +37,7 @@ def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate):
     assert vehicle.read("LQR_R_ELEVATOR") == pytest.approx(0.6)
     with pytest.raises(GroundError, match="MPP_PATHS stays 25: 99 is refused .out of range."):
         vehicle.write("MPP_PATHS", 99)
+    vehicle.ask_for_plans()
     vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     assert vehicle.receive("MPP_PLAN_STATUS", LIMIT).candidates > 0
     assert vehicle.write("MPP_PATHS", 12) == 12
@@ -61,6 +62,7 @@ def test_a_flight_is_tuned_commanded_and_reproduced(held, simulate):
 def test_what_is_heard_is_what_is_logged(simulate):
     simulation = simulate("--hold", "--speed", "2", "--duration", "6")
     vehicle = Vehicle(simulation.address, patience=LIMIT)
+    vehicle.ask_for_plans()
     vehicle.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     plans, scans = [], []
     while (message := vehicle.receive(["MPP_PLAN_STATUS", "MPP_LIDAR_SCAN", "STATUSTEXT"], LIMIT)) is not None:
@@ -96,7 +98,7 @@ class Pose:
     def __init__(self, scan, log):
         ticks = log["ticks"]
         self.time_boot_ms = scan.time_boot_ms
-        self.x, self.z = ticks["x"][scan.tick], -ticks["z"][scan.tick]
+        self.x, self.y, self.z = ticks["x"][scan.tick], 0.0, -ticks["z"][scan.tick]
         self.pitch = ticks["pitch"][scan.tick]
 
 
@@ -123,6 +125,7 @@ def test_with_a_key_only_its_holder_commands(simulate, tmp_path):
     stranger.close()
     holder = Vehicle(simulation.address, passphrase="correct horse", patience=LIMIT)
     assert holder.write("MPP_PATHS", 11) == 11
+    holder.ask_for_plans()
     holder.demand(mavlink.MAV_CMD_COMPONENT_ARM_DISARM, 1)
     assert holder.receive("MPP_PLAN_STATUS", LIMIT) is not None
     end(holder)
@@ -147,6 +150,8 @@ def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
     code, out = run("params", "load", str(saved))
     assert code == 0 and "MPP_ALT_M,50\n" in out
     assert run("params", "set", "MPP_ALT_M", "-3")[0] == 1
+    for arguments in (["set", "NOPE", "12"], ["get", "NOPE"]):
+        assert run("params", *arguments) == (1, "error: NOPE: no such parameter\n")
     assert "capabilities" in run("command", "request", "autopilot_version")[1]
     # From here on whole numbers come as integers.
     assert run("params", "get", "MPP_PATHS") == (0, "MPP_PATHS,25\n")
@@ -164,6 +169,8 @@ def test_every_command_of_the_command_line(simulate, tmp_path, capsys):
     assert run("record", str(tlog), "--seconds", "1.5")[0] == 0
     out = run("monitor", "--once")[1]
     assert "AUTO, armed" in out and "ATTITUDE" in out
+    # It asked for what is sent to nobody else.
+    assert plot.read(tlog)["MPP_LIDAR_SCAN"]
     assert run("command", "terminate")[0] == 0
     code, out, _ = simulation.result()
     assert code == 8 and json.loads(out)["outcome"] == "terminated"
@@ -210,6 +217,29 @@ def test_the_wheel_says_its_version_and_brings_its_licences(tmp_path):
         [Path(sys.executable).with_name("mpp-ground"), "--version"], check=True, capture_output=True, text=True,
     ).stdout
     assert said == f"mpp-ground {wheel.name.split('-')[1]}\n"
+
+
+def test_the_height_of_a_calm_flight_is_no_line(tmp_path):
+    pytest.importorskip("matplotlib").use("Agg")
+    from matplotlib import pyplot
+
+    tlog = tmp_path / "calm.tlog"
+    command = [BINARY, "fly", "--duration", "5", "--obstacles", "0", "--tlog", tlog, "--out", tmp_path / "out"]
+    subprocess.run(command, check=True, capture_output=True)
+    figure = plot.draw(plot.read(tlog), pyplot)
+    figure.canvas.draw()
+    side, speed, *_ = figure.axes
+    height = side.get_window_extent().height
+    pyplot.close(figure)
+    assert height > 0.5 * speed.get_window_extent().height
+
+
+def test_an_installation_leaves_nothing_for_git():
+    root = Path(__file__).resolve().parents[2]
+    if not (root / ".git").exists():
+        pytest.skip("no checkout")
+    for left in ("ground/build/lib/mpp_ground/cli.py", "ground/mpp_ground.egg-info/PKG-INFO"):
+        assert subprocess.run(["git", "check-ignore", "--quiet", left], cwd=root).returncode == 0, left
 
 
 def test_a_silent_vehicle_is_an_error():

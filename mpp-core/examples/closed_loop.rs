@@ -19,7 +19,7 @@ fn measured(state: &VehicleState, tick: u32) -> SensorFrame {
                 pitch: state.air.pitch + noise,
             },
         }),
-        position: (tick % 10 == 0).then(|| Position {
+        position: tick.is_multiple_of(10).then_some(Position {
             age: 0,
             x: state.x + noise,
             z: state.z + noise,

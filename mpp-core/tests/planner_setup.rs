@@ -19,8 +19,11 @@ fn own(settings: &mut Settings) -> &mut PlaneSettings {
     settings.planner.plane_mut().unwrap()
 }
 
+/// Sets a number of the settings.
+type Change = fn(&mut Settings, f64);
+
 /// The numbers of all presets, beside those of the airframe.
-const SHARED: [(Setting, fn(&mut Settings, f64)); 30] = {
+const SHARED: [(Setting, Change); 30] = {
     use Setting::*;
     [
         (LengthUnit, |s, n| s.units.length = n),
@@ -57,7 +60,7 @@ const SHARED: [(Setting, fn(&mut Settings, f64)); 30] = {
 };
 
 /// The numbers of the flight planner.
-const FLIGHT: [(Setting, fn(&mut Settings, f64)); 13] = {
+const FLIGHT: [(Setting, Change); 13] = {
     use Setting::*;
     [
         (Sight, |s, n| own(s).sight = n),
@@ -65,7 +68,7 @@ const FLIGHT: [(Setting, fn(&mut Settings, f64)); 13] = {
         (PenaltyLinear, |s, n| own(s).penalty.linear = n),
         (PenaltyQuadratic, |s, n| own(s).penalty.quadratic = n),
         (AngleOfAttackLimit, |s, n| {
-            own(s).attitude.angle_of_attack = n
+            own(s).attitude.angle_of_attack = n;
         }),
         (FlightPathLimit, |s, n| own(s).attitude.flight_path = n),
         (Margin, |s, n| own(s).margin = n),
@@ -76,20 +79,20 @@ const FLIGHT: [(Setting, fn(&mut Settings, f64)); 13] = {
         // These two are whole numbers, so that each value here stands for the nearest one.
         (SqpIterations, |s, n| own(s).sqp_iterations = n as u8),
         (RefinedCandidates, |s, n| {
-            own(s).refined_candidates = n as usize
+            own(s).refined_candidates = n as usize;
         }),
     ]
 };
 
 /// The numbers of the paper's method.
-const PAPER: [(Setting, fn(&mut Settings, f64)); 2] = {
+const PAPER: [(Setting, Change); 2] = {
     use Setting::*;
     [
         (PaddingNear, |s, n| {
-            s.planner.paper_mut().unwrap().padding.near = n
+            s.planner.paper_mut().unwrap().padding.near = n;
         }),
         (PaddingFar, |s, n| {
-            s.planner.paper_mut().unwrap().padding.far = n
+            s.planner.paper_mut().unwrap().padding.far = n;
         }),
     ]
 };
@@ -109,7 +112,7 @@ fn airframe() -> impl Iterator<Item = Row> {
 
 /// Each method's settings with all its numbers.
 fn methods() -> [(Settings, Vec<Row>); 2] {
-    let rows = |own: &'static [(Setting, fn(&mut Settings, f64))]| {
+    let rows = |own: &'static [(Setting, Change)]| {
         let plain = SHARED.iter().chain(own);
         let plain = plain.map(|(setting, set)| -> Row { (*setting, Box::new(set)) });
         airframe().chain(plain).collect()

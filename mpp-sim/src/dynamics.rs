@@ -26,7 +26,8 @@ pub struct Aerodynamics {
     /// Airspeed at which the derivatives by rates are as the airframe says [m/s]. They fall with `1 / v`,
     /// because they are of `theta' c / 2v`. Without a value they are constant, as in the paper.
     pub rates_airspeed: Option<f64>,
-    /// Angle of attack at which the wing stalls \[rad\]; it never does without a value.
+    /// Angle of attack at which the wing stalls \[rad\]; it never does without a value. It also stalls as far below the
+    /// angle of no lift as this is above it.
     pub stall: Option<f64>,
 }
 
@@ -71,16 +72,18 @@ impl Aerodynamics {
             }
         }
         if let Some(stall) = self.stall {
-            let alpha = air.angle_of_attack();
-            let linear = at.lift_zero + at.lift_alpha * alpha;
-            at.lift_zero += separated(alpha, stall) * (flat_plate(alpha) - linear);
+            // The wing stalls as far below its angle of no lift as above it; angles of attack may count from any line.
+            let no_lift = -at.lift_zero / at.lift_alpha;
+            let alpha = air.angle_of_attack() - no_lift;
+            let linear = at.lift_alpha * alpha;
+            at.lift_zero += separated(alpha, stall - no_lift) * (flat_plate(alpha) - linear);
         }
         at
     }
 }
 
-/// Share of the flow that is separated [-]: a smooth step at the stall, to either side. Source: Beard and
-/// McLain, equation 4.10.
+/// Share of the flow that is separated [-]: a smooth step at the stall, to either side. Both angles count from the angle
+/// of no lift. Source: Beard and McLain, equation 4.10.
 fn separated(alpha: f64, stall: f64) -> f64 {
     let above = libm::exp(-STALL_SHARPNESS * (alpha - stall));
     let below = libm::exp(STALL_SHARPNESS * (alpha + stall));

@@ -28,11 +28,38 @@ def test_mavsdk_sees_a_healthy_vehicle_in_the_air(simulate):
         # A program that waits for these goes on.
         until(telemetry.health_all_ok, "a healthy vehicle")
         until(telemetry.in_air, "a vehicle in the air")
-        assert telemetry.battery().voltage_v < 1.0
+        # It makes 65.5 V and -1 % of the values that stand for none.
+        until(lambda: telemetry.battery().remaining_percent == -1, "no battery")
+        assert telemetry.battery().voltage_v == pytest.approx(65.535)
+        assert (telemetry.gps_info().fix_type, telemetry.gps_info().num_satellites) == (6, 10)
+        assert telemetry.raw_gps().horizontal_uncertainty_m == pytest.approx(0.02)
         assert MissionRaw(system).download_mission() == []
         with pytest.raises(LogFilesError) as refused:
             LogFiles(system).get_entries()
         assert refused.value.result == LogFilesResult.NO_LOGFILES
+
+
+def test_what_a_program_waits_for_comes(simulate):
+    """Scripts wait for home and others before they go on. A vehicle that waits hangs in the air."""
+    simulation = simulate(*LASTING, "--home", "-33.9,151.2,20,90")
+    with Mavsdk(Configuration.create_with_component_type(ComponentType.GROUND_STATION)) as sdk:
+        sdk.add_any_connection(simulation.address.replace("udpin:", "udpin://"))
+        telemetry = Telemetry(sdk.first_autopilot(LIMIT))
+        came = {}
+        for name in ("home", "altitude", "imu", "odometry", "unix_epoch_time"):
+            came[name] = []
+            subscribe = getattr(telemetry, f"subscribe_{name}")
+            subscribe(lambda value, _, name=name: came[name].append(value))
+        # mavsdk itself asks for home, but once.
+        until(lambda: all(len(values) > 1 for values in came.values()), f"two of each: {came}")
+        home, altitude = came["home"][-1], came["altitude"][-1]
+        assert (home.latitude_deg, home.longitude_deg) == pytest.approx((-33.9, 151.2))
+        assert (home.absolute_altitude_m, altitude.altitude_relative_m) == pytest.approx((20, 50))
+        assert altitude.altitude_amsl_m == pytest.approx(70)
+        assert came["unix_epoch_time"][-1] > 1_767_225_600_000_000
+        until(telemetry.in_air, "a vehicle in the air")
+        assert telemetry.velocity_ned().north_m_s == 0
+        assert telemetry.heading().heading_deg == 90
 
 
 def test_mavsdk_reads_what_the_vehicle_says_of_its_parameters(simulate):

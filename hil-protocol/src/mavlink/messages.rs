@@ -176,6 +176,19 @@ messages! {
         time_boot_ms: u32, lat: i32, lon: i32, alt: i32, relative_alt: i32, vx: i16, vy: i16,
         vz: i16, hdg: u16,
     }
+    38 MISSION_WRITE_PARTIAL_LIST MISSION_WRITE_PARTIAL_LIST_DATA {
+        start_index: i16, end_index: i16, target_system: u8, target_component: u8,
+    } + {
+        mission_type: u8,
+    }
+    40 MISSION_REQUEST MISSION_REQUEST_DATA {
+        seq: u16, target_system: u8, target_component: u8,
+    } + {
+        mission_type: u8,
+    }
+    41 MISSION_SET_CURRENT MISSION_SET_CURRENT_DATA {
+        seq: u16, target_system: u8, target_component: u8,
+    }
     43 MISSION_REQUEST_LIST MISSION_REQUEST_LIST_DATA {
         target_system: u8, target_component: u8,
     } + {
@@ -201,6 +214,11 @@ messages! {
     } + {
         time_usec: u64,
     }
+    51 MISSION_REQUEST_INT MISSION_REQUEST_INT_DATA {
+        seq: u16, target_system: u8, target_component: u8,
+    } + {
+        mission_type: u8,
+    }
     66 REQUEST_DATA_STREAM REQUEST_DATA_STREAM_DATA {
         req_message_rate: u16, target_system: u8, target_component: u8, req_stream_id: u8,
         start_stop: u8,
@@ -220,6 +238,13 @@ messages! {
         command: u16, result: u8,
     } + {
         progress: u8, result_param2: i32, target_system: u8, target_component: u8,
+    }
+    105 HIGHRES_IMU HIGHRES_IMU_DATA {
+        time_usec: u64, xacc: f32, yacc: f32, zacc: f32, xgyro: f32, ygyro: f32, zgyro: f32,
+        xmag: f32, ymag: f32, zmag: f32, abs_pressure: f32, diff_pressure: f32, pressure_alt: f32,
+        temperature: f32, fields_updated: u16,
+    } + {
+        id: u8,
     }
     110 FILE_TRANSFER_PROTOCOL FILE_TRANSFER_PROTOCOL_DATA {
         target_network: u8, target_system: u8, target_component: u8, payload: [u8; 251],
@@ -241,12 +266,9 @@ messages! {
     } + {
         horizontal_fov: f32, vertical_fov: f32, quaternion: [f32; 4], signal_quality: u8,
     }
-    147 BATTERY_STATUS BATTERY_STATUS_DATA {
-        current_consumed: i32, energy_consumed: i32, temperature: i16, voltages: [u16; 10],
-        current_battery: i16, id: u8, battery_function: u8, mavtype "type": u8,
-        battery_remaining: i8,
-    } + {
-        time_remaining: i32, charge_state: u8, voltages_ext: [u16; 4], mode: u8, fault_bitmask: u32,
+    141 ALTITUDE ALTITUDE_DATA {
+        time_usec: u64, altitude_monotonic: f32, altitude_amsl: f32, altitude_local: f32,
+        altitude_relative: f32, altitude_terrain: f32, bottom_clearance: f32,
     }
     148 AUTOPILOT_VERSION AUTOPILOT_VERSION_DATA {
         capabilities: u64, uid: u64, flight_sw_version: u32, middleware_sw_version: u32,
@@ -280,6 +302,13 @@ messages! {
     300 PROTOCOL_VERSION PROTOCOL_VERSION_DATA {
         version: u16, min_version: u16, max_version: u16, spec_version_hash: [u8; 8],
         library_version_hash: [u8; 8],
+    }
+    331 ODOMETRY ODOMETRY_DATA {
+        time_usec: u64, x: f32, y: f32, z: f32, q: [f32; 4], vx: f32, vy: f32, vz: f32,
+        rollspeed: f32, pitchspeed: f32, yawspeed: f32, pose_covariance: [f32; 21],
+        velocity_covariance: [f32; 21], frame_id: u8, child_frame_id: u8,
+    } + {
+        reset_counter: u8, estimator_type: u8, quality: i8,
     }
     345 PARAM_ERROR PARAM_ERROR_DATA {
         param_index: i16, target_system: u8, target_component: u8, param_id: CharArray<16>,

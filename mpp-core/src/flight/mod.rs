@@ -10,7 +10,9 @@ use crate::settings::Settings;
 use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::sensors::LONGEST_DOUBT;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
-use crate::vehicle::{AirState, Conditions, Control, Pose, Trim, VehicleState, linearize};
+use crate::vehicle::{
+    AirState, Conditions, Control, Pose, StallGuard, Trim, VehicleState, linearize,
+};
 
 /// The source of the reference: a trajectory, or level trim.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +62,8 @@ pub struct FlightLoop {
     trim: Trim,
     cross_track: f64,
     airspeed_hold: f64,
+    /// The guard against the stall, if the stall is known.
+    guard: Option<StallGuard>,
     trajectory: Option<Trajectory>,
     /// Time \[s\] of the last step, and its command.
     last: Option<(f64, Control)>,
@@ -98,6 +102,8 @@ impl FlightLoop {
             trim,
             cross_track: settings.cross_track,
             airspeed_hold: settings.airspeed_hold,
+            guard: (settings.planner.plane().and_then(|own| own.stall))
+                .map(|stall| StallGuard::new(stall, &settings.airframe, &trim)),
             trajectory: None,
             last: None,
             jump: None,
@@ -264,7 +270,9 @@ impl FlightLoop {
         let trim = self.trim.control;
         let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
         let asked = if sound {
-            self.estimator.actuators().command_for(wanted)
+            let angle = self.estimator.air().angle_of_attack();
+            let safe = (self.guard).map_or(wanted, |guard| guard.within(wanted, angle));
+            self.estimator.actuators().command_for(safe)
         } else {
             trim
         };

@@ -8,8 +8,8 @@ use mpp_data::Setting;
 
 // Ranges that follow from sizes.
 const _: () = {
-    assert!(Setting::Latency.range()[1] == STAGES as f64 * STAGE_PERIOD);
-    assert!(Setting::RefinedCandidates.range()[1] == MAX_PATHS as f64);
+    assert!(Setting::Latency.range()[1].to_bits() == (STAGES as f64 * STAGE_PERIOD).to_bits());
+    assert!(Setting::RefinedCandidates.range()[1] as usize == MAX_PATHS);
 };
 
 /// The first of these numbers that is outside of its range. A setting that has no value is in range.

@@ -171,6 +171,12 @@ pub mod limits {
     /// Share of the elevator's range of angles of attack that plans use [-]. The regulator needs the rest.
     /// With 0.5 and 0.7, 133 and 138 of 200 flights succeeded, against 145 of 200. Source: D10, D11.
     pub const PLANNED_SHARE: f64 = 0.9;
+    /// Share of the way from level flight to the stall that plans and the regulator may use [-]. At the stall half of the
+    /// lift is gone. Gusts and errors of the estimate need the rest. Source: D40.
+    pub const STALL_SHARE: f64 = 0.8;
+    /// Lead of the regulator's guard against the stall [-]: the elevator may balance an angle of attack beyond the limit by
+    /// this share of the room that is left, so that it can turn the aircraft there quickly. Source: D40.
+    pub const STALL_LEAD: f64 = 1.0;
     /// Share of the elevator's rate that roll-outs use [-]. With a rate of 20 per second at 120 obstacles
     /// 0.5 flew 45 and 0.9 flew 48 of 60. Source: D15.
     pub const PLANNED_RATE_SHARE: f64 = 0.9;

@@ -258,9 +258,6 @@ struct Kept {
 
 /// Writes the log, then the picture.
 fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
-    let failed = |what: &Path, why: String| {
-        Failure::new(FAILURE, format!("cannot write {}: {why}", what.display()))
-    };
     let hash = log.hash().map_err(|error| Failure::new(FAILURE, error))?;
     let file = |ending: &str| out.join(format!("{name}.{ending}"));
     let mut kept = Kept {
@@ -269,20 +266,29 @@ fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
         hash,
         written: Ok(()),
     };
-    let mut write = || {
-        let path = file("json");
-        write_log(&path, log).map_err(|error| Failure::new(FAILURE, error))?;
-        kept.log = Some(path);
-        if !log.ticks.t.is_empty() {
-            let path = file("svg");
-            let svg = flight_svg(log).map_err(|error| failed(&path, error.to_string()))?;
-            write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
-            kept.figure = Some(path);
-        }
-        Ok(())
-    };
-    kept.written = write();
+    kept.written = write_files(&file, log, &mut kept.log, &mut kept.figure);
     Ok(kept)
+}
+
+/// Writes log and picture, and notes what stands there.
+fn write_files(
+    file: &impl Fn(&str) -> PathBuf,
+    log: &FlightLog,
+    kept_log: &mut Option<PathBuf>,
+    kept_figure: &mut Option<PathBuf>,
+) -> Result<(), Failure> {
+    let path = file("json");
+    write_log(&path, log).map_err(|error| Failure::new(FAILURE, error))?;
+    *kept_log = Some(path);
+    if !log.ticks.t.is_empty() {
+        let path = file("svg");
+        let svg = flight_svg(log).map_err(|why| {
+            Failure::new(FAILURE, format!("cannot write {}: {why}", path.display()))
+        })?;
+        write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
+        *kept_figure = Some(path);
+    }
+    Ok(())
 }
 
 /// Prints the result.

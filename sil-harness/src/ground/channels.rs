@@ -38,8 +38,17 @@ pub(super) struct Channels {
     /// The first one is the shared one.
     all: Vec<Channel>,
     outbox: Vec<Outgoing>,
-    /// The stream whose turn it is, and the tick. Only channels at which it is due get what is sent meanwhile.
-    turn: Option<(u32, u32)>,
+    turn: Turn,
+}
+
+/// Who gets what is sent meanwhile.
+#[derive(Clone, Copy)]
+pub(super) enum Turn {
+    All,
+    /// The channels at which this stream is due at this tick.
+    Stream(u32, u32),
+    /// The address that asked.
+    Peer(SocketAddr),
 }
 
 impl Channels {
@@ -56,7 +65,7 @@ impl Channels {
             recorder: sender.clone(),
             all: vec![shared],
             outbox: Vec::new(),
-            turn: None,
+            turn: Turn::All,
         }
     }
 
@@ -128,8 +137,8 @@ impl Channels {
             .collect()
     }
 
-    /// Sets the stream whose turn it is, or ends its turn.
-    pub(super) fn set_turn(&mut self, turn: Option<(u32, u32)>) {
+    /// Sets who gets what is sent from now on.
+    pub(super) fn set_turn(&mut self, turn: Turn) {
         self.turn = turn;
     }
 
@@ -146,8 +155,11 @@ impl Channels {
         who: impl Fn(&Channel) -> bool,
     ) {
         let turn = self.turn;
-        let is_due =
-            |channel: &Channel| turn.is_none_or(|(id, tick)| channel.streams.is_due(id, tick));
+        let is_due = |channel: &Channel| match turn {
+            Turn::All => true,
+            Turn::Stream(id, tick) => channel.streams.is_due(id, tick),
+            Turn::Peer(peer) => channel.peer == Some(peer),
+        };
         let mut wire = Vec::new();
         for channel in self.all.iter_mut() {
             if is_due(channel) && who(channel) {
@@ -155,7 +167,8 @@ impl Channels {
                 wire.push((channel.peer, datagram));
             }
         }
-        if !wire.is_empty() {
+        // A recording has what nobody asked for, too.
+        if record || !wire.is_empty() {
             let plain = record.then(|| self.recorder.frame(message));
             self.outbox.push(Outgoing { plain, wire });
         }

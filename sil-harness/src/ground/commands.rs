@@ -1,8 +1,10 @@
 //! Commands. The vehicle acknowledges every command, even an unknown one.
 
+use super::channels::Turn;
 use super::demands::{Address, Command, Demand};
 use super::parameters::decimal;
-use super::vehicle::{Severity, Vehicle, Waiting};
+use super::severity::Severity;
+use super::vehicle::{Vehicle, Waiting};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
 use mpp_sim::orders::{Mode, Order};
@@ -29,6 +31,11 @@ const FORCE: f32 = 21196.0;
 const ALTITUDE: &str = "MPP_ALT_M";
 /// Parameter of the airspeed of level flight [m/s].
 const CRUISE: &str = "MPP_CRUISE_MS";
+/// MAV_FRAME: altitudes above the sea, and above home.
+const GLOBAL: u32 = 0;
+const ABOVE_HOME: u32 = 3;
+const GLOBAL_INT: u32 = 5;
+const ABOVE_HOME_INT: u32 = 6;
 /// MAV_MODE_FLAG_CUSTOM_MODE_ENABLED.
 pub(super) const CUSTOM_MODE: u8 = 1;
 
@@ -66,6 +73,8 @@ impl Vehicle {
                 second: long.param2,
                 has_place: !(long.param5.is_nan() && long.param6.is_nan()),
                 altitude: long.param7,
+                // This message has no field for it.
+                frame: GLOBAL,
                 from,
             };
             let COMMAND_LONG_DATA {
@@ -82,6 +91,7 @@ impl Vehicle {
                 // This number stands for none.
                 has_place: [int.x, int.y] != [i32::MAX; 2],
                 altitude: int.z,
+                frame: int.frame.into(),
                 from,
             };
             (
@@ -131,23 +141,22 @@ impl Vehicle {
             number::ARM => self.arm(command),
             number::SET_MODE => self.set_mode(command),
             number::TERMINATE => self.terminate(command),
-            number::CHANGE_ALTITUDE => self.change_altitude(command.first, command),
+            number::CHANGE_ALTITUDE => {
+                let frame = whole(command.second);
+                self.change_altitude(command.first, frame, command)
+            }
             number::REPOSITION => self.reposition(command),
             number::CHANGE_SPEED => self.change_speed(command),
             number::SET_INTERVAL => self.set_interval(command),
             number::REQUEST_MESSAGE => match whole(command.first) {
                 Some(MESSAGE_INTERVAL_DATA::ID) => self.tell_interval(command.second, command.from),
                 Some(AUTOPILOT_VERSION_DATA::ID) => self.answer_version(command),
-                Some(AVAILABLE_MODES_DATA::ID) => {
-                    let number = whole(command.second);
-                    accepted_if(number.is_some_and(|number| self.list_modes(number)))
-                }
-                id => self.request(id),
+                id => self.request(id, command),
             },
             // These are older requests for the same messages.
             number::GET_INTERVAL => self.tell_interval(command.first, command.from),
-            number::HOME => self.request(Some(HOME_POSITION_DATA::ID)),
-            number::REQUEST_PROTOCOL => self.request(Some(PROTOCOL_VERSION_DATA::ID)),
+            number::HOME => self.request(Some(HOME_POSITION_DATA::ID), command),
+            number::REQUEST_PROTOCOL => self.request(Some(PROTOCOL_VERSION_DATA::ID), command),
             number::REQUEST_VERSION => self.answer_version(command),
             _ => Some(Outcome::Unsupported),
         };
@@ -201,10 +210,23 @@ impl Vehicle {
         None
     }
 
-    /// Sets the height to which the aircraft returns, by the parameter for it.
-    fn change_altitude(&mut self, metres: f32, command: &Command) -> Option<Outcome> {
+    /// Sets the height to which the aircraft returns, by the parameter for it. `frame` says from where the altitude counts.
+    fn change_altitude(
+        &mut self,
+        metres: f32,
+        frame: Option<u32>,
+        command: &Command,
+    ) -> Option<Outcome> {
+        let value = match frame {
+            Some(GLOBAL | GLOBAL_INT) => decimal(metres) - self.home.altitude,
+            Some(ABOVE_HOME | ABOVE_HOME_INT) => decimal(metres),
+            _ => {
+                let line = "Altitude: give it above the sea or above home";
+                self.say(Severity::Warning, line);
+                return Some(Outcome::Denied);
+            }
+        };
         let name = ALTITUDE.to_owned();
-        let value = decimal(metres);
         self.order(Order::Parameter { name, value }, waiting(command));
         None
     }
@@ -218,7 +240,7 @@ impl Vehicle {
             );
             return Some(Outcome::Denied);
         }
-        self.change_altitude(command.altitude, command)
+        self.change_altitude(command.altitude, Some(command.frame), command)
     }
 
     /// Sets the airspeed of level flight, by the parameter for it. A speed over ground cannot be asked for.
@@ -258,8 +280,19 @@ impl Vehicle {
         accepted_if(known.is_some())
     }
 
-    fn request(&mut self, id: Option<u32>) -> Option<Outcome> {
-        accepted_if(id.is_some_and(|id| self.send_by_id(id)))
+    /// Sends a message to the address that asks for it, and to no other.
+    fn request(&mut self, id: Option<u32>, command: &Command) -> Option<Outcome> {
+        let has_room = self.channels.own(command.from).is_some();
+        self.channels.set_turn(Turn::Peer(command.from.peer));
+        let sent = has_room
+            && match id {
+                Some(AVAILABLE_MODES_DATA::ID) => {
+                    whole(command.second).is_some_and(|number| self.list_modes(number))
+                }
+                id => id.is_some_and(|id| self.send_by_id(id)),
+            };
+        self.channels.set_turn(Turn::All);
+        accepted_if(sent)
     }
 
     /// Acknowledges a command whose order is settled.

@@ -25,6 +25,8 @@ pub(super) struct Command {
     /// Whether it names a latitude or a longitude.
     pub(super) has_place: bool,
     pub(super) altitude: f32,
+    /// The MAV_FRAME of the altitude.
+    pub(super) frame: u32,
     pub(super) from: Address,
 }
 

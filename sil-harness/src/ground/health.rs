@@ -1,8 +1,11 @@
 //! The health of the vehicle as stations see it: bits of `SYS_STATUS`, and a text for each change.
 
-use super::vehicle::{Severity, Vehicle};
+use super::severity::Severity;
+use super::vehicle::Vehicle;
 use hil_protocol::mavlink::messages::SYS_STATUS_DATA;
 use hil_protocol::{SensorState, SensorStates};
+use mpp_core::tuning::sensors::RECOVERED_AFTER;
+use mpp_sim::orders::Mode;
 
 /// MAV_SYS_STATUS_SENSOR: airspeed is differential pressure, pitch is the attitude reference, the position is
 /// that of satellite navigation, the lidar is a laser position.
@@ -19,8 +22,35 @@ const GEOFENCE: u32 = 0x10_0000;
 const PREARM: u32 = 0x1000_0000;
 
 impl Vehicle {
+    /// Takes over a mode. In `CRUISE` no scan is due, so that the core takes the lidar for silent. After that the core needs
+    /// scans for a while before it trusts the lidar again.
+    pub(super) fn enter(&mut self, mode: Mode) {
+        let last = core::mem::replace(&mut self.mode, mode);
+        match (last, mode) {
+            (Mode::Auto, Mode::Cruise) => {
+                self.lidar_from = u32::MAX;
+                let line = "CRUISE: it does not look for obstacles";
+                self.say(Severity::Warning, line);
+            }
+            (Mode::Cruise, Mode::Auto) => {
+                let configure = self.tuning.map(|tuning| tuning.configure);
+                let cycle = configure.map_or(0, |configure| {
+                    configure.replan_period_ticks + configure.latency_ticks
+                });
+                let trusted = u32::from(RECOVERED_AFTER) + 3 * cycle;
+                self.lidar_from = self.now.saturating_add(trusted);
+            }
+            _ => {}
+        }
+    }
+
     /// Tells the stations of each sensor and actuator that the core trusts otherwise than before.
     pub(super) fn report_sensors(&mut self, now: &SensorStates) {
+        let mut now = *now;
+        if self.now < self.lidar_from {
+            now.lidar = SensorState::Healthy;
+        }
+        let now = &now;
         let last = core::mem::replace(&mut self.sensors, *now);
         self.report_actuators(&last, now);
         for ((sensor, before), (_, now)) in last.sensors().into_iter().zip(now.sensors()) {
@@ -59,9 +89,10 @@ impl Vehicle {
     pub(super) fn send_system_status(&mut self) {
         let (_, _, rejections) = self.motion();
         let count = |count: usize| u16::try_from(count).unwrap_or(u16::MAX);
+        let idle = if self.mode == Mode::Cruise { LIDAR } else { 0 };
         self.send(&SYS_STATUS_DATA {
             onboard_control_sensors_present: SENSORS | PREARM,
-            onboard_control_sensors_enabled: SENSORS | PREARM,
+            onboard_control_sensors_enabled: (SENSORS | PREARM) & !idle,
             onboard_control_sensors_health: healthy(&self.sensors, self.armed),
             // There is no battery.
             voltage_battery: u16::MAX,

@@ -2,8 +2,9 @@
 
 use super::commands::{CUSTOM_MODE, mode_number};
 use super::demands::Address;
+use super::severity::Severity;
 use super::tlog::EPOCH_US;
-use super::vehicle::{Severity, Vehicle};
+use super::vehicle::Vehicle;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
 use hil_protocol::{PlanOutcome, PlanReport, PlanTrajectory};
@@ -26,15 +27,6 @@ const CAPABILITIES: u64 = 4 | 8 | 2048 | 8192;
 /// MAV_PROTOCOL_CAPABILITY: whole parameters as the bytes of an integer, or all of them as plain floats.
 const PARAMETERS_BYTEWISE: u64 = 16;
 const PARAMETERS_AS_FLOATS: u64 = 131_072;
-/// Position of the start on maps \[deg\]. The place is arbitrary. It counts as sea level, so that
-/// every altitude is a height.
-pub(super) const HOME: (f64, f64) = (47.397_742, 8.545_594);
-/// Length of a degree of latitude \[m\].
-const DEGREE: f64 = 111_319.49;
-/// Thrust that the throttle display shows as 100 % \[N\]. It only scales a percentage.
-const FULL_THROTTLE: f64 = 15.0;
-/// MAV_MISSION_UNSUPPORTED.
-const NO_MISSIONS: u8 = 3;
 /// Number of beams in an [`MPP_LIDAR_SCAN_DATA`].
 const BEAMS: usize = MPP_LIDAR_SCAN_DATA::DEFAULT.ranges.len();
 
@@ -73,37 +65,9 @@ impl Vehicle {
                     target_component: from.component,
                 });
             }
-        } else if let Some(request) = frame.decode::<MISSION_REQUEST_LIST_DATA>() {
-            if self.is_target(request.target_system, request.target_component) {
-                self.send(&MISSION_COUNT_DATA {
-                    target_system: from.system,
-                    target_component: from.component,
-                    count: 0,
-                    mission_type: request.mission_type,
-                    ..MISSION_COUNT_DATA::DEFAULT
-                });
-            }
-        } else if let Some(upload) = frame.decode::<MISSION_COUNT_DATA>() {
-            if self.is_target(upload.target_system, upload.target_component) {
-                // The vehicle accepts only the empty mission.
-                let verdict = if upload.count == 0 { 0 } else { NO_MISSIONS };
-                self.acknowledge_mission(verdict, upload.mission_type, from);
-            }
-        } else if let Some(clear) = frame.decode::<MISSION_CLEAR_ALL_DATA>()
-            && self.is_target(clear.target_system, clear.target_component)
-        {
-            self.acknowledge_mission(0, clear.mission_type, from);
+        } else {
+            self.answer_mission(frame, from);
         }
-    }
-
-    fn acknowledge_mission(&mut self, verdict: u8, mission_type: u8, to: Address) {
-        self.send(&MISSION_ACK_DATA {
-            target_system: to.system,
-            target_component: to.component,
-            mavtype: verdict,
-            mission_type,
-            ..MISSION_ACK_DATA::DEFAULT
-        });
     }
 
     /// Sends a message with the present values. Returns `false` if this message cannot be
@@ -116,18 +80,13 @@ impl Vehicle {
                 time_unix_usec: EPOCH_US + self.microseconds(),
                 time_boot_ms: self.milliseconds(),
             }),
-            ATTITUDE_DATA::ID
-            | LOCAL_POSITION_NED_DATA::ID
-            | GLOBAL_POSITION_INT_DATA::ID
-            | VFR_HUD_DATA::ID => self.send_motion(id),
-            HOME_POSITION_DATA::ID => self.send_home(),
             PROTOCOL_VERSION_DATA::ID => self.send(&PROTOCOL_VERSION_DATA {
                 version: 200,
                 min_version: 200,
                 max_version: 200,
                 ..PROTOCOL_VERSION_DATA::DEFAULT
             }),
-            _ => return self.send_status(id) || self.repeat(id),
+            _ => return self.send_motion(id) || self.send_status(id) || self.repeat(id),
         }
         true
     }
@@ -179,51 +138,6 @@ impl Vehicle {
         });
     }
 
-    /// The vehicle flies in the vertical plane: downrange is north, east is zero, down is minus
-    /// height; heading is north, roll and yaw are zero.
-    fn send_motion(&mut self, id: u32) {
-        let (air, thrust, _) = self.motion();
-        let air = *air;
-        let (forward, climb) = self.over_ground();
-        let time_boot_ms = self.milliseconds();
-        match id {
-            ATTITUDE_DATA::ID => self.send(&ATTITUDE_DATA {
-                time_boot_ms,
-                pitch: air.pitch as f32,
-                pitchspeed: air.pitch_rate as f32,
-                ..ATTITUDE_DATA::DEFAULT
-            }),
-            LOCAL_POSITION_NED_DATA::ID => self.send(&LOCAL_POSITION_NED_DATA {
-                time_boot_ms,
-                x: self.state.x as f32,
-                y: 0.0,
-                z: -self.state.z as f32,
-                vx: forward as f32,
-                vy: 0.0,
-                vz: -climb as f32,
-            }),
-            GLOBAL_POSITION_INT_DATA::ID => self.send(&GLOBAL_POSITION_INT_DATA {
-                time_boot_ms,
-                lat: north(self.state.x),
-                lon: (HOME.1 * 1e7).round() as i32,
-                alt: (self.state.z * 1e3).round() as i32,
-                relative_alt: (self.state.z * 1e3).round() as i32,
-                vx: (forward * 1e2).round() as i16,
-                vy: 0,
-                vz: (-climb * 1e2).round() as i16,
-                hdg: 0,
-            }),
-            _ => self.send(&VFR_HUD_DATA {
-                airspeed: air.airspeed as f32,
-                groundspeed: forward as f32,
-                heading: 0,
-                throttle: (thrust / FULL_THROTTLE * 100.0).clamp(0.0, 100.0) as u16,
-                alt: self.state.z as f32,
-                climb: climb as f32,
-            }),
-        }
-    }
-
     /// Tells a station what the vehicle can do. From here on the station knows that whole parameters come as integers;
     /// one that never asks gets every parameter as a float.
     pub(super) fn tell_version(&mut self, from: Address) {
@@ -252,16 +166,6 @@ impl Vehicle {
         };
         // What is true for this station is not for others.
         self.send_to_station(&message, from);
-    }
-
-    fn send_home(&mut self) {
-        self.send(&HOME_POSITION_DATA {
-            latitude: (HOME.0 * 1e7).round() as i32,
-            longitude: (HOME.1 * 1e7).round() as i32,
-            q: [1.0, 0.0, 0.0, 0.0],
-            time_usec: self.microseconds(),
-            ..HOME_POSITION_DATA::DEFAULT
-        });
     }
 
     pub(super) fn report_scan(&mut self, record: &TickRecord<'_>) {
@@ -327,9 +231,4 @@ impl Vehicle {
         self.send_event(&message);
         self.last.trajectory = Some(message);
     }
-}
-
-/// Latitude of a place downrange \[1e-7 deg\].
-pub(super) fn north(x: f64) -> i32 {
-    ((HOME.0 + x / DEGREE) * 1e7).round() as i32
 }

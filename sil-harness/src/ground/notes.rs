@@ -1,7 +1,8 @@
 //! What the vehicle tells persons: texts for stations, and lines for whoever started it.
 
+use super::severity::Severity;
 use super::stations::Change;
-use super::vehicle::{COMPONENT, Severity, Vehicle};
+use super::vehicle::{COMPONENT, Vehicle};
 use hil_protocol::mavlink::messages::STATUSTEXT_DATA;
 use hil_protocol::mavlink::{Frame, text};
 use mpp_sim::scenario::Scenario;

@@ -6,7 +6,8 @@
 
 use super::channels::Channel;
 use super::metadata::is_whole;
-use super::vehicle::{Severity, Vehicle, Waiting};
+use super::severity::Severity;
+use super::vehicle::{Vehicle, Waiting};
 use hil_protocol::ParameterVerdict;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{CharArray, text};

@@ -1,19 +1,28 @@
 //! What a station asks of a healthy vehicle beside its motion: whether it flies, where it is by its navigation, the
-//! wind, its modes, and its battery, of which there is none.
+//! wind, and its modes.
 
 use super::commands::mode_number;
-use super::inquiries::{HOME, north};
+use super::last::Last;
 use super::metadata::GENERAL_URI;
-use super::vehicle::{Last, Vehicle};
+use super::vehicle::Vehicle;
 use hil_protocol::SensorState;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{MessageData, text};
 use mpp_sim::orders::Mode;
 
-/// MAV_LANDED_STATE_ON_GROUND and MAV_LANDED_STATE_IN_AIR.
-const LANDED: [u8; 2] = [1, 2];
-/// GPS_FIX_TYPE_NO_FIX and GPS_FIX_TYPE_3D_FIX.
-const FIXES: [u8; 2] = [1, 3];
+/// MAV_LANDED_STATE_IN_AIR. A vehicle that waits hangs in the air at its start.
+const IN_AIR: u8 = 2;
+/// GPS_FIX_TYPE: no satellites, no position, position, position with fixed carrier phases.
+const NO_GPS: u8 = 0;
+const NO_FIX: u8 = 1;
+const FIX_3D: u8 = 3;
+const RTK_FIXED: u8 = 6;
+/// Greatest declared error of a position with fixed carrier phases \[m\].
+const RTK_ERROR: f64 = 0.05;
+/// Error that the core takes for the least one \[m\].
+const LEAST_ERROR: f64 = 1e-3;
+/// Satellites in view, of which the simulation has none: as many as PX4's simulation tells.
+const SATELLITES: u8 = 10;
 /// MAV_STANDARD_MODE_CRUISE. Flying by one's own plan is no standard mode.
 const STANDARD_CRUISE: u8 = 3;
 /// MAV_MODE_PROPERTY_AUTO_MODE.
@@ -43,24 +52,9 @@ impl Vehicle {
         match id {
             EXTENDED_SYS_STATE_DATA::ID => self.send(&EXTENDED_SYS_STATE_DATA {
                 vtol_state: 0,
-                landed_state: LANDED[usize::from(self.flying)],
+                landed_state: IN_AIR,
             }),
             GPS_RAW_INT_DATA::ID => self.send_fix(),
-            GPS_GLOBAL_ORIGIN_DATA::ID => self.send(&GPS_GLOBAL_ORIGIN_DATA {
-                latitude: (HOME.0 * 1e7).round() as i32,
-                longitude: (HOME.1 * 1e7).round() as i32,
-                altitude: 0,
-                time_usec: self.microseconds(),
-            }),
-            BATTERY_STATUS_DATA::ID => self.send(&BATTERY_STATUS_DATA {
-                temperature: i16::MAX,
-                voltages: [u16::MAX; 10],
-                current_battery: -1,
-                current_consumed: -1,
-                energy_consumed: -1,
-                battery_remaining: -1,
-                ..BATTERY_STATUS_DATA::DEFAULT
-            }),
             WIND_COV_DATA::ID => self.send_wind(),
             CURRENT_MODE_DATA::ID => self.send(&CURRENT_MODE_DATA {
                 standard_mode: standard(self.mode),
@@ -77,35 +71,53 @@ impl Vehicle {
         true
     }
 
-    /// The position by navigation. It has a fix unless the core has excluded the positions.
+    /// The position by navigation, with the error that its source declares. Odometry, whose error grows with the way, has
+    /// no satellites.
     fn send_fix(&mut self) {
-        let fix = self.sensors.position != SensorState::Excluded;
-        let speed = (self.over_ground().0.abs() * 1e2).round() as u16;
+        let source = self.navigation;
+        let error = source.sigma.max(LEAST_ERROR);
+        let (fix_type, satellites_visible) = if source.drift > 0.0 {
+            (NO_GPS, 0)
+        } else if self.sensors.position == SensorState::Excluded {
+            (NO_FIX, SATELLITES)
+        } else if error <= RTK_ERROR {
+            (RTK_FIXED, SATELLITES)
+        } else {
+            (FIX_3D, SATELLITES)
+        };
+        let [lat, lon] = self.home.place(self.state.x);
+        // The dilution is that of ranges with an error of 1 m.
+        let dilution = (error * 1e2).round().max(1.0) as u16;
+        let millimetres = |error: f64| (error * 1e3).round() as u32;
         self.send(&GPS_RAW_INT_DATA {
             time_usec: self.microseconds(),
-            fix_type: FIXES[usize::from(fix)],
-            lat: north(self.state.x),
-            lon: (HOME.1 * 1e7).round() as i32,
-            alt: (self.state.z * 1e3).round() as i32,
-            eph: u16::MAX,
-            epv: u16::MAX,
-            vel: speed,
-            cog: 0,
-            satellites_visible: u8::MAX,
+            fix_type,
+            lat,
+            lon,
+            alt: self.home.millimetres(self.state.z),
+            eph: dilution,
+            epv: dilution,
+            vel: (self.over_ground().0.abs() * 1e2).round() as u16,
+            cog: self.centidegrees(),
+            satellites_visible,
+            h_acc: millimetres(error),
+            v_acc: millimetres(error),
+            vel_acc: source.velocity_sigma.map_or(0, millimetres),
             ..GPS_RAW_INT_DATA::DEFAULT
         });
     }
 
     fn send_wind(&mut self) {
         let wind = self.wind;
+        let [wind_x, wind_y] = self.home.north_east(wind.x).map(|part| part as f32);
         self.send(&WIND_COV_DATA {
             time_usec: self.microseconds(),
-            wind_x: wind.x as f32,
-            wind_y: 0.0,
+            wind_x,
+            wind_y,
             wind_z: -wind.z as f32,
             var_horiz: f32::NAN,
             var_vert: f32::NAN,
-            wind_alt: self.state.z as f32,
+            wind_alt: (self.home.altitude + self.state.z) as f32,
             horiz_accuracy: f32::NAN,
             vert_accuracy: f32::NAN,
         });

@@ -14,15 +14,16 @@ enum Rate {
     Never,
 }
 
-/// The messages that are sent without a request for each: id and usual rate.
-const USUAL: [(u32, Rate); 17] = [
+/// The messages with a rate: id and usual rate.
+const USUAL: [(u32, Rate); 20] = [
     (HEARTBEAT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (SYS_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (EXTENDED_SYS_STATE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
-    (BATTERY_STATUS_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (SYSTEM_TIME_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (HOME_POSITION_DATA::ID, Rate::Every(2 * TICKS_PER_SECOND)),
     (GPS_RAW_INT_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (WIND_COV_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
-    // pymavlink 2.4.50 does not know it, and counts every such frame as two that were lost.
+    // pymavlink 2.4.50 does not know it, and counts every such frame as lost.
     (CURRENT_MODE_DATA::ID, Rate::Never),
     (ATTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
     (
@@ -34,12 +35,25 @@ const USUAL: [(u32, Rate); 17] = [
         Rate::Every(TICKS_PER_SECOND / 5),
     ),
     (VFR_HUD_DATA::ID, Rate::Every(TICKS_PER_SECOND / 10)),
-    (SYSTEM_TIME_DATA::ID, Rate::Never),
+    // Once a second tells that they exist. Who works with them asks for more.
+    (ALTITUDE_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (HIGHRES_IMU_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
+    (ODOMETRY_DATA::ID, Rate::Every(TICKS_PER_SECOND)),
     (DISTANCE_SENSOR_DATA::ID, Rate::Event),
     (STATUSTEXT_DATA::ID, Rate::Event),
-    (MPP_LIDAR_SCAN_DATA::ID, Rate::Event),
-    (MPP_PLAN_STATUS_DATA::ID, Rate::Event),
-    (MPP_TRAJECTORY_DATA::ID, Rate::Event),
+    // Stations that do not know them count every such frame as lost.
+    (MPP_LIDAR_SCAN_DATA::ID, Rate::Never),
+    (MPP_PLAN_STATUS_DATA::ID, Rate::Never),
+    (MPP_TRAJECTORY_DATA::ID, Rate::Never),
+];
+
+/// The messages that tell of something new.
+const EVENTS: [u32; 5] = [
+    DISTANCE_SENSOR_DATA::ID,
+    STATUSTEXT_DATA::ID,
+    MPP_LIDAR_SCAN_DATA::ID,
+    MPP_PLAN_STATUS_DATA::ID,
+    MPP_TRAJECTORY_DATA::ID,
 ];
 
 /// All messages with a rate, in the order in which those of a tick are sent.
@@ -96,7 +110,7 @@ impl Streams {
             *usual
         } else if interval < 0.0 {
             Rate::Never
-        } else if *usual == Rate::Event {
+        } else if EVENTS.contains(&id) {
             Rate::Event
         } else {
             // A longer one would not fit the answer to a question for it.
@@ -108,30 +122,24 @@ impl Streams {
 
     /// Sets the rate of a group of messages in Hz. This is the older kind of request.
     pub(super) fn set_group(&mut self, group: u8, hertz: u16, start: bool) {
-        let ids: &[u32] = match group {
-            0 => &[
-                SYS_STATUS_DATA::ID,
-                EXTENDED_SYS_STATE_DATA::ID,
-                BATTERY_STATUS_DATA::ID,
-                GPS_RAW_INT_DATA::ID,
-                WIND_COV_DATA::ID,
-                ATTITUDE_DATA::ID,
-                LOCAL_POSITION_NED_DATA::ID,
-                GLOBAL_POSITION_INT_DATA::ID,
-                VFR_HUD_DATA::ID,
-            ],
-            2 => &[SYS_STATUS_DATA::ID, GPS_RAW_INT_DATA::ID],
-            6 => &[LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
-            10 => &[ATTITUDE_DATA::ID],
-            11 => &[VFR_HUD_DATA::ID],
-            _ => &[],
+        let periodic = USUAL.iter().filter_map(|(id, rate)| match rate {
+            Rate::Every(_) => Some(*id),
+            _ => None,
+        });
+        let ids: Vec<u32> = match group {
+            0 => periodic.collect(),
+            2 => vec![SYS_STATUS_DATA::ID, GPS_RAW_INT_DATA::ID],
+            6 => vec![LOCAL_POSITION_NED_DATA::ID, GLOBAL_POSITION_INT_DATA::ID],
+            10 => vec![ATTITUDE_DATA::ID],
+            11 => vec![VFR_HUD_DATA::ID],
+            _ => Vec::new(),
         };
         let interval = match (start, hertz) {
             (false, _) | (true, 0) => -1.0,
             (true, hertz) => 1e6 / f32::from(hertz),
         };
         for id in ids {
-            self.set(*id, interval);
+            self.set(id, interval);
         }
     }
 }

@@ -3,19 +3,24 @@
 //! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks
 //! since the start; ticks before the flight count too.
 
-use super::channels::Channels;
 pub use super::channels::Outgoing;
+use super::channels::{Channels, Turn};
 use super::demands::{Address, Demand, Demands};
 use super::files::Files;
 use super::heard::Heard;
+use super::home::Home;
+use super::last::Last;
 use super::parameter_queue::ParameterQueue;
 use super::security::Security;
+use super::severity::Severity;
 use super::stations::Stations;
+use super::tails::Tails;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, Framer, Key, Sender};
 use mpp_core::vehicle::{AirState, VehicleState, Wind};
 use mpp_node::parameters::{self, Tuning};
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::orders::{Mode, Order, Refused};
 use mpp_sim::scenario::{TICK_MS, TICK_US};
 use mpp_sim::tick_record::TickRecord;
@@ -26,15 +31,6 @@ use std::net::SocketAddr;
 pub(super) const COMPONENT: u8 = 1;
 /// MAV_TYPE_GCS.
 const STATION: u8 = 6;
-
-/// The severity of a text, with the numbers of MAV_SEVERITY.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Severity {
-    Critical = 2,
-    Warning = 4,
-    Notice = 5,
-    Info = 6,
-}
 
 /// The configuration of a vehicle.
 #[derive(Clone)]
@@ -47,6 +43,10 @@ pub struct VehicleConfig {
     pub hold: bool,
     /// Key, and time of the first signature [10 us since 2015-01-01].
     pub key: Option<(Key, u64)>,
+    /// The place of the start.
+    pub home: Home,
+    /// The navigation source, for the accuracy that it declares.
+    pub navigation: NavigationConfig,
 }
 
 /// The receiver of an order's result.
@@ -58,20 +58,13 @@ pub(super) enum Waiting {
     Nobody,
 }
 
-/// The last message of each event.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Last {
-    pub(super) scan: Option<MPP_LIDAR_SCAN_DATA>,
-    pub(super) plan: Option<MPP_PLAN_STATUS_DATA>,
-    pub(super) trajectory: Option<MPP_TRAJECTORY_DATA>,
-}
-
 /// The vehicle.
 pub struct Vehicle {
     pub(super) system: u8,
     pub(super) channels: Channels,
     pub(super) security: Security,
     framer: Framer,
+    tails: Tails,
     stations: Stations,
     pub(super) files: Files,
     demands: Demands<Demand>,
@@ -92,6 +85,10 @@ pub struct Vehicle {
     pub(super) wind: Wind,
     rejections: usize,
     pub(super) sensors: SensorStates,
+    /// The tick from which the lidar is watched: none in a mode that takes no scans.
+    pub(super) lidar_from: u32,
+    pub(super) home: Home,
+    pub(super) navigation: NavigationConfig,
     /// The last of each event, for a station that asks for it.
     pub(super) last: Last,
     /// Whether another vehicle with this number was told of.
@@ -108,6 +105,7 @@ impl Vehicle {
             channels: Channels::new(&Sender::new(system, COMPONENT)),
             security: Security::new(config.key.clone()),
             framer: Framer::new(),
+            tails: Tails::default(),
             stations: Stations::new(config.patience),
             files: Files::new(),
             demands: Demands::new(),
@@ -126,6 +124,9 @@ impl Vehicle {
             wind: Wind::STILL,
             rejections: 0,
             sensors: SensorStates::default(),
+            lidar_from: 0,
+            home: config.home,
+            navigation: config.navigation,
             last: Last::default(),
             twin: false,
         }
@@ -198,12 +199,14 @@ impl Vehicle {
     /// Handles a datagram that came from an address. Returns the intact frames in it.
     pub fn receive(&mut self, peer: SocketAddr, datagram: &[u8]) -> Vec<Vec<u8>> {
         let mut frames = Vec::new();
+        let bytes = self.tails.join(peer, datagram);
         let mut framer = std::mem::take(&mut self.framer);
-        framer.receive_datagram(datagram, |frame| {
+        framer.receive_datagram(&bytes, |frame| {
             self.handle(frame, peer);
             frames.push(frame.bytes.to_vec());
         });
         self.framer = framer;
+        self.tails.keep(peer, &bytes, &frames);
         frames
     }
 
@@ -238,7 +241,7 @@ impl Vehicle {
         self.tuning = Some(*tuning);
         if result.is_ok() {
             match order {
-                Order::Mode { mode } => self.mode = *mode,
+                Order::Mode { mode } => self.enter(*mode),
                 Order::Motor { on } => self.armed = *on,
                 Order::Parameter { .. }
                 | Order::Terminate
@@ -299,10 +302,10 @@ impl Vehicle {
     /// Ends a tick: sends what is due and advances the time.
     fn pass(&mut self) {
         for id in self.channels.due(self.now) {
-            self.channels.set_turn(Some((id, self.now)));
+            self.channels.set_turn(Turn::Stream(id, self.now));
             self.send_by_id(id);
         }
-        self.channels.set_turn(None);
+        self.channels.set_turn(Turn::All);
         for number in self.parameters.due() {
             self.send_parameter(number);
         }
@@ -373,9 +376,13 @@ impl Vehicle {
         u64::from(self.now) * u64::from(TICK_US)
     }
 
-    /// Estimated velocity over ground, downrange and up [m/s].
+    /// Estimated velocity over ground, downrange and up [m/s]. A vehicle that waits hangs in the air.
     pub(super) fn over_ground(&self) -> (f64, f64) {
-        self.wind.ground_velocity(&self.estimate)
+        if self.flying {
+            self.wind.ground_velocity(&self.estimate)
+        } else {
+            (0.0, 0.0)
+        }
     }
 
     pub(super) fn motion(&self) -> (&AirState, f64, usize) {

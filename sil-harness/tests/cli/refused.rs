@@ -85,6 +85,10 @@ fn a_row_file_is_no_log() {
 fn a_flag_that_nothing_could_follow_is_refused() {
     for (command, hint) in [
         ("fly --instance 3", "without --mavlink, --live or --tlog"),
+        (
+            "fly --home 47,8,488,0",
+            "without --mavlink, --live or --tlog",
+        ),
         ("fly --patience 3", "--link"),
         ("fly --patience 3 --link fifo:none", "leave it out"),
         ("fly --obstacles -3", "give a whole number of 0 or more"),
@@ -105,6 +109,14 @@ fn a_flag_that_nothing_could_follow_is_refused() {
     ] {
         let talk = refused(command);
         assert!(talk.contains(hint), "{talk}");
+    }
+}
+
+#[test]
+fn a_home_that_is_no_place_is_refused_with_what_to_give() {
+    for home in ["Zurich", "47,8", "-91,8,488,0", "47,8,488,400"] {
+        let talk = refused(&format!("fly --mavlink --home {home}"));
+        assert!(talk.contains("give LAT,LON,ALT,HEADING"), "{talk}");
     }
 }
 

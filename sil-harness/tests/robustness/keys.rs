@@ -3,6 +3,8 @@
 use crate::{run_in, scratch, talk};
 use hil_protocol::mavlink::messages::COMMAND_LONG_DATA;
 use hil_protocol::mavlink::{Key, Sender, Signer};
+use mpp_sim::navigation::NavigationConfig;
+use sil_harness::ground::home::Home;
 use sil_harness::ground::transport::{Transport, signing_time};
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
 use std::net::UdpSocket;
@@ -42,6 +44,8 @@ fn vehicle(state: &Path) -> (Transport, UdpSocket) {
         patience: None,
         hold: true,
         key: Some((Key::of_passphrase("secret"), signing_time())),
+        home: Home::ZURICH,
+        navigation: NavigationConfig::RTK,
     });
     let mut transport = Transport::new(vehicle, |_| {});
     let station = UdpSocket::bind("127.0.0.1:0").unwrap();

@@ -2,8 +2,9 @@
 
 use crate::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
-use hil_protocol::mavlink::{MessageData, text};
+use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
 use mpp_sim::scenario::Scenario;
+use sil_harness::ground::tlog::TlogWriter;
 
 const INT32: u8 = 6;
 const REAL32: u8 = 9;
@@ -72,6 +73,39 @@ fn the_frames_of_an_address_are_numbered_without_a_gap() {
     }
 }
 
+/// Messages that stations do not know go to those who asked for them. All others count no frame as lost.
+#[test]
+fn private_messages_are_for_those_who_ask() {
+    let mut radio = Radio::new(&CONFIG);
+    radio
+        .at(50, &command(511, MPP_PLAN_STATUS_DATA::ID as f32, 1.0))
+        .at(120, &command(512, MPP_TRAJECTORY_DATA::ID as f32, 0.0))
+        .at(130, &command(512, CURRENT_MODE_DATA::ID as f32, 0.0));
+    let log = radio.fly(&flight(300));
+    let private = |message: &MavMessage| match message {
+        MavMessage::MPP_PLAN_STATUS(_) => Some("plan"),
+        MavMessage::MPP_TRAJECTORY(_) => Some("trajectory"),
+        MavMessage::MPP_LIDAR_SCAN(_) => Some("scan"),
+        MavMessage::CURRENT_MODE(_) => Some("mode"),
+        _ => None,
+    };
+    let here = radio.all(private);
+    let expected = ["plan", "trajectory", "mode", "plan"];
+    assert_eq!(
+        here.iter().map(|(_, what)| *what).collect::<Vec<_>>(),
+        expected
+    );
+    let mut there = radio.heard_there.iter();
+    assert!(there.all(|(.., message)| private(message).is_none()));
+    // The recording has every plan.
+    let tlog = std::mem::replace(&mut radio.tlog, TlogWriter::new(Vec::new()));
+    let mut plans = 0;
+    Framer::new().receive_datagram(&tlog.finish().unwrap(), |frame| {
+        plans += usize::from(frame.decode::<MPP_PLAN_STATUS_DATA>().is_some());
+    });
+    assert_eq!(plans, log.plans.len());
+}
+
 /// Whole numbers are floats for a station that never asked what the vehicle can do, and integers for one that did.
 #[test]
 fn integers_are_for_those_who_know_of_them() {
@@ -125,7 +159,7 @@ fn integers_are_for_those_who_know_of_them() {
 fn the_form_of_parameters_is_that_of_who_speaks() {
     let mut radio = Radio::new(&CONFIG);
     radio.at(10, &command(512, VERSION, 0.0));
-    let other = hil_protocol::mavlink::Sender::new(254, 230).frame(&PARAM_REQUEST_READ_DATA {
+    let other = Sender::new(254, 230).frame(&PARAM_REQUEST_READ_DATA {
         param_index: 0,
         target_system: 1,
         target_component: 1,
@@ -145,14 +179,9 @@ fn a_recording_has_each_message_once() {
         .there_at(20, &PARAM_REQUEST_LIST_DATA::DEFAULT);
     radio.fly(&flight(100));
     let listed = radio.values().len();
-    let bytes = std::mem::replace(
-        &mut radio.tlog,
-        sil_harness::ground::tlog::TlogWriter::new(Vec::new()),
-    )
-    .finish()
-    .unwrap();
+    let tlog = std::mem::replace(&mut radio.tlog, TlogWriter::new(Vec::new()));
     let mut recorded = 0;
-    hil_protocol::mavlink::Framer::new().receive_datagram(&bytes, |frame| {
+    Framer::new().receive_datagram(&tlog.finish().unwrap(), |frame| {
         if let Some(value) = frame.decode::<PARAM_VALUE_DATA>() {
             assert_eq!(value.param_type, REAL32);
             recorded += 1;
@@ -166,6 +195,7 @@ fn a_recording_has_each_message_once() {
 fn a_place_to_fly_to_is_refused_with_a_reason_and_an_altitude_is_taken() {
     let mut radio = Radio::new(&CONFIG);
     let reposition = |x, y, z| COMMAND_INT_DATA {
+        frame: 6,
         command: 192,
         target_system: 1,
         target_component: 1,
@@ -177,7 +207,8 @@ fn a_place_to_fly_to_is_refused_with_a_reason_and_an_altitude_is_taken() {
     let long = COMMAND_LONG_DATA {
         param5: f32::NAN,
         param6: f32::NAN,
-        param7: 54.0,
+        // Above the sea, because this message names no frame.
+        param7: 488.0 + 54.0,
         ..command(192, -1.0, 0.0)
     };
     radio

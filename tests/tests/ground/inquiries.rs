@@ -3,6 +3,7 @@
 use crate::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::scenario::Scenario;
+use sil_harness::ground::vehicle::VehicleConfig;
 
 fn short() -> Scenario {
     Scenario {
@@ -171,6 +172,43 @@ fn there_is_no_mission_and_none_is_taken() {
     assert_eq!(told, [(44, 0, 0), (47, 3, 0), (47, 0, 1), (47, 0, 2)]);
 }
 
+/// A station that gets no answer asks again, for seconds.
+#[test]
+fn what_the_empty_mission_lacks_is_acknowledged_as_an_error() {
+    let mut radio = Radio::new(&CONFIG);
+    radio
+        .at(
+            10,
+            &MISSION_REQUEST_DATA {
+                mission_type: 1,
+                ..MISSION_REQUEST_DATA::DEFAULT
+            },
+        )
+        .at(20, &MISSION_REQUEST_INT_DATA::DEFAULT)
+        .at(30, &MISSION_SET_CURRENT_DATA::DEFAULT)
+        .at(40, &MISSION_WRITE_PARTIAL_LIST_DATA::DEFAULT)
+        .at(
+            50,
+            &MISSION_SET_CURRENT_DATA {
+                target_system: 2,
+                ..MISSION_SET_CURRENT_DATA::DEFAULT
+            },
+        );
+    radio.fly(&short());
+    let told = radio.all(|message| match message {
+        MavMessage::MISSION_ACK(ack) => Some((ack.mavtype, ack.mission_type, ack.target_system)),
+        _ => None,
+    });
+    let (invalid_sequence, unsupported) = (13, 3);
+    let expected = [
+        (10, (invalid_sequence, 1, 255)),
+        (20, (invalid_sequence, 0, 255)),
+        (30, (invalid_sequence, 0, 255)),
+        (40, (unsupported, 0, 255)),
+    ];
+    assert_eq!(told, expected);
+}
+
 #[test]
 fn a_map_shows_where_the_log_says() {
     let mut radio = Radio::new(&CONFIG);
@@ -196,6 +234,43 @@ fn a_map_shows_where_the_log_says() {
         );
         let height = f64::from(place.alt - home.altitude) / 1e3;
         assert!((height - log.ticks.est_z[row]).abs() < 1e-3);
-        assert_eq!((place.lon, place.relative_alt), (home.longitude, place.alt));
+        assert_eq!(place.lon, home.longitude);
+        assert_eq!(place.relative_alt, place.alt - 488_000);
     }
+}
+
+/// Whatever the heading, downrange is ahead.
+#[test]
+fn a_flight_goes_where_home_is_headed() {
+    let mut radio = Radio::new(&VehicleConfig {
+        home: "-33.9, 151.2, 20, 90".parse().unwrap(),
+        ..CONFIG
+    });
+    let log = radio.fly(&short());
+    let local = radio.all(|message| match message {
+        MavMessage::LOCAL_POSITION_NED(at) => Some((at.x, at.y, at.vx, at.vy)),
+        _ => None,
+    });
+    let (tick, (north, east, to_north, to_east)) = local[19];
+    assert!((f64::from(east) - log.ticks.est_x[tick as usize]).abs() < 1e-4);
+    assert!(north.abs() < 1e-4 && to_north.abs() < 1e-4 && to_east > 10.0);
+    let global = radio.all(|message| match message {
+        MavMessage::GLOBAL_POSITION_INT(at) => Some(at.clone()),
+        _ => None,
+    });
+    let (tick, at) = &global[9];
+    assert_eq!((at.lat, at.hdg), (-339_000_000, 9000));
+    assert!(at.lon > 1_512_000_000);
+    let height = log.ticks.est_z[*tick as usize];
+    assert!((f64::from(at.alt) / 1e3 - 20.0 - height).abs() < 1e-3);
+    let yaw = radio.all(|message| match message {
+        MavMessage::ATTITUDE(attitude) => Some(attitude.yaw),
+        _ => None,
+    });
+    assert_eq!(yaw[5].1, std::f32::consts::FRAC_PI_2);
+    let shown = radio.all(|message| match message {
+        MavMessage::VFR_HUD(hud) => Some((hud.heading, hud.alt)),
+        _ => None,
+    });
+    assert_eq!(shown[0].1, (90, 20.0 + log.ticks.est_z[0] as f32));
 }

@@ -6,6 +6,7 @@ use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
 use mpp_sim::flight::fly;
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::Scenario;
 use rand_core::{Rng, SeedableRng};
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
 
@@ -133,6 +134,30 @@ fn a_recording_has_the_same_bytes_each_time() {
     let time = u64::from_be_bytes(*first.first_chunk().unwrap());
     assert_eq!(time, 1_767_225_600_000_000);
     assert_eq!(first[8], 0xFD);
+}
+
+/// A router may cut its stream of bytes anywhere. What one address cut is not completed by another one.
+#[test]
+fn a_frame_that_was_cut_over_two_datagrams_is_read() {
+    let frame = Sender::new(255, 190).frame(&command(42_424, 0.0, 0.0));
+    let bytes = frame.as_bytes();
+    for cut in [1, 2, 9, 30, bytes.len() - 1] {
+        let mut radio = Radio::new(&CONFIG);
+        let (begin, end) = bytes.split_at(cut);
+        // Behind a whole frame, and before one; then with another frame in between; then from two addresses.
+        radio.bytes_at(10, &[bytes, begin].concat());
+        radio.bytes_at(11, &[end, bytes].concat());
+        radio.bytes_at(20, begin);
+        radio.at(21, &heartbeat());
+        radio.bytes_at(22, end);
+        radio.bytes_at(30, begin);
+        radio.there_bytes_at(31, end);
+        radio.fly(&Scenario {
+            ticks: 50,
+            ..scenario()
+        });
+        assert_eq!(radio.acks(), [(42_424, 3); 3], "cut at {cut}");
+    }
 }
 
 const NOW: u64 = 36_000_000_000_000;

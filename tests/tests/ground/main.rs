@@ -6,6 +6,7 @@
 
 mod addresses;
 mod commands;
+mod cruise;
 mod files;
 mod inquiries;
 mod link;
@@ -13,3 +14,4 @@ mod parameters;
 mod radio;
 mod status;
 mod telemetry;
+mod unasked;

@@ -6,10 +6,12 @@ use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
+use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::orders::{Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::tick_record::TickRecord;
+use sil_harness::ground::home::Home;
 use sil_harness::ground::tlog::TlogWriter;
 use sil_harness::ground::vehicle::{Outgoing, Vehicle, VehicleConfig};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
@@ -19,6 +21,8 @@ pub(crate) const CONFIG: VehicleConfig = VehicleConfig {
     patience: Some(500),
     hold: false,
     key: None,
+    home: Home::ZURICH,
+    navigation: NavigationConfig::RTK,
 };
 
 /// The address of the station.
@@ -79,8 +83,13 @@ impl Radio {
     /// Sends a message from the other address.
     pub(crate) fn there_at<M: MessageData>(&mut self, tick: i64, message: &M) -> &mut Self {
         let frame = Sender::new(245, 190).frame(message);
-        self.script.push((tick, frame.as_bytes().to_vec(), THERE));
+        self.there_bytes_at(tick, frame.as_bytes());
         self
+    }
+
+    /// Sends bytes from the other address.
+    pub(crate) fn there_bytes_at(&mut self, tick: i64, bytes: &[u8]) {
+        self.script.push((tick, bytes.to_vec(), THERE));
     }
 
     /// Sends bytes before a tick is flown.

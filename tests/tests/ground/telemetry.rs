@@ -1,7 +1,8 @@
 //! Tests that a station sees what the log holds.
 
-use crate::radio::{CONFIG, Radio, scenario};
+use crate::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::LidarScan;
+use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::flight::fly_with;
 use mpp_sim::orders::{Ground, Order};
@@ -47,6 +48,13 @@ fn recorded(scenario: &Scenario) -> (RecordingRadio, mpp_sim::log::FlightLog) {
         knots: Vec::new(),
         missed: 0,
     };
+    for id in [
+        MPP_LIDAR_SCAN_DATA::ID,
+        MPP_PLAN_STATUS_DATA::ID,
+        MPP_TRAJECTORY_DATA::ID,
+    ] {
+        radio.radio.at(0, &command(511, id as f32, 1.0));
+    }
     let log = fly_with(scenario, &mut PipeLink::new(), &mut radio).unwrap();
     (radio, log)
 }

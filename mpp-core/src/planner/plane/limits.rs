@@ -3,14 +3,14 @@
 use crate::settings::PlaneSettings;
 use crate::tuning::{ROOM, UNKNOWN_AHEAD, UNKNOWN_STRETCH, faces, judgement, limits, open};
 use crate::units::REFERENCE_CRUISE;
-use crate::vehicle::{ActuatorLimits, Airframe};
+use crate::vehicle::{ActuatorLimits, Airframe, stall_sides};
 
 /// Limits of plans. They follow from the settings, the actuators and the estimated airframe.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Greatest distances of the angle of attack below and above trim in a program \[rad\].
     pub(super) angle_of_attack: [f64; 2],
-    /// Whether the elevator is the limit below and above trim, so that no program may pass it.
+    /// Whether elevator or stall is the limit below and above trim, so that no program may pass it.
     pub(super) held_by_elevator: [bool; 2],
     /// Greatest distances of the angle of attack below and above trim in a roll-out \[rad\]. They are larger
     /// than in a program, because its rows may be soft.
@@ -51,8 +51,13 @@ impl Limits {
     pub(super) fn new(own: &PlaneSettings, actuators: &ActuatorLimits, a: &Airframe) -> Self {
         let allowed = own.attitude.angle_of_attack;
         let rate = actuators.angle_of_attack_rate(a);
-        let held = (actuators.angle_of_attack(a)).map(|held| held.min(rate * limits::REACH_TIME));
-        let stall = [f64::INFINITY, own.stall.unwrap_or(f64::INFINITY)];
+        let [below, above] = own.stall.map_or([f64::INFINITY; 2], |stall| {
+            stall_sides(stall, a, REFERENCE_CRUISE)
+        });
+        let [down, up] =
+            (actuators.angle_of_attack(a)).map(|held| held.min(rate * limits::REACH_TIME));
+        // Elevator and stall bound the angle of attack alike.
+        let held = [down.min(below), up.min(above)];
         // Angle of attack that the elevator balances for plans. The regulator needs the rest of the range.
         let angle_of_attack = held.map(|held| allowed.min(limits::PLANNED_SHARE * held));
         let [down, up] = angle_of_attack;
@@ -60,7 +65,7 @@ impl Limits {
         let agility = down.min(up) / allowed;
         let rolled_out = |side: usize| {
             let soft = limits::SOFT_SHARE * angle_of_attack[side] + limits::SOFT_EXTRA;
-            soft.min(held[side]).min(stall[side])
+            soft.min(held[side])
         };
         // A turn that dodges an obstacle is longer by this factor, because its length is the root of twice the distance
         // to the side over the curvature.

@@ -20,6 +20,7 @@ use super::excess::{WorstExcess, worst_excess};
 use super::factor::{CAPACITY, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern};
 use super::{Problem, STATES, Solution, Status};
+use crate::config::STAGES;
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -39,6 +40,8 @@ const ACCEPTED: f64 = 1e-6;
 const ABSURD_MISS: f64 = 1000.0;
 /// Factor of the cost of the optimum without rows in the absurd cost.
 const ABSURD_FACTOR: f64 = 1e3;
+/// Control [-, N] whose cost in every stage is absurd: terminal weights may be so small that a miss costs nothing.
+const ABSURD_CONTROL: f64 = 200.0;
 
 /// A row with a multiplier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -197,7 +200,10 @@ impl Solver {
         self.absurd_rise = if self.problem.penalty.is_some() {
             f64::INFINITY
         } else {
-            0.5 * shared.weights.terminal * ABSURD_MISS * ABSURD_MISS + ABSURD_FACTOR * self.dual
+            let miss = shared.weights.terminal * ABSURD_MISS * ABSURD_MISS;
+            let [first, second] = shared.weights.control;
+            let control = STAGES as f64 * (first + second) * ABSURD_CONTROL * ABSURD_CONTROL;
+            0.5 * miss.max(control) + ABSURD_FACTOR * self.dual
         };
         self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)

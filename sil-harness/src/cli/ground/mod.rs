@@ -7,6 +7,7 @@ use super::answer::{Failure, LINK, USAGE, talk};
 use super::signals::Signals;
 use super::values::{datagrams, place};
 use crate::files::{MOST_WRITTEN, read_log, read_text};
+use crate::ground::home::Home;
 use crate::ground::param_file;
 use crate::ground::transport::{Transport, address, signing_time, usual_addresses};
 use crate::ground::vehicle::{Vehicle, VehicleConfig};
@@ -37,6 +38,9 @@ pub(super) struct GroundArgs {
     /// Number N of this vehicle among several: system N + 1, program port 14540 + N
     #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=253))]
     instance: u8,
+    /// Place below the start, metres above the sea, and heading [default: 47.397742,8.545594,488,0, where PX4 starts]
+    #[arg(long, value_name = "LAT,LON,ALT,HEADING", allow_hyphen_values = true)]
+    home: Option<Home>,
     /// Wait at the start until a ground station arms the vehicle
     #[arg(long)]
     hold: bool,
@@ -103,7 +107,7 @@ impl GroundArgs {
             unsettled: 0,
             tuning: None,
             live: self.live(scenario)?,
-            transport: self.transport()?,
+            transport: self.transport(scenario)?,
             pacer: Pacer::new(self.speed()),
             progress,
             signals,
@@ -116,16 +120,16 @@ impl GroundArgs {
         Ok(Again::new(orders, crew).until(interrupted))
     }
 
-    fn transport(&self) -> Result<Option<Transport>, Failure> {
+    fn transport(&self, scenario: &Scenario) -> Result<Option<Transport>, Failure> {
         let connected = self.connected();
         if !connected && (self.hold || self.mavlink_key.is_some()) {
             let why = "--hold, --mavlink-key: nobody could arm or command without --mavlink";
             return Err(Failure::new(USAGE, why));
         }
         if !connected && self.tlog.is_none() {
-            if self.instance != 0 {
+            if self.instance != 0 || self.home.is_some() {
                 let why =
-                    "--instance: nobody would see the number without --mavlink, --live or --tlog";
+                    "--instance, --home: nobody would see it without --mavlink, --live or --tlog";
                 return Err(Failure::new(USAGE, why));
             }
             return Ok(None);
@@ -135,6 +139,8 @@ impl GroundArgs {
             patience: patience(self.speed()),
             hold: self.hold,
             key: self.key()?,
+            home: self.home.unwrap_or(Home::ZURICH),
+            navigation: scenario.navigation,
         });
         let mut transport = Transport::new(vehicle, |note| talk(note));
         if connected {

@@ -1,0 +1,54 @@
+//! The angles of attack that keep a margin to the stall.
+
+use super::{Airframe, Control, Trim};
+use crate::tuning::limits::{STALL_LEAD, STALL_SHARE};
+
+/// Distances of the angle of attack below and above level flight that keep a margin to the stall \[rad\]. The wing stalls `stall`
+/// \[rad\] above level flight at an airspeed [m/s], and as far below the angle of no lift as that is above it.
+#[must_use]
+pub fn stall_sides(stall: f64, airframe: &Airframe, airspeed: f64) -> [f64; 2] {
+    let below = stall + 2.0 * airframe.level_lift(airspeed) / airframe.lift_alpha;
+    [below, stall].map(|side| STALL_SHARE * side)
+}
+
+/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that is there, because the elevator
+/// alone could balance the aircraft beyond the stall.
+#[derive(Clone, Copy, Debug)]
+pub struct StallGuard {
+    /// Elevator command and angle of attack \[rad\] of level flight.
+    trim: [f64; 2],
+    /// Least and greatest angle of attack \[rad\].
+    limits: [f64; 2],
+    /// Angle of attack that a unit of the command balances \[rad\].
+    per_unit: f64,
+}
+
+impl StallGuard {
+    /// A guard for an airframe that stalls `stall` \[rad\] above its level trim.
+    #[must_use]
+    pub fn new(stall: f64, airframe: &Airframe, trim: &Trim) -> Self {
+        let level = trim.state.angle_of_attack();
+        let [below, above] = stall_sides(stall, &airframe.balanced(), trim.state.airspeed);
+        Self {
+            trim: [trim.control.elevator, level],
+            limits: [level - below, level + above],
+            per_unit: -airframe.moment_elevator / airframe.moment_alpha,
+        }
+    }
+
+    /// The nearest command that does not bring the aircraft from an angle of attack \[rad\] to the stall.
+    #[must_use]
+    pub fn within(&self, mut command: Control, angle_of_attack: f64) -> Control {
+        let [elevator, level] = self.trim;
+        let balanced = level + self.per_unit * (command.elevator - elevator);
+        let [least, most] = self
+            .limits
+            .map(|limit| limit + STALL_LEAD * (limit - angle_of_attack));
+        let kept = balanced.min(most).max(least);
+        // A command within the limits keeps its bits.
+        if libm::fabs(kept - balanced) > 0.0 {
+            command.elevator = elevator + (kept - level) / self.per_unit;
+        }
+        command
+    }
+}
