@@ -140,7 +140,7 @@ pub(crate) fn sizes(image: Image) -> Result<(u64, u64)> {
 }
 
 /// Number of frames that are lost before the step that is measured: the longest time that the estimator
-/// predicts over, `LONGEST_PREDICTION` in mpp-core/src/tuning.rs.
+/// predicts over, `LONGEST_PREDICTION` in mpp-core/src/tuning/watches.rs.
 const LOST_FRAMES: u32 = 49;
 
 /// The count of the step after lost frames, whose predictions it makes up for. There is no plan, so no other

@@ -168,8 +168,8 @@ impl Ekf {
         self.update_by(measurement, [true, true])
     }
 
-    /// Does the same, but uses airspeed and pitch only where `used` says so. The other value gets its verdict
-    /// all the same.
+    /// Does the same, but uses airspeed and pitch only where `used` says so. The other value gets a verdict
+    /// too.
     pub fn update_by(&mut self, measurement: &Measurement, used: [bool; 2]) -> Innovation {
         let Measurement { airspeed, pitch } = *measurement;
         Innovation {

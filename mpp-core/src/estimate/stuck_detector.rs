@@ -48,7 +48,7 @@ impl Default for StuckDetector {
     }
 }
 
-/// Detects a steady turn in values that the filter refuses. An aircraft that turns otherwise than its model gives such
+/// Detects a steady turn in values that the filter refuses. An aircraft that does not turn as its model gives such
 /// values; a sensor that fails does not.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SteadyTurn {

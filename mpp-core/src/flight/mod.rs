@@ -235,7 +235,7 @@ impl FlightLoop {
         self.estimator.pose_at(age)
     }
 
-    /// The estimated wind and lift that a plan uses besides the state.
+    /// The estimated wind and lift, which a plan uses with the state.
     #[must_use]
     pub fn conditions(&self) -> Conditions {
         self.estimator.conditions()

@@ -69,7 +69,7 @@ pub struct Lattice {
     station: usize,
     /// Costs between the start and the present station, or between the present station and the far end.
     layer: Layer,
-    /// The same one station on, as far as the search knows it.
+    /// Costs at the next station, as far as the search knows them.
     next: Layer,
     /// Terms of the costs of points that depend on their heights alone.
     heights: [HeightTerms; POINTS],

@@ -14,7 +14,7 @@ pub const FAR: f64 = CELL * REACH as f64;
 const WITHIN_REACH: usize = 35;
 /// Rows that the field needs at once: a power of two that holds the rows within reach of one row.
 const ROWS_AT_ONCE: usize = (2 * REACH + 1).next_power_of_two();
-/// The same for columns to one side.
+/// Columns to one side that the field needs at once, likewise a power of two.
 const COLS_AT_ONCE: usize = (REACH + 1).next_power_of_two();
 /// The field stores distances in units of `1 / PARTS` m.
 const PARTS: f64 = 64.0;

@@ -7,9 +7,9 @@
 //!              +----------- next cycle -----------+
 //! ```
 //!
-//! There are two planning methods, each with its own state and settings: the [`plane`] planner for flight in the vertical plane, and with
-//! the feature `paper` the paper's method for comparison (module `paper`). The flight loop may run between
-//! any two slices.
+//! There are two planning methods, each with its own state and settings: the [`plane`] planner for flight in the
+//! vertical plane, and with the feature `paper` the paper's method for comparison (module `paper`). The flight loop may
+//! run between any two slices.
 
 mod error;
 pub mod plane;

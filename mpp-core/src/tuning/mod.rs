@@ -21,7 +21,7 @@ pub mod open {
     /// Clearance that every aircraft should have in open country \[m\]. It is the greatest distance that the map
     /// tells. Source: D21.
     pub const ROOM: f64 = 3.0;
-    /// Weight of the squared lack of it where all is open [1/m^2]. Half of it gave 0.1 m less clearance past 20
+    /// Weight of the squared lack of [`ROOM`] where all is open [1/m^2]. Half of it gave 0.1 m less clearance past 20
     /// obstacles. Source: D21.
     pub const WEIGHT: f64 = 4.0;
     /// Power of the share of open cells with which weight and margins fall [-]. With 4, past 120 obstacles 773 of 800
@@ -30,10 +30,10 @@ pub mod open {
     /// Margins that programs keep beyond the first one where all is open and the candidate has the room [-]. With 3
     /// instead of 6, and the power of 4, the clearance past 20 obstacles was 1.8 m instead of 2.3 m. Source: D21.
     pub const MARGINS: f64 = 10.0;
-    /// Greatest distance that programs keep there, in margins [-]: 3.2 m, somewhat more than [`ROOM`].
+    /// Greatest distance that programs keep in open country, in margins [-]: 3.2 m, somewhat more than [`ROOM`].
     /// Source: derived.
     pub const MOST_MARGINS: f64 = 4.0;
-    /// Distance ahead within which cells are counted \[cells\]: 26 m, as in [`super::UNKNOWN_AHEAD`].
+    /// Distance ahead within which open cells are counted \[cells\]: 26 m, as in [`super::UNKNOWN_AHEAD`].
     /// Source: derived.
     pub const AHEAD: u32 = 52;
 }
@@ -71,8 +71,8 @@ pub mod grid {
     /// Log-odds that a beam without a return takes away where it passes. Its return may have been lost, so
     /// it takes away a third of [`PASSED`]. Source: chosen.
     pub const PASSED_UNANSWERED: i8 = 10;
-    /// Greatest number of cells hit by one scan, within a metre of one of them, that stand alone [-]. Other beams
-    /// of the scan do not clear such cells. With a greater number beams leave cells beside the rims of
+    /// Greatest number of cells hit by one scan within a metre at which a hit is isolated [-]. Other beams
+    /// of the scan do not clear isolated hits. With a greater number beams leave cells beside the rims of
     /// obstacles that are not occupied. Source: D15.
     pub const ISOLATED_CELLS: u32 = 2;
     /// Greatest log-odds for and against an obstacle. Three or four beams can reverse the state of a cell.
@@ -81,7 +81,7 @@ pub mod grid {
     /// Distance between the points along a beam at which the map visits cells \[m\]. It is less than a
     /// cell's edge divided by the square root of two, so that the points skip no cell. Source: derived.
     pub const STEP: f64 = 0.35;
-    /// Distance of the first of these points \[m\]: half a cell, within the aircraft's own cell. Source: derived.
+    /// Distance of the first of these points from the lidar \[m\]: half a cell, within the aircraft's own cell. Source: derived.
     pub const FIRST_STEP: f64 = 0.25;
     /// Share of its range by which a hit may be too far [-]: three standard deviations of a range error of
     /// 1 %. This last part of a beam before its hit shows nothing. Source: derived.
@@ -93,7 +93,7 @@ pub mod grid {
     /// false hit occupies one cell; the near side of a circle of 1 m radius occupies four or more. With 8 a lidar that
     /// shows nothing for 3 s past 20 obstacles was found in 240 of 400 flights at 1 Hz, with 4 in 368. Source: D37.
     pub const BLIND_CELLS: u32 = 4;
-    /// Share of the fan and of the range in which these cells are counted [-]. Near the edges an error of the
+    /// Share of the fan and of the range in which [`BLIND_CELLS`] are counted [-]. Near the edges an error of the
     /// pose moves a cell out of sight. Source: chosen.
     pub const BLIND_SHARE: f64 = 0.8;
     /// Share of the lidar's range over which a beam without a return shows free space [-]: 40 m of 45 m. Source: chosen.
@@ -206,7 +206,7 @@ pub mod judgement {
     /// Weight of the squared lack of [`super::ROOM`] [1/m^2] for an aircraft that cannot turn at all. With
     /// half of this weight as many flights succeeded (769 against 768 of 800). Source: D13.
     pub const ROOM_WEIGHT: f64 = 2.0;
-    /// Share of these costs that counts beyond the lattice's via station [-]. When the aircraft is there, it
+    /// Share of the costs of clearance and of the unknown that counts beyond the lattice's via station [-]. When the aircraft is there, it
     /// flies another plan. The judgement adds the cost-to-go of the lattice from there on.
     /// Source: D11.
     pub const FAR_SHARE: f64 = 0.5;

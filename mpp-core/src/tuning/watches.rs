@@ -5,16 +5,16 @@ pub mod sensors {
     /// Ticks after which a value that repeats to the last bit counts as missing: 50 ms. A sensor of 20 Hz or
     /// more may hold its values between; with noise a repetition by chance is far rarer. Source: D15.
     pub const FROZEN_TICKS: u8 = 5;
-    /// Ticks without a good value, beyond the sensor's own period, after which it is suspected [-]. One value
+    /// Ticks without a good value, beyond the sensor's own period, after which a sensor is suspected [-]. One value
     /// that fails its gate is no fault. Source: chosen.
     pub const SUSPECTED_AFTER: u16 = 3;
-    /// Ticks after which it is excluded [-]: 0.2 s. Its values are then no longer used. Source: chosen.
+    /// Ticks without a good value, beyond the sensor's own period, after which a sensor is excluded [-]: 0.2 s. Its values are then no longer used. Source: chosen.
     pub const EXCLUDED_AFTER: u16 = 20;
     /// Ticks with good values after which an excluded sensor is used again [-]: 0.5 s. A fault that blinks
     /// faster keeps the sensor excluded. Source: chosen.
     pub const RECOVERED_AFTER: u16 = 50;
     /// Values of the pitch that the filter refuses in a row, on a steady course, before it believes them [-]: 30
-    /// ms. An elevator that sticks turns the aircraft otherwise than the filter expects. Source: D27.
+    /// ms. With a stuck elevator the aircraft does not turn as the filter expects. Source: D27.
     pub const BELIEVED_AFTER: u8 = 3;
     /// Greatest change of the pitch in a tick on a steady course \[rad\]: 5 rad/s, and six standard deviations of
     /// its noise. Source: derived.
@@ -54,7 +54,7 @@ pub mod pitch_bias {
     pub const MEMORY: f64 = 3.0;
     /// Time after which the first estimate of the wind is settled \[s\]. Source: D26.
     pub const SETTLED: f64 = 0.5;
-    /// Time after that after which a bias can be found \[s\]. Source: D26.
+    /// Time after [`SETTLED`] after which a bias can be found \[s\]. Source: D26.
     pub const SEEN: f64 = 1.0;
     /// Least bias \[rad\]: 2.4 degrees. An error of the airframe looks like a smaller one. Source: D16.
     pub const LEAST: f64 = 0.042;
@@ -75,27 +75,27 @@ pub mod airspeed_bias {
     /// Time after which wind and lift are settled \[s\]. Their values then count as right, unless both are
     /// impossible ([`FOUND_BY_LIFT_AT_START`]). Source: D26.
     pub const SETTLED: f64 = 1.5;
-    /// Time over which their slow means follow \[s\]. With more of it steady wind counts as a change for longer,
+    /// Time over which the slow means of wind and lift follow \[s\]. With more of it steady wind counts as a change for longer,
     /// with less a slow error hides. Source: D26.
     pub const MEMORY: f64 = 20.0;
     /// Error by the wind from which on the airspeed counts as wrong, as a share of it [-]: 1.4 m/s at 12 m/s.
     /// Source: D26.
     pub const FOUND_BY_WIND: f64 = 0.115;
-    /// The same by the lift [-]. The estimate of the lift averages over seconds, so it shows less of an error that
+    /// Error by the lift from which on the airspeed counts as wrong, as a share of it [-]. The estimate of the lift averages over seconds, so it shows less of an error that
     /// grows. Source: D26.
     pub const FOUND_BY_LIFT: f64 = 0.045;
     /// Error by the lift from which on the airspeed counts as wrong from the start, if the wind says so too [-]: an
     /// airframe that lifts 30 % more or less than is known. With 0.2 an airspeed that reads 3 m/s too little loses
     /// 4 points instead of 1; with 0.13 gusts and errors of the airframe look wrong twice as often. Source: D29.
     pub const FOUND_BY_LIFT_AT_START: f64 = 0.15;
-    /// Time for which both must say so \[s\]. Gusts do so for a moment. Source: D26.
+    /// Time for which wind and lift must both show the error \[s\]. Gusts do so for a moment. Source: D26.
     pub const FOUND_FOR: f64 = 0.3;
     /// Mean difference of the sensor from the estimate up to which they agree, as a share of the airspeed [-].
     /// Source: chosen.
     pub const AGREES: f64 = 0.06;
-    /// Time for which they must agree before the sensor is believed again \[s\]. Source: chosen.
+    /// Time for which sensor and estimate must agree before the sensor is believed again \[s\]. Source: chosen.
     pub const AGREES_FOR: f64 = 3.0;
-    /// Time over which this mean is taken \[s\]. Source: chosen.
+    /// Time over which the mean difference is taken \[s\]. Source: chosen.
     pub const OFF_TIME: f64 = 1.0;
     /// Offset of the lift coefficient up to which the motor is judged, as a share of that of level flight [-]. An
     /// airspeed that reads 1 m/s too little shows more, and makes the drag look greater than it is known.
@@ -119,7 +119,7 @@ pub mod elevator {
     pub const MOST_MISSING: f64 = 0.5;
     /// Missing share of the turn from which on an elevator is weak [-]. With 0.4 gusts look so more often. Source: D27.
     pub const WEAK: f64 = 0.55;
-    /// The share from which on it does not answer [-]. The core tells such an elevator and does not correct it. Source: D27.
+    /// Missing share of the turn from which on an elevator does not answer [-]. The core reports such an elevator and does not correct it. Source: D27.
     pub const SILENT: f64 = 0.8;
     /// Standard deviations that a missing share exceeds [-]. With 4 gusts look like a weak elevator in eight of 400
     /// flights, with 8 a weak one is found late. Source: D27.
@@ -127,12 +127,12 @@ pub mod elevator {
     /// Missing share below which an elevator counts as proven, if its standard deviation is below [`PROVEN_ERROR`] [-].
     /// Source: chosen.
     pub const PROVEN_MISSING: f64 = 0.3;
-    /// See [`PROVEN_MISSING`]. Source: chosen.
+    /// Standard deviation of the missing share below which an elevator can count as proven [-]. Source: chosen.
     pub const PROVEN_ERROR: f64 = 0.1;
     /// Time for which a proven elevator must look weak \[s\]. With less of it an elevator that sticks for a second
     /// looks weak, and is corrected when it is free again. Source: D27.
     pub const PROVEN_FOR: f64 = 0.8;
-    /// The same for an elevator that is not proven \[s\]. With 0.3 one flight of 100 with a quarter of the effect
+    /// Time for which an elevator that is not proven must look weak \[s\]. With 0.3 one flight of 100 with a quarter of the effect
     /// fails. Source: D27.
     pub const NEW_FOR: f64 = 0.1;
     /// Least effect that is corrected [-]. With less of it the correction is greater than 7. Source: chosen.
@@ -151,7 +151,8 @@ pub mod motor {
     /// Share of the expected gain that is missing by airspeed and wind when the motor is lost [-]. Less of it takes
     /// gusts for a lost motor, more of it finds one later. Source: D28.
     pub const BY_AIRSPEED: f64 = 0.5;
-    /// The same by the positions [-]. It is less because they say it later. Source: D28.
+    /// Share of the expected gain that is missing by the positions when the motor is lost [-]. It is less because positions
+    /// show it later. Source: D28.
     pub const BY_POSITION: f64 = 0.25;
     /// Multiple of the usual gain by airspeed that a lost thrust exceeds [-]. With 4 a gust looks like a lost motor
     /// in one of 40 flights. Source: D28.
@@ -161,7 +162,7 @@ pub mod motor {
     pub const USUAL: f64 = 6.0;
     /// First value of the usual gain [m/s]: less than in still air, 0.1. Source: chosen.
     pub const QUIET: f64 = 0.05;
-    /// Time for which both signs must say that the motor stopped or works again \[s\]. With 0.1 a gust looks like a
+    /// Time for which both signs must show that the motor stopped or works again \[s\]. With 0.1 a gust looks like a
     /// lost motor in one of 40 flights. Source: D28.
     pub const SHOWN_FOR: f64 = 0.15;
     /// Time after which the estimates are settled \[s\]. With 2 the first estimates of the wind look like a lost
