@@ -60,7 +60,7 @@
 //! (scan.angle_min, scan.angle_increment) = (-0.5, 0.01);
 //! let fits = scan.ranges.resize(100, 0.0).is_ok();
 //! // The planner takes only checked scans.
-//! if fits && scan.check(100, 45.0).is_ok() {
+//! if fits && scan.check(100).is_ok() {
 //!     planner.begin(0.0, &flight.state(), &flight.conditions(), &scan);
 //! }
 //! // The flight step may run between any two slices.

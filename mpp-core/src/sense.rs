@@ -95,12 +95,17 @@ impl LidarScan {
         self.angle_min + self.angle_increment * beam as f64
     }
 
-    /// Checks a scan against the declared lidar: its number of beams and its range \[m\].
+    /// Checks a scan against the declared lidar. It may have fewer beams than declared, because it bears its own angles.
+    ///
+    /// | range | meaning |
+    /// |---|---|
+    /// | 0, infinite, not a number, beyond the sight | nothing came back |
+    /// | negative | the beam is bad: it neither marks nor clears cells |
     ///
     /// # Errors
     /// [`ScanError`]: the caller must not use the scan. The last map and plan stay in force.
-    pub fn check(&self, beams: usize, range_max: f64) -> Result<(), ScanError> {
-        if self.ranges.len() != beams {
+    pub fn check(&self, beams: usize) -> Result<(), ScanError> {
+        if !(1..=beams).contains(&self.ranges.len()) {
             return Err(ScanError::Length {
                 expected: beams,
                 found: self.ranges.len(),
@@ -109,15 +114,19 @@ impl LidarScan {
         if !self.angle_min.is_finite() || !self.angle_increment.is_finite() {
             return Err(ScanError::AngleNotFinite);
         }
-        for (beam, range) in self.ranges.iter().enumerate() {
-            if !range.is_finite() {
-                return Err(ScanError::NotFinite { beam });
+        let bad = |range: &f32| *range < 0.0;
+        match self.ranges.iter().position(bad) {
+            Some(beam) if 2 * self.bad_beams() > self.ranges.len() => {
+                Err(ScanError::BadBeams { beam })
             }
-            if *range < 0.0 || f64::from(*range) > range_max {
-                return Err(ScanError::OutOfRange { beam });
-            }
+            _ => Ok(()),
         }
-        Ok(())
+    }
+
+    /// Number of bad beams: those with a negative range.
+    #[must_use]
+    pub fn bad_beams(&self) -> usize {
+        self.ranges.iter().filter(|range| **range < 0.0).count()
     }
 
     /// Whether these ranges of the next scan repeat those of this one to the last bit, returns among them: the lidar is frozen.
@@ -139,10 +148,10 @@ impl Default for LidarScan {
 /// A scan that cannot be used. The vehicle flies on with the last plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScanError {
-    /// The number of beams differs from the declared one.
+    /// The scan has no beam, or more beams than declared.
     #[error("the scan has {found} beams instead of {expected}: declare the lidar as it is")]
     Length {
-        /// Declared number of beams.
+        /// Declared number of beams, the greatest one.
         expected: usize,
         /// Number of beams in the scan.
         found: usize,
@@ -150,17 +159,9 @@ pub enum ScanError {
     /// An angle is not a finite number.
     #[error("an angle of the scan is not a finite number: check the lidar")]
     AngleNotFinite,
-    /// A range is not a finite number.
-    #[error("the range of beam {beam} is not a finite number: give 0 where nothing came back")]
-    NotFinite {
-        /// The first such beam.
-        beam: usize,
-    },
-    /// A range is negative or beyond the declared sight.
-    #[error(
-        "the range of beam {beam} is negative or beyond the sight: give 0 where nothing came back"
-    )]
-    OutOfRange {
+    /// More than half of the beams are bad.
+    #[error("more than half of the ranges are negative, as that of beam {beam}: check the lidar")]
+    BadBeams {
         /// The first such beam.
         beam: usize,
     },

@@ -40,7 +40,7 @@ fn fly(settings: &Settings, start_z: f64, discs: &[Disc], seconds: i32) -> Flown
         let out = flight.step(time, &frame(&state));
         if tick % 100 == 0 {
             let scan = scan(discs, &state);
-            assert_eq!(scan.check(100, SIGHT), Ok(()));
+            assert_eq!(scan.check(100), Ok(()));
             planner.begin(time, &flight.state(), &flight.conditions(), &scan);
             while planner.advance() {}
             let verdict = planner.finish();

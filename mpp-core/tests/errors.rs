@@ -50,8 +50,7 @@ fn every_error_speaks() {
             found: 99,
         },
         ScanError::AngleNotFinite,
-        ScanError::NotFinite { beam: 3 },
-        ScanError::OutOfRange { beam: 3 },
+        ScanError::BadBeams { beam: 3 },
     ]);
 }
 

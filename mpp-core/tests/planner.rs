@@ -193,6 +193,6 @@ fn a_planner_that_is_not_set_up_has_nothing_to_offer() {
 fn the_lidar_of_these_tests_is_accepted() {
     let planner = planner(&Settings::flight());
     let scan = scan(&SCATTERED, &level(&planner));
-    assert_eq!(scan.check(100, SIGHT), Ok(()));
+    assert_eq!(scan.check(100), Ok(()));
     assert!(scan.ranges.iter().filter(|range| **range > 0.0).count() > 10);
 }

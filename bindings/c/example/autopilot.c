@@ -105,9 +105,11 @@ int autopilot_misuse(autopilot *own) {
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
   scan.count = 1u << 30;
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_LENGTH);
-  scan.count = config.beams, ranges[5] = -1;
+  scan.count = config.beams;
+  for (uint32_t beam = 0; beam < config.beams; beam++) ranges[beam] = -1;
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_RANGE);
-  ranges[5] = 0, scan.age = 1000000;
+  for (uint32_t beam = 0; beam < config.beams; beam++) ranges[beam] = 0;
+  scan.age = 1000000;
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_SCAN_AGE);
   scan.age = 0;
   EXPECT(mpp_begin(core, &scan), MPP_STATUS_OK);

@@ -330,7 +330,7 @@ typedef struct mpp_scan {
   double angle_increment;
   // Number of ranges.
   size_t count;
-  // Ranges [m]; 0 for no return.
+  // Ranges [m]; 0, infinite, not a number or beyond `range_max` for no return, negative for a bad beam, which shows nothing.
   const float *ranges;
 } mpp_scan;
 

@@ -155,7 +155,7 @@ pub(crate) fn scan(lidar: &LidarConfig, ranges: &Bound<'_, PyAny>) -> PyResult<L
         )));
     }
     let scan = core_scan(&lidar.wire_scan(0, &ranges));
-    scan.check(lidar.beams, lidar.range_max).map_err(input)?;
+    scan.check(lidar.beams).map_err(input)?;
     Ok(scan)
 }
 

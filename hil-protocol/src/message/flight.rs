@@ -95,7 +95,7 @@ pub struct LidarScan {
     pub angle_min: f32,
     /// Angle from each beam to the next, nose-up positive \[rad\].
     pub angle_increment: f32,
-    /// Range of each beam, from `angle_min` on \[m\]; 0 means no return.
+    /// Range of each beam, from `angle_min` on \[m\]; 0, infinite, not a number or beyond the lidar's reach means no return, negative a bad beam.
     pub ranges: Vec<f32, MAX_BEAMS>,
 }
 

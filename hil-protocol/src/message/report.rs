@@ -126,16 +126,14 @@ pub enum RejectionCause {
         /// Number of beams in the scan.
         found: u16,
     },
-    /// A range is infinite or not a number.
+    /// A range is infinite or not a number. It is not sent any more: such a beam has no return.
     #[error("the range of beam {beam} is not a finite number: send 0 where nothing came back")]
     ScanNotFinite {
         /// The first such beam, counted from 0.
         beam: u16,
     },
-    /// A range is negative or beyond the lidar's reach.
-    #[error(
-        "the range of beam {beam} is negative or beyond the lidar's reach: send 0 where nothing came back"
-    )]
+    /// More than half of the ranges are negative.
+    #[error("more than half of the ranges are negative, as that of beam {beam}: check the lidar")]
     ScanRange {
         /// The first such beam, counted from 0.
         beam: u16,

@@ -166,10 +166,14 @@ impl RollingGrid {
         let &Pose { x, z, pitch } = pose;
         let ranges = scan.ranges.iter().enumerate().take(beams.end);
         for (beam, range) in ranges.skip(beams.start) {
+            let range = f64::from(*range);
+            // A bad beam shows nothing: neither an obstacle nor free space.
+            if range < 0.0 {
+                continue;
+            }
             let angle = pitch + scan.beam_angle(beam);
             let (up, ahead) = libm::sincos(angle);
             let beam = [(x, z), (ahead, up)];
-            let range = f64::from(*range);
             if is_return(range, sight) {
                 self.pass(
                     beam,

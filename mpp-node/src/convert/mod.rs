@@ -180,8 +180,7 @@ pub(crate) fn scan_rejection(error: ScanError) -> RejectionCause {
             expected: expected as u16,
             found: found as u16,
         },
-        ScanError::NotFinite { beam } => RejectionCause::ScanNotFinite { beam: beam as u16 },
-        ScanError::OutOfRange { beam } => RejectionCause::ScanRange { beam: beam as u16 },
+        ScanError::BadBeams { beam } => RejectionCause::ScanRange { beam: beam as u16 },
         ScanError::AngleNotFinite => RejectionCause::ScanAngle,
     }
 }

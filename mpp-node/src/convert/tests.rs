@@ -55,8 +55,7 @@ fn every_fault_of_a_scan_has_a_cause_of_its_own() {
             found: 1,
         },
         ScanError::AngleNotFinite,
-        ScanError::NotFinite { beam: 0 },
-        ScanError::OutOfRange { beam: 0 },
+        ScanError::BadBeams { beam: 0 },
     ]
     .map(scan_rejection);
     assert_eq!(
@@ -67,7 +66,6 @@ fn every_fault_of_a_scan_has_a_cause_of_its_own() {
                 found: 1
             },
             RejectionCause::ScanAngle,
-            RejectionCause::ScanNotFinite { beam: 0 },
             RejectionCause::ScanRange { beam: 0 },
         ]
     );

@@ -7,6 +7,12 @@ use hil_protocol::{DecodeError, LidarScan as WireScan, RejectionCause, SensorFra
 /// Old ticks in a row that show a restarted count of the sender: 0.2 s. A frame that comes twice, or late, is alone.
 const RESTARTED_AFTER: u32 = 20;
 
+/// A lidar of which more than one beam in so many is bad is not sound. Its other beams are used all the same.
+const SPOILT_SHARE: usize = 10;
+
+/// Most ticks that may miss between two old ticks of a count that was restarted, on a line that loses frames.
+const MOST_MISSING: i32 = 20;
+
 impl StepTask {
     /// Checks a scan. It waits for its sensor frame.
     // Not inlined, so that the message is not on the stack of each tick.
@@ -24,10 +30,7 @@ impl StepTask {
             // The core has it; the command that answered it was lost.
             return;
         }
-        let (beams, range_max) = {
-            let configure = &session.tuning.configure;
-            (configure.beams, configure.range_max)
-        };
+        let beams = usize::from(session.tuning.configure.beams);
         let frozen = self.scan.is_repeated_by(&wire.ranges);
         convert::scan(wire, &mut self.scan);
         if frozen {
@@ -35,8 +38,11 @@ impl StepTask {
             session.lidar_good = Some(false);
             return self.reject(RejectionCause::ScanRepeated, send);
         }
-        match self.scan.check(usize::from(beams), f64::from(range_max)) {
-            Ok(()) => session.scan_tick = Some(wire.tick),
+        match self.scan.check(beams) {
+            Ok(()) => {
+                session.scan_tick = Some(wire.tick);
+                session.spoilt = SPOILT_SHARE * self.scan.bad_beams() > wire.ranges.len();
+            }
             Err(error) => {
                 session.scan_tick = None;
                 session.lidar_good = Some(false);
@@ -75,7 +81,8 @@ impl StepTask {
             return false;
         };
         let (next, row) = session.old_ticks.unwrap_or((tick, 0));
-        let row = if tick == next { row + 1 } else { 1 };
+        let rises = (0..=MOST_MISSING).contains(&ticks(next, tick));
+        let row = if rises { row + 1 } else { 1 };
         session.old_ticks = Some((tick.wrapping_add(1), row));
         if row < RESTARTED_AFTER {
             return false;

@@ -87,6 +87,8 @@ struct Session {
     /// good.
     lidar: SensorMonitor,
     lidar_good: Option<bool>,
+    /// Whether many beams of the last scan were bad.
+    spoilt: bool,
 }
 
 /// The link and the 100 Hz step. It shares no data with the planner: the caller passes requests from
@@ -274,8 +276,11 @@ impl StepTask {
             id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),
             id::LIDAR_SCAN => self.take_scan(send)?,
             id::HELLO => {
-                self.decoder.body::<Hello>()?;
-                self.greet(send);
+                // An echo of the core's own hello opens no session.
+                match self.decoder.body::<Hello>()?.role {
+                    Role::Harness => self.greet(send),
+                    Role::Core => self.reject(RejectionCause::UnexpectedMessage { id }, send),
+                }
             }
             id::CONFIGURE => self.configure(send)?,
             id::SET_PARAMETER => self.set_parameter(&self.decoder.body()?, send),

@@ -78,6 +78,7 @@ impl StepTask {
             old_ticks: None,
             lidar: SensorMonitor::new(u16::try_from(between).unwrap_or(u16::MAX)),
             lidar_good: None,
+            spoilt: false,
         });
     }
 

@@ -71,7 +71,7 @@ impl StepTask {
             ..
         } = plan.summary;
         if !cycle.without_scan {
-            session.lidar_good = Some(!blind);
+            session.lidar_good = Some(!blind && !session.spoilt);
         }
         session.untold = Some(PlanReport {
             scan_tick,

@@ -106,9 +106,9 @@ fn scans_that_cannot_be_used_are_rejected_and_logged() {
         };
         let mut bad = scan.clone();
         match scan.tick {
-            100 => bad.ranges.truncate(99),
-            200 => bad.ranges[7] = f32::NAN,
-            300 => bad.ranges[8] = -1.0,
+            100 => bad.ranges.clear(),
+            200 => bad.angle_min = f32::NAN,
+            300 => bad.ranges[8..].fill(-1.0),
             // Older than the way that the core remembers.
             400 => bad.tick = 250,
             _ => return false,
@@ -118,8 +118,8 @@ fn scans_that_cannot_be_used_are_rejected_and_logged() {
     assert_eq!(
         causes(&log),
         [
-            "ScanLength { expected: 100, found: 99 }",
-            "ScanNotFinite { beam: 7 }",
+            "ScanLength { expected: 100, found: 0 }",
+            "ScanAngle",
             "ScanRange { beam: 8 }",
             "TickOrder { expected: 400, found: 250 }",
         ]

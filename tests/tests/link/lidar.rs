@@ -6,6 +6,7 @@ use mpp_sim::faults::ScanFault;
 use mpp_sim::flight::fly;
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
 
@@ -168,4 +169,88 @@ fn without_a_first_scan_there_is_no_plan() {
     };
     let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {}).unwrap();
     assert!(log.plans.is_empty(), "{:?}", log.plans);
+}
+
+/// Flies past 40 obstacles at 4 Hz with scans that a driver has changed. Gives how many of the flights with these seeds
+/// survived, and the last log.
+#[expect(
+    clippy::unwrap_used,
+    reason = "a flight in this process has no lost link"
+)]
+fn survived(change: impl Fn(&mut LidarScan) + Copy) -> (usize, FlightLog) {
+    let logs = (900..906).map(|seed| {
+        let mut link = Spoilt {
+            pipe: PipeLink::new(),
+            spoil: |pipe: &mut PipeLink, message: &Message| {
+                let Message::LidarScan(scan) = message else {
+                    return false;
+                };
+                let mut scan = scan.clone();
+                change(&mut scan);
+                pipe.send(&Message::LidarScan(scan)).is_ok()
+            },
+        };
+        let mut scenario = short(20);
+        scenario.seed = seed;
+        scenario.obstacles = 40;
+        scenario.replan_ticks = 25;
+        fly(&scenario, &mut link, |_| {}).unwrap()
+    });
+    let logs: Vec<_> = logs.collect();
+    let alive = |log: &&FlightLog| log.summary.outcome == Outcome::Survived;
+    (
+        logs.iter().filter(alive).count(),
+        logs.into_iter().next_back().unwrap(),
+    )
+}
+
+/// What drivers send for a beam without a return, a bad beam, and another resolution than the one of before: each flies.
+#[test]
+fn scans_as_drivers_send_them_fly() {
+    let (clean, usual) = survived(|_| {});
+    assert_eq!(clean, 6);
+    for code in [f32::INFINITY, f32::NAN, 81.91, 65.535, 45.3] {
+        let coded = |scan: &mut LidarScan| {
+            let empty = scan.ranges.iter_mut().filter(|range| **range == 0.0);
+            empty.for_each(|range| *range = code);
+        };
+        let (alive, log) = survived(coded);
+        // Nothing came back, whatever the code for it: the same flight.
+        assert_eq!((alive, &log.ticks), (6, &usual.ticks), "{code}");
+        assert!(log.rejections.is_empty());
+    }
+    let changes: [fn(&mut LidarScan); 4] = [
+        |scan| scan.ranges[41] = -1.0,
+        |scan| scan.ranges[41] = f32::NAN,
+        |scan| {
+            scan.ranges
+                .iter_mut()
+                .step_by(10)
+                .for_each(|range| *range = f32::NEG_INFINITY);
+        },
+        |scan| {
+            scan.ranges = scan.ranges.iter().step_by(2).copied().collect();
+            scan.angle_increment *= 2.0;
+        },
+    ];
+    for (index, change) in changes.into_iter().enumerate() {
+        let (alive, log) = survived(change);
+        assert!(alive >= 5, "change {index}: {alive} of 6");
+        assert!(log.rejections.is_empty(), "change {index}");
+    }
+}
+
+/// A lidar with many bad beams is told, and its other beams are used.
+#[test]
+fn a_lidar_with_many_bad_beams_is_told() {
+    let (_, log) = survived(|scan| {
+        scan.ranges
+            .iter_mut()
+            .step_by(5)
+            .for_each(|range| *range = -1.0);
+    });
+    assert!(log.rejections.is_empty());
+    let excluded = SensorState::Excluded.to_string();
+    let mut told = log.sensors.iter().filter(|it| it.sensor == "lidar");
+    assert!(told.any(|it| it.state == excluded));
 }

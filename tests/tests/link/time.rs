@@ -2,7 +2,7 @@
 
 use crate::input::level_flight;
 use crate::short;
-use hil_protocol::{LidarScan, Message, RejectionCause, SensorFrame};
+use hil_protocol::{Hello, LidarScan, Message, RejectionCause, Role, SensorFrame};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
@@ -119,6 +119,56 @@ fn a_clock_that_was_set_back_is_followed() {
         }
     }
     assert_eq!(refused, 19);
+}
+
+/// A clock that was set back is followed on a line that loses every second frame, too.
+#[test]
+fn a_clock_that_was_set_back_on_a_lossy_line_is_followed() {
+    let mut pipe = PipeLink::new();
+    let configure = Message::Configure(short(1).configure());
+    assert_eq!(answers(&mut pipe, &configure).len(), 1);
+    let mut random = 1_u32;
+    let mut commanded = Vec::new();
+    for index in 0..300_u32 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        if random >> 31 == 1 {
+            continue;
+        }
+        let Message::SensorFrame(mut frame) = level_flight(index) else {
+            unreachable!("it is a sensor frame");
+        };
+        frame.tick = if index < 150 { 100_000 + index } else { index };
+        frame.air = None;
+        frame.position = None;
+        let answers = answers(&mut pipe, &Message::SensorFrame(frame));
+        let is_command = |answer: &Message| matches!(answer, Message::ActuatorCommand(_));
+        if answers.iter().any(is_command) {
+            commanded.push(index);
+        }
+    }
+    let again = commanded.iter().find(|index| **index >= 150);
+    assert!(again.is_some_and(|index| *index < 215), "{again:?}");
+}
+
+/// An echo of the core's own hello does not end the session in flight.
+#[test]
+fn an_echo_of_hello_is_refused() {
+    let mut pipe = PipeLink::new();
+    let configure = Message::Configure(short(1).configure());
+    assert_eq!(answers(&mut pipe, &configure).len(), 1);
+    let hello = |role| {
+        Message::Hello(Hello {
+            role,
+            software: [0, 2, 0],
+            tick_period_us: 10_000,
+            beams_max: 128,
+            stages: 18,
+        })
+    };
+    let told = answers(&mut pipe, &hello(Role::Core));
+    assert!(matches!(told[..], [Message::Rejection(_)]), "{told:?}");
+    let is_command = |answer: &Message| matches!(answer, Message::ActuatorCommand(_));
+    assert!(answers(&mut pipe, &level_flight(0)).iter().any(is_command));
 }
 
 /// A link that delivers each frame twice is no clock that was set back: the second copies are refused, and

@@ -59,9 +59,8 @@ impl Flight {
             return Err(MppStatus::ScanLength);
         }
         [scan.angle_min, scan.angle_increment] = angles;
-        let configure = &self.tuning.configure;
-        let (beams, range) = (usize::from(configure.beams), f64::from(configure.range_max));
-        scan.check(beams, range).map_err(MppStatus::of_scan)?;
+        let beams = usize::from(self.tuning.configure.beams);
+        scan.check(beams).map_err(MppStatus::of_scan)?;
         Ok(scan)
     }
 

@@ -100,7 +100,7 @@ const TEXTS: [(MppStatus, &CStr); 25] = [
     ),
     (
         MppStatus::ScanRange,
-        c"a range or an angle of the scan is not a number or out of range: give 0 for no return, and none above range_max",
+        c"an angle of the scan is not a number, or more than half of the ranges are negative: check the lidar",
     ),
     (
         MppStatus::ScanAge,
@@ -224,9 +224,7 @@ impl MppStatus {
     pub(crate) fn of_scan(error: ScanError) -> Self {
         match error {
             ScanError::Length { .. } => Self::ScanLength,
-            ScanError::NotFinite { .. }
-            | ScanError::OutOfRange { .. }
-            | ScanError::AngleNotFinite => Self::ScanRange,
+            ScanError::BadBeams { .. } | ScanError::AngleNotFinite => Self::ScanRange,
         }
     }
 }

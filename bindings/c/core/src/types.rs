@@ -81,7 +81,7 @@ pub struct MppScan {
     pub angle_increment: f64,
     /// Number of ranges.
     pub count: usize,
-    /// Ranges [m]; 0 for no return.
+    /// Ranges [m]; 0, infinite, not a number or beyond `range_max` for no return, negative for a bad beam, which shows nothing.
     pub ranges: *const f32,
 }
 
