@@ -9,7 +9,7 @@ mod common {
 
 use common::clearance::clearance;
 use common::sensors::frame;
-use common::world::{Disc, SIGHT, scan};
+use common::world::{Disc, scan};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;

@@ -15,7 +15,7 @@ use common::planning::{level, plan, planner};
 use common::presets::presets;
 use common::scattered::{FEASIBLE, SCATTERED};
 use common::with_planner::with_planner;
-use common::world::{Disc, SIGHT, scan};
+use common::world::{Disc, scan};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::{PlannerSettings, Settings};

@@ -95,9 +95,7 @@ impl Field {
             radius,
             velocity: (0.0, 0.0),
         };
-        let polygon = |array: Bound<'_, PyAny>| {
-            points("polygons", &array).map(Polygon::of_ring)
-        };
+        let polygon = |array: Bound<'_, PyAny>| points("polygons", &array).map(Polygon::of_ring);
         Self::checked(FieldFile {
             circle: circles
                 .unwrap_or_default()

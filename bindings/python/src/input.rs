@@ -7,14 +7,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 
-/// A value of a table, as numbers, texts, lists and dicts. Numbers and arrays of NumPy become Python's.
-pub(crate) fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-    if value.hasattr("tolist")? {
-        return value.call_method0("tolist");
-    }
-    Ok(value.clone())
-}
-
 /// What a dict with the keys of a file says. An error names the key.
 pub(crate) fn table<T: DeserializeOwned>(what: &str, keys: &Bound<'_, PyDict>) -> PyResult<T> {
     let own = PyDict::new(keys.py());

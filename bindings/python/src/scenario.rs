@@ -3,10 +3,10 @@
 use crate::aircraft::Aircraft;
 use crate::errors::{input, scenario};
 use crate::field::Field;
-use crate::input::{plain, text};
+use crate::input::text;
 use crate::lidar::Lidar;
 use crate::output;
-use crate::typed::typed;
+use crate::typed::{plain, typed};
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
 use pyo3::prelude::*;

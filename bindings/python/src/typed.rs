@@ -1,7 +1,6 @@
 //! Python values as the types of files. An error names the key, and says what to give in place of what.
 
 use crate::errors::input;
-use crate::input::plain;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 use serde::de::value::StringDeserializer;
@@ -9,6 +8,14 @@ use serde::de::{
     self, DeserializeOwned, DeserializeSeed, Expected, IntoDeserializer, Unexpected, Visitor,
 };
 use std::fmt;
+
+/// A value of a table, as numbers, texts, lists and dicts. Numbers and arrays of NumPy become Python's.
+pub(crate) fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    if value.hasattr("tolist")? {
+        return value.call_method0("tolist");
+    }
+    Ok(value.clone())
+}
 
 /// What a value with this name says. A name in front of a table's keys ends with a point.
 pub(crate) fn typed<T: DeserializeOwned>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {

@@ -4,7 +4,7 @@ use super::answer::{FAILURE, Failure, USAGE, talk};
 use super::campaign::{rows_of, set_beside_ceiling};
 use super::pdf::pdf;
 use super::values::seed;
-use crate::files::write_whole;
+use crate::files::{try_directory, write_whole};
 use mpp_analysis::campaign::Report;
 use mpp_analysis::figure::{
     FigureError, OneReplan, Rule, candidates_svg, challenge_svg, flight_svg, rays_svg, scan_svg,
@@ -45,6 +45,11 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
         // Who cannot have it is told before anything is flown.
         pdf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1\" height=\"1\"/>")?;
     }
+    try_directory(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
+    let rows = (!args.rows.is_empty()).then(|| rows_of(&args.rows));
+    let rows = rows
+        .transpose()
+        .map_err(|error| Failure::new(USAGE, error))?;
     let drawing = |error: FigureError| Failure::new(FAILURE, error);
     let mut pictures = vec![
         ("challenge", challenge(args.seed)?),
@@ -58,8 +63,7 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     pictures.push(("rays", rays_svg(&cycle).map_err(drawing)?));
     pictures.push(("trajectory", trajectory_svg(&cycle).map_err(drawing)?));
     pictures.push(("candidates", candidates_svg(&cycle).map_err(drawing)?));
-    if !args.rows.is_empty() {
-        let (campaign, rows) = rows_of(&args.rows).map_err(|error| Failure::new(USAGE, error))?;
+    if let Some((campaign, rows)) = rows {
         let mut report = Report::new(&campaign, &rows);
         if args.ceiling {
             set_beside_ceiling(&campaign, &rows, &mut report, 0)?;
@@ -73,7 +77,6 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
             success_svg(&report, Rule::Strict).map_err(drawing)?,
         ));
     }
-    std::fs::create_dir_all(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
     for (name, svg) in pictures {
         let path = args.out.join(name).with_extension("svg");
         let write = |path: &Path, bytes: &[u8]| {

@@ -256,39 +256,35 @@ struct Kept {
     written: Result<(), Failure>,
 }
 
-/// Writes the log, then the picture.
+/// Writes log and picture.
 fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
-    let hash = log.hash().map_err(|error| Failure::new(FAILURE, error))?;
-    let file = |ending: &str| out.join(format!("{name}.{ending}"));
     let mut kept = Kept {
         log: None,
         figure: None,
-        hash,
+        hash: log.hash().map_err(|error| Failure::new(FAILURE, error))?,
         written: Ok(()),
     };
-    kept.written = write_files(&file, log, &mut kept.log, &mut kept.figure);
+    kept.written = kept.write(out, name, log);
     Ok(kept)
 }
 
-/// Writes log and picture, and notes what stands there.
-fn write_files(
-    file: &impl Fn(&str) -> PathBuf,
-    log: &FlightLog,
-    kept_log: &mut Option<PathBuf>,
-    kept_figure: &mut Option<PathBuf>,
-) -> Result<(), Failure> {
-    let path = file("json");
-    write_log(&path, log).map_err(|error| Failure::new(FAILURE, error))?;
-    *kept_log = Some(path);
-    if !log.ticks.t.is_empty() {
-        let path = file("svg");
-        let svg = flight_svg(log).map_err(|why| {
-            Failure::new(FAILURE, format!("cannot write {}: {why}", path.display()))
-        })?;
-        write_whole(&path, svg.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
-        *kept_figure = Some(path);
+impl Kept {
+    fn write(&mut self, out: &Path, name: &str, log: &FlightLog) -> Result<(), Failure> {
+        let failed = |error: FileError| Failure::new(FAILURE, error);
+        let path = out.join(format!("{name}.json"));
+        write_log(&path, log).map_err(failed)?;
+        self.log = Some(path);
+        if !log.ticks.t.is_empty() {
+            let path = out.join(format!("{name}.svg"));
+            let svg = flight_svg(log).map_err(|error| {
+                let what = format!("cannot write {}: {error}", path.display());
+                Failure::new(FAILURE, what)
+            })?;
+            write_whole(&path, svg.as_bytes()).map_err(failed)?;
+            self.figure = Some(path);
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Prints the result.

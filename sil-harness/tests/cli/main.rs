@@ -102,7 +102,7 @@ fn exit_codes_tell_how_a_flight_ended() {
 fn absurd_flags_are_usage_errors_that_say_what_to_do() {
     let absurd: [(&[&str], &str); 11] = [
         (&["--paths", "51"], "paths: give at most 50"),
-        (&["--obstacles", "-1"], "unexpected argument"),
+        (&["--obstacles", "-1"], "a whole number of 0 or more"),
         (&["--obstacles", "100000"], "obstacles: give at most 1000"),
         (&["--replan-hz", "3"], "whole multiple"),
         (&["--replan-hz", "0"], "whole multiple"),

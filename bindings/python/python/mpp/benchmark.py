@@ -18,7 +18,7 @@ from typing import Any
 import numpy
 from numpy.typing import NDArray
 
-from ._native import Aircraft, Field, fly
+from ._native import Aircraft, Field, fly, wilson
 
 VERSION = "fields-v1"
 # First 16 hexadecimal digits of the SHA-256 of the list.
@@ -110,15 +110,6 @@ def build() -> bytes:
 
 def _drawn(aircraft: str, obstacles: int, seed: int) -> Field:
     return Field.generate(obstacles=obstacles, seed=seed, world_scale=Aircraft(aircraft).world_scale)
-
-
-def wilson(successes: int, flights: int) -> tuple[float, float]:
-    """The 95 % interval of a rate by Wilson's formula."""
-    z, n = 1.959963984540054, max(flights, 1)
-    rate = successes / n
-    middle = (rate + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * math.sqrt(rate * (1 - rate) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return middle - half, middle + half
 
 
 def flown(entries: Iterable[Entry], keys: dict[str, Any], done: Callable[[], object]) -> list[bool]:
