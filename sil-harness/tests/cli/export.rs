@@ -52,13 +52,11 @@ fn the_ending_of_a_file_says_its_format() {
         ("x.PARQUET", "Parquet", b"PAR1"),
     ] {
         let (code, talk, bytes) = to(name, &[]);
-        if cfg!(feature = "formats") {
-            assert!(
-                bytes.is_some_and(|bytes| bytes.starts_with(magic)),
-                "{talk}"
-            );
+        // Other crates of the workspace may have asked for the formats.
+        if let Some(bytes) = bytes {
+            assert!(bytes.starts_with(magic), "{name}");
         } else {
-            assert_eq!((code, bytes), (Some(2), None), "{talk}");
+            assert_eq!(code, Some(2), "{talk}");
             assert!(talk.contains(&format!("built without {format}")), "{talk}");
         }
         let (code, talk, bytes) = to(&format!("2{name}"), &["--format", "csv"]);
