@@ -19,7 +19,7 @@ pub(crate) fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny
 
 /// What a value with this name says. A name in front of a table's keys ends with a point.
 pub(crate) fn typed<T: DeserializeOwned>(name: &str, value: &Bound<'_, PyAny>) -> PyResult<T> {
-    let read = Value::of(value.clone()).and_then(T::deserialize);
+    let read = Value::of(value).and_then(T::deserialize);
     read.map_err(|wrong| input(wrong.below(name)))
 }
 
@@ -126,8 +126,8 @@ impl de::Error for Wrong {
 struct Value<'py>(Bound<'py, PyAny>);
 
 impl<'py> Value<'py> {
-    fn of(value: Bound<'py, PyAny>) -> Result<Self, Wrong> {
-        Ok(Self(plain(&value)?))
+    fn of(value: &Bound<'py, PyAny>) -> Result<Self, Wrong> {
+        Ok(Self(plain(value)?))
     }
 
     fn visit<'de, V: Visitor<'de>>(&self, visitor: V) -> Result<V::Value, Wrong> {
@@ -221,7 +221,7 @@ impl<'de, 'py, I: Iterator<Item = (usize, Bound<'py, PyAny>)>> de::SeqAccess<'de
         let Some((index, item)) = self.0.next() else {
             return Ok(None);
         };
-        let read = Value::of(item).and_then(|item| seed.deserialize(item));
+        let read = Value::of(&item).and_then(|item| seed.deserialize(item));
         read.map(Some)
             .map_err(|wrong| wrong.below(&index.to_string()))
     }
@@ -259,7 +259,7 @@ where
         let Some((name, value)) = self.open.take() else {
             return Err(de::Error::custom("a key comes before its value"));
         };
-        let read = Value::of(value).and_then(|value| seed.deserialize(value));
+        let read = Value::of(&value).and_then(|value| seed.deserialize(value));
         read.map_err(|wrong| wrong.below(&name))
     }
 }
