@@ -82,9 +82,7 @@ def test_an_aircraft_that_cannot_fly():
     [
         (np.zeros(99), "100 beams, not 99"),
         (np.zeros((100, 1)), r"shape \(100, 1\)"),
-        (np.full(100, NAN), "beam 0 is not a finite number"),
         (np.full(100, -1.0), "beam 0"),
-        (np.full(100, 1e9), "beam 0"),
         (np.zeros(100, dtype=complex), "dtype complex128"),
         (np.array(["a"] * 100), "dtype <U1"),
         (np.array([None] * 100), "dtype object"),

@@ -14,7 +14,7 @@ def texts():
     """Every text and signature of the native half, with its name."""
     for one in [mpp.fly, *CLASSES]:
         yield one.__name__, one.__doc__, one.__text_signature__
-        for name, member in vars(one).items():
+        for name, member in getattr(one, "__dict__", {}).items():
             if inspect.isroutine(member) or inspect.isgetsetdescriptor(member):
                 yield f"{one.__name__}.{name}", member.__doc__, getattr(member, "__text_signature__", None)
 

@@ -19,6 +19,7 @@ __all__ = [
     "Moment",
     "Planner",
     "World",
+    "__version__",
     "fly",
     "wilson",
 ]
