@@ -71,7 +71,7 @@ int autopilot_misuse(autopilot *own) {
   bool more;
   double cruise;
   float ranges[MPP_BEAMS] = {0};
-  mpp_scan scan = {.count = 3, .ranges = ranges};
+  mpp_scan scan = {.count = 0, .ranges = ranges};
   int wrong = 0;
 #define EXPECT(call, expected) wrong += (call) != (expected)
   EXPECT(mpp_usual(NULL), MPP_STATUS_NULL);
