@@ -34,8 +34,7 @@ def write(kind, value) -> bytes:
     if kind[0] == "*":
         return write("v", len(value)) + b"".join(write(kind[1:], each) for each in value)
     if kind in STRUCTS:
-        if unknown := value.keys() - dict(STRUCTS[kind]):
-            raise ValueError(f"{kind} has no field {', '.join(unknown)}")
+        assert value.keys() <= dict(STRUCTS[kind]).keys(), f"{kind} has other fields: {', '.join(dict(STRUCTS[kind]))}"
         return b"".join(write(part, value.get(name)) for name, part in STRUCTS[kind])
     return struct.pack("<" + kind, value or 0)
 
