@@ -23,6 +23,11 @@ struct Flight {
     gusts: f64,
     random: Pcg64Mcg,
     time: f64,
+    /// Noise of the positions, which leaves that of the pitch as it is.
+    positions: Pcg64Mcg,
+    altitude: f64,
+    /// Pitch at which the sensor sticks \[rad\].
+    stuck: Option<f64>,
 }
 
 impl Flight {
@@ -39,6 +44,9 @@ impl Flight {
             gusts,
             random: Pcg64Mcg::seed_from_u64(seed),
             time: 0.0,
+            positions: Pcg64Mcg::seed_from_u64(seed + 1000),
+            altitude: 50.0,
+            stuck: None,
         }
     }
 
@@ -72,11 +80,20 @@ impl Flight {
         let shift = (gust - self.gust) / self.actual.airspeed;
         self.known = after_tick(&self.airframe, &self.known, planned, 0.0);
         self.actual = after_tick(&self.airframe, &self.actual, acting, shift);
-        let pitch = self.actual.pitch + 0.002 * gaussian(&mut self.random);
+        let climb = self.actual.airspeed * libm::sin(self.actual.flight_path) + self.gust;
+        self.altitude += TICK_PERIOD * climb;
+        let pitch = self.stuck.unwrap_or(self.actual.pitch) + 0.002 * gaussian(&mut self.random);
         let effective = self.watch.effective(command);
         let air = self.actual;
-        self.watch
-            .update(pitch, &air, 0.0, effective, elevator, TICK_PERIOD);
+        let altitude = self.altitude + 0.02 * gaussian(&mut self.positions);
+        self.watch.update(
+            (pitch, altitude),
+            &air,
+            0.0,
+            effective,
+            elevator,
+            TICK_PERIOD,
+        );
         self.watch.trust()
     }
 }
@@ -172,10 +189,17 @@ fn values_that_no_aircraft_gives_are_no_weak_elevator() {
     for wild in [f64::NAN, f64::INFINITY, 1e300, -40.0, 3.0] {
         let (air, control) = (flight.actual, flight.trim.control);
         let watch = &mut flight.watch;
-        watch.update(wild, &air, 0.0, control, control.elevator, TICK_PERIOD);
-        watch.update(air.pitch, &air, 0.0, control, f64::NAN, TICK_PERIOD);
         watch.update(
-            air.pitch,
+            (wild, 50.0),
+            &air,
+            0.0,
+            control,
+            control.elevator,
+            TICK_PERIOD,
+        );
+        watch.update((air.pitch, wild), &air, 0.0, control, f64::NAN, TICK_PERIOD);
+        watch.update(
+            (air.pitch, 50.0),
             &air,
             wild,
             control,
@@ -192,4 +216,38 @@ fn values_that_no_aircraft_gives_are_no_weak_elevator() {
     assert!(flight.watch.effect() >= 1.0);
     // It still finds what it looks for.
     assert!(flight.fly(4.0, 0.25, 4.0).contains(&Trust::Suspected));
+}
+
+/// A sensor that sticks misses the turns that the altitude shows. The elevator is not to blame, and the sensor is believed
+/// again once it shows turns.
+#[test]
+fn a_pitch_sensor_that_sticks_is_found_by_the_altitude_and_not_the_elevator() {
+    for seed in 0..20 {
+        let mut flight = Flight::new(0.0, seed);
+        flight.fly(3.0, 1.0, 4.0);
+        flight.stuck = Some(flight.actual.pitch);
+        let mut after = 0.0;
+        while !flight.watch.pitch_fails() && after < 5.0 {
+            assert_eq!(flight.tick(1.0, 4.0), Trust::Healthy, "{seed}");
+            after += TICK_PERIOD;
+        }
+        assert!(after < 1.2, "{seed}: {after} s");
+        flight.stuck = None;
+        flight.fly(4.0, 1.0, 4.0);
+        assert!(!flight.watch.pitch_fails());
+    }
+}
+
+#[test]
+fn a_stuck_or_weak_elevator_and_gusts_are_no_failure_of_the_pitch_sensor() {
+    for seed in 0..40 {
+        for (effect, gusts) in [(0.0, 0.0), (0.0, 0.5), (0.25, 0.3), (1.0, 1.0), (1.3, 1.0)] {
+            let mut flight = Flight::new(gusts, seed);
+            flight.fly(3.0, 1.0, 4.0);
+            for _ in 0..700 {
+                flight.tick(effect, 4.0);
+                assert!(!flight.watch.pitch_fails(), "{seed}: {effect}, {gusts}");
+            }
+        }
+    }
 }

@@ -1,7 +1,9 @@
 //! Tests flights of preset `flight` in moving air, with limited actuators and with an inexact
 //! airframe model. The tests judge the physical outcome.
 
-use mpp_sim::faults::{ActuatorLimits, Faults, GustConfig, LidarFaultConfig, ModelError, Signs};
+use mpp_sim::faults::{
+    ActuatorLimits, Faults, GustConfig, LidarFaultConfig, ModelError, SignalFault, Signs,
+};
 use mpp_sim::flight::fly;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
@@ -163,4 +165,36 @@ fn everything_at_once_is_flown_through_by_most() {
     let flights = flights(faults, 40);
     let strict = flights.iter().filter(|log| log.summary.strict).count();
     assert!(strict >= 34, "{strict} of 40");
+}
+
+/// A pitch sensor that sticks, drifts or toggles is told, and nothing else; the flight goes on without it.
+#[test]
+fn a_pitch_sensor_that_fails_is_named_and_left_out() {
+    let stuck = SignalFault {
+        from: Some(3.0),
+        frozen: true,
+        noise: Some(0.05),
+        ..SignalFault::default()
+    };
+    let drifts = SignalFault {
+        ramp: Some(0.25),
+        ..stuck
+    };
+    let toggles = SignalFault {
+        from: Some(3.0),
+        toggle_hz: Some(1.0),
+        bias: Some(10.0),
+        ..SignalFault::default()
+    };
+    for pitch in [stuck, drifts, toggles] {
+        let faults = Faults {
+            pitch,
+            ..Faults::default()
+        };
+        for log in flown(faults) {
+            let excluded = log.sensors.iter().filter(|it| it.state == "excluded");
+            let sensors: Vec<_> = excluded.map(|it| it.sensor.clone()).collect();
+            assert!(sensors.iter().any(|it| it == "pitch"), "{sensors:?}");
+        }
+    }
 }

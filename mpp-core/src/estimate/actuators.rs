@@ -86,10 +86,10 @@ impl Actuators {
         self.given = self.limits.given(command, self.given, period);
     }
 
-    /// Compares the measured pitch \[rad\] with the commands; see [`ElevatorEffect::update`].
-    pub fn see_turn(&mut self, pitch: f64, air: &AirState, lift_offset: f64, period: f64) {
+    /// Compares the measured pitch \[rad\] and altitude \[m\] with the commands; see [`ElevatorEffect::update`].
+    pub fn see_turn(&mut self, seen: (f64, f64), air: &AirState, lift_offset: f64, period: f64) {
         let effective = self.effective();
-        (self.elevator).update(pitch, air, lift_offset, effective, self.planned, period);
+        (self.elevator).update(seen, air, lift_offset, effective, self.planned, period);
     }
 
     /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have

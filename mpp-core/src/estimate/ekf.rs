@@ -162,6 +162,14 @@ impl Ekf {
         self.estimate.flight_path += by;
     }
 
+    /// Replaces the estimated path \[rad\] and angle of attack \[rad\], because the pitch that taught them was wrong. The pitch
+    /// rate begins at 0.
+    pub fn restart_pitch(&mut self, flight_path: f64, angle_of_attack: f64) {
+        self.estimate.flight_path = flight_path;
+        self.estimate.pitch = flight_path + angle_of_attack;
+        self.estimate.pitch_rate = 0.0;
+    }
+
     /// Corrects the estimate by a measurement. The two errors are independent, so the filter processes one
     /// value after the other. The result equals the joint update and needs no matrix inverse.
     pub fn update(&mut self, measurement: &Measurement) -> Innovation {

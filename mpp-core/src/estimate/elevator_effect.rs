@@ -4,8 +4,10 @@
 //! missing part of the pitch is `k - 1` times the response to the command. A plain regression on the command would take
 //! gusts for a weak elevator, because the regulator answers gusts. The plan's own command does not know them. It is the
 //! instrument of this regression (Söderström and Stoica, "System Identification", chapter 8).
+//!
+//! A pitch sensor that fails misses turns too. [`PitchMonitor`] tells it from the elevator by the altitude.
 
-use super::Trust;
+use super::{PitchMonitor, Trust, Turn};
 use crate::tuning::elevator::{
     FADE, LEAST_EFFECT, LEAST_RESPONSE, MEMORY, MOST_MISSING, NEW_FOR, PROVEN_ERROR, PROVEN_FOR,
     PROVEN_MISSING, SIGMAS, SILENT, WEAK,
@@ -34,6 +36,7 @@ pub struct ElevatorEffect {
     given: Response,
     planned: Response,
     regression: Regression,
+    pitch: PitchMonitor,
     /// Time for which the regression has shown another effect \[s\].
     shown: f64,
     /// Whether the elevator has answered as it should since the effect was last set.
@@ -62,6 +65,7 @@ impl ElevatorEffect {
             given: Response::default(),
             planned: Response::default(),
             regression: Regression::default(),
+            pitch: PitchMonitor::new(),
             shown: 0.0,
             proven: false,
             silent: false,
@@ -73,6 +77,18 @@ impl ElevatorEffect {
     #[must_use]
     pub fn effect(&self) -> f64 {
         self.effect
+    }
+
+    /// Whether the pitch sensor fails by what the altitude shows.
+    #[must_use]
+    pub fn pitch_fails(&self) -> bool {
+        self.pitch.fails()
+    }
+
+    /// Angle of attack that the commands give \[rad\].
+    #[must_use]
+    pub fn angle_of_attack(&self) -> f64 {
+        self.trim_angle + self.given.angle
     }
 
     /// The trust in the elevator: suspected if its effect is corrected, excluded while it does not answer.
@@ -113,11 +129,11 @@ impl ElevatorEffect {
         }
     }
 
-    /// Takes in the measured pitch \[rad\] after a further `period` \[s\], the motion, the offset of the lift coefficient,
-    /// the effective controls since then and the elevator command of the plan.
+    /// Takes in the measured pitch \[rad\] and the altitude \[m\] after a further `period` \[s\], the motion, the offset of the
+    /// lift coefficient, the effective controls since then and the elevator command of the plan.
     pub fn update(
         &mut self,
-        pitch: f64,
+        (pitch, altitude): (f64, f64),
         air: &AirState,
         lift_offset: f64,
         effective: Control,
@@ -126,6 +142,7 @@ impl ElevatorEffect {
     ) {
         let inputs = [
             pitch,
+            altitude,
             lift_offset,
             effective.thrust,
             effective.elevator,
@@ -138,7 +155,7 @@ impl ElevatorEffect {
         let turn = per_lift * self.lift_alpha;
         let given = self.per_unit * (effective.elevator - self.trim);
         let turned = self.given.advance(given, self.lag, turn, period);
-        let angle = self.trim_angle + self.given.angle;
+        let angle = self.angle_of_attack();
         let lift = self.lift_zero + lift_offset + self.lift_alpha * angle;
         let push = effective.thrust * angle / self.mass;
         // The cosine of the flight path angle, to 2 % at 45 degrees.
@@ -148,6 +165,15 @@ impl ElevatorEffect {
         self.planned.advance(planned_angle, self.lag, turn, period);
         let before = before.unwrap_or(pitch);
         let expected = before + turned + period * (path_rate + (pitch - before) / FADE);
+        let seen = Turn {
+            pitch,
+            altitude,
+            unexpected: pitch - expected,
+            path_rate,
+            path_slope: turn,
+            airspeed: air.airspeed,
+        };
+        self.pitch.update(&seen, period);
         // No turn is faster than the bound. Beyond it the comparison begins again.
         let is_turn = libm::fabs(pitch - expected) < MOST_MISSING;
         self.expected = is_turn.then_some(expected);
@@ -166,11 +192,16 @@ impl ElevatorEffect {
             (self.shown, self.silent) = (0.0, false);
             return;
         };
-        self.proven |=
+        let answers =
             libm::fabs(missing) < PROVEN_MISSING && variance < PROVEN_ERROR * PROVEN_ERROR;
-        let sure = missing * missing > SIGMAS * SIGMAS * variance;
-        self.silent = sure && missing < -SILENT;
-        let less = missing < -WEAK && !self.silent;
+        self.proven |= answers;
+        if answers {
+            self.pitch.believe();
+        }
+        let sure = missing * missing > SIGMAS * SIGMAS * variance && !self.pitch.fails();
+        let none = sure && missing < -SILENT;
+        self.silent = none && !self.pitch.is_undecided();
+        let less = missing < -WEAK && !none;
         let more = missing > WEAK && self.effect < 1.0;
         self.shown = if sure && (less || more) {
             self.shown + period

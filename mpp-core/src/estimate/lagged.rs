@@ -136,6 +136,12 @@ impl LaggedEkf {
         self.look_ahead();
     }
 
+    /// Replaces path and angle of attack; see [`Ekf::restart_pitch`].
+    pub fn restart_pitch(&mut self, flight_path: f64, angle_of_attack: f64) {
+        self.ekf.restart_pitch(flight_path, angle_of_attack);
+        self.look_ahead();
+    }
+
     /// Moves the estimated airspeed by a known error [m/s].
     pub fn shift_airspeed(&mut self, by: f64) {
         self.ekf.shift_airspeed(by);

@@ -8,6 +8,7 @@
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
 //! | [`Actuators`] | the model of motor and elevator, with [`MotorWatch`] and [`ElevatorEffect`] |
 //! | [`BiasMonitor`] | the watches for slow errors: [`AirspeedBias`], [`PitchBias`] |
+//! | [`PitchMonitor`] | a pitch sensor that the altitude contradicts |
 //! | [`SensorMonitor`] | the trust in a sensor |
 //! | [`StuckDetector`], [`SteadyTurn`] | whether a sensor repeats its values, and whether refused values show a steady turn |
 
@@ -23,6 +24,7 @@ mod lift;
 mod motor_watch;
 mod navigation;
 mod pitch_bias;
+mod pitch_monitor;
 mod sensor_monitor;
 mod stuck_detector;
 mod verdicts;
@@ -40,6 +42,7 @@ pub use lift::LiftEstimator;
 pub use motor_watch::{MotorWatch, Progress};
 pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
+pub use pitch_monitor::{PitchMonitor, Turn};
 pub use sensor_monitor::{SensorMonitor, Sensors, Trust};
 pub use stuck_detector::{SteadyTurn, StuckDetector};
 pub use wind_filter::{Observation, WindFilter};

@@ -78,6 +78,11 @@ impl SensorMonitor {
         matches!(self.trust, Trust::Healthy | Trust::Suspected)
     }
 
+    /// Excludes the sensor at once, because something else has shown that it is wrong.
+    pub fn exclude(&mut self) {
+        (self.trust, self.recovering) = (Trust::Excluded, 0);
+    }
+
     /// Takes note of one tick: whether the sensor delivered a good value (`Some(true)`), a bad one
     /// (`Some(false)`) or nothing.
     pub fn tick(&mut self, good: Option<bool>) {

@@ -1,5 +1,6 @@
 //! Detection of values that a sensor repeats, and of refused values that show a steady turn.
 
+use super::MeasurementStatus;
 use crate::tuning::sensors::{BELIEVED_AFTER, FROZEN_TICKS, MOST_TURN};
 
 /// Detects that a sensor repeats one measured value.
@@ -49,23 +50,27 @@ impl Default for StuckDetector {
 }
 
 /// Detects a steady turn in values that the filter refuses. An aircraft that does not turn as its model gives such
-/// values; a sensor that fails does not.
+/// values: the first of them follows steadily on one that the filter used. A sensor that jumps does not.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SteadyTurn {
-    last: f64,
-    refused: u8,
+    last: Option<f64>,
+    /// Values refused in a row, each within a turn of the one before; `None` after a jump.
+    refused: Option<u8>,
 }
 
 impl SteadyTurn {
-    /// Takes the pitch of a tick \[rad\] and whether the filter refused it. Gives true once the filter has refused
+    /// Takes the pitch of a tick \[rad\] and the filter's verdict on it. Gives true once the filter has refused
     /// [`BELIEVED_AFTER`] values in a row that change steadily: the filter is wrong then.
-    pub fn take(&mut self, pitch: f64, refused: bool) -> bool {
-        let is_steady = libm::fabs(pitch - self.last) < MOST_TURN;
-        self.last = pitch;
-        self.refused = match refused && is_steady {
-            true => self.refused.saturating_add(1),
-            false => 0,
+    pub fn take(&mut self, pitch: f64, verdict: MeasurementStatus) -> bool {
+        let before = self.last.replace(pitch);
+        let is_steady = before.is_none_or(|before| libm::fabs(pitch - before) < MOST_TURN);
+        self.refused = match verdict {
+            MeasurementStatus::Gated if is_steady && before.is_none() => Some(1),
+            MeasurementStatus::Gated if is_steady => self.refused.map(|it| it.saturating_add(1)),
+            MeasurementStatus::Gated => None,
+            _ => Some(0),
         };
-        self.refused >= BELIEVED_AFTER
+        self.refused
+            .is_some_and(|refused| refused >= BELIEVED_AFTER)
     }
 }

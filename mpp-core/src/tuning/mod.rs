@@ -9,7 +9,7 @@
 
 mod watches;
 
-pub use watches::{airspeed_bias, elevator, motor, pitch_bias, sensors};
+pub use watches::{airspeed_bias, elevator, motor, pitch_bias, pitch_monitor, sensors};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of
 /// this clearance costs something in lattice and judgement. More room costs longer ways; with 1.6 m fewer

@@ -139,6 +139,48 @@ pub mod elevator {
     pub const LEAST_EFFECT: f64 = 0.15;
 }
 
+/// The monitor of the pitch sensor, by the altitude.
+pub mod pitch_monitor {
+    /// Time of each of the two high passes of altitudes \[s\]. With less the noise of positions weighs more, with more a turn is
+    /// seen later. Source: chosen.
+    pub const FADE: f64 = 0.5;
+    /// Time over which the squares of altitudes are averaged \[s\]. With 0.6 a sensor that sticks is found 0.1 s later.
+    /// Source: D41.
+    pub const WINDOW: f64 = 0.3;
+    /// Least altitude that a turn must give \[m\]: that of the wandering error of an RTK position. Source: derived.
+    pub const LEAST_ALTITUDE: f64 = 0.05;
+    /// Least turn that must give it \[rad\]: 0.4 deg. Source: D41.
+    pub const LEAST_ANGLE: f64 = 0.007;
+    /// Share of the altitude by the missing turn up to which the rest may go unexplained while the altitude follows the commands
+    /// [-], in squares. A stuck elevator gives 1 and more. With 0.25 a sensor that sticks is found too late in 2 of 80
+    /// flights. Source: D41.
+    pub const FOLLOWS: f64 = 0.4;
+    /// Time over which the noise of the pitch is averaged \[s\]: it halves the noise. Source: chosen.
+    pub const SMOOTH: f64 = 0.05;
+    /// Distance from its mean within which a pitch is still \[rad\]: four standard deviations of the averaged noise.
+    /// Source: derived.
+    pub const STILL: f64 = 0.008;
+    /// Time for which a pitch must be still \[s\]. With less of it the start of a turn looks like a failure. Source: chosen.
+    pub const STILL_FOR: f64 = 0.3;
+    /// Turn that the commands must ask for while the pitch is still \[rad\]: 1.7 deg. With 0.05 a sensor that sticks is found too
+    /// late in 3 of 80 flights in an empty sky. Source: D41.
+    pub const MISSED: f64 = 0.03;
+    /// Multiple of the usual unexpected turn that this turn must exceed [-]. With 3 gusts look like a failure in 2 of 80
+    /// flights with all conditions together, without it in 15. Source: D41.
+    pub const USUALS: f64 = 4.0;
+    /// Time over which the usual unexpected turn is averaged \[s\]. Source: chosen.
+    pub const USUAL: f64 = 10.0;
+    /// First value of the usual unexpected turn \[rad\]: half of that in gusts of 1 m/s. Source: D41.
+    pub const FIRST_USUAL: f64 = 0.01;
+    /// Time for which altitude and pitch must contradict each other \[s\]. Source: chosen.
+    pub const FAILS_FOR: f64 = 0.06;
+    /// Time for which a still sensor that misses a turn waits for the altitude before the elevator is blamed \[s\]. Less of it blames
+    /// the elevator for a pitch sensor, more of it reports a stuck elevator later. Source: D41.
+    pub const WAIT: f64 = 1.0;
+    /// Time after which the filters are settled \[s\]: twice [`FADE`]. Source: derived.
+    pub const SEEN: f64 = 1.0;
+}
+
 /// The watch of the motor. Its times and the usual gain are those of the reference aircraft; they grow with the
 /// cruising airspeed.
 pub mod motor {

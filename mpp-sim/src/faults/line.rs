@@ -86,6 +86,7 @@ impl Timed for ClockFault {
         Window {
             from: self.from,
             until: self.until,
+            toggle_hz: None,
         }
     }
 

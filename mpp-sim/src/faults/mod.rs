@@ -20,7 +20,7 @@ pub use gusts::{GustConfig, Gusts, HEIGHT, longitudinal_ratio};
 pub use lidar::{FaultyLidar, LidarFaultConfig, LidarFaults};
 pub use line::{ClockFault, Line, LinkFault, Passage};
 pub use model_error::{ModelError, Signs};
-pub use scan::{ScanFault, Scans, Show};
+pub use scan::{MOST_AGE_MS, ScanFault, Scans, Show};
 use serde::{Deserialize, Serialize};
 pub use signal::{Signal, SignalFault};
 use window::{Timed, Window, is_absent};

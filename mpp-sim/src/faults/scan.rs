@@ -1,7 +1,7 @@
 //! Faults of whole scans: a lidar that shows something else, and scans that do not come or come late.
 
 use super::delivery::{Delivery, DeliveryFault};
-use super::window::{Timed, fault_table};
+use super::window::{Timed, fault_table, ticks_of};
 use hil_protocol::LidarScan;
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,12 @@ pub enum Show {
     FullRange,
     /// The ranges of the first scan within the fault, under the stamps of the new scans.
     Frozen,
+    /// The ranges in the wrong order: those of the last beam first.
+    Reversed,
+    /// Nothing from the lower half of the beams.
+    UpperHalf,
+    /// Nothing from the upper half of the beams.
+    LowerHalf,
 }
 
 fault_table! {
@@ -22,6 +28,10 @@ fault_table! {
     pub struct ScanFault {
         /// Ranges that stand in the place of the measured ones.
         pub show: Option<Show>,
+        /// Range beyond which nothing returns \[m\], as in fog.
+        pub sight: Option<f64>,
+        /// Time by which the ranges are older than their stamp says \[ms\].
+        pub age_ms: Option<u32>,
         /// Angle by which the lidar is turned nose-up without saying so \[deg\].
         pub rotation_deg: Option<f64>,
         /// Whether no scan comes.
@@ -33,12 +43,21 @@ fault_table! {
     }
 }
 
+/// Greatest age that a stamp hides \[ms\].
+pub const MOST_AGE_MS: u32 = 1000;
+
 impl ScanFault {
     fn wrong_key(&self) -> Option<&'static str> {
         let turned = self.rotation_deg.unwrap_or(0.0);
         let flaw = (!(-180.0..=180.0).contains(&turned))
             .then_some("give a `rotation_deg` of -180 to 180 deg");
-        self.delivery().wrong_key().or(flaw)
+        let sighted = self.sight.is_none_or(|sight| sight > 0.0);
+        let blind = (!sighted).then_some("give a `sight` above 0 m");
+        let aged = self
+            .age_ms
+            .is_none_or(|age| age <= MOST_AGE_MS && ticks_of(age).is_some());
+        let old = (!aged).then_some("give an `age_ms` that is a multiple of 10 and at most 1000");
+        self.delivery().wrong_key().or(flaw).or(blind).or(old)
     }
 }
 
@@ -47,10 +66,18 @@ impl ScanFault {
         DeliveryFault {
             from: self.from,
             until: self.until,
+            toggle_hz: self.toggle_hz,
             missing: self.missing,
             delay_ms: self.delay_ms,
             rate_hz: None,
         }
+    }
+
+    /// Ticks by which the ranges of a tick are older than their stamp says.
+    #[must_use]
+    pub fn age(&self, tick: u32) -> u32 {
+        let aged = self.age_ms.filter(|_| self.window().holds(tick));
+        aged.and_then(ticks_of).unwrap_or(0)
     }
 
     /// Angle by which the lidar is turned at a tick \[rad\].
@@ -92,6 +119,7 @@ impl Scans {
             self.frozen = None;
             return Some(scan);
         }
+        let half = scan.ranges.len() / 2;
         match self.fault.show {
             Some(Show::Zeros) => scan.ranges.fill(0.0),
             Some(Show::FullRange) => scan.ranges.fill(self.range_max),
@@ -99,7 +127,17 @@ impl Scans {
                 let first = self.frozen.get_or_insert_with(|| scan.clone());
                 scan.ranges.clone_from(&first.ranges);
             }
+            Some(Show::Reversed) => scan.ranges.reverse(),
+            Some(Show::UpperHalf) => scan.ranges.iter_mut().take(half).for_each(|it| *it = 0.0),
+            Some(Show::LowerHalf) => scan.ranges.iter_mut().skip(half).for_each(|it| *it = 0.0),
             None => {}
+        }
+        if let Some(sight) = self.fault.sight {
+            let beyond = |range: &&mut f32| f64::from(**range) > sight;
+            scan.ranges
+                .iter_mut()
+                .filter(beyond)
+                .for_each(|it| *it = 0.0);
         }
         (!self.fault.missing).then_some(scan)
     }

@@ -5,8 +5,8 @@ use crate::random::{self, Draws, Stream};
 use mpp_core::config::TICK_PERIOD;
 
 fault_table! {
-    /// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `ramp`, `noise`,
-    /// `quantum`, `frozen`.
+    /// The faults of one signal; each may be absent. They act in this order: `scale`, `bias`, `frozen`, `ramp`,
+    /// `noise`, `quantum`.
     pub struct SignalFault {
         /// Factor on the value [-].
         pub scale: Option<f64>,
@@ -18,7 +18,8 @@ fault_table! {
         pub noise: Option<f64>,
         /// Step between the values that the signal can have, in the unit of the signal.
         pub quantum: Option<f64>,
-        /// Whether the signal keeps the first value that it has within the fault.
+        /// Whether the signal keeps the first value that it has within the fault. What stands after it in the order
+        /// still acts, so a stuck sensor can drift and be noisy.
         pub frozen: bool,
     }
 }
@@ -94,6 +95,9 @@ impl Signal {
             return value;
         }
         let mut spoilt = value * fault.scale.unwrap_or(1.0) + fault.bias.unwrap_or(0.0);
+        if fault.frozen {
+            spoilt = *self.kept.get_or_insert(spoilt);
+        }
         if let Some(ramp) = fault.ramp {
             spoilt += ramp * f64::from(tick - fault.window().first()) * TICK_PERIOD;
         }
@@ -102,9 +106,6 @@ impl Signal {
         }
         if let Some(quantum) = fault.quantum {
             spoilt = (spoilt / quantum).round() * quantum;
-        }
-        if fault.frozen {
-            return *self.kept.get_or_insert(spoilt);
         }
         spoilt
     }

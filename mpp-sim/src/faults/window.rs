@@ -33,6 +33,9 @@ macro_rules! fault_table {
             /// Time at which the fault ends \[s\]; by default it does not end.
             #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
             pub until: Option<f64>,
+            /// Rate at which the fault comes and goes [Hz]: it acts in the first half of each period. By default it stays.
+            #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
+            pub toggle_hz: Option<f64>,
             $(
                 $(#[$meaning])*
                 #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
@@ -45,6 +48,7 @@ macro_rules! fault_table {
                 $crate::faults::window::Window {
                     from: self.from,
                     until: self.until,
+                    toggle_hz: self.toggle_hz,
                 }
             }
 
@@ -52,6 +56,7 @@ macro_rules! fault_table {
                 Self {
                     from: None,
                     until: None,
+                    toggle_hz: None,
                     ..*self
                 }
             }
@@ -64,12 +69,13 @@ macro_rules! fault_table {
 }
 pub(super) use fault_table;
 
-/// The ticks at which a fault acts, by the keys `from` and `until` of its table \[s\]. Without them it acts
-/// during the whole flight.
+/// The ticks at which a fault acts, by the keys `from` and `until` \[s\] and `toggle_hz` [Hz] of its table. Without them it
+/// acts during the whole flight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Window {
     pub(super) from: Option<f64>,
     pub(super) until: Option<f64>,
+    pub(super) toggle_hz: Option<f64>,
 }
 
 impl Window {
@@ -80,12 +86,22 @@ impl Window {
 
     /// Whether the fault acts at a tick.
     pub(super) fn holds(&self, tick: u32) -> bool {
-        tick >= self.first() && self.until.is_none_or(|until| tick < whole_ticks(until))
+        let within =
+            tick >= self.first() && self.until.is_none_or(|until| tick < whole_ticks(until));
+        within
+            && self
+                .toggle_hz
+                .is_none_or(|rate| self.periods(tick, rate).fract() < 0.5)
+    }
+
+    /// Periods of a fault that comes and goes at this rate [Hz], from its first tick to this one.
+    fn periods(&self, tick: u32, rate: f64) -> f64 {
+        f64::from(tick - self.first()) * TICK_PERIOD * rate
     }
 
     /// What keeps a fault that `acts` at these times from it in a flight of so many ticks.
     pub(super) fn idle(&self, acts: bool, ticks: u32) -> Option<&'static str> {
-        let given = self.from.is_some() || self.until.is_some();
+        let given = self.from.is_some() || self.until.is_some() || self.toggle_hz.is_some();
         let first = self.first();
         if given && !acts {
             return Some(
@@ -107,6 +123,10 @@ impl Window {
         if !(0.0..=LONGEST).contains(&from) {
             return Some("give a `from` of 0 to 3600 s");
         }
+        let rate = self.toggle_hz.unwrap_or(1.0);
+        if !(rate > 0.0 && rate <= MOST_RATE) {
+            return Some("give a `toggle_hz` above 0, and at most 50 Hz");
+        }
         let ends = |until: f64| until > from && until <= LONGEST;
         let sound = self.until.is_none_or(ends);
         (!sound).then_some("give an `until` after `from`, and at most 3600 s")
@@ -121,6 +141,9 @@ const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
 
 /// Latest time of a key \[s\]: the longest flight.
 const LONGEST: f64 = 3600.0;
+
+/// Greatest rate of a fault that comes and goes [Hz]: one tick with it, one without.
+const MOST_RATE: f64 = 50.0;
 
 /// The tick nearest to a time \[s\].
 fn whole_ticks(time: f64) -> u32 {

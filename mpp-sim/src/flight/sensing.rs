@@ -1,6 +1,6 @@
 //! The sensors of one flight with their faults: from the true state to what arrives at the link.
 
-use crate::faults::{Delivery, ScanFault, Scans, Signal};
+use crate::faults::{Delivery, MOST_AGE_MS, ScanFault, Scans, Signal};
 use crate::lidar::LidarConfig;
 use crate::navigation::{GroundTruth, NavigationSensor};
 use crate::random::Stream;
@@ -8,6 +8,7 @@ use crate::scenario::Scenario;
 use crate::sensors::{AirDataSensors, Measurement};
 use hil_protocol::{AirData, LidarScan, Position, SensorFrame};
 use mpp_core::vehicle::{VehicleState, Wind};
+use std::collections::VecDeque;
 
 /// The sensors of one flight, and what is wrong with them and on the way from them.
 #[derive(Clone, Debug)]
@@ -23,6 +24,8 @@ pub struct Sensing {
     lidar: LidarConfig,
     scan_fault: ScanFault,
     scans: Scans,
+    /// The last states, the newest first, for a lidar whose stamps hide the age of its ranges.
+    past: VecDeque<VehicleState>,
 }
 
 impl Sensing {
@@ -43,6 +46,7 @@ impl Sensing {
             lidar: scenario.lidar,
             scan_fault: faults.scan,
             scans: Scans::new(faults.scan, scenario.lidar.range_max),
+            past: VecDeque::new(),
         }
     }
 
@@ -53,6 +57,8 @@ impl Sensing {
         state: &VehicleState,
         wind: Wind,
     ) -> (Measurement, SensorFrame) {
+        self.past.push_front(*state);
+        self.past.truncate(MOST_AGE_MS as usize / 10 + 1);
         let sound = self.sensors.measure(state);
         let measured = Measurement {
             airspeed: self.airspeed.pass(tick, sound.airspeed),
@@ -80,10 +86,11 @@ impl Sensing {
         (measured, frame)
     }
 
-    /// The state of the lidar at a tick, which may be turned.
+    /// The state of the lidar at a tick, which may be turned or belong to a tick before.
     #[must_use]
     pub fn lidar_state(&self, tick: u32, state: &VehicleState) -> VehicleState {
-        let mut turned = *state;
+        let age = self.scan_fault.age(tick) as usize;
+        let mut turned = *self.past.get(age).or(self.past.back()).unwrap_or(state);
         let rotation = self.scan_fault.rotation(tick);
         if rotation != 0.0 {
             turned.air.pitch += rotation;

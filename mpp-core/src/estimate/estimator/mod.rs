@@ -264,12 +264,12 @@ impl Estimator {
         if self.pitch_changes.frozen() {
             innovation.pitch = MeasurementStatus::Frozen;
         }
-        let refused = innovation.pitch == MeasurementStatus::Gated;
-        if self.steady_turn.take(fresh.pitch, refused) {
+        if self.steady_turn.take(fresh.pitch, innovation.pitch) {
             self.air.doubt([0.0, GAP_ANGLE, GAP_RATE, 0.0]);
         }
         self.airspeed.tick(Some(innovation.airspeed.is_good()));
-        self.pitch.tick(Some(innovation.pitch.is_good()));
+        let turns = !self.actuators.elevator().pitch_fails();
+        self.pitch.tick(Some(innovation.pitch.is_good() && turns));
         innovation
     }
 

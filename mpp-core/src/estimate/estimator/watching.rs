@@ -13,9 +13,10 @@ impl Estimator {
         air: Option<&AirData>,
         innovation: Innovation,
     ) {
+        // A pitch that is not used is watched too: its turns show when it can be believed again.
         let good = matches!(
             innovation.pitch,
-            MeasurementStatus::Accepted | MeasurementStatus::Gated
+            MeasurementStatus::Accepted | MeasurementStatus::Gated | MeasurementStatus::Distrusted
         ) && self.air.lag() == 0;
         let Some(air) = air.filter(|_| good && elapsed > 0.0 && elapsed < LONGEST_PREDICTION)
         else {
@@ -25,7 +26,26 @@ impl Estimator {
             air.measurement.pitch - self.pitch_error,
             self.conditions().lift,
         );
-        (self.actuators).see_turn(pitch, self.air.present(), lift, elapsed);
+        let altitude = self.navigation.quick().position().1;
+        let failed = self.actuators.elevator().pitch_fails();
+        (self.actuators).see_turn((pitch, altitude), self.air.present(), lift, elapsed);
+        if self.actuators.elevator().pitch_fails() && !failed {
+            self.drop_pitch();
+        }
+    }
+
+    /// Excludes the pitch sensor and replaces what it has taught: the path is that over ground in still air, and the angle of
+    /// attack is that of the commands.
+    fn drop_pitch(&mut self) {
+        self.pitch.exclude();
+        let air = *self.air.present();
+        let (_, climb) = self.conditions().wind.ground_velocity(&air);
+        let path = libm::asin((climb / air.airspeed).clamp(-1.0, 1.0));
+        let angle = self.actuators.elevator().angle_of_attack();
+        self.air.restart_pitch(path, angle);
+        self.navigation
+            .turn(path - air.flight_path, self.air.present());
+        self.actuators.see_speed(None, 0.0);
     }
 
     /// Compares the speed with the thrust, if the wind is known and the airspeed is measured.
