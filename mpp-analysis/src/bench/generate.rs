@@ -10,18 +10,27 @@ use mpp_sim::scenario::{Preset, Scenario};
 
 /// Numbers of obstacles in the flights, used in turn. They go from the paper's fields to fields
 /// that often cannot be passed.
-const DENSITIES: [usize; 4] = [20, 30, 40, 60];
+pub const SPARSE: [usize; 4] = [20, 30, 40, 60];
 
-/// The first `count` programs that the planner meets in flights of a preset, from seed `seed` on.
+/// The same for dense fields, whose programs take many more steps.
+pub const DENSE: [usize; 4] = [120, 160, 200, 240];
+
+/// The first `count` programs that the planner meets in flights of a preset past these numbers of obstacles, from seed `seed`
+/// on.
 ///
 /// # Errors
 /// [`FlyError`].
-pub fn generate(preset: Preset, count: usize, seed: u64) -> Result<Vec<Instance>, FlyError> {
+pub fn generate(
+    preset: Preset,
+    obstacles: [usize; 4],
+    count: usize,
+    seed: u64,
+) -> Result<Vec<Instance>, FlyError> {
     let mut instances = Vec::with_capacity(count);
     let mut flight = 0;
     while instances.len() < count {
         let scenario = Scenario {
-            obstacles: DENSITIES[flight % DENSITIES.len()],
+            obstacles: obstacles[flight % obstacles.len()],
             ..Scenario::new(preset, seed + flight as u64)
         };
         collect(&scenario, count, &mut instances)?;

@@ -15,7 +15,7 @@ mod qp;
 pub use error::QpBenchError;
 #[cfg(feature = "clarabel")]
 pub use full_form::{Form, FullForm};
-pub use generate::generate;
+pub use generate::{DENSE, SPARSE, generate};
 pub use planning_time::{CycleBench, CycleReport, PresetReport, Ratio, Times, run_cycle};
 #[cfg(feature = "clarabel")]
 pub use qp::{QpReport, SolverReport, run_qp};

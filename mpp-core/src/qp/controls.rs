@@ -39,3 +39,11 @@ pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
         .sum();
     sums[0] + sums[1] + (sums[2] + sums[3]) + tail
 }
+
+/// `sum += factor term` over all controls.
+#[inline(never)]
+pub(super) fn add_all(sum: &mut ControlVector, term: &ControlVector, factor: f64) {
+    for (sum, term) in sum.iter_mut().zip(term) {
+        *sum += factor * term;
+    }
+}

@@ -4,94 +4,170 @@ use super::rows::{ATTITUDE_ROWS, Bounds, OUTPUTS, POSITION_ROWS, ROWS, THRUST_OU
 use crate::config::{DIRECTIONS, STAGES};
 use crate::corridor::DIRECTION_VECTORS;
 
-/// The row whose excess counts most, if any row has an excess. An excess `s` counts as `s^2` times the row's
-/// price if `by_effort` is true, which is twice the cost of its correction. Otherwise it counts as `s^4` times
-/// the price, which is between its size and its effort; this shortens the longest solves of programs with soft
-/// rows. The function leaves out the attitude rows unless `attitude_rows` is true.
+/// Number of rows on a short list. With 4 and 8 the ten longest hard solves take as long, and the soft ones up to a tenth longer.
+pub(super) const LISTED: usize = 5;
+
+/// The violated rows that count most, in falling order: at most one of a kind and stage. Each has what it counts.
+#[derive(Clone, Debug)]
+pub(super) struct Shortlist {
+    rows: [(f64, usize); LISTED],
+    len: usize,
+}
+
+impl Shortlist {
+    pub(super) const fn new() -> Self {
+        Self {
+            rows: [(0.0, 0); LISTED],
+            len: 0,
+        }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+    }
+
+    /// Takes the row that counts most, and what it counts.
+    pub(super) fn take_first(&mut self) -> Option<(f64, usize)> {
+        self.len = self.len.checked_sub(1)?;
+        let [first, second, third, fourth, fifth] = self.rows;
+        self.rows = [second, third, fourth, fifth, first];
+        Some(first)
+    }
+
+    pub(super) fn rows(&self) -> impl Iterator<Item = usize> + '_ {
+        self.rows.iter().take(self.len).map(|(_, row)| *row)
+    }
+
+    pub(super) fn keep(&mut self, mut keeps: impl FnMut(usize) -> bool) {
+        let mut kept = Self::new();
+        for entry in self.rows.iter().take(self.len) {
+            if keeps(entry.1) {
+                kept.push(*entry);
+            }
+        }
+        *self = kept;
+    }
+
+    fn push(&mut self, entry: (f64, usize)) {
+        if let Some(place) = self.rows.get_mut(self.len) {
+            *place = entry;
+            self.len += 1;
+        }
+    }
+
+    /// Inserts a row before those that count less. The last one leaves a full list.
+    #[inline(never)]
+    fn insert(&mut self, mut entry: (f64, usize)) {
+        let mut moves = false;
+        for place in self.rows.iter_mut().take(self.len) {
+            moves |= place.0 < entry.0;
+            if moves {
+                core::mem::swap(place, &mut entry);
+            }
+        }
+        self.push(entry);
+    }
+}
+
+/// What an excess counts: `s^2` times the row's price if `by_effort` is true, which is twice the cost of its
+/// correction. Otherwise `s^4` times the price, which is between its size and its effort; this shortens the longest
+/// solves of programs with soft rows.
+pub(super) fn count(excess: f64, price: f64, by_effort: bool) -> f64 {
+    let over = if excess > 0.0 { excess } else { 0.0 };
+    let square = over * over;
+    (if by_effort { square } else { square * square }) * price
+}
+
+/// Lists the violated rows that count most. The function leaves out the attitude rows unless `attitude_rows` is true.
 pub(super) fn most_violated(
     outputs: &[f64; OUTPUTS],
     bounds: &Bounds,
     prices: &[f64; ROWS],
     by_effort: bool,
     attitude_rows: bool,
-) -> Option<usize> {
-    let count = |excess: &mut f64, price: &f64| {
-        let over = excess.max(0.0);
-        let square = over * over;
-        let counted = if by_effort { square } else { square * square };
-        *excess = counted * price;
-    };
+    list: &mut Shortlist,
+) {
+    list.clear();
     let (position_bounds, attitude_bounds, thrust_bounds) = parts(&bounds.0);
     let (position_prices, attitude_prices, thrust_prices) = parts(prices);
     let (motion, thrust, attitude) = split(outputs);
-    let mut worst = Worst {
-        most: 0.0,
-        row: None,
-    };
-
-    let prices = position_prices.iter();
-    let stages = motion
+    for (stage, (at, bounds)) in motion
         .iter()
-        .zip(position_bounds.iter().zip(prices).skip(1));
-    for (stage, (at, (bounds, prices))) in stages.enumerate() {
-        let mut excess = position_excess(at, bounds);
-        for (excess, price) in excess.iter_mut().zip(prices) {
-            count(excess, price);
+        .zip(position_bounds.iter().skip(1))
+        .enumerate()
+    {
+        let excess = position_excess(at, bounds);
+        if largest(&excess) > 0.0 {
+            consider(
+                list,
+                &excess,
+                position_prices.get(stage + 1),
+                (stage + 1) * DIRECTIONS,
+                by_effort,
+            );
         }
-        worst.consider(&excess, (stage + 1) * DIRECTIONS);
     }
-    let stages = thrust.iter().zip(thrust_bounds.iter().zip(thrust_prices));
-    for (stage, (thrust, (limits, prices))) in stages.enumerate() {
-        let mut excess = thrust_excess(*thrust, limits);
-        for (excess, price) in excess.iter_mut().zip(prices) {
-            count(excess, price);
+    for (stage, (thrust, limits)) in thrust.iter().zip(thrust_bounds).enumerate() {
+        let excess = thrust_excess(*thrust, limits);
+        if largest(&excess) > 0.0 {
+            consider(
+                list,
+                &excess,
+                thrust_prices.get(stage),
+                POSITION_ROWS + ATTITUDE_ROWS + 2 * stage,
+                by_effort,
+            );
         }
-        worst.consider(&excess, POSITION_ROWS + ATTITUDE_ROWS + 2 * stage);
     }
     if attitude_rows {
-        let stages = attitude
-            .iter()
-            .zip(attitude_bounds.iter().zip(attitude_prices));
-        for (stage, (at, (limits, prices))) in stages.enumerate() {
-            let mut excess = attitude_excess(at, limits);
-            for (excess, price) in excess.iter_mut().zip(prices) {
-                count(excess, price);
+        for (stage, (at, limits)) in attitude.iter().zip(attitude_bounds).enumerate() {
+            let excess = attitude_excess(at, limits);
+            if largest(&excess) > 0.0 {
+                consider(
+                    list,
+                    &excess,
+                    attitude_prices.get(stage),
+                    POSITION_ROWS + 4 * stage,
+                    by_effort,
+                );
             }
-            worst.consider(&excess, POSITION_ROWS + 4 * stage);
         }
     }
-    worst.row
 }
 
-/// The largest value so far and its row.
-struct Worst {
-    most: f64,
-    row: Option<usize>,
+/// The largest value. Repeated halving needs few comparisons that depend on each other.
+#[inline(always)]
+fn largest<const N: usize>(values: &[f64; N]) -> f64 {
+    let mut halves = *values;
+    let mut len = N;
+    while len > 1 {
+        len /= 2;
+        let (low, high) = halves.split_at_mut(len);
+        for (low, high) in low.iter_mut().zip(high) {
+            *low = if *high > *low { *high } else { *low };
+        }
+    }
+    halves[0]
 }
 
-impl Worst {
-    /// Compares with the values of the rows from `first` on. Repeated halving finds the largest value with
-    /// few comparisons that depend on each other.
-    fn consider<const N: usize>(&mut self, values: &[f64; N], first: usize) {
-        let mut halves = *values;
-        let mut len = N;
-        while len > 1 {
-            len /= 2;
-            let (low, high) = halves.split_at_mut(len);
-            for (low, high) in low.iter_mut().zip(high) {
-                if *high > *low {
-                    *low = *high;
-                }
-            }
+/// Lists the row of a kind and stage, from `first` on, that counts most.
+#[inline(never)]
+fn consider<const N: usize>(
+    list: &mut Shortlist,
+    excess: &[f64; N],
+    prices: Option<&[f64; N]>,
+    first: usize,
+    by_effort: bool,
+) {
+    let mut most = (0.0, 0);
+    for (offset, (excess, price)) in excess.iter().zip(prices.unwrap_or(&[0.0; N])).enumerate() {
+        let value = count(*excess, *price, by_effort);
+        if value > most.0 {
+            most = (value, first + offset);
         }
-        if halves.first().is_some_and(|largest| *largest > self.most) {
-            for (offset, value) in values.iter().enumerate() {
-                if *value > self.most {
-                    self.most = *value;
-                    self.row = Some(first + offset);
-                }
-            }
-        }
+    }
+    if most.0 > 0.0 {
+        list.insert(most);
     }
 }
 

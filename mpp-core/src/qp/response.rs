@@ -1,8 +1,9 @@
 //! Response of the outputs to the normalised controls. A row leaves out the controls that come too late to
 //! change its output.
 
-use super::controls::dot;
+use super::controls::{ControlVector, dot};
 use super::rows::{OUTPUTS, reach};
+use crate::config::STAGES;
 use core::ops::Range;
 
 /// One row for each output, with one entry for each control that can change the output. The length of a
@@ -54,6 +55,36 @@ impl Response {
             .unwrap_or_else(|_| core::array::from_fn(|_| Default::default()))
     }
 
+    /// The products of the rows of all positions and thrusts with a vector. Those of two stages are equally long.
+    #[inline(always)]
+    pub(super) fn products(&self, vector: &ControlVector, mut put: impl FnMut(usize, f64)) {
+        let known = vector.as_chunks::<4>().0;
+        let mut rest = self.0.as_chunks::<4>().0;
+        for len in 1..=STAGES / 2 {
+            let Some((rows, later)) = rest.split_at_checked(4 * len) else {
+                return;
+            };
+            rest = later;
+            let (one, two) = rows.split_at(2 * len);
+            for (offset, rows) in [(0, one), (2, two)] {
+                let (one, other) = rows.split_at(len);
+                let [a, b] = pair(one, other, known);
+                put(4 * (len - 1) + offset, a);
+                put(4 * (len - 1) + offset + 1, b);
+            }
+        }
+        for len in 1..=STAGES / 2 {
+            let Some((rows, later)) = rest.split_at_checked(2 * len) else {
+                return;
+            };
+            rest = later;
+            let (one, other) = rows.split_at(len);
+            let [a, b] = pair(one, other, known);
+            put(2 * STAGES + 2 * (len - 1), a);
+            put(2 * STAGES + 2 * (len - 1) + 1, b);
+        }
+    }
+
     /// The products of the responses of an output and the next one.
     pub(super) fn pair(&self, output: usize) -> Pair {
         let [one, other] = [output, output + 1].map(|output| self.row(output));
@@ -77,4 +108,17 @@ impl Pair {
     pub(super) fn norm_squared(&self, [p, q]: [f64; 2]) -> f64 {
         p * p * self.first + 2.0 * p * q * self.both + q * q * self.second
     }
+}
+
+/// Products of two rows with a vector.
+#[inline(always)]
+fn pair(one: &[[f64; 4]], other: &[[f64; 4]], vector: &[[f64; 4]]) -> [f64; 2] {
+    let (mut first, mut second) = ([0.0; 4], [0.0; 4]);
+    for ((one, other), v) in one.iter().zip(other).zip(vector) {
+        for k in 0..4 {
+            first[k] += one[k] * v[k];
+            second[k] += other[k] * v[k];
+        }
+    }
+    [first, second].map(|[a, b, c, d]| (a + c) + (b + d))
 }

@@ -73,13 +73,18 @@ pub(super) struct RowPattern {
     pub(super) second: (usize, f64),
 }
 
+/// Share of a direction that is zero up to rounding. With it a row has one output less.
+const NO_SHARE: f64 = 1e-15;
+
 impl RowPattern {
     /// The pattern of a row. It is `None` for the rows of boundary 0, which no control can change.
     pub(super) fn of(row: usize) -> Option<Self> {
         match RowKind::of(row) {
             RowKind::Position(0, _) => None,
             RowKind::Position(stage, direction) => {
-                let [up, forward] = *DIRECTION_VECTORS.get(direction)?;
+                let [up, forward] = DIRECTION_VECTORS
+                    .get(direction)?
+                    .map(|share| if share.abs() < NO_SHARE { 0.0 } else { share });
                 let base = 2 * (stage - 1);
                 Some(Self {
                     first: (base, forward),

@@ -1,11 +1,17 @@
-//! Triangular matrices without their zeros.
+//! Triangular matrices without most of their zeros.
 
-/// Number of entries in a triangle with this number of rows.
+/// Number of entries in a triangle with this number of rows. The length of a row is rounded up to a multiple of four.
 pub(super) const fn entries(rows: usize) -> usize {
-    rows * (rows + 1) / 2
+    let (fours, rest) = (rows / 4, rows % 4);
+    8 * fours * (fours + 1) + rest * 4 * (fours + 1)
 }
 
-/// A triangle whose row `i` has `i + 1` entries; `LEN` entries in all.
+/// Number of entries of a row.
+pub(super) const fn length(index: usize) -> usize {
+    (index + 1).next_multiple_of(4)
+}
+
+/// A triangle whose row `i` has `i + 1` entries, and zeros up to a multiple of four; `LEN` entries in all.
 #[derive(Clone, Debug)]
 pub(super) struct Triangle<const LEN: usize>([f64; LEN]);
 
@@ -17,21 +23,21 @@ impl<const LEN: usize> Triangle<LEN> {
     /// A row. It is empty for an index beyond the last row.
     pub(super) fn row(&self, index: usize) -> &[f64] {
         self.0
-            .get(entries(index)..entries(index + 1))
+            .get(entries(index)..entries(index) + length(index))
             .unwrap_or(&[])
     }
 
     pub(super) fn row_mut(&mut self, index: usize) -> &mut [f64] {
         self.0
-            .get_mut(entries(index)..entries(index + 1))
+            .get_mut(entries(index)..entries(index) + length(index))
             .unwrap_or(&mut [])
     }
 
     /// The rows from `first` on.
     pub(super) fn rows_from(&self, first: usize) -> impl Iterator<Item = &[f64]> {
         let mut rest = self.0.get(entries(first)..).unwrap_or(&[]);
-        (first + 1..).map_while(move |len| {
-            let (row, later) = rest.split_at_checked(len)?;
+        (first..).map_while(move |index| {
+            let (row, later) = rest.split_at_checked(length(index))?;
             rest = later;
             Some(row)
         })
@@ -40,21 +46,21 @@ impl<const LEN: usize> Triangle<LEN> {
     /// The same, to change them.
     pub(super) fn rows_from_mut(&mut self, first: usize) -> impl Iterator<Item = &mut [f64]> {
         let mut rest = self.0.get_mut(entries(first)..).unwrap_or(&mut []);
-        (first + 1..).map_while(move |len| {
-            let (row, later) = core::mem::take(&mut rest).split_at_mut_checked(len)?;
+        (first..).map_while(move |index| {
+            let (row, later) = core::mem::take(&mut rest).split_at_mut_checked(length(index))?;
             rest = later;
             Some(row)
         })
     }
 
-    /// The rows before `end`, in reverse order.
-    pub(super) fn rows_before(&self, end: usize) -> impl Iterator<Item = &[f64]> {
-        let mut rest = self.0.get(..entries(end)).unwrap_or(&[]);
-        (1..end + 1).rev().map_while(move |len| {
-            let (earlier, row) = rest.split_at_checked(rest.len().checked_sub(len)?)?;
-            rest = earlier;
-            Some(row)
-        })
+    /// The four rows from a multiple of four on, which are equally long.
+    pub(super) fn four(&self, first: usize) -> Option<[&[f64]; 4]> {
+        let len = length(first);
+        let rows = self.0.get(entries(first)..)?.get(..4 * len)?;
+        let (one, rest) = rows.split_at(len);
+        let (two, rest) = rest.split_at(len);
+        let (three, four) = rest.split_at(len);
+        Some([one, two, three, four])
     }
 
     /// Overwrites a row with the first entries of the next row.
@@ -63,6 +69,9 @@ impl<const LEN: usize> Triangle<LEN> {
             let row = to.get_mut(entries(index)..).unwrap_or(&mut []);
             for (to, from) in row.iter_mut().zip(from) {
                 *to = *from;
+            }
+            for zero in row.iter_mut().skip(index + 1) {
+                *zero = 0.0;
             }
         }
     }

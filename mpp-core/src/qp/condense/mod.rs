@@ -166,6 +166,14 @@ impl Condensed {
         }
     }
 
+    /// Number of controls, rounded up, that can change a row.
+    pub(super) fn reach(&self, row: &RowPattern) -> usize {
+        self.response
+            .row(row.first.0)
+            .len()
+            .max(self.response.row(row.second.0).len())
+    }
+
     /// Change of a row's left-hand side with normalised controls.
     pub(super) fn change(&self, row: &RowPattern, normalised: &ControlVector) -> f64 {
         let by = |(output, factor): (usize, f64)| {
@@ -176,6 +184,21 @@ impl Condensed {
             }
         };
         by(row.first) + by(row.second)
+    }
+
+    /// The positions and thrusts at normalised controls, from those without. Two rows at a time, which are equally long.
+    #[inline(never)]
+    pub(super) fn respond(
+        &self,
+        free: &[f64; OUTPUTS],
+        normalised: &ControlVector,
+        outputs: &mut [f64; OUTPUTS],
+    ) {
+        self.response.products(normalised, |output, by| {
+            if let (Some(to), Some(free)) = (outputs.get_mut(output), free.get(output)) {
+                *to = free + by;
+            }
+        });
     }
 
     /// Computes states and controls from the normalised controls.

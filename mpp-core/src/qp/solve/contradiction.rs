@@ -1,16 +1,17 @@
-//! Decides whether a solution can keep a row that depends on the active rows up to rounding.
+//! Decides whether rows contradict each other: before the first step those that no control can change and opposite faces,
+//! later a row that depends on the active rows up to rounding.
 //!
-//! The Schur complement of such a row is a difference of nearly equal numbers, and has no valid digits.
+//! The Schur complement of the latter is a difference of nearly equal numbers, and has no valid digits.
 //! It is also the squared norm of a vector. The vector keeps its digits down to the rounding of the
 //! controls, so this module computes the complement from the vector.
 
 use super::direction::{Direction, Stand};
-use super::{Active, Entering, Solver};
+use super::{Active, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
 use crate::qp::controls::{CONTROLS, ControlVector, dot};
 use crate::qp::factor::CAPACITY;
-use crate::qp::rows::RowPattern;
+use crate::qp::rows::{RowKind, RowPattern};
 
 /// Greatest contradiction between rows [m, rad or N] that may come from rounding.
 const NEGLIGIBLE: f64 = 1e-8;
@@ -18,18 +19,58 @@ const NEGLIGIBLE: f64 = 1e-8;
 /// Share of the largest rate below which a rate is zero up to rounding.
 const NO_RATE: f64 = 1e-13;
 
+/// Least crossing of opposite faces \[m\] that decides a program before its first step. The method itself
+/// decides on smaller ones, because the directions are opposite only up to 1e-8.
+const CROSSING: f64 = 1e-5;
+
 impl Solver {
+    /// Checks the hard rows that no control can change. If one of them is violated, the problem is
+    /// infeasible.
+    pub(super) fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
+        let rows = shared.prices.iter().zip(&self.problem.bounds.0);
+        for (row, (price, bound)) in rows.enumerate() {
+            if *price > 0.0 || self.is_soft(row) {
+                continue;
+            }
+            let value = match (RowKind::of(row), RowPattern::of(row)) {
+                (RowKind::Position(0, direction), _) => {
+                    let [up, forward] = crate::corridor::DIRECTION_VECTORS[direction % 8];
+                    forward * self.problem.initial[0] + up * self.problem.initial[1]
+                }
+                (_, Some(pattern)) => pattern.value(&self.outputs),
+                (_, None) => continue,
+            };
+            if value - bound > TOLERANCE {
+                let _ = self.certificate.push((row, 1.0));
+                return Some(Status::Infeasible);
+            }
+        }
+        None
+    }
+
+    /// Checks the opposite faces of a corridor. Faces that cross by more than rounding leave no room for a
+    /// position, so two rows are the whole proof of infeasibility.
+    pub(super) fn check_opposite_faces(&mut self) -> Option<Status> {
+        if self.problem.penalty.is_some() {
+            return None;
+        }
+        let (first, second) = self.problem.bounds.crossing_faces(CROSSING)?;
+        let _ = self.certificate.push((first, 1.0));
+        let _ = self.certificate.push((second, 1.0));
+        Some(Status::Infeasible)
+    }
+
     /// Corrects a direction whose complement is lost in rounding. Returns the relation of the entering row to
     /// the active rows.
     pub(super) fn resolve(
-        &self,
+        &mut self,
         shared: &Condensed,
         entering: &Entering,
         direction: &mut Direction,
     ) -> Stand {
         let violation = entering.violation;
         self.correct(shared, &entering.row, direction);
-        let (rates, complement) = (&direction.rates, direction.complement);
+        let (rates, complement) = (&self.rates, direction.complement);
         // The excess includes the rounding errors of the active rows.
         let active = self.active.iter().zip(rates);
         let excess = violation
@@ -47,47 +88,44 @@ impl Solver {
     }
 
     /// Makes one step of iterative refinement of the rates, and computes the complement as a squared norm.
-    fn correct(&self, shared: &Condensed, entering: &Active, direction: &mut Direction) {
-        let rest = self.remainder(shared, entering, &direction.rates);
+    fn correct(&mut self, shared: &Condensed, entering: &Active, direction: &mut Direction) {
+        let rest = self.remainder(shared, entering);
         let mut missing = [0.0; CAPACITY];
-        let active = self.active.iter().zip(&direction.rates);
+        let active = self.active.iter().zip(&self.rates);
         for (missing, (active, rate)) in missing.iter_mut().zip(active) {
             *missing = shared.change(&active.pattern, &rest) - self.elasticity(active) * rate;
         }
         self.factor.forward(&mut missing);
-        for (product, missing) in direction.products.iter_mut().zip(&missing) {
+        for (product, missing) in self.products.iter_mut().zip(&missing) {
             *product += missing;
         }
         self.factor.backward(&mut missing);
         let mut largest = 1.0;
-        for (rate, missing) in direction.rates.iter_mut().zip(&missing) {
+        let known = self.active.len();
+        for (rate, missing) in self.rates.iter_mut().zip(&missing).take(known) {
             *rate += missing;
             largest = rate.abs().max(largest);
         }
-        for rate in &mut direction.rates {
+        for rate in self.rates.iter_mut().take(known) {
             if rate.abs() < NO_RATE * largest {
                 *rate = 0.0;
             }
         }
-        let rest = self.remainder(shared, entering, &direction.rates);
-        let active = self.active.iter().zip(&direction.rates);
+        let rest = self.remainder(shared, entering);
+        let active = self.active.iter().zip(&self.rates);
         let elastic: f64 = active
             .map(|(active, rate)| self.elasticity(active) * rate * rate)
             .sum();
         direction.complement = dot(&rest, &rest) + elastic;
         direction.slope = direction.complement;
+        self.rest.0 = rest;
     }
 
     /// `Y' (c_p - C_A' r)`
-    pub(super) fn remainder(
-        &self,
-        shared: &Condensed,
-        entering: &Active,
-        rates: &[f64; CAPACITY],
-    ) -> ControlVector {
+    pub(super) fn remainder(&self, shared: &Condensed, entering: &Active) -> ControlVector {
         let mut rest = [0.0; CONTROLS];
         shared.add_normal(&mut rest, &entering.pattern, 1.0);
-        for (active, rate) in self.active.iter().zip(rates) {
+        for (active, rate) in self.active.iter().zip(&self.rates) {
             if *rate != 0.0 {
                 shared.add_normal(&mut rest, &active.pattern, -rate);
             }
@@ -97,15 +135,10 @@ impl Solver {
 
     /// The verdict on an entering row that contradicts the active rows. Their weighted left-hand sides cancel
     /// each other.
-    pub(super) fn contradiction(
-        &mut self,
-        shared: &Condensed,
-        entering: &Active,
-        rates: &[f64; CAPACITY],
-    ) -> Status {
+    pub(super) fn contradiction(&mut self, shared: &Condensed, entering: &Active) -> Status {
         self.certificate.clear();
         let _ = self.certificate.push((entering.row, 1.0));
-        for (active, rate) in self.active.iter().zip(rates) {
+        for (active, rate) in self.active.iter().zip(&self.rates) {
             if *rate != 0.0 {
                 let _ = self.certificate.push((active.row, -rate));
             }
@@ -133,7 +166,8 @@ impl Solver {
     /// correction of this violation takes an absurd cost.
     fn proven(&mut self, shared: &Condensed) -> Status {
         self.normalised = [0.0; CONTROLS];
-        self.follow(shared);
+        self.outputs = self.free;
+        self.rolled = false;
         let mut sum = [0.0; CONTROLS];
         let mut excess = 0.0;
         for (row, weight) in &self.certificate {

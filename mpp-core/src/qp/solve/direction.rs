@@ -1,13 +1,8 @@
 //! The direction of a step, and the relation of the entering row to the active rows.
 
-use crate::qp::factor::CAPACITY;
-
-/// Change of the active rows' multipliers with the multiplier of the entering row.
+/// Change of the violation with the multiplier of the entering row. The rates of the active rows are in the solver.
+#[derive(Clone, Copy)]
 pub(super) struct Direction {
-    /// The vector `L^-1 C_A Y Y' c_p`.
-    pub(super) products: [f64; CAPACITY],
-    /// Decrease of the multipliers of the active rows: `L^-T products`.
-    pub(super) rates: [f64; CAPACITY],
     /// Squared norm of the entering row's response, `|Y' c_p|^2`.
     pub(super) norm: f64,
     /// Schur complement of the entering row against the active rows. It is 0 if the row depends on them.

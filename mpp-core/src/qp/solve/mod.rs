@@ -10,14 +10,17 @@
 //! diagonal entry of the Gram matrix. When the multiplier falls back to the linear price, the row becomes
 //! stiff again.
 
+mod block;
 mod contradiction;
 mod direction;
+mod select;
 mod step;
+mod working_set;
 
 use super::condense::{Condensed, outputs};
 use super::controls::{CONTROLS, ControlVector};
-use super::excess::{WorstExcess, worst_excess};
-use super::factor::{CAPACITY, Factor};
+use super::excess::{Shortlist, WorstExcess, worst_excess};
+use super::factor::{CAPACITY, Direction as Aligned, Factor};
 use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern};
 use super::{Problem, STATES, Solution, Status};
 use crate::config::STAGES;
@@ -27,10 +30,6 @@ pub const MAX_ITERATIONS: usize = 400;
 
 /// Excess above which a row counts as violated [m, rad or N].
 const TOLERANCE: f64 = 1e-9;
-
-/// Least crossing of opposite faces \[m\] that decides a program before its first step. The method itself
-/// decides on smaller ones, because the directions are opposite only up to 1e-8.
-const CROSSING: f64 = 1e-5;
 
 /// Worst violation of a hard row in an accepted solution.
 const ACCEPTED: f64 = 1e-6;
@@ -50,6 +49,10 @@ struct Active {
     pattern: RowPattern,
     multiplier: f64,
     yielded: bool,
+    /// The linear price of a soft row; infinite for a hard row.
+    price: f64,
+    /// Whether the row is part of a block that enters, and not tight yet.
+    fresh: bool,
 }
 
 /// The row that enters.
@@ -116,14 +119,28 @@ pub struct Solver {
     outputs: [f64; OUTPUTS],
     /// Whether the multipliers have changed since the controls were computed.
     stale: bool,
+    /// Number of steps since the controls were computed from the multipliers.
+    drift: usize,
+    /// Whether the trajectory is that of the present controls.
+    rolled: bool,
+    /// Rows that may enter next.
+    list: Shortlist,
+    /// What the first of the list counted when it was made.
+    listed: f64,
+    /// Outputs of the optimum without rows, and its cost.
+    free: [f64; OUTPUTS],
+    free_cost: f64,
     active: heapless::Vec<Active, CAPACITY>,
     /// Bounds of the rows that may enter, with the tolerance added; infinite for rows that must not enter.
     open: Bounds,
     /// Whether the program has attitude rows.
     attitude_rows: bool,
     entering: Option<Entering>,
-    /// Products of the entering row's response with those of the active rows, `C_A Y Y' c_p`.
+    /// The vector `L^-1 C_A Y Y' c_p` of the entering row, and the rest of its response.
     products: [f64; CAPACITY],
+    rest: Aligned,
+    /// Decrease of the active rows' multipliers with that of the entering row.
+    rates: [f64; CAPACITY],
     factor: Factor,
     dual: f64,
     /// Absurd rise of the cost above the optimum without rows. It is infinite if rows are soft, because the hard rows
@@ -152,11 +169,19 @@ impl Solver {
             trajectory: Solution::new(),
             outputs: [0.0; OUTPUTS],
             stale: false,
+            drift: 0,
+            rolled: false,
+            list: Shortlist::new(),
+            listed: 0.0,
+            free: [0.0; OUTPUTS],
+            free_cost: 0.0,
             active: heapless::Vec::new(),
             open: Bounds::none(),
             attitude_rows: false,
             entering: None,
             products: [0.0; CAPACITY],
+            rest: Aligned([0.0; CONTROLS]),
+            rates: [0.0; CAPACITY],
             factor: Factor::new(),
             dual: 0.0,
             absurd_rise: 0.0,
@@ -196,7 +221,12 @@ impl Solver {
         self.normalised = [0.0; CONTROLS];
         self.follow(shared);
         self.stale = false;
+        self.drift = 0;
+        self.rolled = true;
+        self.list.clear();
         self.dual = shared.cost(&self.trajectory, &self.problem.target);
+        self.free = self.outputs;
+        self.free_cost = self.dual;
         self.absurd_rise = if self.problem.penalty.is_some() {
             f64::INFINITY
         } else {
@@ -212,6 +242,12 @@ impl Solver {
         } else {
             Some(Status::NumericalFailure)
         };
+        if self.status.is_none() && self.problem.penalty.is_some() {
+            self.start_between_crossing_faces(shared);
+            if self.dual > self.problem.cost_limit {
+                self.status = Some(Status::Dominated);
+            }
+        }
     }
 
     /// Computes trajectory and outputs of the present normalised controls.
@@ -276,8 +312,12 @@ impl Solver {
     /// [`Status::NumericalFailure`] if the trajectory violates a hard row or its cost is not finite.
     #[inline(never)]
     pub fn solution(&self, shared: &Condensed, solution: &mut Solution) -> Status {
-        if self.stale {
-            let normalised = self.controls(shared, None);
+        if !self.rolled {
+            let normalised = if self.stale {
+                self.controls(shared, None)
+            } else {
+                self.normalised
+            };
             let initial = &self.problem.initial;
             shared.roll_out(initial, &self.feedforward, &normalised, solution);
         } else {
@@ -333,7 +373,7 @@ impl Solver {
         normalised
     }
 
-    fn is_soft(&self, row: usize) -> bool {
+    pub(super) fn is_soft(&self, row: usize) -> bool {
         self.softens(RowKind::of(row))
     }
 
@@ -347,42 +387,6 @@ impl Solver {
                 RowKind::Position(..) | RowKind::Attitude(..) => true,
                 RowKind::Thrust(..) => false,
             }
-    }
-
-    /// Checks the hard rows that no control can change. If one of them is violated, the problem is
-    /// infeasible.
-    fn check_constant_rows(&mut self, shared: &Condensed) -> Option<Status> {
-        let rows = shared.prices.iter().zip(&self.problem.bounds.0);
-        for (row, (price, bound)) in rows.enumerate() {
-            if *price > 0.0 || self.is_soft(row) {
-                continue;
-            }
-            let value = match (RowKind::of(row), RowPattern::of(row)) {
-                (RowKind::Position(0, direction), _) => {
-                    let [up, forward] = crate::corridor::DIRECTION_VECTORS[direction % 8];
-                    forward * self.problem.initial[0] + up * self.problem.initial[1]
-                }
-                (_, Some(pattern)) => pattern.value(&self.outputs),
-                (_, None) => continue,
-            };
-            if value - bound > TOLERANCE {
-                let _ = self.certificate.push((row, 1.0));
-                return Some(Status::Infeasible);
-            }
-        }
-        None
-    }
-
-    /// Checks the opposite faces of a corridor. Faces that cross by more than rounding leave no room for a
-    /// position, so two rows are the whole proof of infeasibility.
-    fn check_opposite_faces(&mut self) -> Option<Status> {
-        if self.problem.penalty.is_some() {
-            return None;
-        }
-        let (first, second) = self.problem.bounds.crossing_faces(CROSSING)?;
-        let _ = self.certificate.push((first, 1.0));
-        let _ = self.certificate.push((second, 1.0));
-        Some(Status::Infeasible)
     }
 }
 

@@ -1,13 +1,10 @@
 //! One step of the method: from one event to the next.
 
 use super::direction::{Direction, Stand};
-use super::{Active, Entering, Solver, TOLERANCE};
+use super::{Active, Entering, Solver};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, dot};
-use crate::qp::excess::most_violated;
-use crate::qp::factor::CAPACITY;
-use crate::qp::rows::RowPattern;
+use crate::qp::controls::add_all;
 
 /// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
 /// depends on the active rows.
@@ -35,17 +32,37 @@ impl Solver {
     pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
         let mut entering = match self.entering.take() {
             Some(entering) => entering,
-            None => match self.select(shared) {
-                Ok(entering) => entering,
-                Err(status) => return Some(status),
-            },
+            None => {
+                let (row, violation) = match self.select(shared) {
+                    Ok(selected) => selected,
+                    Err(status) => return Some(status),
+                };
+                if let Some(status) = self.take_up_block(shared, row) {
+                    return status;
+                }
+                self.meet(shared, row, violation)
+            }
         };
-        let mut direction = self.direction(&entering.row, entering.norm, &self.products);
+        let mut direction = self.direction(&entering.row, entering.norm);
         let mut full = (entering.violation / direction.complement).max(0.0);
         let mut touches = false;
         let rise = 0.5 * entering.violation * full;
-        if direction.complement <= 0.0 || rise > self.absurd_rise {
-            self.refresh(shared, Some(&entering.row));
+        // A row leaves before it matters how far the entering row is apart from the others.
+        let least = if direction.complement > 0.0 {
+            full
+        } else {
+            entering.violation / (DEPENDENT * entering.norm)
+        };
+        let doubtful = (direction.complement <= 0.0 || rise > self.absurd_rise) && {
+            let (event, length) = self.first_event(&entering.row, least);
+            let cheap = length * entering.violation < self.absurd_rise;
+            !(cheap && matches!(event, Event::Leave(_)))
+        };
+        if !doubtful && direction.complement <= 0.0 {
+            full = least;
+        }
+        if doubtful {
+            self.refresh_exactly(shared, Some(&entering.row));
             entering.violation = self.violation(&entering.row);
             let stand = self.resolve(shared, &entering, &mut direction);
             touches = stand == Stand::Touches;
@@ -54,12 +71,12 @@ impl Solver {
                 Stand::Touches | Stand::Contradicts => f64::INFINITY,
             };
         }
-        let (event, length) = self.first_event(&entering.row, &direction.rates, full);
+        let (event, length) = self.first_event(&entering.row, full);
         if length == f64::INFINITY {
             return if touches {
                 self.touch(entering.row, &mut direction)
             } else {
-                Some(self.contradiction(shared, &entering.row, &direction.rates))
+                Some(self.contradiction(shared, &entering.row))
             };
         }
         self.dual += length * (entering.violation - 0.5 * length * direction.complement);
@@ -78,39 +95,13 @@ impl Solver {
         self.apply(shared, event, entering, &direction)
     }
 
-    /// Selects the row that enters next. The error is the status of a solver that ends here.
-    fn select(&mut self, shared: &Condensed) -> Result<Entering, Status> {
-        self.refresh(shared, None);
-        let by_effort = self.problem.penalty.is_none();
-        let worst = most_violated(
-            &self.outputs,
-            &self.open,
-            &shared.prices,
-            by_effort,
-            self.attitude_rows,
-        );
-        let row = worst.ok_or(Status::Optimal)?;
-        let pattern = RowPattern::of(row).ok_or(Status::NumericalFailure)?;
-        let active = Active {
-            row,
-            pattern,
-            multiplier: 0.0,
-            yielded: false,
-        };
-        Ok(Entering {
-            violation: self.violation(&active),
-            norm: meet(shared, &active, &self.active, &mut self.products),
-            row: active,
-        })
-    }
-
     /// Handles a row that depends on the active rows and holds together with them up to rounding. The solver
     /// skips such a row. If the row already has a multiplier, it becomes active instead.
     fn touch(&mut self, entering: Active, direction: &mut Direction) -> Option<Status> {
         if entering.multiplier > 0.0 {
             let floor = FLOOR * direction.norm;
             direction.complement = direction.complement.max(floor);
-            return self.activate(entering, direction);
+            return self.activate(entering, direction.complement);
         }
         let open = self.open.0.get_mut(entering.row)?;
         *open = f64::INFINITY;
@@ -118,34 +109,25 @@ impl Solver {
     }
 
     /// The direction of a step for a row, from its squared norm and its products with the active rows.
-    fn direction(&self, own: &Active, norm: f64, products: &[f64; CAPACITY]) -> Direction {
-        let mut direction = Direction {
-            products: *products,
-            rates: [0.0; CAPACITY],
-            norm,
-            complement: 0.0,
-            slope: 0.0,
-        };
-        let Direction {
-            products, rates, ..
-        } = &mut direction;
-        self.factor.forward(products);
-        let known = products.iter().take(self.active.len());
+    fn direction(&mut self, own: &Active, norm: f64) -> Direction {
+        let known = self.products.iter().take(self.active.len());
         let mut squares = 0.0;
-        for (rate, product) in rates.iter_mut().zip(known) {
+        for (rate, product) in self.rates.iter_mut().zip(known) {
             *rate = *product;
             squares += product * product;
         }
-        self.factor.backward(rates);
+        self.factor.backward(&mut self.rates);
         let rest = norm - squares;
-        direction.complement = self.complement(own, norm, rest);
-        direction.slope = rest + self.elasticity(own);
-        direction
+        Direction {
+            norm,
+            complement: self.complement(own, norm, rest),
+            slope: rest + self.elasticity(own),
+        }
     }
 
     /// The Schur complement of a row with the norm `norm` of which `rest` does not depend on the active rows.
-    fn complement(&self, own: &Active, norm: f64, rest: f64) -> f64 {
-        if self.is_soft(own.row) {
+    pub(super) fn complement(&self, own: &Active, norm: f64, rest: f64) -> f64 {
+        if own.price < f64::INFINITY {
             rest.max(FLOOR * norm) + self.elasticity(own)
         } else if rest > DEPENDENT * norm {
             rest
@@ -154,71 +136,77 @@ impl Solver {
         }
     }
 
-    /// Excess of a row over its bound, less the amount by which the row yields at its multiplier.
-    pub(super) fn violation(&self, own: &Active) -> f64 {
-        let bound = self
-            .problem
-            .bounds
-            .0
-            .get(own.row)
-            .copied()
-            .unwrap_or(f64::INFINITY);
-        let allowed = match self.problem.penalty {
-            Some(penalty) if own.yielded => (own.multiplier - penalty.linear) / penalty.quadratic,
-            _ => 0.0,
-        };
-        own.pattern.value(&self.outputs) - bound - allowed
-    }
-
     /// The first event while the entering multiplier grows, and the length of the step to it.
-    fn first_event(&self, entering: &Active, rates: &[f64; CAPACITY], full: f64) -> (Event, f64) {
+    fn first_event(&self, entering: &Active, full: f64) -> (Event, f64) {
         let mut first = (Event::Enter, full);
-        let mut consider = |event, length: f64| {
-            if length < first.1 {
-                first = (event, length.max(0.0));
-            }
-        };
-        let price = |row| match self.problem.penalty {
-            Some(penalty) if self.is_soft(row) => penalty.linear,
-            _ => f64::INFINITY,
-        };
         if !entering.yielded {
-            consider(
-                Event::EnteringYields,
-                price(entering.row) - entering.multiplier,
-            );
+            let length = entering.price - entering.multiplier;
+            if length < first.1 {
+                first = (Event::EnteringYields, length.max(0.0));
+            }
         }
-        for (index, (active, rate)) in self.active.iter().zip(rates).enumerate() {
-            let to_price = active.multiplier - price(active.row);
-            if *rate > 0.0 && active.yielded {
-                consider(Event::Toggle(index), to_price / rate);
-            } else if *rate > 0.0 {
-                consider(Event::Leave(index), active.multiplier / rate);
+        for (index, (active, rate)) in self.active.iter().zip(&self.rates).enumerate() {
+            if *rate > 0.0 {
+                // Compared by products, because divisions take long.
+                let distance = if active.yielded {
+                    active.multiplier - active.price
+                } else {
+                    active.multiplier
+                };
+                if distance < first.1 * rate {
+                    let event = if active.yielded {
+                        Event::Toggle(index)
+                    } else {
+                        Event::Leave(index)
+                    };
+                    first = (event, (distance / rate).max(0.0));
+                }
             } else if *rate < 0.0 && !active.yielded {
-                consider(Event::Toggle(index), to_price / rate);
+                let distance = active.multiplier - active.price;
+                if distance > first.1 * rate {
+                    first = (Event::Toggle(index), (distance / rate).max(0.0));
+                }
             }
         }
         first
     }
 
-    /// Moves the multipliers: `lambda_p += t`, `lambda_A -= t r`. The controls follow when they are needed.
+    /// Moves the multipliers, `lambda_p += t`, `lambda_A -= t r`, and the controls with them.
     fn move_by(&mut self, length: f64, direction: &Direction, entering: &mut Entering) {
-        for (active, rate) in self.active.iter_mut().zip(&direction.rates) {
+        for (active, rate) in self.active.iter_mut().zip(&self.rates) {
             // Rounding may take the multiplier of a row that leaves below zero.
             active.multiplier = (active.multiplier - length * rate).max(0.0);
         }
         entering.row.multiplier += length;
         entering.violation -= length * direction.slope;
+        add_all(&mut self.normalised, &self.rest.0, -length);
         self.stale = true;
+        self.rolled = false;
+        self.drift += 1;
     }
 
-    /// Computes controls, trajectory and outputs of the present multipliers, if they have changed.
-    fn refresh(&mut self, shared: &Condensed, entering: Option<&Active>) {
+    /// Computes trajectory and outputs of the present controls, if they have changed.
+    pub(super) fn refresh(&mut self, shared: &Condensed) {
         if self.stale {
-            self.normalised = self.controls(shared, entering);
-            self.follow(shared);
+            if self.attitude_rows {
+                self.follow(shared);
+                self.rolled = true;
+            } else {
+                shared.respond(&self.free, &self.normalised, &mut self.outputs);
+            }
             self.stale = false;
         }
+    }
+
+    /// Computes controls, trajectory and outputs of the present multipliers.
+    pub(super) fn refresh_exactly(&mut self, shared: &Condensed, entering: Option<&Active>) {
+        if self.drift > 0 {
+            self.normalised = self.controls(shared, entering);
+            self.stale = true;
+            self.rolled = false;
+            self.drift = 0;
+        }
+        self.refresh(shared);
     }
 
     fn apply(
@@ -228,81 +216,32 @@ impl Solver {
         mut entering: Entering,
         direction: &Direction,
     ) -> Option<Status> {
-        let active = self.active.len();
         match event {
             Event::Enter => {
-                return self.activate(entering.row, direction);
+                return self.activate(entering.row, direction.complement);
             }
             Event::EnteringYields => entering.row.yielded = true,
             Event::Leave(index) => {
                 self.deactivate(index);
-                self.move_last(index, active);
             }
             Event::Toggle(index) => {
                 if let Some(mut row) = self.deactivate(index) {
                     row.yielded = !row.yielded;
-                    let mut products = [0.0; CAPACITY];
-                    let norm = meet(shared, &row, &self.active, &mut products);
-                    let failed = self.activate(row, &self.direction(&row, norm, &products));
-                    if failed.is_some() {
-                        return failed;
+                    if !self.append(shared, row, None) {
+                        return Some(Status::IterationLimit);
+                    }
+                    // The entering row meets the new direction.
+                    let last = self.active.len() - 1;
+                    if let (Some(direction), Some(product)) =
+                        (self.factor.direction(last), self.products.get_mut(last))
+                    {
+                        *product = shared.change(&entering.row.pattern, direction);
+                        add_all(&mut self.rest.0, direction, -*product);
                     }
                 }
-                self.move_last(index, active);
             }
         }
         self.entering = Some(entering);
         None
     }
-
-    /// Moves the product with an active row behind those with the others, as the row itself moves or leaves.
-    fn move_last(&mut self, index: usize, active: usize) {
-        let from_index = self.products.get_mut(index..active);
-        if let Some(from_index) = from_index.filter(|products| !products.is_empty()) {
-            from_index.rotate_left(1);
-        }
-    }
-
-    fn activate(&mut self, row: Active, direction: &Direction) -> Option<Status> {
-        let Direction {
-            products,
-            complement,
-            ..
-        } = direction;
-        let room = self.active.push(row).is_ok() && self.factor.append(products, *complement);
-        if let Some(open) = self.open.0.get_mut(row.row) {
-            *open = f64::INFINITY;
-        }
-        (!room).then_some(Status::IterationLimit)
-    }
-
-    fn deactivate(&mut self, index: usize) -> Option<Active> {
-        let from_index = self
-            .active
-            .get_mut(index..)
-            .filter(|rows| !rows.is_empty())?;
-        from_index.rotate_left(1);
-        let removed = self.active.pop()?;
-        self.factor.remove(index);
-        let bound = self.problem.bounds.0.get(removed.row);
-        if let (Some(open), Some(bound)) = (self.open.0.get_mut(removed.row), bound) {
-            *open = *bound + TOLERANCE;
-        }
-        Some(removed)
-    }
-}
-
-/// Computes the products of a row's response with those of the active rows. Returns its squared norm.
-fn meet(
-    shared: &Condensed,
-    own: &Active,
-    active: &[Active],
-    products: &mut [f64; CAPACITY],
-) -> f64 {
-    let mut normal = [0.0; CONTROLS];
-    shared.add_normal(&mut normal, &own.pattern, 1.0);
-    for (product, active) in products.iter_mut().zip(active) {
-        *product = shared.change(&active.pattern, &normal);
-    }
-    dot(&normal, &normal)
 }

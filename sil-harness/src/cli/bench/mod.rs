@@ -7,7 +7,7 @@ use super::scenario::{ScenarioArgs, replace};
 use super::values::{preset, seed};
 use crate::files::{read_instances, write_instances};
 use indicatif::ProgressBar;
-use mpp_analysis::bench::{CycleBench, generate, run_cycle};
+use mpp_analysis::bench::{CycleBench, DENSE, SPARSE, generate, run_cycle};
 use mpp_analysis::instance::Instance;
 use mpp_sim::scenario::Preset;
 use serde::Serialize;
@@ -71,6 +71,9 @@ struct QpArgs {
     /// Number of programs to generate from flights
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     generate: Option<u32>,
+    /// Generate them from flights past 120 to 240 obstacles, and not 20 to 60
+    #[arg(long, requires = "generate")]
+    dense: bool,
     /// Seed of the first flight from which programs are generated
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
@@ -165,7 +168,8 @@ fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {
         instances.extend(read_instances(path).map_err(|error| Failure::new(USAGE, error))?);
     }
     if let Some(count) = args.generate {
-        let generated = generate(args.preset, count as usize, args.seed);
+        let obstacles = if args.dense { DENSE } else { SPARSE };
+        let generated = generate(args.preset, obstacles, count as usize, args.seed);
         instances.extend(generated.map_err(|error| Failure::new(FAILURE, error))?);
     }
     if instances.is_empty() {
