@@ -18,6 +18,38 @@ const PITCH: u32 = 0x20_0000 | 7;
 const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
 /// A fence that does not exist is not broken. Some stations look at this bit alone.
 const GEOFENCE: u32 = 0x10_0000;
+/// What a suspected tick counts. Another one takes 1 away.
+const SUSPECTED: u32 = 8;
+/// Count from which on stations hear of a sensor that is never excluded: one that is suspected for a second, or for a moment
+/// again and again.
+const DOUBTED: u32 = 100 * SUSPECTED;
+
+/// For each sensor, its count and whether it is doubtful.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Doubts([(u32, bool); 4]);
+
+impl Doubts {
+    /// Takes in the states of a tick. Gives the sensors that are doubtful from this tick on.
+    fn take(&mut self, sensors: &SensorStates) -> impl Iterator<Item = &'static str> + use<> {
+        let mut told = [None; 4];
+        let states = self.0.iter_mut().zip(sensors.sensors());
+        for (((suspicion, doubtful), (sensor, state)), told) in states.zip(&mut told) {
+            *suspicion = match state {
+                SensorState::Suspected => (*suspicion + SUSPECTED).min(2 * DOUBTED),
+                _ => suspicion.saturating_sub(1),
+            };
+            let before = *doubtful;
+            *doubtful = *suspicion > DOUBTED || (before && *suspicion > 0);
+            *told = (*doubtful && !before).then_some(sensor);
+        }
+        told.into_iter().flatten()
+    }
+
+    fn doubtful(&self) -> [bool; 4] {
+        self.0.map(|(_, doubtful)| doubtful)
+    }
+}
+
 /// The vehicle would fly if it were armed.
 const PREARM: u32 = 0x1000_0000;
 
@@ -52,6 +84,9 @@ impl Vehicle {
         }
         let now = &now;
         let last = core::mem::replace(&mut self.sensors, *now);
+        for sensor in self.doubts.take(now) {
+            self.say(Severity::Warning, &format!("Sensor {sensor} is doubtful"));
+        }
         self.report_actuators(&last, now);
         for ((sensor, before), (_, now)) in last.sensors().into_iter().zip(now.sensors()) {
             let (severity, what) = match now {
@@ -93,7 +128,7 @@ impl Vehicle {
         self.send(&SYS_STATUS_DATA {
             onboard_control_sensors_present: SENSORS | PREARM,
             onboard_control_sensors_enabled: (SENSORS | PREARM) & !idle,
-            onboard_control_sensors_health: healthy(&self.sensors, self.armed),
+            onboard_control_sensors_health: healthy(&self.sensors, &self.doubts, self.armed),
             // There is no battery.
             voltage_battery: u16::MAX,
             current_battery: -1,
@@ -106,12 +141,13 @@ impl Vehicle {
     }
 }
 
-/// The bits of the sensors that the core uses, and of what depends on them.
-fn healthy(sensors: &SensorStates, armed: bool) -> u32 {
+/// The bits of the sensors that the core uses and does not doubt, and of what depends on them.
+fn healthy(sensors: &SensorStates, doubts: &Doubts, armed: bool) -> u32 {
     let uses = |state| matches!(state, SensorState::Healthy | SensorState::Suspected);
     let bits = [AIRSPEED, PITCH, POSITION, LIDAR];
-    let states = sensors.sensors().into_iter().zip(bits);
-    let used = states.filter(|((_, state), _)| uses(*state));
+    let states = sensors.sensors().into_iter().zip(doubts.doubtful());
+    let states = states.zip(bits);
+    let used = states.filter(|(((_, state), doubtful), _)| uses(*state) && !doubtful);
     let driven = uses(sensors.elevator) && (uses(sensors.motor) || !armed);
     let sound = used.fold(if driven { MOTORS } else { 0 }, |all, (_, bit)| all | bit);
     let ready = if sound == SENSORS { PREARM } else { 0 };

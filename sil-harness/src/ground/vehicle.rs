@@ -7,6 +7,7 @@ pub use super::channels::Outgoing;
 use super::channels::{Channels, Turn};
 use super::demands::{Address, Demand, Demands};
 use super::files::Files;
+use super::health::Doubts;
 use super::heard::Heard;
 use super::home::Home;
 use super::last::Last;
@@ -85,6 +86,7 @@ pub struct Vehicle {
     pub(super) wind: Wind,
     rejections: usize,
     pub(super) sensors: SensorStates,
+    pub(super) doubts: Doubts,
     /// The tick from which the lidar is watched: none in a mode that takes no scans.
     pub(super) lidar_from: u32,
     pub(super) home: Home,
@@ -124,6 +126,7 @@ impl Vehicle {
             wind: Wind::STILL,
             rejections: 0,
             sensors: SensorStates::default(),
+            doubts: Doubts::default(),
             lidar_from: 0,
             home: config.home,
             navigation: config.navigation,

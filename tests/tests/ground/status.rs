@@ -79,6 +79,26 @@ fn faults_of_the_actuators_are_told() {
     }
 }
 
+/// A sensor that fails for a moment again and again is never excluded. Stations hear of it, and its bit goes off.
+#[test]
+fn a_sensor_that_blinks_is_told() {
+    let text = "obstacles = 20\n[faults.airspeed]\nfrom = 3.0\ntoggle_hz = 3.0\nfrozen = true";
+    let file = ScenarioFile::parse("blinking", text).unwrap();
+    let mut radio = Radio::new(&CONFIG);
+    radio.fly(&file.build().unwrap());
+    let texts = radio.texts();
+    let doubtful = texts
+        .iter()
+        .find(|(_, text)| text == "Sensor airspeed is doubtful");
+    assert!(doubtful.is_some_and(|(tick, _)| *tick < 1000), "{texts:?}");
+    let airspeed = radio.all(|message| match message {
+        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & 0x10),
+        _ => None,
+    });
+    assert!(airspeed[..3].iter().all(|(_, bit)| *bit == 0x10));
+    assert!(airspeed.iter().any(|(_, bit)| *bit == 0));
+}
+
 /// The wind on the link is the core's estimate, and the velocity over ground has it.
 #[test]
 fn the_wind_is_told_and_is_in_the_speed_over_ground() {
