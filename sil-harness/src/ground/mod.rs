@@ -18,6 +18,7 @@
 mod channels;
 mod commands;
 mod demands;
+mod doubts;
 mod files;
 mod guests;
 mod health;

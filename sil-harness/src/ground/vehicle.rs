@@ -6,8 +6,8 @@
 pub use super::channels::Outgoing;
 use super::channels::{Channels, Turn};
 use super::demands::{Address, Demand, Demands};
+use super::doubts::Doubts;
 use super::files::Files;
-use super::health::Doubts;
 use super::heard::Heard;
 use super::home::Home;
 use super::last::Last;
