@@ -150,8 +150,10 @@ impl Surface {
         ];
         let positive = numbers.iter().all(|it| *it > 0.0 && it.is_finite());
         ensure(positive, key, "give numbers above 0")?;
-        let slow = self.bandwidth * TICK_PERIOD <= 2.0 && self.range < 90.0;
-        let advice = "give a range below 90 deg, and a bandwidth of at most 200 rad/s";
+        let damping = self.damping.unwrap_or(1.0);
+        let slow = self.bandwidth * TICK_PERIOD <= 2.0 && damping <= 2.0 && self.range < 90.0;
+        let advice =
+            "give a range below 90 deg, a bandwidth of at most 200 rad/s, a damping of at most 2";
         ensure(slow, key, advice)
     }
 }
