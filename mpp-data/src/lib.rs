@@ -10,9 +10,11 @@
 mod actuators;
 mod aircraft;
 mod airframe;
+mod lateral;
 mod setting;
 
 pub use actuators::{ActuatorLimits, Control};
 pub use aircraft::Aircraft;
 pub use airframe::{Airframe, GRAVITY};
+pub use lateral::{Derivatives, LateralAirframe, LateralControl};
 pub use setting::{OutOfRange, Setting};

@@ -13,18 +13,51 @@ use crate::scenario::Scenario;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, TrimError, VehicleState};
 
-/// Motion, actuators and air of one flight.
+/// The actuators of one flight and their faults.
 #[derive(Clone, Debug)]
-pub struct Aircraft {
+pub(crate) struct Actuation {
     seed: u64,
-    body: Dynamics,
     actuators: Actuators,
     /// Faults of what the actuators give: the distance of the elevator from trim, and the thrust.
     elevator: Signal,
     thrust: Signal,
     trim: Control,
     /// Ticks flown.
-    flown: u32,
+    pub(crate) flown: u32,
+}
+
+impl Actuation {
+    /// Actuators that rest at the trim of a scenario.
+    pub(crate) fn new(scenario: &Scenario) -> Result<Self, TrimError> {
+        let (faults, seed) = (&scenario.faults, scenario.seed);
+        let trim = scenario.trim()?.control;
+        Ok(Self {
+            seed,
+            actuators: Actuators::new(scenario.limits(), trim),
+            elevator: Signal::new(seed, Stream::ElevatorFault, faults.elevator),
+            thrust: Signal::new(seed, Stream::ThrustFault, faults.thrust),
+            trim,
+            flown: 0,
+        })
+    }
+
+    /// The control that acts in the next tick.
+    pub(crate) fn given(&mut self, command: Control) -> Control {
+        let mut given = self.actuators.give(command, TICK_PERIOD);
+        let (tick, neutral) = (self.flown, self.trim.elevator);
+        if self.elevator.acts(tick) {
+            given.elevator = neutral + self.elevator.pass(tick, given.elevator - neutral);
+        }
+        given.thrust = self.thrust.pass(tick, given.thrust);
+        given
+    }
+}
+
+/// Motion, actuators and air of one flight.
+#[derive(Clone, Debug)]
+pub struct Aircraft {
+    body: Dynamics,
+    actuation: Actuation,
     gusts: Option<Gusts>,
 }
 
@@ -37,19 +70,13 @@ impl Aircraft {
     pub fn new(scenario: &Scenario) -> Result<Self, TrimError> {
         let known = scenario.aircraft.known.airframe;
         let (faults, seed) = (&scenario.faults, scenario.seed);
-        let trim = scenario.trim()?.control;
         Ok(Self {
-            seed,
             body: Dynamics {
                 airframe: faults.model_error.airframe(seed, known),
                 more: Aerodynamics::of(&scenario.aircraft.file),
                 state: scenario.start()?,
             },
-            actuators: Actuators::new(scenario.limits(), trim),
-            elevator: Signal::new(seed, Stream::ElevatorFault, faults.elevator),
-            thrust: Signal::new(seed, Stream::ThrustFault, faults.thrust),
-            trim,
-            flown: 0,
+            actuation: Actuation::new(scenario)?,
             gusts: Gusts::new(seed, faults.gusts, TICK_PERIOD),
         })
     }
@@ -57,23 +84,13 @@ impl Aircraft {
     /// Air with another intensity of its gusts [m/s]. The velocity over ground stays the same.
     fn set_gusts(&mut self, intensity: f64) {
         let before = self.wind();
-        self.gusts = Gusts::new(self.seed, GustConfig { intensity }, TICK_PERIOD);
+        let seed = self.actuation.seed;
+        self.gusts = Gusts::new(seed, GustConfig { intensity }, TICK_PERIOD);
         let after = self.wind();
         meet(
             &mut self.body.state,
             (after.0 - before.0, after.1 - before.1),
         );
-    }
-
-    /// The control that acts in the next tick.
-    fn given(&mut self, command: Control) -> Control {
-        let mut given = self.actuators.give(command, TICK_PERIOD);
-        let (tick, neutral) = (self.flown, self.trim.elevator);
-        if self.elevator.acts(tick) {
-            given.elevator = neutral + self.elevator.pass(tick, given.elevator - neutral);
-        }
-        given.thrust = self.thrust.pass(tick, given.thrust);
-        given
     }
 }
 
@@ -87,9 +104,9 @@ impl Plant for Aircraft {
     }
 
     fn step(&mut self, command: Control) -> Result<Control, PlantError> {
-        let given = self.given(command);
+        let given = self.actuation.given(command);
         self.body.step(given, TICK_PERIOD)?;
-        self.flown += 1;
+        self.actuation.flown += 1;
         if let Some(gusts) = &mut self.gusts {
             let before = gusts.wind();
             gusts.advance();
@@ -112,7 +129,8 @@ impl Plant for Aircraft {
                 frozen,
                 ..SignalFault::default()
             };
-            self.elevator = Signal::new(self.seed, Stream::ElevatorFault, fault);
+            self.actuation.elevator =
+                Signal::new(self.actuation.seed, Stream::ElevatorFault, fault);
         }
         true
     }

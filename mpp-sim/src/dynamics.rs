@@ -59,7 +59,7 @@ impl Aerodynamics {
     }
 
     /// The airframe whose linear lift and constant derivatives by rates are those of the true aircraft in this motion.
-    fn at(&self, airframe: &Airframe, air: &AirState) -> Airframe {
+    pub(crate) fn at(&self, airframe: &Airframe, air: &AirState) -> Airframe {
         let mut at = *airframe;
         if let Some(airspeed) = self.rates_airspeed {
             for rate in [
@@ -157,7 +157,7 @@ fn runge_kutta(
 }
 
 /// `state + h rate`.
-fn moved(state: &VehicleState, rate: &VehicleState, h: f64) -> VehicleState {
+pub(crate) fn moved(state: &VehicleState, rate: &VehicleState, h: f64) -> VehicleState {
     VehicleState {
         x: state.x + h * rate.x,
         z: state.z + h * rate.z,

@@ -46,6 +46,8 @@ pub enum Stream {
     Generator = 17,
     /// Directions of moving obstacles.
     Motion = 18,
+    /// Sideways and rolling motion of the air.
+    LateralGusts = 19,
 }
 
 /// The generator of one subsystem: ChaCha with 8 rounds. It has the bits of `rand_chacha`, which is slower to build.
@@ -93,7 +95,7 @@ pub fn gaussian(generator: &mut Draws) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 18] = [
+    const ALL: [Stream; 19] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -112,6 +114,7 @@ mod tests {
         Stream::LinkFault,
         Stream::Generator,
         Stream::Motion,
+        Stream::LateralGusts,
     ];
 
     #[test]
@@ -138,6 +141,7 @@ mod tests {
                 15_842_934_994_030_001_981,
                 15_784_797_038_420_267_861,
                 13_531_319_370_983_182_927,
+                5_256_132_873_963_308_690,
             ]
         );
     }

@@ -31,7 +31,7 @@ def planner():
         ({"faults": {"gusts": 3}}, r"^faults\.gusts: give a dict of its keys, not 3$"),
         ({"lidar": {3: 4}}, "^lidar: give texts for keys, not 3$"),
         ({"field": {"polygon": [{"points": [[0.0, "a"]]}]}}, r"^field\.polygon\.0\.points\.0\.1: give a number, not 'a'$"),
-        ({"aircraft": "f16"}, "^aircraft: there is no `f16`: give reference, .*cessna182, a file"),
+        ({"aircraft": "f16"}, "^aircraft: there is no `f16`: give reference, .*delta, a file"),
         ({"obstacles": 10**9}, "at most 1000"),
         ({"duration": 0}, "give 0.01 to 3600 s"),
         ({"replan_hz": NAN}, "replan_hz"),

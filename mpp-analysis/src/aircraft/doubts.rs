@@ -26,27 +26,37 @@ impl fmt::Display for Doubt {
 /// tables of derivatives in Roskam, "Airplane Flight Dynamics", part I, appendix B, and Beard, McLain, "Small
 /// Unmanned Aircraft", appendix E.
 pub(super) fn doubts(model: &AircraftModel, modes: &Modes) -> Vec<Doubt> {
-    let all = of_airframe(&model.known.airframe).into_iter();
+    let all = of_airframe(&model.known.airframe, model.known.cruise).into_iter();
     let all = all.chain(of_lift(model)).chain(of_actuators(model));
     let all = all.chain(of_modes(modes)).chain(of_world(model));
     all.flatten().collect()
 }
 
 /// A doubt about a key if its value is rare.
-fn doubt(key: &'static str, rare: bool, what: String) -> Option<Doubt> {
+pub(super) fn doubt(key: &'static str, rare: bool, what: String) -> Option<Doubt> {
     rare.then_some(Doubt { key, what })
 }
 
-fn outside(value: f64, least: f64, most: f64) -> bool {
+pub(super) fn outside(value: f64, least: f64, most: f64) -> bool {
     !(least..=most).contains(&value)
 }
 
 /// Numbers of the airframe that do not fit each other.
-fn of_airframe(a: &Airframe) -> [Option<Doubt>; 3] {
+fn of_airframe(a: &Airframe, cruise: f64) -> [Option<Doubt>; 4] {
     let loading = a.mass / a.wing_area;
     let span = 8.0 * a.wing_area.sqrt();
     let gyration = (a.pitch_inertia / a.mass).sqrt();
+    // Over the stiffness, in a path rate that a unit of the lift coefficient gives.
+    let per_lift = 0.5 * a.air_density * a.wing_area / a.mass;
+    let damping = a.moment_pitch_rate * per_lift * a.lift_alpha * cruise / a.moment_alpha;
     [
+        doubt(
+            "moment.pitch_rate",
+            damping > 1.5,
+            format!(
+                "in a pull-up the damping takes {damping:.1} times the elevator of the balance; plans leave it out"
+            ),
+        ),
         doubt(
             "wing_area",
             outside(loading, 1.0, 800.0),

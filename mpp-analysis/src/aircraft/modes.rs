@@ -24,6 +24,17 @@ pub struct Modes {
     pub phugoid: Mode,
 }
 
+impl Mode {
+    /// The mode of two eigenvalues with this product [1/s^2] and this sum [1/s].
+    pub(super) fn of(product: f64, sum: f64) -> Self {
+        let frequency = product.sqrt();
+        Self {
+            frequency,
+            damping: -0.5 * sum / frequency,
+        }
+    }
+}
+
 impl Modes {
     /// The modes of an aircraft about a trim.
     #[must_use]
@@ -36,11 +47,7 @@ impl Modes {
         let mode = |pair: &[Complex<f64>]| {
             let product: Complex<f64> = pair.iter().product();
             let sum: Complex<f64> = pair.iter().sum();
-            let frequency = product.norm_sqr().sqrt().sqrt();
-            Mode {
-                frequency,
-                damping: -0.5 * sum.re / frequency,
-            }
+            Mode::of(product.norm_sqr().sqrt(), sum.re)
         };
         let (fast, slow) = values.split_at(2);
         Self {

@@ -1,7 +1,8 @@
 //! The report about an aircraft file.
 
 use super::doubts::doubts;
-use super::{Doubt, Modes};
+use super::lateral_doubts::lateral_doubts;
+use super::{Doubt, LateralReport, Modes};
 use mpp_core::config::{STAGE_PERIOD, STAGES};
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
@@ -52,6 +53,8 @@ pub struct AircraftReport {
     /// Radius of the obstacles, and mean distance downrange between two of them, in the densest field that the
     /// reference aircraft flies nine times of ten \[m\].
     pub densest: [f64; 2],
+    /// What the lateral table says; null without one.
+    pub lateral: Option<LateralReport>,
     /// What is implausible.
     pub doubts: Vec<Doubt>,
 }
@@ -73,16 +76,20 @@ impl AircraftReport {
         let allowed = own.map_or(0.0, |own| own.attitude.angle_of_attack);
         let balanced = model.actuators.angle_of_attack(a);
         let [down, up] = balanced;
-        let turning = allowed
-            .min(down)
-            .min(up)
-            .min(known.stall.unwrap_or(f64::INFINITY));
+        let stall = known.stall.unwrap_or(f64::INFINITY);
+        let turning = allowed.min(down).min(up).min(stall);
         let pressure_area = 0.5 * a.air_density * known.cruise.powi(2) * a.wing_area;
         let weight = a.mass * GRAVITY;
         let climb = model.actuators.thrust_max.map(|thrust| {
             let excess = (thrust - trim.control.thrust) / weight;
             excess.clamp(-1.0, 1.0).asin().to_degrees()
         });
+        let load = 1.0 + balance.lift_alpha * up.min(stall) / a.level_lift(known.cruise);
+        let lateral = LateralReport::new(model, load);
+        let mut doubts = doubts(model, &modes);
+        if let (Some(file), Some(report)) = (&model.file.lateral, &lateral) {
+            doubts.extend(lateral_doubts(model, &file.airframe(), report));
+        }
         let horizon = STAGES as f64 * STAGE_PERIOD * units.time;
         Self {
             name: model.file.name.clone(),
@@ -108,7 +115,8 @@ impl AircraftReport {
             sight: 45.0 * units.length,
             replan_hz: [1.0 / units.time, 4.0 / units.time],
             densest: [units.length, DENSEST * units.length],
-            doubts: doubts(model, &modes),
+            lateral,
+            doubts,
         }
     }
 }
@@ -130,6 +138,7 @@ impl fmt::Display for AircraftReport {
             "elevator       {:.3} rad/s^2 a unit; balances {down} deg of angle of attack below level flight, {up} above",
             self.elevator_authority
         )?;
+        self.lateral.iter().try_for_each(|it| write!(f, "{it}"))?;
         let climb = self
             .climb_deg
             .map_or("not limited".to_owned(), |it| format!("{it:.1} deg"));

@@ -2,6 +2,7 @@
 
 mod conditions;
 mod dynamics;
+mod lateral;
 mod linearize;
 mod point_mass;
 mod pose;
@@ -13,9 +14,12 @@ mod wind;
 pub use conditions::Conditions;
 pub use dynamics::{AirState, VehicleState, air_rate, vehicle_rate};
 pub(crate) use dynamics::{Directions, air_rate_along};
+pub use lateral::{LateralLinearization, linearize_lateral};
 pub(crate) use linearize::linearize_along;
 pub use linearize::{JacobianForm, Linearization, linearize};
-pub use mpp_data::{ActuatorLimits, Airframe, Control, GRAVITY};
+pub use mpp_data::{
+    ActuatorLimits, Airframe, Control, Derivatives, GRAVITY, LateralAirframe, LateralControl,
+};
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
 pub use stall::{StallGuard, stall_sides};

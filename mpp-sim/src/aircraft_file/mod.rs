@@ -2,10 +2,12 @@
 //! `docs/aircraft.md` describes every key with its unit.
 
 mod choice;
+mod lateral;
 mod numbers;
 mod similar;
 
 use crate::file_error::ScenarioError;
+pub use lateral::{Coefficient, Lateral, Surface};
 use mpp_core::vehicle::Airframe;
 pub use numbers::AircraftModel;
 use serde::{Deserialize, Serialize};
@@ -49,6 +51,9 @@ pub struct AircraftFile {
     /// Motor.
     #[serde(default)]
     pub thrust: Thrust,
+    /// What an aircraft has that turns; flights in the vertical plane do without it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lateral: Option<Lateral>,
 }
 
 fn sea_level() -> f64 {
@@ -166,13 +171,18 @@ pub struct Thrust {
 
 impl AircraftFile {
     /// The aircraft that come with the project, by name.
-    pub const KNOWN: [(&'static str, &'static str); 6] = [
+    pub const KNOWN: [(&'static str, &'static str); 11] = [
         ("reference", include_str!("../../aircraft/reference.toml")),
         ("paper", include_str!("../../aircraft/paper.toml")),
         ("example", include_str!("../../aircraft/example.toml")),
         ("aerosonde", include_str!("../../aircraft/aerosonde.toml")),
         ("zagi", include_str!("../../aircraft/zagi.toml")),
         ("cessna182", include_str!("../../aircraft/cessna182.toml")),
+        ("aerosonde2", include_str!("../../aircraft/aerosonde2.toml")),
+        ("x8", include_str!("../../aircraft/x8.toml")),
+        ("ultrastick", include_str!("../../aircraft/ultrastick.toml")),
+        ("rascal", include_str!("../../aircraft/rascal.toml")),
+        ("delta", include_str!("../../aircraft/delta.toml")),
     ];
 
     /// Reads an aircraft file from text. An error shows `name` as the name of the text.
@@ -216,6 +226,15 @@ impl AircraftFile {
                 + per_radian(self.moment.alpha_rate_time),
             moment_pitch_rate: per_radian(self.moment.pitch_rate) * time,
             moment_elevator: per_command(self.elevator.moment),
+        }
+    }
+
+    /// The aircraft of the vertical plane alone.
+    #[must_use]
+    pub fn plane(&self) -> Self {
+        Self {
+            lateral: None,
+            ..self.clone()
         }
     }
 

@@ -1,6 +1,6 @@
 //! From an aircraft file to the numbers of core and plant.
 
-use super::AircraftFile;
+use super::{AircraftFile, Lateral};
 use crate::file_error::{ScenarioError, ensure};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
@@ -179,5 +179,6 @@ fn check(file: &AircraftFile) -> Result<(), ScenarioError> {
         slow,
         "aircraft.thrust.lag",
         "give at least 0.001 s, or leave it out",
-    )
+    )?;
+    file.lateral.as_ref().map_or(Ok(()), Lateral::check)
 }

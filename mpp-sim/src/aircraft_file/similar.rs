@@ -42,6 +42,21 @@ impl AircraftFile {
         other.elevator.rate = other.elevator.rate.map(|rate| rate / time);
         other.thrust.max = other.thrust.max.map(|thrust| thrust * cube);
         other.thrust.lag = other.thrust.lag.map(|lag| lag * time);
+        if let Some(lateral) = &mut other.lateral {
+            lateral.span *= scale;
+            for inertia in [
+                &mut lateral.roll_inertia,
+                &mut lateral.yaw_inertia,
+                &mut lateral.product_inertia,
+            ] {
+                *inertia *= cube * scale * scale;
+            }
+            let surfaces = [Some(&mut lateral.aileron), lateral.rudder.as_mut()];
+            for surface in surfaces.into_iter().flatten() {
+                surface.rate /= time;
+                surface.bandwidth /= time;
+            }
+        }
         other
     }
 }

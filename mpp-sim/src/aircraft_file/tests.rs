@@ -63,6 +63,34 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         ("lag = 0.1", "lag = inf", "aircraft.thrust.lag"),
         // Wider than the planner's clearance field.
         ("body_radius = 0.15", "body_radius = 30.0", "aircraft"),
+        ("span = 1.5 ", "span = 0.0 ", "aircraft.lateral.span"),
+        (
+            "product_inertia = 0.01",
+            "product_inertia = 0.2",
+            "aircraft.lateral.product_inertia",
+        ),
+        (
+            "aileron = 0.17",
+            "aileron = -0.17",
+            "aircraft.lateral.roll.aileron",
+        ),
+        (
+            "rudder = 0.08",
+            "rudder = -0.08",
+            "aircraft.lateral.yaw.rudder",
+        ),
+        (
+            "roll_rate = -0.45",
+            "roll_rate = 0.1",
+            "aircraft.lateral.roll.roll_rate",
+        ),
+        (
+            "[lateral.rudder]\nrange = 25.0\nrate = 300.0\nbandwidth = 30.0",
+            "",
+            "aircraft.lateral.side",
+        ),
+        ("yaw_rate = -0.12", "yaw_rate = inf", "aircraft.lateral.yaw"),
+        ("damping = 1.0", "damping = 0.0", "aircraft.lateral.aileron"),
         // So fast that a regulator of 100 Hz does not hold it.
         (
             "pitch_inertia = 0.08",
@@ -80,6 +108,8 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
     }
     for (from, to, named) in [
         ("mass = 2.0 ", "", "missing field `mass`"),
+        ("yaw_rate = -0.12", "", "missing field `yaw_rate`"),
+        ("yaw_inertia = 0.17", "", "missing field `yaw_inertia`"),
         ("mass = 2.0 ", "mas = 2.0 ", "unknown field `mas`"),
         (
             "unit = \"deg\"",
@@ -164,4 +194,18 @@ fn the_unit_of_the_command_is_a_unit() {
         assert!((weights - 49.0).abs() < 1e-6);
         assert_eq!(a.planner.weights, b.planner.weights);
     }
+}
+
+/// A log of a flight in the vertical plane says nothing about turns.
+#[test]
+fn the_vertical_plane_does_without_the_lateral_table() {
+    let file = AircraftFile::known("example").unwrap();
+    let lateral = file.lateral.unwrap().airframe();
+    assert!((lateral.roll.aileron - 0.17).abs() < 1e-15);
+    let plane = known("example").file.plane();
+    assert_eq!(plane.lateral, None);
+    assert_eq!(
+        AircraftModel::new(plane).unwrap().known,
+        known("example").known
+    );
 }

@@ -17,7 +17,7 @@ use serde::{Deserialize, Serialize};
 /// The height at which the spectra are evaluated \[m\]. It is the height of the flights.
 pub const HEIGHT: f64 = 50.0;
 /// The airspeed at which the aircraft passes through the frozen gusts [m/s].
-const AIRSPEED: f64 = 12.0;
+pub(crate) const AIRSPEED: f64 = 12.0;
 const METRES_PER_FOOT: f64 = 0.3048;
 
 /// The strength of the turbulence.
@@ -40,6 +40,11 @@ pub fn longitudinal_ratio() -> f64 {
     1.0 / libm::pow(height_factor(), 0.4)
 }
 
+/// `L_u` at the height of the flights \[m\].
+pub(crate) fn longitudinal_length() -> f64 {
+    HEIGHT / libm::pow(height_factor(), 1.2)
+}
+
 /// The gusts of one flight.
 #[derive(Clone, Debug)]
 pub struct Gusts {
@@ -58,10 +63,9 @@ impl Gusts {
         }
         let mut generator = random::generator(seed, Stream::Gusts);
         let length_w = HEIGHT;
-        let length_u = HEIGHT / libm::pow(height_factor(), 1.2);
         Some(Self {
             sigma: (config.intensity * longitudinal_ratio(), config.intensity),
-            longitudinal: Lag::new(length_u / AIRSPEED, dt, &mut generator),
+            longitudinal: Lag::new(longitudinal_length() / AIRSPEED, dt, &mut generator),
             vertical: DoubleLag::new(length_w / AIRSPEED, dt, &mut generator),
             generator,
         })
@@ -83,20 +87,20 @@ impl Gusts {
 
 /// White noise through `1 / (1 + s tau)`, with unit variance.
 #[derive(Clone, Copy, Debug)]
-struct Lag {
-    value: f64,
+pub(crate) struct Lag {
+    pub(crate) value: f64,
     decay: f64,
 }
 
 impl Lag {
-    fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
+    pub(crate) fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
         Self {
             value: random::gaussian(generator),
             decay: libm::exp(-dt / tau),
         }
     }
 
-    fn advance(&mut self, generator: &mut Draws) {
+    pub(crate) fn advance(&mut self, generator: &mut Draws) {
         let kick = (1.0 - self.decay * self.decay).sqrt();
         self.value = self.decay * self.value + kick * random::gaussian(generator);
     }
@@ -109,7 +113,7 @@ impl Lag {
 /// `P = [[1, 1/2], [1/2, 1/2]]`, and the variance of the sum is 2. The noise of a sample has the
 /// covariance `P - F P F'`, where `F = exp(-dt/tau) [[1, 0], [dt/tau, 1]]`.
 #[derive(Clone, Copy, Debug)]
-struct DoubleLag {
+pub(crate) struct DoubleLag {
     first: f64,
     second: f64,
     decay: f64,
@@ -117,7 +121,7 @@ struct DoubleLag {
 }
 
 impl DoubleLag {
-    fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
+    pub(crate) fn new(tau: f64, dt: f64, generator: &mut Draws) -> Self {
         let (first, other) = (random::gaussian(generator), random::gaussian(generator));
         Self {
             first,
@@ -127,12 +131,12 @@ impl DoubleLag {
         }
     }
 
-    fn value(&self) -> f64 {
+    pub(crate) fn value(&self) -> f64 {
         let root = 3_f64.sqrt();
         (root * self.first + (1.0 - root) * self.second) / 2_f64.sqrt()
     }
 
-    fn advance(&mut self, generator: &mut Draws) {
+    pub(crate) fn advance(&mut self, generator: &mut Draws) {
         let Self { decay, ratio, .. } = *self;
         let squared = decay * decay;
         // P - F P F' and its Cholesky factor.

@@ -16,6 +16,7 @@ mod window;
 
 pub use actuators::{ActuatorLimits, Actuators};
 pub use delivery::{Delivery, DeliveryFault};
+pub(crate) use gusts::{AIRSPEED as GUST_AIRSPEED, DoubleLag, Lag, longitudinal_length};
 pub use gusts::{GustConfig, Gusts, HEIGHT, longitudinal_ratio};
 pub use lidar::{FaultyLidar, LidarFaultConfig, LidarFaults};
 pub use line::{ClockFault, Line, LinkFault, Passage};

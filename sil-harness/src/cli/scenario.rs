@@ -19,8 +19,8 @@ pub(super) struct ScenarioArgs {
     /// Challenge scene; it stands alone unless --obstacles is given
     #[arg(long, help_heading = WORLD, value_parser = scene())]
     scene: Option<Scene>,
-    /// Aircraft, of plant and core: reference, paper, example, zagi, aerosonde, cessna182, or a file (TOML, as
-    /// docs/aircraft.md describes) [default: reference]
+    /// Aircraft, of plant and core: reference, paper, example, aerosonde, zagi, cessna182, aerosonde2, x8, ultrastick,
+    /// rascal, delta, or a file (TOML, as docs/aircraft.md describes) [default: reference]
     #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
     aircraft: Option<String>,
     /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's

@@ -26,6 +26,12 @@ fn an_aircraft_file_that_makes_no_sense_is_refused_by_file_and_key() {
             "max = -5.0",
             "my.toml: aircraft.elevator.max: level flight",
         ),
+        (
+            "aileron = 0.17",
+            "aileron = -0.17",
+            "my.toml: aircraft.lateral.roll.aileron: give a positive number",
+        ),
+        ("span = 1.5", "# ", "missing field `span`"),
     ] {
         std::fs::write(&path, usual.replacen(from, to, 1)).unwrap();
         let file = path.display().to_string();

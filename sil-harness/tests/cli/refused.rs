@@ -61,7 +61,7 @@ fn a_report_takes_no_flag_that_says_what_is_flown() {
 fn an_unknown_aircraft_is_refused_with_the_known_ones() {
     for command in ["aircraft nosuch", "fly --aircraft nosuch"] {
         let talk = refused(command);
-        let hint = "give reference, paper, example, aerosonde, zagi, cessna182 or a file";
+        let hint = "give reference, paper, example, aerosonde, zagi, cessna182, aerosonde2, x8, ultrastick, rascal, delta or a file";
         assert!(talk.contains("no aircraft `nosuch`"), "{talk}");
         assert!(talk.contains(hint), "{talk}");
     }

@@ -1,0 +1,159 @@
+//! The lateral part of an aircraft file: span, inertia, derivatives and surfaces beside those of the vertical plane.
+
+use crate::file_error::{ScenarioError, ensure};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::vehicle::{Derivatives, LateralAirframe};
+use serde::{Deserialize, Serialize};
+
+/// Table `lateral`. Every coefficient is positive to the right, and a positive deflection turns to the right.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Lateral {
+    /// Where these numbers come from, and which are assumed.
+    pub source: String,
+    /// Wing span \[m\], the reference length.
+    pub span: f64,
+    /// Moment of inertia in roll [kg m^2].
+    pub roll_inertia: f64,
+    /// Moment of inertia in yaw [kg m^2].
+    pub yaw_inertia: f64,
+    /// Product of inertia `J_xz` [kg m^2].
+    pub product_inertia: f64,
+    /// Side force.
+    pub side: Coefficient,
+    /// Rolling moment.
+    pub roll: Coefficient,
+    /// Yawing moment.
+    pub yaw: Coefficient,
+    /// Ailerons, or what elevons do as such.
+    pub aileron: Surface,
+    /// Rudder; a flying wing has none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rudder: Option<Surface>,
+}
+
+/// Derivatives of one coefficient [1/rad], whatever `derivatives` says; those by rates are of the rate times `span / 2v`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Coefficient {
+    /// By the sideslip.
+    pub sideslip: f64,
+    /// By the roll rate.
+    pub roll_rate: f64,
+    /// By the yaw rate.
+    pub yaw_rate: f64,
+    /// By the deflection of the aileron.
+    pub aileron: f64,
+    /// By the deflection of the rudder; 0 without a rudder.
+    #[serde(default)]
+    pub rudder: f64,
+}
+
+/// A control surface and its servo, which follows its command in first order, or in second order with a `damping`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Surface {
+    /// Greatest deflection to either side \[deg\].
+    pub range: f64,
+    /// Greatest rate [deg/s].
+    pub rate: f64,
+    /// Bandwidth of the servo [rad/s].
+    pub bandwidth: f64,
+    /// Damping ratio of a servo of second order [-].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damping: Option<f64>,
+}
+
+impl Lateral {
+    /// The lateral airframe in the form that core and plant know.
+    #[must_use]
+    pub fn airframe(&self) -> LateralAirframe {
+        let derivatives = |of: &Coefficient| Derivatives {
+            sideslip: of.sideslip,
+            roll_rate: of.roll_rate,
+            yaw_rate: of.yaw_rate,
+            aileron: of.aileron,
+            rudder: of.rudder,
+        };
+        LateralAirframe {
+            span: self.span,
+            roll_inertia: self.roll_inertia,
+            yaw_inertia: self.yaw_inertia,
+            product_inertia: self.product_inertia,
+            side: derivatives(&self.side),
+            roll: derivatives(&self.roll),
+            yaw: derivatives(&self.yaw),
+        }
+    }
+
+    /// Checks each key by itself, and that a positive deflection turns to the right.
+    pub(super) fn check(&self) -> Result<(), ScenarioError> {
+        let positive = [
+            (self.span, "aircraft.lateral.span"),
+            (self.roll_inertia, "aircraft.lateral.roll_inertia"),
+            (self.yaw_inertia, "aircraft.lateral.yaw_inertia"),
+        ];
+        for (value, key) in positive {
+            let sound = value > 0.0 && value.is_finite();
+            ensure(sound, key, "give a number above 0")?;
+        }
+        let product = self.product_inertia * self.product_inertia;
+        ensure(
+            product < self.roll_inertia * self.yaw_inertia,
+            "aircraft.lateral.product_inertia",
+            "give a number whose square is below roll_inertia times yaw_inertia",
+        )?;
+        let all = [
+            (&self.side, "aircraft.lateral.side"),
+            (&self.roll, "aircraft.lateral.roll"),
+            (&self.yaw, "aircraft.lateral.yaw"),
+        ];
+        for (of, key) in all {
+            let numbers = [
+                of.sideslip,
+                of.roll_rate,
+                of.yaw_rate,
+                of.aileron,
+                of.rudder,
+            ];
+            let finite = numbers.iter().all(|number| number.is_finite());
+            ensure(finite, key, "give finite numbers")?;
+            let has_rudder = self.rudder.is_some() || of.rudder == 0.0;
+            let advice =
+                "add the table `lateral.rudder`, or leave the derivatives by the rudder out";
+            ensure(has_rudder, key, advice)?;
+        }
+        ensure(
+            self.roll.roll_rate < 0.0,
+            "aircraft.lateral.roll.roll_rate",
+            "give a negative number: a damping",
+        )?;
+        let right = "give a positive number: a positive deflection turns to the right. If your source has the other \
+                     sign, turn the signs of all derivatives by this surface";
+        let rolls = self.roll.aileron > 0.0;
+        ensure(rolls, "aircraft.lateral.roll.aileron", right)?;
+        let yaws = self.rudder.is_none() || self.yaw.rudder > 0.0;
+        ensure(yaws, "aircraft.lateral.yaw.rudder", right)?;
+        self.aileron.check("aircraft.lateral.aileron")?;
+        self.rudder
+            .map_or(Ok(()), |it| it.check("aircraft.lateral.rudder"))
+    }
+}
+
+impl Surface {
+    fn check(&self, key: &'static str) -> Result<(), ScenarioError> {
+        let numbers = [
+            self.range,
+            self.rate,
+            self.bandwidth,
+            self.damping.unwrap_or(1.0),
+        ];
+        let positive = numbers.iter().all(|it| *it > 0.0 && it.is_finite());
+        ensure(positive, key, "give numbers above 0")?;
+        let damping = self.damping.unwrap_or(1.0);
+        let slow = self.bandwidth * TICK_PERIOD <= 2.0 && damping <= 2.0 && self.range < 90.0;
+        let advice =
+            "give a range below 90 deg, a bandwidth of at most 200 rad/s, a damping of at most 2";
+        ensure(slow, key, advice)
+    }
+}

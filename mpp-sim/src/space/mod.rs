@@ -1,0 +1,133 @@
+//! The plant in six degrees of freedom: an aircraft with a lateral table behind its actuators, in wind on three axes. In
+//! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
+
+mod motion;
+mod quaternion;
+mod servo;
+#[cfg(test)]
+mod tests;
+mod wind;
+
+pub use motion::{LateralState, SpaceDynamics, SpaceState};
+pub use quaternion::Quaternion;
+pub use servo::Servo;
+pub use wind::{SpaceWind, WindConfig};
+
+use crate::aircraft::Actuation;
+use crate::dynamics::Aerodynamics;
+use crate::file_error::ScenarioError;
+use crate::plant::PlantError;
+use crate::scenario::Scenario;
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::vehicle::{Control, LateralControl};
+
+/// Motion, actuators and air of one flight.
+#[derive(Clone, Debug)]
+pub struct SpaceAircraft {
+    body: SpaceDynamics,
+    actuation: Actuation,
+    aileron: Servo,
+    rudder: Option<Servo>,
+    wind: Option<SpaceWind>,
+}
+
+impl SpaceAircraft {
+    /// The aircraft of a scenario at its start, wings level. Gusts in the vertical plane are those of the scenario.
+    ///
+    /// # Errors
+    /// [`ScenarioError`] when the aircraft's file has no lateral table, or the core's airframe no level flight.
+    pub fn new(scenario: &Scenario, wind: WindConfig) -> Result<Self, ScenarioError> {
+        let file = &scenario.aircraft.file;
+        let Some(table) = &file.lateral else {
+            let advice =
+                "give this table: an aircraft without it flies in the vertical plane alone";
+            return Err(ScenarioError::Value("aircraft.lateral", advice.to_owned()));
+        };
+        let no_trim = |error: mpp_core::vehicle::TrimError| {
+            ScenarioError::Value("aircraft", error.to_string())
+        };
+        let (faults, seed) = (&scenario.faults, scenario.seed);
+        let known = scenario.aircraft.known.airframe;
+        Ok(Self {
+            body: SpaceDynamics {
+                airframe: faults.model_error.airframe(seed, known),
+                lateral: table.airframe(),
+                more: Aerodynamics::of(file),
+                gust_roll: 0.0,
+                state: SpaceState {
+                    plane: scenario.start().map_err(no_trim)?,
+                    lateral: LateralState::NONE,
+                },
+            },
+            actuation: Actuation::new(scenario).map_err(no_trim)?,
+            aileron: Servo::new(&table.aileron),
+            rudder: table.rudder.as_ref().map(Servo::new),
+            wind: SpaceWind::new(seed, faults.gusts, wind, table.span, TICK_PERIOD),
+        })
+    }
+
+    /// The true state.
+    #[must_use]
+    pub fn state(&self) -> &SpaceState {
+        &self.body.state
+    }
+
+    /// Motion of the air ahead, to the right and up [m/s].
+    #[must_use]
+    pub fn wind(&self) -> [f64; 3] {
+        let height = self.body.state.plane.z;
+        self.wind.as_ref().map_or([0.0; 3], |wind| wind.at(height))
+    }
+
+    /// Flies one tick of the flight loop. Returns the controls that the actuators gave.
+    ///
+    /// # Errors
+    /// [`PlantError`] when the plant cannot step.
+    pub fn step(
+        &mut self,
+        command: Control,
+        lateral: LateralControl,
+    ) -> Result<(Control, LateralControl), PlantError> {
+        if !(lateral.aileron.is_finite() && lateral.rudder.is_finite()) {
+            return Err(PlantError::NonFiniteControl);
+        }
+        let given = self.actuation.given(command);
+        let rudder = self.rudder.as_mut();
+        let surfaces = LateralControl {
+            aileron: self.aileron.follow(lateral.aileron, TICK_PERIOD),
+            rudder: rudder.map_or(0.0, |it| it.follow(lateral.rudder, TICK_PERIOD)),
+        };
+        self.body.gust_roll = self.wind.as_ref().map_or(0.0, SpaceWind::roll_rate);
+        let height = self.body.state.plane.z;
+        self.body.step(given, surfaces, TICK_PERIOD)?;
+        self.actuation.flown += 1;
+        if let Some(wind) = &mut self.wind {
+            let before = wind.at(height);
+            wind.advance();
+            drift(&mut self.body.state, before, TICK_PERIOD);
+            let after = wind.at(self.body.state.plane.z);
+            let change = [0, 1, 2].map(|axis| after[axis] - before[axis]);
+            meet(&mut self.body.state, change);
+        }
+        Ok((given, surfaces))
+    }
+}
+
+/// Moves the position with the wind [m/s] for `dt` \[s\].
+fn drift(state: &mut SpaceState, [x, y, z]: [f64; 3], dt: f64) {
+    state.plane.x += x * dt;
+    state.plane.z += z * dt;
+    state.lateral.y += y * dt;
+}
+
+/// Applies a change of the wind [m/s]. Velocity over ground, attitude and its rates stay the same.
+fn meet(state: &mut SpaceState, [x, y, z]: [f64; 3]) {
+    let [ahead, right, down] = state.air_velocity();
+    let [change_x, change_y, change_z] = state.lateral.attitude.world_in([x, y, -z]);
+    let (ahead, right, climb) = (ahead - change_x, right - change_y, -(down - change_z));
+    let in_plane = libm::hypot(ahead, climb);
+    let air = &mut state.plane.air;
+    air.airspeed = libm::hypot(in_plane, right);
+    air.flight_path = libm::atan2(climb, ahead);
+    state.lateral.sideslip = libm::atan2(right, in_plane);
+}
