@@ -41,17 +41,14 @@ impl Ground for Waiting {
     }
 }
 
-/// A scenario with what a log has of its aircraft.
 fn scenario() -> Scenario {
-    let mut scenario = Scenario {
+    Scenario {
         ticks: 300,
         obstacles: 8,
         paths: 5,
         latency_ticks: 2,
         ..Scenario::new(Preset::Flight, 4)
-    };
-    scenario.aircraft.file = scenario.aircraft.file.plane();
-    scenario
+    }
 }
 
 fn flown(ground: &mut dyn Ground) -> FlightLog {

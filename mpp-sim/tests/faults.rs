@@ -11,13 +11,10 @@ use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
 
-/// A scenario with what a log has of its aircraft.
 fn scenario(text: &str) -> Scenario {
     let base = "seed = 3\nobstacles = 40\nduration = 4\nreplan_hz = 2.0\n";
     let base = ScenarioFile::parse("base.toml", base).unwrap();
-    let mut scenario = base.under("test.toml", text).unwrap().build().unwrap();
-    scenario.aircraft.file = scenario.aircraft.file.plane();
-    scenario
+    base.under("test.toml", text).unwrap().build().unwrap()
 }
 
 fn flown(text: &str) -> Result<FlightLog, FlyError> {

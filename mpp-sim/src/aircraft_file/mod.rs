@@ -229,15 +229,6 @@ impl AircraftFile {
         }
     }
 
-    /// The aircraft of the vertical plane alone.
-    #[must_use]
-    pub fn plane(&self) -> Self {
-        Self {
-            lateral: None,
-            ..self.clone()
-        }
-    }
-
     /// The aircraft with a name that comes with the project.
     #[must_use]
     pub fn known(name: &str) -> Option<Self> {

@@ -22,6 +22,16 @@ pub struct AircraftModel {
 }
 
 impl AircraftModel {
+    /// The aircraft of flights in the vertical plane: a scenario and its log have no lateral part.
+    #[must_use]
+    pub fn plane(self) -> Self {
+        let file = AircraftFile {
+            lateral: None,
+            ..self.file
+        };
+        Self { file, ..self }
+    }
+
     /// The aircraft of a file.
     ///
     /// # Errors

@@ -202,7 +202,7 @@ fn the_vertical_plane_does_without_the_lateral_table() {
     let file = AircraftFile::known("example").unwrap();
     let lateral = file.lateral.unwrap().airframe();
     assert!((lateral.roll.aileron - 0.17).abs() < 1e-15);
-    let plane = known("example").file.plane();
+    let plane = known("example").plane().file;
     assert_eq!(plane.lateral, None);
     assert_eq!(
         AircraftModel::new(plane).unwrap().known,

@@ -75,7 +75,7 @@ pub struct Header {
     pub paths: usize,
     /// Name of the planner's preset.
     pub preset: String,
-    /// The aircraft, without what the vertical plane does not need.
+    /// The aircraft.
     pub aircraft: AircraftFile,
     /// Factor on the lengths of the world [-]; see [`Scenario::world_scale`].
     pub world_scale: f64,
@@ -139,7 +139,7 @@ impl Header {
             generator: scenario.generator,
             paths: usize::from(scenario.paths),
             preset: scenario.preset.name().to_owned(),
-            aircraft: scenario.aircraft.file.plane(),
+            aircraft: scenario.aircraft.file.clone(),
             world_scale: scenario.world_scale,
             replan_hz: scenario.replan_hz(),
             latency: Scenario::time(scenario.latency_ticks),

@@ -71,7 +71,7 @@ fn example() -> FlightLog {
             generator: Generator::PAPER,
             paths: 25,
             preset: "paper".into(),
-            aircraft: AircraftModel::reference().file.plane(),
+            aircraft: AircraftModel::reference().plane().file,
             world_scale: 1.0,
             replan_hz: 1.0,
             latency: 0.0,

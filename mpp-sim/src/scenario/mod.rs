@@ -184,7 +184,7 @@ impl Scenario {
             placed: Vec::new(),
             body_radius: 0.0,
             preset,
-            aircraft: AircraftModel::reference(),
+            aircraft: AircraftModel::reference().plane(),
             world_scale: 1.0,
             paths: USUAL_PATHS,
             replan_ticks: TICKS_PER_SECOND,

@@ -6,6 +6,7 @@ use super::help::{PLANNER, WORLD};
 use super::values::{Item, generator, navigation, scene, whole};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
 use mpp_analysis::campaign::{Lists, NamedField};
+use mpp_sim::aircraft_file::AircraftModel;
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{LidarTable, NavigationSource, Scenario, ScenarioFile, TICK_MS};
 use mpp_sim::scene::Scene;
@@ -84,7 +85,10 @@ impl ScenarioArgs {
         let lidar = self.lidar()?;
         let other_lidar = lidar.is_some_and(|table| table.over(flown.lidar) != flown.lidar);
         let aircraft = self.aircraft.as_ref().is_some_and(|asked| {
-            read_aircraft(asked).map_or(true, |asked| asked != flown.aircraft.file)
+            let asked = read_aircraft(asked)
+                .ok()
+                .and_then(|file| AircraftModel::new(file).ok());
+            asked.is_none_or(|asked| asked.plane() != flown.aircraft)
         });
         let seconds = (self.duration).is_some_and(|asked| (asked - flown.duration()).abs() > 1e-6);
         let navigation = self.navigation.map(NavigationSource::config);

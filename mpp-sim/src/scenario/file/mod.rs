@@ -130,7 +130,7 @@ impl ScenarioFile {
             None => base.replan_ticks,
         };
         let aircraft = match &self.aircraft {
-            Some(file) => AircraftModel::new(file.clone())?,
+            Some(file) => AircraftModel::new(file.clone())?.plane(),
             None => base.aircraft.clone(),
         };
         let world_scale = match (self.world_scale, preset) {
