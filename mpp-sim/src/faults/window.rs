@@ -33,7 +33,7 @@ macro_rules! fault_table {
             /// Time at which the fault ends \[s\]; by default it does not end.
             #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
             pub until: Option<f64>,
-            /// Rate at which the fault comes and goes [Hz]: it acts in the first half of each period. By default it stays.
+            /// Rate at which the fault comes and goes \[Hz\]: it acts in the first half of each period. By default it stays.
             #[serde(skip_serializing_if = "crate::faults::window::is_absent")]
             pub toggle_hz: Option<f64>,
             $(
@@ -94,7 +94,7 @@ impl Window {
                 .is_none_or(|rate| self.periods(tick, rate).fract() < 0.5)
     }
 
-    /// Periods of a fault that comes and goes at this rate [Hz], from its first tick to this one.
+    /// Periods of a fault that comes and goes at this rate \[Hz\], from its first tick to this one.
     fn periods(&self, tick: u32, rate: f64) -> f64 {
         f64::from(tick - self.first()) * TICK_PERIOD * rate
     }
@@ -142,7 +142,7 @@ const TICK_MS: u32 = 1000 / TICKS_PER_SECOND;
 /// Latest time of a key \[s\]: the longest flight.
 const LONGEST: f64 = 3600.0;
 
-/// Greatest rate of a fault that comes and goes [Hz]: one tick with it, one without.
+/// Greatest rate of a fault that comes and goes \[Hz\]: one tick with it, one without.
 const MOST_RATE: f64 = 50.0;
 
 /// The tick nearest to a time \[s\].
