@@ -243,3 +243,35 @@ pub(super) fn worst_excess(
     }
     all
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::{LISTED, Shortlist};
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+    use std::vec::Vec;
+
+    #[test]
+    fn a_short_list_holds_the_rows_that_count_most_in_order() {
+        let mut random = Pcg64Mcg::seed_from_u64(7);
+        for count in 0..40 {
+            let mut list = Shortlist::new();
+            let mut all: Vec<(f64, usize)> = (0..count)
+                .map(|row| ((random.next_u64() % 1_000_000) as f64, row))
+                .collect();
+            for entry in &all {
+                list.insert(*entry);
+            }
+            all.sort_by(|a, b| b.0.total_cmp(&a.0));
+            all.truncate(LISTED);
+            let rows: Vec<usize> = all.iter().map(|(_, row)| *row).collect();
+            assert_eq!(list.rows().collect::<Vec<_>>(), rows);
+            assert_eq!(list.take_first(), all.first().copied());
+            list.keep(|row| row % 2 == 0);
+            let even = rows.iter().skip(1).filter(|row| *row % 2 == 0);
+            assert!(list.rows().eq(even.copied()));
+        }
+    }
+}

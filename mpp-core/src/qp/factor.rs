@@ -226,3 +226,50 @@ impl Factor {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::{CAPACITY, CONTROLS, Direction, Factor, dot};
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+    use std::boxed::Box;
+    use std::vec::Vec;
+
+    /// Rows come and go at random. Whatever came before, the multipliers solve the Gram matrix of the rows that are left.
+    #[test]
+    fn the_factor_solves_the_gram_matrix_of_the_rows_that_are_left() {
+        let mut random = Pcg64Mcg::seed_from_u64(11);
+        let mut draw = || (random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0;
+        let mut factor = Box::new(Factor::new());
+        let mut normals: Vec<[f64; CONTROLS]> = Vec::new();
+        let (mut products, mut rest) = ([0.0; CAPACITY], Direction([0.0; CONTROLS]));
+        for round in 0..400 {
+            if normals.len() < 24 && (normals.len() < 4 || draw() > -0.2) {
+                let normal = Direction([0.0; CONTROLS].map(|_: f64| draw()));
+                let squares = factor.project(&normal, CONTROLS, &mut products, &mut rest);
+                let complement = dot(&normal.0, &normal.0) - squares;
+                assert!(factor.append(&products, &rest, complement));
+                normals.push(normal.0);
+            } else {
+                let index = (((draw() + 1.0) * 0.5) * normals.len() as f64) as usize;
+                let index = index.min(normals.len() - 1);
+                factor.remove(index, &mut products, &mut rest);
+                normals.remove(index);
+            }
+            let mut wanted = [0.0; CAPACITY];
+            for value in wanted.iter_mut().take(normals.len()) {
+                *value = draw();
+            }
+            let mut solved = wanted;
+            factor.forward(&mut solved);
+            factor.backward(&mut solved);
+            for (row, normal) in normals.iter().enumerate() {
+                let terms = normals.iter().zip(&solved);
+                let sum: f64 = terms.map(|(other, by)| dot(normal, other) * by).sum();
+                assert!((sum - wanted[row]).abs() < 1e-8, "{round}: {sum}");
+            }
+        }
+    }
+}
