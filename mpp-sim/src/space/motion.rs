@@ -2,7 +2,8 @@
 //!
 //! The attitude is a turn after a pitch: the quaternion `attitude` turns a *carried plane*, and in this plane the aircraft
 //! has the pitch and the flight path angle of [`AirState`]. The carried plane turns with roll rate and yaw rate, and never
-//! with the pitch rate. So the longitudinal equations hold in it with gravity seen from there, and no angle is singular.
+//! with the pitch rate. So the longitudinal equations hold in it with gravity seen from there, and no attitude is
+//! singular. The sideslip is: the equations hold below 90 deg of it. Beyond that drag pushes, and the flight is not physical.
 //! Without lateral state and command each sum has the same terms as in [`Dynamics`](crate::dynamics::Dynamics), or zeros besides:
 //! the motion is that of the vertical plane, bit for bit.
 //!
