@@ -106,7 +106,7 @@ fn run() {
             }
         });
         optimal += u32::from(status == Status::Optimal);
-        infeasible += u32::from(status == Status::Infeasible);
+        infeasible += u32::from(matches!(status, Status::Infeasible | Status::TooDear));
     }
     let all = PROGRAMS.len();
     let _ = writeln!(

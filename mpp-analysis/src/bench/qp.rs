@@ -243,7 +243,7 @@ fn ask_mpp(instance: &Instance, shared: &Condensed, full: &FullForm) -> SolverRu
         iterations: solver.iterations(),
         feasible: match status {
             Status::Optimal => Some(true),
-            Status::Infeasible => Some(false),
+            Status::Infeasible | Status::TooDear => Some(false),
             Status::Dominated | Status::IterationLimit | Status::NumericalFailure => None,
         },
         cost: solved.then_some(cost),

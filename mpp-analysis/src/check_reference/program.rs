@@ -182,7 +182,7 @@ fn compare_program(instance: &Instance) -> Vec<Comparison> {
     let margin = instance.margin.unwrap_or(f64::NAN);
     let right = match status {
         Status::Optimal => margin <= TIE,
-        Status::Infeasible => margin >= -TIE,
+        Status::Infeasible | Status::TooDear => margin >= -TIE,
         Status::Dominated | Status::IterationLimit | Status::NumericalFailure => false,
     };
     let verdict = if right {

@@ -97,7 +97,7 @@ pub struct Problem {
     /// a program leave its corridor. It cannot make an elevator reach further.
     ///
     /// In a program with a price, hard rows must not contradict each other. The solver then finds no optimum, and
-    /// gives no proof.
+    /// may give no proof.
     pub hard_angle_of_attack: [bool; 2],
     /// Cost above which the solver drops the candidate. With an infinite limit it solves to the end.
     pub cost_limit: f64,
@@ -108,8 +108,12 @@ pub struct Problem {
 pub enum Status {
     /// The solver found the optimum.
     Optimal,
-    /// No controls satisfy every hard row. The solver's multipliers prove it.
+    /// No controls satisfy every hard row. The solver's multipliers prove it (Farkas): with these weights, none of them
+    /// negative, the rows' left-hand sides cancel, and their bounds add up to less than zero.
     Infeasible,
+    /// Controls that satisfy every hard row cost more than a miss of a kilometre and a thousand times the optimum without
+    /// rows. The solver's multipliers prove it. There may be such controls; they are of no use.
+    TooDear,
     /// The optimum costs more than the limit, so the solver stopped early.
     Dominated,
     /// The solve needs more than [`MAX_ITERATIONS`] steps, or more active rows than there is room for.

@@ -134,7 +134,7 @@ fn hard_verdicts_and_costs_are_those_of_trying_everything() {
         assert!(made == Made::Either || (made == Made::Feasible) == expected.is_some());
         let status = solver.solve(&setup.shared, problem);
         let Some((controls, roles)) = expected else {
-            assert_eq!(status, Status::Infeasible);
+            assert!(matches!(status, Status::Infeasible | Status::TooDear));
             infeasible += 1;
             searched += usize::from(solver.iterations() > 0);
             return;

@@ -28,7 +28,7 @@ fn proved(solver: &mut Solver, setup: &Setup, problem: &Problem) -> (Status, Sol
     let status = solver.solve(&setup.shared, problem);
     assert!(solver.iterations() < MAX_ITERATIONS);
     let dense = DenseProgram::new(&[setup.model.dynamics(); STAGES], &setup.weights, problem);
-    if status == Status::Infeasible {
+    if matches!(status, Status::Infeasible | Status::TooDear) {
         assert_contradiction(&dense, solver);
     } else {
         assert_eq!(
@@ -159,7 +159,7 @@ fn pinned_rows_that_cross_end_in_a_proof() {
             for bound in &mut problem.bounds.0 {
                 *bound -= gap * (0.5 + draw.unit());
             }
-            assert_eq!(proved(&mut solver, setup, &problem).0, Status::Infeasible);
+            assert_ne!(proved(&mut solver, setup, &problem).0, Status::Optimal);
         });
     }
 }

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod brute_force;
+mod certificates;
 mod conditions;
 mod degenerate;
 mod dense;

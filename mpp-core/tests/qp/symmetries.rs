@@ -160,7 +160,9 @@ fn the_mirrored_program_has_the_mirrored_optimum() {
         let (status, best) = solve(&mut solver, &setup.shared, &problem);
         let (shared, reflection) = mirrored(&setup, &problem);
         let (again, other) = solve(&mut solver, &shared, &reflection);
-        assert_eq!(again, status);
+        // The leaning face decides whether a contradiction is one up to rounding.
+        let none = |status| matches!(status, Status::Infeasible | Status::TooDear);
+        assert!(again == status || none(again) && none(status));
         if status == Status::Optimal {
             let back: [StageControl; STAGES] = other.controls.map(mirrored_control);
             assert!((other.cost - best.cost).abs() <= 1e-7 * best.cost);

@@ -9,7 +9,7 @@ use super::direction::{Direction, Stand};
 use super::{Active, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, ControlVector, dot};
+use crate::qp::controls::{CONTROLS, ControlVector, add_all, dot};
 use crate::qp::factor::CAPACITY;
 use crate::qp::rows::{RowKind, RowPattern};
 
@@ -18,6 +18,9 @@ const NEGLIGIBLE: f64 = 1e-8;
 
 /// Share of the largest rate below which a rate is zero up to rounding.
 const NO_RATE: f64 = 1e-13;
+
+/// Share of the lengths of weighted normals below which their sum is zero up to rounding.
+const CANCELS: f64 = 1e-12;
 
 /// Least crossing of opposite faces \[m\] that decides a program before its first step. The method itself
 /// decides on smaller ones, because the directions are opposite only up to 1e-8.
@@ -161,29 +164,36 @@ impl Solver {
         self.proven(shared)
     }
 
-    /// Checks whether the certificate proves infeasibility from the data of the program alone. The proof is
-    /// that the optimum without rows violates the weighted sum of the certificate's rows, and that a
-    /// correction of this violation takes an absurd cost.
+    /// What the certificate proves from the data of the program alone. The optimum without rows violates the weighted sum of
+    /// the certificate's rows. If the normals cancel in this sum, no controls correct the violation. Otherwise the shortest
+    /// correction has a cost, and it may be absurd.
     fn proven(&mut self, shared: &Condensed) -> Status {
         self.normalised = [0.0; CONTROLS];
         self.outputs = self.free;
         self.rolled = false;
         let mut sum = [0.0; CONTROLS];
-        let mut excess = 0.0;
+        let (mut excess, mut lengths) = (0.0, 0.0);
         for (row, weight) in &self.certificate {
             if let (Some(pattern), Some(bound)) =
                 (RowPattern::of(*row), self.problem.bounds.0.get(*row))
             {
                 excess += weight * (pattern.value(&self.outputs) - bound);
-                shared.add_normal(&mut sum, &pattern, *weight);
+                let mut normal = [0.0; CONTROLS];
+                shared.add_normal(&mut normal, &pattern, *weight);
+                lengths += libm::sqrt(dot(&normal, &normal));
+                add_all(&mut sum, &normal, 1.0);
             }
         }
-        let valid = self.certificate.iter().all(|(_, weight)| *weight >= 0.0);
-        if valid
-            && excess > NEGLIGIBLE
-            && excess * excess > 2.0 * self.absurd_rise * dot(&sum, &sum)
-        {
+        let mut terms = self.certificate.iter();
+        let valid = terms.all(|(row, weight)| *weight >= 0.0 && !self.is_soft(*row));
+        let rest = dot(&sum, &sum);
+        if !valid || excess.is_nan() || excess <= NEGLIGIBLE {
+            Status::NumericalFailure
+        // No controls keep a bound of minus infinity.
+        } else if excess == f64::INFINITY || rest <= CANCELS * CANCELS * lengths * lengths {
             Status::Infeasible
+        } else if excess * excess > 2.0 * self.absurd_rise * rest {
+            Status::TooDear
         } else {
             Status::NumericalFailure
         }

@@ -294,10 +294,10 @@ impl Solver {
     }
 
     /// Rows and their multipliers. At an optimum these are the active rows. At [`Status::Infeasible`] they
-    /// are a proof: the weighted sum of these rows reads `0 <= negative` for all controls except absurdly
-    /// expensive ones.
+    /// are a proof: the weighted sum of these rows reads `0 <= negative` for all controls. At [`Status::TooDear`] it
+    /// does so for all controls except absurdly expensive ones.
     pub fn multipliers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
-        let proof = self.status == Some(Status::Infeasible);
+        let proof = matches!(self.status, Some(Status::Infeasible | Status::TooDear));
         let optimum = self
             .active
             .iter()
