@@ -33,14 +33,20 @@ impl Aircraft {
             / (reference.level_lift(Self::REFERENCE.cruise) * own.lift_alpha)
     }
 
-    /// Command of the elevator with the effect that a unit of the command has on the reference aircraft.
+    /// Command of the elevator with the effect that a unit of the command has on the reference aircraft: in a steady turn
+    /// it balances stiffness and damping (the distance to the manoeuvre point; Etkin, Reid, "Dynamics of Flight", 3.1).
     #[must_use]
     pub fn elevator_unit(&self) -> f64 {
         let (own, reference) = (&self.airframe, Airframe::REFERENCE);
         let angle = self.angle_unit();
+        let stiffness = |a: &Airframe, cruise: f64| {
+            a.moment_alpha
+                + a.moment_pitch_rate
+                    * (0.5 * a.air_density * a.wing_area * a.lift_alpha * cruise / a.mass)
+        };
         libm::fabs(
-            angle * (own.moment_alpha * reference.moment_elevator)
-                / (reference.moment_alpha * own.moment_elevator),
+            angle * (stiffness(own, self.cruise) * reference.moment_elevator)
+                / (stiffness(&reference, Self::REFERENCE.cruise) * own.moment_elevator),
         )
     }
 }

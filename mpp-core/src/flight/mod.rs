@@ -270,8 +270,8 @@ impl FlightLoop {
         let trim = self.trim.control;
         let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
         let asked = if sound {
-            let angle = self.estimator.air().angle_of_attack();
-            let safe = (self.guard).map_or(wanted, |guard| guard.within(wanted, angle));
+            let air = self.estimator.air();
+            let safe = (self.guard).map_or(wanted, |guard| guard.within(wanted, air));
             self.estimator.actuators().command_for(safe)
         } else {
             trim

@@ -1,6 +1,6 @@
 //! The angles of attack that keep a margin to the stall.
 
-use super::{Airframe, Control, Trim};
+use super::{AirState, Airframe, Control, Trim};
 use crate::tuning::limits::{STALL_LEAD, STALL_SHARE};
 
 /// Distances of the angle of attack below and above level flight that keep a margin to the stall \[rad\]. The wing stalls `stall`
@@ -11,8 +11,8 @@ pub fn stall_sides(stall: f64, airframe: &Airframe, airspeed: f64) -> [f64; 2] {
     [below, stall].map(|side| STALL_SHARE * side)
 }
 
-/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that is there, because the elevator
-/// alone could balance the aircraft beyond the stall.
+/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that will be there when the elevator
+/// acts, because the elevator alone could balance the aircraft beyond the stall, and a wing that pitches up swings through.
 #[derive(Clone, Copy, Debug)]
 pub struct StallGuard {
     /// Elevator command and angle of attack \[rad\] of level flight.
@@ -21,6 +21,10 @@ pub struct StallGuard {
     limits: [f64; 2],
     /// Angle of attack that a unit of the command balances \[rad\].
     per_unit: f64,
+    /// Path rate of an angle of attack above level flight [1/s].
+    path_rate: f64,
+    /// Time that the angle of attack takes to follow the elevator \[s\].
+    lead: f64,
 }
 
 impl StallGuard {
@@ -29,17 +33,26 @@ impl StallGuard {
     pub fn new(stall: f64, airframe: &Airframe, trim: &Trim) -> Self {
         let level = trim.state.angle_of_attack();
         let [below, above] = stall_sides(stall, &airframe.balanced(), trim.state.airspeed);
+        let a = airframe;
+        let speed = trim.state.airspeed;
+        let flow = 0.5 * a.air_density * a.wing_area * speed;
+        let stiffness = -flow * speed * a.moment_length * a.moment_alpha / a.pitch_inertia;
         Self {
             trim: [trim.control.elevator, level],
             limits: [level - below, level + above],
-            per_unit: -airframe.moment_elevator / airframe.moment_alpha,
+            per_unit: -a.moment_elevator / a.moment_alpha,
+            path_rate: flow * a.lift_alpha / a.mass,
+            lead: 1.0 / libm::sqrt(stiffness),
         }
     }
 
-    /// The nearest command that does not bring the aircraft from an angle of attack \[rad\] to the stall.
+    /// The nearest command that does not bring the aircraft from this motion to the stall.
     #[must_use]
-    pub fn within(&self, mut command: Control, angle_of_attack: f64) -> Control {
+    pub fn within(&self, mut command: Control, air: &AirState) -> Control {
         let [elevator, level] = self.trim;
+        let there = air.angle_of_attack();
+        let rate = air.pitch_rate - self.path_rate * (there - level);
+        let angle_of_attack = there + self.lead * rate;
         let balanced = level + self.per_unit * (command.elevator - elevator);
         let [least, most] = self
             .limits
