@@ -24,7 +24,7 @@ pub(crate) struct IdentityArgs {
     /// Number of obstacles in the field
     #[arg(long, default_value_t = 20)]
     obstacles: u16,
-    /// Python that has the module `mpp`
+    /// Python that has the module `mppflight`
     #[arg(long, default_value = "python3")]
     python: String,
     /// Print one JSON object
@@ -156,16 +156,16 @@ fn cortex_m7(host: &Harness, flags: &[String]) -> Result<String> {
 
 /// The flights of the Python module, if it is installed.
 fn python(flights: &Flights<'_>) -> Result<Target> {
-    const HOW: &str = "Python module `mpp`";
+    const HOW: &str = "Python module `mppflight`";
     let interpreter = &flights.0.python;
     let is_there = Command::new(interpreter)
-        .args(["-c", "import mpp; mpp.fly"])
+        .args(["-c", "import mppflight; mppflight.fly"])
         .output();
     if !is_there.is_ok_and(|output| output.status.success()) {
         return Ok(Target {
             name: "python".to_owned(),
             how: HOW,
-            hashes: Err(format!("skipped: {interpreter} cannot import mpp")),
+            hashes: Err(format!("skipped: {interpreter} cannot import mppflight")),
             seconds: 0.0,
         });
     }
@@ -177,7 +177,7 @@ fn python(flights: &Flights<'_>) -> Result<Target> {
         } = flights.0;
         let (seeds, from) = (flights.seeds(), flights.0.seed);
         let program = format!(
-            "import mpp\nfor seed in range({from}, {}): print(mpp.fly(seed=seed, obstacles={obstacles}, duration={duration}).log_hash)",
+            "import mppflight\nfor seed in range({from}, {}): print(mppflight.fly(seed=seed, obstacles={obstacles}, duration={duration}).log_hash)",
             seeds.end
         );
         let text = crate::toolchain::output(Command::new(interpreter).args(["-c", &program]))?;

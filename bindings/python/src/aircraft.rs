@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyString};
 
 /// An aircraft: one that comes with the project, by its name; a file as docs/aircraft.md describes; or a dict with
 /// the keys of such a file.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Aircraft {
     pub(crate) model: AircraftModel,
 }

@@ -16,8 +16,8 @@ use std::sync::{Arc, Mutex};
 /// Greatest number of flights side by side. Each takes some 10 kB, and 16 bytes a tick.
 const MOST_FLIGHTS: i128 = 100_000;
 
-/// Flights of one scenario with different seeds. `python/mpp/environments.py` makes environments of them.
-#[pyclass(frozen, module = "mpp._native")]
+/// Flights of one scenario with different seeds. `python/mppflight/environments.py` makes environments of them.
+#[pyclass(frozen, module = "mppflight._native")]
 pub(crate) struct Batch {
     plan: Arc<Flights>,
     guarded: Mutex<Vec<Option<Run>>>,
@@ -48,7 +48,7 @@ struct Run {
 }
 
 /// A copy of one flight. It goes on as the original would, bit for bit, also after pickling.
-#[pyclass(frozen, module = "mpp._native", name = "Moment")]
+#[pyclass(frozen, module = "mppflight._native", name = "Moment")]
 pub(crate) struct SavedFlight {
     plan: Arc<Flights>,
     run: Run,

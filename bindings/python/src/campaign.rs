@@ -16,8 +16,8 @@ use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
 
-/// The flights of a campaign, in their order. `python/mpp/campaigns.py` flies them.
-#[pyclass(frozen, module = "mpp")]
+/// The flights of a campaign, in their order. `python/mppflight/campaigns.py` flies them.
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Campaign {
     campaign: Grid,
     cells: Vec<Cell>,

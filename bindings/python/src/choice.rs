@@ -19,8 +19,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
 
-/// A flight of preset `flight`. `python/mpp/environments.py` makes an environment of it.
-#[pyclass(frozen, module = "mpp._native")]
+/// A flight of preset `flight`. `python/mppflight/environments.py` makes an environment of it.
+#[pyclass(frozen, module = "mppflight._native")]
 pub(crate) struct Choice {
     plan: Arc<Plan>,
     guarded: Mutex<Option<Box<Run>>>,
@@ -51,7 +51,7 @@ struct Run {
 }
 
 /// A copy of the flight. It goes on as the original would, bit for bit, also after pickling.
-#[pyclass(frozen, module = "mpp._native")]
+#[pyclass(frozen, module = "mppflight._native")]
 pub(crate) struct Fork {
     plan: Arc<Plan>,
     run: Box<Run>,

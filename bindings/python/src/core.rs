@@ -21,7 +21,7 @@ use std::sync::Mutex;
 
 /// The flight core, set up by the keys of a scenario: preset, aircraft, paths, replan_hz, latency_ms,
 /// slices_per_tick, lidar, seed. It is the node that flies in the harness and on a flight computer, one step a tick.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Core {
     scenario: Scenario,
     guarded: Mutex<Stepped>,

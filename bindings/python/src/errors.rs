@@ -1,4 +1,4 @@
-//! Exceptions for the errors of core and simulation. `python/mpp/errors.py` defines them.
+//! Exceptions for the errors of core and simulation. `python/mppflight/errors.py` defines them.
 
 use mpp_sim::flight::FlyError;
 use mpp_sim::link::LinkError;
@@ -7,11 +7,11 @@ use pyo3::{PyErr, import_exception};
 use std::fmt::Display;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
-import_exception!(mpp.errors, BusyError);
-import_exception!(mpp.errors, FlightError);
-import_exception!(mpp.errors, InputError);
-import_exception!(mpp.errors, SetUpError);
-import_exception!(mpp.errors, StateError);
+import_exception!(mppflight.errors, BusyError);
+import_exception!(mppflight.errors, FlightError);
+import_exception!(mppflight.errors, InputError);
+import_exception!(mppflight.errors, SetUpError);
+import_exception!(mppflight.errors, StateError);
 
 /// A value that makes no sense.
 pub(crate) fn input(error: impl Display) -> PyErr {

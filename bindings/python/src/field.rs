@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 
 /// The obstacles of a flight, where they are at its start. Give a file as docs/fields.md describes, or a dict with
 /// its keys.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Field {
     pub(crate) file: FieldFile,
     pub(crate) field: ObstacleField,

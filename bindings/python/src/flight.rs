@@ -41,7 +41,7 @@ pub(crate) fn fly(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<
 }
 
 /// A flight from its parameters to its outcome.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Flight {
     log: FlightLog,
     bytes: Vec<u8>,

@@ -1,4 +1,4 @@
-//! The native half of the Python package `mpp`. `python/mpp/__init__.py` is what people import;
+//! The native half of the Python package `mppflight`. `python/mppflight/__init__.py` is what people import;
 //! `docs/python.md` describes it.
 //!
 //! ```text
@@ -33,7 +33,7 @@ mod scenario;
 mod typed;
 mod world;
 
-/// The module `mpp._native`.
+/// The module `mppflight._native`.
 #[pyo3::pymodule]
 mod _native {
     #[pymodule_export]

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 /// A lidar: a fan of beams in the vertical plane. Give a file as docs/lidars/example.toml, or its keys. What is
 /// absent is that of the paper's lidar here, and that of the preset in a flight.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Lidar {
     pub(crate) table: LidarTable,
     pub(crate) config: LidarConfig,

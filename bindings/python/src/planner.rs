@@ -18,7 +18,7 @@ use std::sync::Mutex;
 
 /// A planner, set up by the keys of a scenario: preset, aircraft, paths, lidar, seed. Its map remembers the scans of
 /// earlier cycles.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct Planner {
     lidar: LidarConfig,
     guarded: Mutex<Box<mpp_core::planner::Planner>>,

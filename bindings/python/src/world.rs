@@ -13,7 +13,7 @@ use std::sync::Mutex;
 
 /// Plant, field and sensors of a scenario, one tick of 10 ms at a time. With `Core` in the loop it flies what `fly`
 /// flies, bit for bit.
-#[pyclass(frozen, module = "mpp")]
+#[pyclass(frozen, module = "mppflight")]
 pub(crate) struct World {
     guarded: Mutex<Stage>,
 }

@@ -3,7 +3,7 @@
 import threading
 import time
 
-import mpp
+import mppflight
 import numpy as np
 import pytest
 
@@ -12,7 +12,7 @@ NAN = float("nan")
 
 @pytest.fixture(scope="module")
 def planner():
-    return mpp.Planner()
+    return mppflight.Planner()
 
 
 @pytest.mark.parametrize(
@@ -47,34 +47,34 @@ def planner():
     ],
 )
 def test_a_scenario_that_makes_no_sense(keys, message):
-    for use in (mpp.fly, mpp.Core, mpp.World, mpp.Planner):
-        with pytest.raises(mpp.InputError, match=message):
+    for use in (mppflight.fly, mppflight.Core, mppflight.World, mppflight.Planner):
+        with pytest.raises(mppflight.InputError, match=message):
             use(**keys)
 
 
 def test_files_that_are_not_there_or_say_nothing(tmp_path):
     with pytest.raises(FileNotFoundError, match="nowhere"):
-        mpp.Aircraft(tmp_path / "nowhere.toml")
+        mppflight.Aircraft(tmp_path / "nowhere.toml")
     bad = tmp_path / "bad.toml"
     bad.write_text("mass = 'heavy'\n")
-    for use in (mpp.Aircraft, mpp.Field, mpp.Lidar, lambda path: mpp.fly(scenario=path)):
-        with pytest.raises(mpp.InputError, match="bad.toml"):
+    for use in (mppflight.Aircraft, mppflight.Field, mppflight.Lidar, lambda path: mppflight.fly(scenario=path)):
+        with pytest.raises(mppflight.InputError, match="bad.toml"):
             use(bad)
     bad.write_bytes(b"\xff\xfe")
     with pytest.raises(UnicodeDecodeError):
-        mpp.Field(bad)
+        mppflight.Field(bad)
 
 
 def test_an_aircraft_that_cannot_fly():
-    numbers = mpp.Aircraft("example").numbers
-    with pytest.raises(mpp.InputError, match="aircraft.mass"):
-        mpp.Aircraft({**numbers, "mass": -1.0})
-    with pytest.raises(mpp.InputError, match="^aircraft: missing field"):
-        mpp.Aircraft({"mass": 1.0})
-    with pytest.raises(mpp.InputError, match="^aircraft.mass: give a number, not 'heavy'"):
-        mpp.Aircraft({**numbers, "mass": "heavy"})
-    with pytest.raises(mpp.InputError, match="there is no `boeing`: give reference"):
-        mpp.Aircraft("boeing")
+    numbers = mppflight.Aircraft("example").numbers
+    with pytest.raises(mppflight.InputError, match="aircraft.mass"):
+        mppflight.Aircraft({**numbers, "mass": -1.0})
+    with pytest.raises(mppflight.InputError, match="^aircraft: missing field"):
+        mppflight.Aircraft({"mass": 1.0})
+    with pytest.raises(mppflight.InputError, match="^aircraft.mass: give a number, not 'heavy'"):
+        mppflight.Aircraft({**numbers, "mass": "heavy"})
+    with pytest.raises(mppflight.InputError, match="there is no `boeing`: give reference"):
+        mppflight.Aircraft("boeing")
 
 
 @pytest.mark.parametrize(
@@ -89,79 +89,79 @@ def test_an_aircraft_that_cannot_fly():
     ],
 )
 def test_scans_that_make_no_sense(planner, ranges, message):
-    for use in (planner.plan, lambda ranges: mpp.Core().step(scan=ranges)):
-        with pytest.raises(mpp.InputError, match=message):
+    for use in (planner.plan, lambda ranges: mppflight.Core().step(scan=ranges)):
+        with pytest.raises(mppflight.InputError, match=message):
             use(ranges)
 
 
 def test_arrays_that_make_no_sense():
-    with pytest.raises(mpp.InputError, match="3 columns"):
-        mpp.Field.of_arrays(circles=np.zeros((4, 2)))
-    with pytest.raises(mpp.InputError, match="circle 1"):
-        mpp.Field.of_arrays(circles=[[50.0, NAN, 1.0]])
-    with pytest.raises(mpp.InputError, match="polygon 1"):
-        mpp.Field.of_arrays(polygons=[[[0.0, 0.0], [1.0, 1.0]]])
-    field = mpp.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
-    with pytest.raises(mpp.InputError, match="2 columns"):
+    with pytest.raises(mppflight.InputError, match="3 columns"):
+        mppflight.Field.of_arrays(circles=np.zeros((4, 2)))
+    with pytest.raises(mppflight.InputError, match="circle 1"):
+        mppflight.Field.of_arrays(circles=[[50.0, NAN, 1.0]])
+    with pytest.raises(mppflight.InputError, match="polygon 1"):
+        mppflight.Field.of_arrays(polygons=[[[0.0, 0.0], [1.0, 1.0]]])
+    field = mppflight.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
+    with pytest.raises(mppflight.InputError, match="2 columns"):
         field.clearance(np.zeros((4, 3)))
-    with pytest.raises(mpp.InputError, match="axes"):
+    with pytest.raises(mppflight.InputError, match="axes"):
         field.ranges(0.0, 50.0, 0.0)
 
 
 def test_states_that_are_no_numbers(planner):
-    with pytest.raises(mpp.InputError, match="x: give a finite number"):
+    with pytest.raises(mppflight.InputError, match="x: give a finite number"):
         planner.plan(np.zeros(100), x=NAN)
-    core = mpp.Core()
-    with pytest.raises(mpp.InputError, match="airspeed: give a finite number"):
+    core = mppflight.Core()
+    with pytest.raises(mppflight.InputError, match="airspeed: give a finite number"):
         core.step(NAN, 0.1)
-    with pytest.raises(mpp.InputError, match="airspeed and pitch together"):
+    with pytest.raises(mppflight.InputError, match="airspeed and pitch together"):
         core.step(12.0)
-    with pytest.raises(mpp.InputError, match="sigma: give 0 or more"):
+    with pytest.raises(mppflight.InputError, match="sigma: give 0 or more"):
         core.step(x=0.0, z=50.0, sigma=-1.0)
     for velocity in ((0.0, 0.0, -1.0), (0.0, 0.0, NAN), (1e300, 0.0, 0.1)):
-        with pytest.raises(mpp.InputError, match="velocity: give"):
+        with pytest.raises(mppflight.InputError, match="velocity: give"):
             core.step(x=0.0, z=50.0, velocity=velocity)
     for speed in (0.0, -5.0):
-        with pytest.raises(mpp.InputError, match="airspeed: give more than 0"):
+        with pytest.raises(mppflight.InputError, match="airspeed: give more than 0"):
             planner.plan(np.zeros(100), airspeed=speed)
-    field = mpp.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
-    with pytest.raises(mpp.InputError, match="angles: give a finite number"):
+    field = mppflight.Field.of_arrays(circles=[[50.0, 50.0, 1.0]])
+    with pytest.raises(mppflight.InputError, match="angles: give a finite number"):
         field.ranges(0.0, 50.0, [0.0, NAN])
-    with pytest.raises(mpp.InputError, match="points: give a finite number"):
+    with pytest.raises(mppflight.InputError, match="points: give a finite number"):
         field.clearance([[NAN, 50.0]])
-    world = mpp.World(seed=1)
+    world = mppflight.World(seed=1)
     world.measure()
-    with pytest.raises(mpp.InputError, match="thrust: give a finite number"):
+    with pytest.raises(mppflight.InputError, match="thrust: give a finite number"):
         world.step(NAN, 3.7)
 
 
 def test_whole_numbers_that_are_negative_or_too_large():
-    field = mpp.Field.generate(seed=np.int64(3), obstacles=np.uint8(5))
-    assert field.table == mpp.Field.generate(seed=3, obstacles=5).table
-    core, lidar = mpp.Core(), mpp.Lidar()
+    field = mppflight.Field.generate(seed=np.int64(3), obstacles=np.uint8(5))
+    assert field.table == mppflight.Field.generate(seed=3, obstacles=5).table
+    core, lidar = mppflight.Core(), mppflight.Lidar()
     uses = {
-        "seed": (mpp.Field.generate, lambda seed: lidar.scan(field, 0.0, 50.0, seed=seed)),
-        "obstacles": (mpp.Field.generate, lambda obstacles: mpp.campaign(trials=1, obstacles=obstacles)),
-        "trials": (mpp.campaign,),
+        "seed": (mppflight.Field.generate, lambda seed: lidar.scan(field, 0.0, 50.0, seed=seed)),
+        "obstacles": (mppflight.Field.generate, lambda obstacles: mppflight.campaign(trials=1, obstacles=obstacles)),
+        "trials": (mppflight.campaign,),
         "position_age": (core.step,),
         "air_age": (core.step,),
     }
     for name, calls in uses.items():
         for call in calls:
             for value in (-1, 2**64):
-                with pytest.raises(mpp.InputError, match=f"{name}: give a whole number from 0 to"):
+                with pytest.raises(mppflight.InputError, match=f"{name}: give a whole number from 0 to"):
                     call(value) if call.__name__ == "<lambda>" else call(**{name: value})
 
 
 def test_what_has_sensors_alone_has_no_truth():
-    for use in (mpp.Core, mpp.Planner, mpp.World):
+    for use in (mppflight.Core, mppflight.Planner, mppflight.World):
         for key in ("oracle", "known_map"):
-            with pytest.raises(mpp.InputError, match=f"{key}: it needs the"):
+            with pytest.raises(mppflight.InputError, match=f"{key}: it needs the"):
                 use(**{key: True})
 
 
 def test_a_core_keeps_the_last_inputs_that_it_refused():
-    core, trim = mpp.Core(), mpp.Aircraft().trim
+    core, trim = mppflight.Core(), mppflight.Aircraft().trim
     for tick in range(2010):
         core.step(trim["airspeed"] if tick % 2 else 1e6, trim["pitch"], x=0.12 * tick, z=50.0)
     assert core.refusals == 1005 and len(core.refused) == 1000
@@ -169,41 +169,41 @@ def test_a_core_keeps_the_last_inputs_that_it_refused():
 
 
 def test_too_early_and_too_late():
-    core = mpp.Core()
+    core = mppflight.Core()
     for look in ("mode", "estimate", "reference", "sensors"):
-        with pytest.raises(mpp.StateError, match="call step first"):
+        with pytest.raises(mppflight.StateError, match="call step first"):
             getattr(core, look)
-    for planner in (core, mpp.Planner()):
-        with pytest.raises(mpp.StateError, match="there is no plan"):
+    for planner in (core, mppflight.Planner()):
+        with pytest.raises(mppflight.StateError, match="there is no plan"):
             getattr(planner, "plan" if planner is core else "best")
-    with pytest.raises(mpp.StateError, match="preset flight"):
-        mpp.Planner(preset="paper").map
-    world = mpp.World(seed=1, duration=1)
-    with pytest.raises(mpp.StateError, match="call measure first"):
+    with pytest.raises(mppflight.StateError, match="preset flight"):
+        mppflight.Planner(preset="paper").map
+    world = mppflight.World(seed=1, duration=1)
+    with pytest.raises(mppflight.StateError, match="call measure first"):
         world.step(4.4, 3.7)
     world.measure()
-    with pytest.raises(mpp.StateError, match="call step"):
+    with pytest.raises(mppflight.StateError, match="call step"):
         world.measure()
     while world.step(4.4, 3.7):
         world.measure()
     assert world.outcome == "survived"
-    with pytest.raises(mpp.StateError, match="ended"):
+    with pytest.raises(mppflight.StateError, match="ended"):
         world.measure()
-    with pytest.raises(mpp.StateError, match="ended"):
+    with pytest.raises(mppflight.StateError, match="ended"):
         world.step(4.4, 3.7)
 
 
 def test_the_second_thread_on_one_planner_gets_an_exception():
     """Two threads plan on one planner until they have met."""
-    planner, field = mpp.Planner(), mpp.Field.generate(obstacles=100, seed=1)
-    scan = mpp.Lidar().scan(field, 20.0, 50.0)
+    planner, field = mppflight.Planner(), mppflight.Field.generate(obstacles=100, seed=1)
+    scan = mppflight.Lidar().scan(field, 20.0, 50.0)
     refused, broken = [], []
 
     def plan():
         while not refused and not broken and time.monotonic() < end:
             try:
                 planner.plan(scan)
-            except mpp.BusyError as error:
+            except mppflight.BusyError as error:
                 refused.append(str(error))
             except BaseException as error:
                 broken.append(error)
@@ -220,10 +220,10 @@ def test_the_second_thread_on_one_planner_gets_an_exception():
 
 
 def test_errors_are_one_family():
-    for error in (mpp.InputError, mpp.SetUpError, mpp.FlightError, mpp.StateError, mpp.BusyError):
-        assert issubclass(error, mpp.MppError)
-    assert issubclass(mpp.InputError, ValueError) and issubclass(mpp.BusyError, mpp.StateError)
-    assert issubclass(mpp.Interrupted, KeyboardInterrupt)
+    for error in (mppflight.InputError, mppflight.SetUpError, mppflight.FlightError, mppflight.StateError, mppflight.BusyError):
+        assert issubclass(error, mppflight.MppError)
+    assert issubclass(mppflight.InputError, ValueError) and issubclass(mppflight.BusyError, mppflight.StateError)
+    assert issubclass(mppflight.Interrupted, KeyboardInterrupt)
 
 
 def test_a_small_stack_is_enough():
@@ -231,9 +231,9 @@ def test_a_small_stack_is_enough():
     size = threading.stack_size(256 * 1024)
     hashes = []
     try:
-        thread = threading.Thread(target=lambda: hashes.append(mpp.fly(seed=1, duration=2).log_hash))
+        thread = threading.Thread(target=lambda: hashes.append(mppflight.fly(seed=1, duration=2).log_hash))
         thread.start()
         thread.join()
     finally:
         threading.stack_size(size)
-    assert hashes == [mpp.fly(seed=1, duration=2).log_hash]
+    assert hashes == [mppflight.fly(seed=1, duration=2).log_hash]

@@ -5,32 +5,32 @@ import subprocess
 import sys
 from importlib.resources import files
 
-import mpp
+import mppflight
 import numpy as np
 import pytest
-from mpp import benchmark
+from mppflight import benchmark
 
 
 def test_the_list_is_frozen():
     """The generator, the hashes of the obstacles and the figures of difficulty give the same bytes again."""
-    assert benchmark.build() == (files("mpp") / f"{benchmark.VERSION}.json").read_bytes()
+    assert benchmark.build() == (files("mppflight") / f"{benchmark.VERSION}.json").read_bytes()
     entries = benchmark.fields()
     assert len(entries) == 300 and len({entry.seed for entry in entries}) == 300
 
 
 def test_a_field_of_the_list_is_the_one_that_is_flown():
     for entry in benchmark.fields()[::60]:
-        flight = mpp.fly(**entry.scenario(), duration=1)
+        flight = mppflight.fly(**entry.scenario(), duration=1)
         assert np.array_equal(flight.field.circles, entry.field().circles)
 
 
 def test_difficulty_of_fields_that_are_easy_to_reckon():
-    far = mpp.Field.of_arrays(circles=[[500.0, 50.0, 1.0], [510.0, 50.0, 1.0]])
+    far = mppflight.Field.of_arrays(circles=[[500.0, 50.0, 1.0], [510.0, 50.0, 1.0]])
     assert benchmark.difficulty(far) == (45.0, pytest.approx(8.0))
     # An aircraft that is four times as fast has lengths sixteen times as long.
-    circles = mpp.Field.generate(obstacles=40, seed=3).circles
+    circles = mppflight.Field.generate(obstacles=40, seed=3).circles
     scaled = (circles - [0.0, 50.0, 0.0]) * 16.0 + [0.0, 50.0, 0.0]
-    one, other = mpp.Field.of_arrays(circles=circles), mpp.Field.of_arrays(circles=scaled)
+    one, other = mppflight.Field.of_arrays(circles=circles), mppflight.Field.of_arrays(circles=scaled)
     assert benchmark.difficulty(other, 16.0) == pytest.approx(benchmark.difficulty(one))
 
 
@@ -51,7 +51,7 @@ def test_intervals_are_wilsons():
 
 
 def test_the_command_prints_the_table():
-    command = [sys.executable, "-m", "mpp.benchmark", "--every", "60"]
+    command = [sys.executable, "-m", "mppflight.benchmark", "--every", "60"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     lines = done.stdout.splitlines()
     assert lines[0].split(" | ")[4:] == ["RRT* alone", "paper", "ours, 1 Hz", "ours, 4 Hz", "oracle |"]

@@ -5,7 +5,7 @@ import os
 import pickle
 import subprocess
 
-import mpp
+import mppflight
 import numpy as np
 import pytest
 
@@ -14,12 +14,12 @@ GRID = {"obstacles": [10, 30], "paths": [5, 25], "trials": 3, "seed": 70, "durat
 
 @pytest.fixture(scope="module")
 def rows():
-    return mpp.campaign(**GRID)
+    return mppflight.campaign(**GRID)
 
 
 def test_rows_do_not_depend_on_threads(rows):
     assert len(rows) == 12
-    assert mpp.campaign(**GRID, workers=1) == rows
+    assert mppflight.campaign(**GRID, workers=1) == rows
     assert [row["seed"] for row in rows[:3]] == [70, 71, 72]
     assert rows.to_pandas()["obstacles"].tolist() == [10] * 3 + [30] * 3 + [10] * 3 + [30] * 3
 
@@ -27,7 +27,7 @@ def test_rows_do_not_depend_on_threads(rows):
 def test_a_row_is_flown_again_by_fly(rows):
     row = rows[4]
     keys = {key: row[key] for key in ("obstacles", "paths", "seed", "preset", "replan_hz")}
-    assert mpp.fly(**keys, duration=6).log_hash == row["log_hash"]
+    assert mppflight.fly(**keys, duration=6).log_hash == row["log_hash"]
 
 
 def test_rows_are_those_of_the_command_line(rows, tmp_path):
@@ -55,8 +55,8 @@ def test_rows_are_those_of_the_command_line(rows, tmp_path):
 
 def test_a_number_of_numpy_is_a_single_value():
     keys = {"trials": np.int64(1), "seed": 3, "duration": 1}
-    one = mpp.campaign(**keys, obstacles=np.int64(10), replan_hz=np.float64(10.0))
-    assert one == mpp.campaign(**keys, obstacles=10, replan_hz=10.0)
+    one = mppflight.campaign(**keys, obstacles=np.int64(10), replan_hz=np.float64(10.0))
+    assert one == mppflight.campaign(**keys, obstacles=10, replan_hz=10.0)
 
 
 def test_rows_show_their_number_their_successes_and_the_interval(rows):
@@ -67,7 +67,7 @@ def test_rows_show_their_number_their_successes_and_the_interval(rows):
 
 def test_progress_is_told(rows):
     told = []
-    mpp.campaign(**GRID, progress=lambda done, total: told.append((done, total)))
+    mppflight.campaign(**GRID, progress=lambda done, total: told.append((done, total)))
     assert told == [(done, 12) for done in range(1, 13)]
 
 
@@ -76,27 +76,27 @@ def test_ctrl_c_keeps_what_was_flown(rows):
         if done == 5:
             raise KeyboardInterrupt
 
-    with pytest.raises(mpp.Interrupted) as caught:
-        mpp.campaign(**GRID, workers=1, progress=press)
+    with pytest.raises(mppflight.Interrupted) as caught:
+        mppflight.campaign(**GRID, workers=1, progress=press)
     kept = caught.value.rows
     assert 5 <= len(kept) < 12 and set(kept.lines) <= set(rows.lines)
 
 
 def test_fields_are_cells_and_campaigns_travel():
-    fields = {"gate": mpp.Field.of_arrays(circles=[[60.0, 45.0, 3.0], [60.0, 56.0, 3.0]])}
-    rows = mpp.campaign(fields=fields, trials=2, duration=8)
+    fields = {"gate": mppflight.Field.of_arrays(circles=[[60.0, 45.0, 3.0], [60.0, 56.0, 3.0]])}
+    rows = mppflight.campaign(fields=fields, trials=2, duration=8)
     assert [row["field"] for row in rows] == ["gate", "gate"]
-    flights = mpp.Campaign({}, trials=2, fields=fields)
+    flights = mppflight.Campaign({}, trials=2, fields=fields)
     assert pickle.loads(pickle.dumps(flights)).to_json() == flights.to_json()
-    with pytest.raises(mpp.InputError, match="index: give 0 to 1"):
+    with pytest.raises(mppflight.InputError, match="index: give 0 to 1"):
         flights.fly(2)
     # A campaign takes no more room than its description.
-    assert len(mpp.Campaign({}, trials=2**32 - 1)) == 2**32 - 1
+    assert len(mppflight.Campaign({}, trials=2**32 - 1)) == 2**32 - 1
 
 
 def test_a_campaign_that_makes_no_sense():
-    with pytest.raises(mpp.InputError, match="replan_hz"):
-        mpp.campaign(trials=1, replan_hz=3.0)
+    with pytest.raises(mppflight.InputError, match="replan_hz"):
+        mppflight.campaign(trials=1, replan_hz=3.0)
     for key, value, message in (
         ("preset", "best", "preset: unknown variant `best`"),
         ("obstacles", "x", "obstacles: give a whole number from 0 .*, not 'x'"),
@@ -106,11 +106,11 @@ def test_a_campaign_that_makes_no_sense():
         ("trials", 0, "trials: give 1 or more, not 0"),
         ("trials", 2.5, "trials: give a whole number from 0 .*, not 2.5"),
     ):
-        with pytest.raises(mpp.InputError, match=f"^{message}"):
-            mpp.campaign(**{"trials": 1, key: value})
-    with pytest.raises(mpp.InputError, match="workers: give 1 or more"):
-        mpp.campaign(trials=1, workers=-1)
-    with pytest.raises(mpp.InputError, match="index: give"):
-        mpp.Campaign({}, trials=1).fly(-1)
-    with pytest.raises(mpp.InputError, match="no_key"):
-        mpp.campaign(trials=1, no_key=1)
+        with pytest.raises(mppflight.InputError, match=f"^{message}"):
+            mppflight.campaign(**{"trials": 1, key: value})
+    with pytest.raises(mppflight.InputError, match="workers: give 1 or more"):
+        mppflight.campaign(trials=1, workers=-1)
+    with pytest.raises(mppflight.InputError, match="index: give"):
+        mppflight.Campaign({}, trials=1).fly(-1)
+    with pytest.raises(mppflight.InputError, match="no_key"):
+        mppflight.campaign(trials=1, no_key=1)

@@ -3,7 +3,7 @@
 import os
 import signal
 
-import mpp
+import mppflight
 import pytest
 from distributed import Client, LocalCluster
 
@@ -12,7 +12,7 @@ GRID = {"obstacles": [10, 30], "trials": 40, "seed": 200, "duration": 10}
 
 @pytest.fixture(scope="module")
 def rows():
-    return mpp.campaign(**GRID)
+    return mppflight.campaign(**GRID)
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def test_rows_are_the_same_if_a_worker_dies_in_the_middle(rows, client):
             os.kill(victim, signal.SIGKILL)
             killed.append((victim, done))
 
-    assert mpp.campaign(**GRID, client=client, progress=kill).lines == rows.lines
+    assert mppflight.campaign(**GRID, client=client, progress=kill).lines == rows.lines
     assert killed and killed[0][1] < len(rows)
 
 
@@ -41,12 +41,12 @@ def test_ctrl_c_keeps_what_the_workers_flew(rows, client):
     def press(done, total):
         raise KeyboardInterrupt
 
-    with pytest.raises(mpp.Interrupted) as caught:
-        mpp.campaign(**GRID, client=client, progress=press)
+    with pytest.raises(mppflight.Interrupted) as caught:
+        mppflight.campaign(**GRID, client=client, progress=press)
     kept = caught.value.rows
     assert 0 < len(kept) < len(rows) and set(kept.lines) <= set(rows.lines)
 
 
 def test_an_error_of_a_flight_comes_back(client):
-    with pytest.raises(mpp.InputError, match="duration"):
-        mpp.campaign(trials=1, duration=0, client=client)
+    with pytest.raises(mppflight.InputError, match="duration"):
+        mppflight.campaign(trials=1, duration=0, client=client)

@@ -7,9 +7,9 @@ import time
 import warnings
 
 import gymnasium
-import mpp
-import mpp.environments
-import mpp.speed
+import mppflight
+import mppflight.environments
+import mppflight.speed
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -63,9 +63,9 @@ def test_a_copy_goes_on_by_itself(name):
 def test_options_that_mean_nothing_are_refused(name):
     env = gymnasium.make(name, duration=1)
     env.reset(seed=1, options={})
-    with pytest.raises(mpp.InputError, match="options: give none, not {'obstacles': 3}"):
+    with pytest.raises(mppflight.InputError, match="options: give none, not {'obstacles': 3}"):
         env.reset(options={"obstacles": 3})
-    with pytest.raises(mpp.InputError, match="options: give none"):
+    with pytest.raises(mppflight.InputError, match="options: give none"):
         gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(options={"obstacles": 3})
 
 
@@ -122,13 +122,13 @@ def test_a_state_is_restored_bit_for_bit_also_in_another_process(name):
         assert env.reset()[1]["seed"] == following
     other = gymnasium.make(name, obstacles=31).unwrapped
     other.reset(seed=8)
-    with pytest.raises(mpp.InputError, match="other keys"):
+    with pytest.raises(mppflight.InputError, match="other keys"):
         other.restore(state)
 
 
 def test_the_commands_of_a_flight_fly_the_flight():
     """The agent repeats the commands of the core and comes to the same places."""
-    columns = mpp.fly(seed=1, duration=4).columns
+    columns = mppflight.fly(seed=1, duration=4).columns
     env = gymnasium.make("mpp/Control-v0", duration=4).unwrapped
     env.reset(seed=1)
     low, high = np.array(env.controls).T
@@ -145,7 +145,7 @@ def test_the_commands_of_a_flight_fly_the_flight():
 @pytest.mark.parametrize("keys", [{}, {"latency_ms": 200, "replan_hz": 2.0}, {"latency_ms": 1000}])
 def test_the_planners_own_choice_flies_what_fly_flies(keys):
     keys = {"obstacles": 30, "duration": 10, **keys}
-    columns = mpp.fly(seed=4, **keys).columns
+    columns = mppflight.fly(seed=4, **keys).columns
     env = gymnasium.make("mpp/Choice-v0", **keys)
     _, told = env.reset(seed=4)
     while told["outcome"] is None:
@@ -191,16 +191,16 @@ def test_too_early_and_too_late(name):
     env = gymnasium.make(name, duration=1).unwrapped
     action = env.action_space.sample() * 0
     for too_early in (lambda: env.step(action), env.save):
-        with pytest.raises(mpp.StateError, match="call reset first"):
+        with pytest.raises(mppflight.StateError, match="call reset first"):
             too_early()
     env.reset(seed=1)
     while not any(env.step(action)[2:4]):
         pass
-    with pytest.raises(mpp.StateError, match="call reset"):
+    with pytest.raises(mppflight.StateError, match="call reset"):
         env.step(action)
     env.close()
     for too_late in (env.reset, lambda: env.step(action), env.save):
-        with pytest.raises(mpp.StateError, match="closed"):
+        with pytest.raises(mppflight.StateError, match="closed"):
             too_late()
 
 
@@ -208,30 +208,30 @@ def test_actions_that_make_no_sense():
     env = gymnasium.make("mpp/Control-v0").unwrapped
     env.reset(seed=1)
     for action in ([np.nan, 0.0], [0.0, 1.5], [0.0], [0.0, 0.0, 0.0], [True, False], ["a", "b"]):
-        with pytest.raises(mpp.InputError, match="actions"):
+        with pytest.raises(mppflight.InputError, match="actions"):
             env.step(np.array(action))
     many = gymnasium.make_vec("mpp/Control-v0", num_envs=3)
     many.reset(seed=1)
-    with pytest.raises(mpp.InputError, match="a row for each of the 3 flights"):
+    with pytest.raises(mppflight.InputError, match="a row for each of the 3 flights"):
         many.step(np.zeros((2, 2)))
     before = many.unwrapped._batch.truth(0)
-    with pytest.raises(mpp.InputError, match="give -1 to 1"):
+    with pytest.raises(mppflight.InputError, match="give -1 to 1"):
         many.step(np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0]]))
     assert many.unwrapped._batch.truth(0) == before
     for count in (-1, 0, 10**12):
-        with pytest.raises(mpp.InputError, match="num_envs: give 1 to"):
+        with pytest.raises(mppflight.InputError, match="num_envs: give 1 to"):
             gymnasium.make_vec("mpp/Control-v0", num_envs=count)
-    with pytest.raises(mpp.InputError, match="lidar_hz"):
+    with pytest.raises(mppflight.InputError, match="lidar_hz"):
         gymnasium.make("mpp/Control-v0", lidar_hz=7.0)
-    with pytest.raises(mpp.InputError, match="faults.link"):
+    with pytest.raises(mppflight.InputError, match="faults.link"):
         gymnasium.make("mpp/Control-v0", faults={"link": {"loss": 0.1}}).reset(seed=1)
-    with pytest.raises(mpp.InputError, match="only flight has candidates"):
+    with pytest.raises(mppflight.InputError, match="only flight has candidates"):
         gymnasium.make("mpp/Choice-v0", preset="paper")
     env = gymnasium.make("mpp/Choice-v0").unwrapped
     env.reset(seed=np.int64(1))
     most = env.action_space.n - 1
     for action in (-1, most + 1, 2**70, 0.5, "a", None, [1]):
-        with pytest.raises(mpp.InputError, match=f"action: give 0 to {most}, not"):
+        with pytest.raises(mppflight.InputError, match=f"action: give 0 to {most}, not"):
             env.step(action)
     env.step(np.int64(most))
     env.step(np.array(0))
@@ -250,13 +250,13 @@ def test_actions_that_make_no_sense():
     ],
 )
 def test_what_a_choice_could_not_fly_as_fly_does_is_refused(key, keys):
-    with pytest.raises(mpp.InputError, match=key):
+    with pytest.raises(mppflight.InputError, match=key):
         gymnasium.make("mpp/Choice-v0", **keys)
 
 
 @pytest.mark.parametrize("key", ["oracle", "known_map"])
 def test_a_controlled_flight_has_no_truth(key):
-    with pytest.raises(mpp.InputError, match=f"{key}: it needs the"):
+    with pytest.raises(mppflight.InputError, match=f"{key}: it needs the"):
         gymnasium.make("mpp/Control-v0", **{key: True})
 
 
@@ -281,11 +281,11 @@ def test_a_seed_or_a_list_of_seeds_also_gives_the_flights_that_start_anew():
 
 @pytest.mark.parametrize("seed", [[], [1], [1, 2, 3], [1, -2], -1, 2**64, 2**64 - 1, 1.5, "ab", [1, 2.5]])
 def test_seeds_that_make_no_sense(seed):
-    with pytest.raises(mpp.InputError, match="seed: give a whole number"):
+    with pytest.raises(mppflight.InputError, match="seed: give a whole number"):
         gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(seed=seed)
     for name in NAMES:
         if seed != 2**64 - 1:
-            with pytest.raises(mpp.InputError, match="seed: give a whole number"):
+            with pytest.raises(mppflight.InputError, match="seed: give a whole number"):
                 gymnasium.make(name).reset(seed=seed)
 
 
@@ -320,7 +320,7 @@ def test_the_second_thread_on_one_environment_gets_an_exception():
         while not refused and not broken and time.monotonic() < end:
             try:
                 many.step(actions)
-            except mpp.BusyError as error:
+            except mppflight.BusyError as error:
                 refused.append(error)
             except BaseException as error:
                 broken.append(error)
@@ -335,8 +335,8 @@ def test_the_second_thread_on_one_environment_gets_an_exception():
 
 
 def test_rates_are_printed(capsys, monkeypatch):
-    monkeypatch.setattr(mpp.speed, "DURATION", 0.01)
+    monkeypatch.setattr(mppflight.speed, "DURATION", 0.01)
     monkeypatch.setattr("sys.argv", ["speed"])
-    mpp.speed.main()
+    mppflight.speed.main()
     rates = [float(line.split()[-1].replace(",", "")) for line in capsys.readouterr().out.splitlines()[1:]]
     assert len(rates) == 3 and min(rates) > 0.0

@@ -7,27 +7,27 @@ import threading
 import time
 import tomllib
 
-import mpp
+import mppflight
 import numpy as np
 import pytest
 
 
 def test_the_hash_is_the_readmes(root):
     [shown] = re.findall(r"result: seed 1, .* log ([0-9a-f]{16})", (root / "README.md").read_text())
-    assert mpp.fly(seed=1).log_hash == shown
+    assert mppflight.fly(seed=1).log_hash == shown
 
 
 def test_the_log_is_what_is_hashed_and_reads_back():
-    flight = mpp.fly(seed=2, duration=3)
+    flight = mppflight.fly(seed=2, duration=3)
     log = flight.to_json()
     assert hashlib.sha256(log).hexdigest()[:16] == flight.log_hash
-    for copy in (mpp.Flight.from_json(log), pickle.loads(pickle.dumps(flight))):
+    for copy in (mppflight.Flight.from_json(log), pickle.loads(pickle.dumps(flight))):
         assert copy.log_hash == flight.log_hash
         assert copy.summary == flight.summary
 
 
 def test_columns_are_arrays_of_the_ticks():
-    flight = mpp.fly(seed=1, duration=5)
+    flight = mppflight.fly(seed=1, duration=5)
     columns = flight.columns
     assert len(flight) == 500
     assert {column.shape for column in columns.values()} == {(500,)}
@@ -42,16 +42,16 @@ def test_columns_are_arrays_of_the_ticks():
 
 def test_the_keys_are_those_of_a_scenario(root):
     file = root / "docs/scenarios/gusts.toml"
-    calm, windy = mpp.fly(seed=4, duration=4), mpp.fly(scenario=file, seed=4, duration=4)
+    calm, windy = mppflight.fly(seed=4, duration=4), mppflight.fly(scenario=file, seed=4, duration=4)
     assert not calm.columns["wind_x"].any() and windy.columns["wind_x"].any()
-    by_hand = mpp.fly(**{**tomllib.loads(file.read_text()), "seed": 4, "duration": 4})
+    by_hand = mppflight.fly(**{**tomllib.loads(file.read_text()), "seed": 4, "duration": 4})
     assert by_hand.log_hash == windy.log_hash
-    assert mpp.fly(seed=np.int64(4), duration=4).log_hash == calm.log_hash
+    assert mppflight.fly(seed=np.int64(4), duration=4).log_hash == calm.log_hash
 
 
 def test_a_field_aircraft_and_lidar_of_ones_own_are_flown():
-    field = mpp.Field.of_arrays(circles=np.array([[60.0, 50.0, 3.0], [120.0, 52.0, 4.0]]))
-    flight = mpp.fly(field=field, aircraft=mpp.Aircraft("zagi"), lidar=mpp.Lidar(beams=64), seed=3)
+    field = mppflight.Field.of_arrays(circles=np.array([[60.0, 50.0, 3.0], [120.0, 52.0, 4.0]]))
+    flight = mppflight.fly(field=field, aircraft=mppflight.Aircraft("zagi"), lidar=mppflight.Lidar(beams=64), seed=3)
     header = flight.header
     assert header["aircraft"]["name"] == "zagi" and header["lidar"]["beams"] == 64
     assert (flight.field.circles == field.circles).all()
@@ -72,7 +72,7 @@ def test_python_runs_while_a_flight_is_under_way():
     counter = threading.Thread(target=count)
     counter.start()
     before = counted
-    mpp.fly(seed=1, duration=60)
+    mppflight.fly(seed=1, duration=60)
     after = counted
     flying.clear()
     counter.join()
@@ -81,8 +81,8 @@ def test_python_runs_while_a_flight_is_under_way():
 
 def test_loop_of_world_and_core_flies_the_same_flight():
     keys = {"seed": 5, "obstacles": 30, "duration": 8, "latency_ms": 100}
-    columns = mpp.fly(**keys).columns
-    world, core = mpp.World(**keys), mpp.Core(**keys)
+    columns = mppflight.fly(**keys).columns
+    world, core = mppflight.World(**keys), mppflight.Core(**keys)
     going, tick = True, 0
     while going:
         assert world.state["x"] == columns["x"][tick] and world.state["z"] == columns["z"][tick]
@@ -98,4 +98,4 @@ def test_loop_of_world_and_core_flies_the_same_flight():
 
 @pytest.mark.parametrize("preset", ["reference", "paper", "flight"])
 def test_presets_fly(preset):
-    assert mpp.fly(preset=preset, seed=1, obstacles=5, duration=3).summary["replans"] == 3
+    assert mppflight.fly(preset=preset, seed=1, obstacles=5, duration=3).summary["replans"] == 3

@@ -2,40 +2,40 @@
 
 import pickle
 
-import mpp
+import mppflight
 import numpy as np
 import pytest
 
 
 def test_an_aircraft_comes_by_name_by_file_and_by_numbers(root):
-    known = mpp.Aircraft("zagi")
-    from_file = mpp.Aircraft(root / "aircraft/zagi.toml")
-    from_numbers = mpp.Aircraft(known.numbers)
+    known = mppflight.Aircraft("zagi")
+    from_file = mppflight.Aircraft(root / "aircraft/zagi.toml")
+    from_numbers = mppflight.Aircraft(known.numbers)
     assert known.numbers == from_file.numbers == from_numbers.numbers
     assert pickle.loads(pickle.dumps(known)).trim == known.trim
     assert known.trim["airspeed"] == known.numbers["cruise"] == 15.0
-    assert mpp.Aircraft().name == "reference" and "zagi" in mpp.Aircraft.known()
-    assert mpp.Aircraft().world_scale == 1.0 < known.world_scale
+    assert mppflight.Aircraft().name == "reference" and "zagi" in mppflight.Aircraft.known()
+    assert mppflight.Aircraft().world_scale == 1.0 < known.world_scale
 
 
 def test_a_generated_field_is_that_of_the_flight_with_its_seed():
-    field = mpp.Field.generate("forest", obstacles=40, seed=9, radius=1.5)
-    flight = mpp.fly(generator={"name": "forest", "radius": 1.5}, obstacles=40, seed=9, duration=1)
+    field = mppflight.Field.generate("forest", obstacles=40, seed=9, radius=1.5)
+    flight = mppflight.fly(generator={"name": "forest", "radius": 1.5}, obstacles=40, seed=9, duration=1)
     assert len(field) == 40 and (field.circles == flight.field.circles).all()
     assert pickle.loads(pickle.dumps(field)).table == field.table
 
 
 def test_a_field_comes_from_a_file_and_goes_to_one(root, tmp_path):
-    field = mpp.Field(root / "docs/fields/example.toml")
+    field = mppflight.Field(root / "docs/fields/example.toml")
     assert set(field.table) > {"circle", "ground"}
     copy = tmp_path / "field.toml"
     copy.write_text(field.to_toml())
-    assert mpp.Field(copy).table == field.table
+    assert mppflight.Field(copy).table == field.table
 
 
 def test_distances_and_ranges_are_those_of_circles():
     circles = np.array([[10.0, 50.0, 2.0], [30.0, 45.0, 1.0]])
-    field = mpp.Field.of_arrays(circles=circles)
+    field = mppflight.Field.of_arrays(circles=circles)
     points = np.random.default_rng(1).uniform([0.0, 30.0], [40.0, 60.0], (200, 2))
     apart = np.linalg.norm(points[:, None] - circles[None, :, :2], axis=2) - circles[:, 2]
     assert np.allclose(field.clearance(points), apart.min(axis=1))
@@ -43,7 +43,7 @@ def test_distances_and_ranges_are_those_of_circles():
 
 
 def test_polygons_ground_and_ceiling_bound_a_tunnel():
-    tunnel = mpp.Field.of_arrays(
+    tunnel = mppflight.Field.of_arrays(
         polygons=[[[20.0, 48.0], [22.0, 48.0], [22.0, 52.0], [20.0, 52.0]]],
         ground=[[0.0, 40.0]],
         ceiling=[[0.0, 60.0], [50.0, 58.0]],
@@ -53,14 +53,14 @@ def test_polygons_ground_and_ceiling_bound_a_tunnel():
 
 def test_a_ring_may_be_closed_as_shapely_gives_it():
     ring = [[20.0, 48.0], [22.0, 48.0], [22.0, 52.0]]
-    opened, closed = (mpp.Field.of_arrays(polygons=[one]) for one in (ring, [*ring, ring[0]]))
-    assert opened.table == closed.table == mpp.Field({"polygon": [{"points": [*ring, ring[0]]}]}).table
+    opened, closed = (mppflight.Field.of_arrays(polygons=[one]) for one in (ring, [*ring, ring[0]]))
+    assert opened.table == closed.table == mppflight.Field({"polygon": [{"points": [*ring, ring[0]]}]}).table
     assert len(opened.table["polygon"][0]["points"]) == 3
 
 
 def test_a_lidar_scans_a_field():
-    field = mpp.Field.of_arrays(circles=[[20.0, 50.0, 1.0]])
-    lidar = mpp.Lidar(beams=51, field_of_view_deg=90.0, range_max=40.0)
+    field = mppflight.Field.of_arrays(circles=[[20.0, 50.0, 1.0]])
+    lidar = mppflight.Lidar(beams=51, field_of_view_deg=90.0, range_max=40.0)
     exact = lidar.scan(field, 0.0, 50.0)
     angles = lidar.angles
     assert exact.dtype == np.float32 and exact.shape == angles.shape == (51,)
@@ -73,9 +73,9 @@ def test_a_lidar_scans_a_field():
 
 
 def test_a_planner_plans_around_what_a_scan_shows():
-    field = mpp.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
-    planner, lidar = mpp.Planner(), mpp.Lidar()
-    pitch = mpp.Aircraft().trim["pitch"]
+    field = mppflight.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
+    planner, lidar = mppflight.Planner(), mppflight.Lidar()
+    pitch = mppflight.Aircraft().trim["pitch"]
     cycle = planner.plan(lidar.scan(field, 0.0, 50.0, pitch))
     assert cycle["verdict"] == "feasible" and cycle["feasible"] > 0
     best = planner.best
@@ -91,9 +91,9 @@ def test_a_planner_plans_around_what_a_scan_shows():
 
 
 def test_the_map_holds_what_the_beams_met():
-    field = mpp.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
-    planner, lidar = mpp.Planner(), mpp.Lidar(range_error=0.0)
-    planner.plan(lidar.scan(field, 0.0, 50.0, mpp.Aircraft().trim["pitch"]))
+    field = mppflight.Field.of_arrays(circles=[[25.0, 50.0, 1.0]])
+    planner, lidar = mppflight.Planner(), mppflight.Lidar(range_error=0.0)
+    planner.plan(lidar.scan(field, 0.0, 50.0, mppflight.Aircraft().trim["pitch"]))
     seen = planner.map
     assert seen["occupied"].shape == seen["distance"].shape == (64, 128)
     rows, columns = np.nonzero(seen["seen"])
@@ -107,7 +107,7 @@ def test_the_map_holds_what_the_beams_met():
 
 
 def test_a_core_shows_plan_and_map():
-    core, world = mpp.Core(seed=1), mpp.World(seed=1)
+    core, world = mppflight.Core(seed=1), mppflight.World(seed=1)
     for _ in range(150):
         world.step(*core.step(**world.measure()))
     assert core.ticks == 150

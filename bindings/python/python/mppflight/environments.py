@@ -5,7 +5,7 @@
 
 Further arguments of `gymnasium.make` are keys of a scenario, for example `obstacles=40`. A flight has the seed that
 `reset` gets; without one it is drawn from the environment's generator. Its obstacles, noise and gusts are those of
-`mpp.fly` with this seed.
+`mppflight.fly` with this seed.
 """
 
 from __future__ import annotations
@@ -186,8 +186,8 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
     Observation: `lidar`, as that of `ControlEnv`; `state`, estimated airspeed [m/s], pitch and flight path angle [rad]
     and height above the altitude [m]; `candidates` by price, as places from the aircraft [m]; `price` of each; `mask`,
     which actions there are.
-    Action: 0 is the planner's own best plan, which `mpp.fly` flies; k is the candidate with the k-th lowest price. A
-    number beyond the candidates keeps the last plan.
+    Action: 0 is the planner's own best plan, which `mppflight.fly` flies; k is the candidate with the k-th lowest price.
+    A number beyond the candidates keeps the last plan.
     Reward: as that of `ControlEnv`.
     """
 
@@ -264,14 +264,14 @@ def register() -> None:
     """
     gymnasium.register(
         "mpp/Control-v0",
-        entry_point="mpp.environments:ControlEnv",
-        vector_entry_point="mpp.environments:ControlVectorEnv",
+        entry_point="mppflight.environments:ControlEnv",
+        vector_entry_point="mppflight.environments:ControlVectorEnv",
         order_enforce=False,
         disable_env_checker=True,
     )
     gymnasium.register(
         "mpp/Choice-v0",
-        entry_point="mpp.environments:ChoiceEnv",
+        entry_point="mppflight.environments:ChoiceEnv",
         order_enforce=False,
         disable_env_checker=True,
     )

@@ -1,4 +1,4 @@
-"""Prints steps a second of the environments on one core, without rendering: `python -m mpp.speed`. With `--dask` it
+"""Prints steps a second of the environments on one core, without rendering: `python -m mppflight.speed`. With `--dask` it
 prints flights a second of a campaign on threads, and on one and two workers of a local Dask cluster.
 """
 

@@ -1,7 +1,7 @@
 """A frozen benchmark: 300 fields of the paper's kind over five densities and three aircraft.
 
-`python -m mpp.benchmark` flies the baselines through them and prints the table of docs/validation/benchmark.md. The
-list `fields-v1.json` never changes; a better one gets another number. Each field has the hash of its obstacles.
+`python -m mppflight.benchmark` flies the baselines through them and prints the table of docs/validation/benchmark.md.
+The list `fields-v1.json` never changes; a better one gets another number. Each field has the hash of its obstacles.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Entry:
     field_hash: str
 
     def scenario(self) -> dict[str, Any]:
-        """The keys with which `mpp.fly` draws the field. Its lengths are scaled to the aircraft's speed."""
+        """The keys with which `mppflight.fly` draws the field. Its lengths are scaled to the aircraft's speed."""
         scale = Aircraft(self.aircraft).world_scale
         keys = {"aircraft": self.aircraft, "obstacles": self.obstacles, "seed": self.seed}
         return {**keys, "world_scale": scale}
@@ -63,7 +63,7 @@ class Entry:
 
 def fields() -> list[Entry]:
     """The fields of the list, in its order."""
-    text = (files("mpp") / f"{VERSION}.json").read_bytes()
+    text = (files("mppflight") / f"{VERSION}.json").read_bytes()
     if hashlib.sha256(text).hexdigest()[:16] != SHA256:
         raise ValueError(f"{VERSION}.json is not the list that was frozen: install the package anew")
     return [Entry(**entry) for entry in json.loads(text)]
@@ -167,7 +167,7 @@ def _correlation(difficulty: list[float], strict: list[bool]) -> str:
 
 def main() -> None:
     """Flies the baselines, or writes the list anew."""
-    parser = argparse.ArgumentParser(prog="python -m mpp.benchmark", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m mppflight.benchmark", description=__doc__)
     parser.add_argument("--every", type=int, default=1, help="fly each n-th field only")
     parser.add_argument("--build", metavar="FILE", help="write the list anew instead; only for another version")
     arguments = parser.parse_args()
