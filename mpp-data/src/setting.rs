@@ -49,9 +49,10 @@ macro_rules! settings {
 }
 
 settings! {
-    Mass, "airframe.mass", "kg", [0.01, 1e5];
-    PitchInertia, "airframe.pitch_inertia", "kg m^2", [1e-6, 1e6];
-    WingArea, "airframe.wing_area", "m^2", [1e-3, 100.0];
+    // The heaviest aircraft that flew, with 640 t, 905 m^2 of wing and six engines, is in the ranges of size.
+    Mass, "airframe.mass", "kg", [0.01, 1e6];
+    PitchInertia, "airframe.pitch_inertia", "kg m^2", [1e-6, 1e9];
+    WingArea, "airframe.wing_area", "m^2", [1e-3, 1e3];
     MomentLength, "airframe.moment_length", "m", [1e-3, 1e2];
     AirDensity, "airframe.air_density", "kg/m^3", [0.1, 2.0];
     LiftZero, "airframe.lift_zero", "1", [-5.0, 5.0];
@@ -64,8 +65,9 @@ settings! {
     MomentAlphaRate, "airframe.moment_alpha_rate", "s/rad", [-100.0, 0.0];
     // The elevator may count in either direction, but it must have an effect.
     MomentElevator, "the magnitude of airframe.moment_elevator", "1", [1e-4, 100.0];
-    MotorThrust, "actuators.thrust_max", "N", [1e-3, 1e5];
-    ThrustLag, "actuators.thrust_lag", "s", [1e-4, 60.0];
+    MotorThrust, "actuators.thrust_max", "N", [1e-3, 1e7];
+    // A shorter lag than a tenth of a tick is none.
+    ThrustLag, "actuators.thrust_lag", "s", [1e-3, 60.0];
     ElevatorBelow, "actuators.elevator_below", "1", [1e-3, 1e4];
     ElevatorRate, "actuators.elevator_rate", "1/s", [1e-3, 1e6];
     DesignThrust, "design_thrust", "N", [0.0, 1e6];
@@ -82,8 +84,8 @@ settings! {
     RateWeight, "regulator.state[2]", "s^2/rad^2", [0.0, 1e9];
     PathWeight, "regulator.state[3]", "1/rad^2", [0.0, 1e9];
     ElevatorWeight, "regulator.elevator", "1", [1e-6, 1e9];
-    CrossTrack, "cross_track", "rad/m", [0.0, 10.0];
-    AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e6];
+    CrossTrack, "cross_track", "rad/m", [0.0, 20.0];
+    AirspeedHold, "airspeed_hold", "N s/m", [0.0, 1e8];
     PlanElevatorWeight, "planner.weights.control[0]", "1", [1e-6, 1e9];
     PlanThrustWeight, "planner.weights.control[1]", "1/N^2", [1e-6, 1e9];
     PlanTerminalWeight, "planner.weights.terminal", "1", [0.0, 1e9];
@@ -102,20 +104,21 @@ settings! {
     Stall, "stall", "rad", [1e-3, 1.5];
     LengthUnit, "units.length", "m", [1e-3, 1e3];
     TimeUnit, "units.time", "s", [1e-2, 1e2];
-    MassUnit, "units.mass", "kg", [1e-4, 1e5];
+    MassUnit, "units.mass", "kg", [1e-4, 1e6];
     // Plans divide by the momentum without these shares, also at more than the airspeed of level flight.
     LiftAlphaRate, "the momentum's share by airframe.lift_alpha_rate", "1", [-0.4, 0.4];
     LiftPitchRate, "the momentum's share by airframe.lift_pitch_rate", "1", [-0.4, 0.4];
-    CruiseAirspeed, "cruise", "m/s", [1.0, 200.0];
+    // An airliner cruises at 265 m/s.
+    CruiseAirspeed, "cruise", "m/s", [1.0, 300.0];
     WindChange, "wind_change", "m/s in 1 s", [1e-3, 100.0];
     Altitude, "planner.altitude", "m", [-1e3, 2e4];
     Sight, "the range of the lidar (sight)", "m", [1.0, 1e4];
     PenaltyLinear, "penalty.linear", "1/m", [1e-6, 1e12];
     AngleOfAttackLimit, "attitude.angle_of_attack", "rad", [1e-3, 1.5];
     FlightPathLimit, "attitude.flight_path", "rad", [1e-3, 1.5];
-    Margin, "margin", "m", [1e-3, 500.0];
-    Band, "band", "m", [0.1, 1e4];
-    PlanThrust, "thrust_max", "N", [0.1, 1e6];
+    Margin, "margin", "m", [1e-3, 1e3];
+    Band, "band", "m", [0.01, 1e4];
+    PlanThrust, "thrust_max", "N", [0.01, 1e7];
 }
 
 impl Setting {

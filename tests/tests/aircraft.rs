@@ -124,6 +124,80 @@ fn a_report_tells_what_follows_and_what_is_implausible() {
     }
 }
 
+/// Each change of the template gives a doubt; the template has none.
+#[test]
+fn a_slip_of_the_pen_is_doubted_by_its_key() {
+    type Change = fn(&mut AircraftFile);
+    let changes: [(Change, &str, &str); 4] = [
+        // The span is in the file, or follows from the wing.
+        (
+            |it| (it.pitch_inertia, it.lateral.as_mut().unwrap().span) = (2.0 * 0.75 * 0.75, 1.88),
+            "pitch_inertia",
+            "a radius of gyration of 0.750 m does not fit a span of 1.88 m",
+        ),
+        (
+            |it| (it.pitch_inertia, it.lateral) = (2.0 * 0.75 * 0.75, None),
+            "pitch_inertia",
+            "a radius of gyration of 0.750 m does not fit a span of 1.55 m",
+        ),
+        (
+            |it| (it.elevator.min, it.elevator.max) = (Some(-250.0), Some(200.0)),
+            "elevator.moment",
+            "of angle of attack: check",
+        ),
+        // A glider of 44 g.
+        (
+            |it| {
+                *it = it.similar(0.28);
+                (it.wing_area, it.cruise) = (0.047, 4.95);
+            },
+            "cruise",
+            "a radius of 0.17 m, and positions of `rtk` err by 0.054 m",
+        ),
+    ];
+    for (change, key, what) in changes {
+        let mut file = AircraftFile::known("example").unwrap();
+        change(&mut file);
+        let report = AircraftReport::new(&AircraftModel::new(file).unwrap());
+        let told = report.doubts.iter().find(|doubt| doubt.key == key);
+        let told = told.map(|doubt| doubt.what.as_str()).unwrap_or_default();
+        assert!(told.contains(what), "{key}: {:?}", report.doubts);
+    }
+    let template = AircraftModel::new(AircraftFile::known("example").unwrap()).unwrap();
+    assert_eq!(AircraftReport::new(&template).doubts, vec![]);
+}
+
+/// An airliner with mass, inertia and wing of a Boeing 747; its derivatives are about those of airliners.
+#[test]
+fn an_airliner_is_no_nonsense() {
+    let text = r#"
+        name = "747"
+        derivatives = "radian"
+        mass = 288772.0
+        pitch_inertia = 4.49e7
+        wing_area = 511.0
+        chord = 8.3
+        air_density = 0.302
+        cruise = 265.5
+        lift = { zero = 0.2, alpha = 5.7 }
+        drag = { zero = 0.02, induced = 0.05 }
+        moment = { zero = 0.0, alpha = -1.26, pitch_rate = -24.0, alpha_rate = -3.2 }
+        elevator = { unit = "deg", moment = -1.4, lift = 0.34, min = -25.0, max = 20.0, rate = 40.0 }
+        thrust = { max = 800000.0, lag = 2.0 }
+    "#;
+    let file = AircraftFile::parse("747.toml", text).unwrap();
+    let report = AircraftReport::new(&AircraftModel::new(file).unwrap());
+    assert_eq!(report.doubts, vec![]);
+    // By hand: the root of `-C_ma q S c / I_yy`, and more by the damping.
+    let pressure = 0.5 * 0.302 * 265.5 * 265.5;
+    let stiffness: f64 = 1.26 * pressure * 511.0 * 8.3 / 4.49e7;
+    let frequency = report.modes.short_period.frequency;
+    assert!(
+        (1.0..1.2).contains(&(frequency / stiffness.sqrt())),
+        "{frequency}"
+    );
+}
+
 /// The roll modes of published tables against `2 J_x / (rho v S b^2 C_lp / 2)` by hand, and the greatest roll rates against
 /// `C_la / C_lp range 2 v / b`; the circles against `v^2 / (g tan bank)`.
 #[test]

@@ -12,6 +12,8 @@ use std::path::{Path, PathBuf};
 
 #[path = "../../xtask/src/numbers/page.rs"]
 mod page_of_numbers;
+#[path = "../../xtask/src/numbers/ranges.rs"]
+mod page_of_ranges;
 
 fn read(path: &Path) -> String {
     fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
@@ -122,17 +124,17 @@ fn a_dead_link_and_a_name_that_is_gone_are_found() {
 }
 
 #[test]
-fn the_table_of_tuned_numbers_is_that_of_the_code() {
-    let expected = page_of_numbers::text(root()).unwrap();
-    let page = read(&root().join(page_of_numbers::PAGE));
-    // A whole page is no readable difference: name the first line that differs.
-    let differ = page.lines().zip(expected.lines()).find(|(is, be)| is != be);
-    assert_eq!(differ, None, "run `cargo xtask numbers --save`");
-    assert_eq!(
-        page.len(),
-        expected.len(),
-        "run `cargo xtask numbers --save`"
-    );
+fn the_generated_tables_are_those_of_the_code() {
+    let numbers = (page_of_numbers::PAGE, page_of_numbers::text(root()));
+    let ranges = (page_of_ranges::PAGE, page_of_ranges::text(root()));
+    for (page, expected) in [numbers, ranges] {
+        let (page, expected) = (read(&root().join(page)), expected.unwrap());
+        // A whole page is no readable difference: name the first line that differs.
+        let differ = page.lines().zip(expected.lines()).find(|(is, be)| is != be);
+        assert_eq!(differ, None, "run `cargo xtask numbers --save`");
+        let lengths = [page.len(), expected.len()];
+        assert_eq!(lengths[0], lengths[1], "run `cargo xtask numbers --save`");
+    }
 }
 
 /// Parameters of the session and of the aircraft, and one whose value is no short number: they have no row.

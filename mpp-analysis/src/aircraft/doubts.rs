@@ -2,8 +2,9 @@
 
 use super::Modes;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::vehicle::{Airframe, GRAVITY};
+use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
+use mpp_sim::navigation::NavigationConfig;
 use serde::Serialize;
 use std::fmt;
 
@@ -22,11 +23,14 @@ impl fmt::Display for Doubt {
     }
 }
 
+/// Aspect ratio \[-\] of a wing whose span the file does not give.
+const TYPICAL_ASPECT: f64 = 8.0;
+
 /// Every doubt about an aircraft. The bounds are those of aircraft between a toy and an airliner, after the
 /// tables of derivatives in Roskam, "Airplane Flight Dynamics", part I, appendix B, and Beard, McLain, "Small
 /// Unmanned Aircraft", appendix E.
 pub(super) fn doubts(model: &AircraftModel, modes: &Modes) -> Vec<Doubt> {
-    let all = of_airframe(&model.known.airframe, model.known.cruise).into_iter();
+    let all = of_airframe(model).into_iter();
     let all = all.chain(of_lift(model)).chain(of_actuators(model));
     let all = all.chain(of_modes(modes)).chain(of_world(model));
     all.flatten().collect()
@@ -42,9 +46,11 @@ pub(super) fn outside(value: f64, least: f64, most: f64) -> bool {
 }
 
 /// Numbers of the airframe that do not fit each other.
-fn of_airframe(a: &Airframe, cruise: f64) -> [Option<Doubt>; 4] {
+fn of_airframe(model: &AircraftModel) -> [Option<Doubt>; 4] {
+    let (a, cruise) = (&model.known.airframe, model.known.cruise);
     let loading = a.mass / a.wing_area;
-    let span = 8.0 * a.wing_area.sqrt();
+    let span =
+        (model.file.lateral.as_ref()).map_or((TYPICAL_ASPECT * a.wing_area).sqrt(), |it| it.span);
     let gyration = (a.pitch_inertia / a.mass).sqrt();
     // Over the stiffness, in a path rate that a unit of the lift coefficient gives.
     let per_lift = 0.5 * a.air_density * a.wing_area / a.mass;
@@ -64,11 +70,8 @@ fn of_airframe(a: &Airframe, cruise: f64) -> [Option<Doubt>; 4] {
         ),
         doubt(
             "pitch_inertia",
-            outside(gyration, 0.02 * span, 0.3 * span),
-            format!(
-                "a radius of gyration of {gyration:.3} m does not fit a wing of {:.2} m^2",
-                a.wing_area
-            ),
+            outside(gyration, 0.04 * span, 0.35 * span),
+            format!("a radius of gyration of {gyration:.3} m does not fit a span of {span:.2} m"),
         ),
         doubt(
             "lift.alpha",
@@ -108,7 +111,7 @@ fn of_lift(model: &AircraftModel) -> [Option<Doubt>; 3] {
 }
 
 /// What level flight leaves to motor and elevator.
-fn of_actuators(model: &AircraftModel) -> [Option<Doubt>; 2] {
+fn of_actuators(model: &AircraftModel) -> [Option<Doubt>; 3] {
     let (actuators, needed) = (&model.actuators, model.trim.control);
     let weight = model.known.airframe.mass * GRAVITY;
     let motor = |most: f64| {
@@ -123,6 +126,9 @@ fn of_actuators(model: &AircraftModel) -> [Option<Doubt>; 2] {
     let rooms = [actuators.elevator_below, actuators.elevator_above];
     let total: f64 = rooms.iter().flatten().sum();
     let nearest = rooms.into_iter().flatten().reduce(f64::min);
+    let balanced = actuators.angle_of_attack(&model.known.airframe);
+    let balanced = balanced.map(f64::to_degrees).into_iter();
+    let farthest = balanced.filter(|it| it.is_finite()).fold(0.0, f64::max);
     [
         actuators.thrust_max.and_then(motor),
         doubt(
@@ -131,6 +137,13 @@ fn of_actuators(model: &AircraftModel) -> [Option<Doubt>; 2] {
             format!(
                 "level flight needs {:.3}, near the end of the range",
                 needed.elevator
+            ),
+        ),
+        doubt(
+            "elevator.moment",
+            farthest > 75.0,
+            format!(
+                "it balances {farthest:.1} deg of angle of attack: check `unit`, `derivatives` and moment.alpha"
             ),
         ),
     ]
@@ -155,8 +168,11 @@ fn of_modes(modes: &Modes) -> [Option<Doubt>; 2] {
 }
 
 /// The aircraft against its obstacles and its air.
-fn of_world(model: &AircraftModel) -> [Option<Doubt>; 2] {
-    let body = model.known.body_radius / model.units().length;
+fn of_world(model: &AircraftModel) -> [Option<Doubt>; 3] {
+    let unit = model.units().length;
+    let body = model.known.body_radius / unit;
+    let positions = NavigationConfig::RTK;
+    let error = libm::hypot(positions.sigma, positions.wander);
     let density = model.file.air_density;
     [
         doubt(
@@ -164,6 +180,14 @@ fn of_world(model: &AircraftModel) -> [Option<Doubt>; 2] {
             body > 1.0,
             format!(
                 "the aircraft is {body:.1} times as large as the obstacles to which its speed fits"
+            ),
+        ),
+        // A quarter of the margin of 0.8 units.
+        doubt(
+            "cruise",
+            error > 0.2 * unit,
+            format!(
+                "obstacles that fit its speed have a radius of {unit:.2} m, and positions of `rtk` err by {error:.3} m: fly with `ideal`"
             ),
         ),
         doubt(

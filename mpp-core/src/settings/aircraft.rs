@@ -5,6 +5,7 @@ use crate::control::LqrWeights;
 use crate::estimate::EkfTuning;
 use crate::qp::Weights;
 use crate::units::Units;
+use crate::vehicle::Trim;
 use mpp_data::{ActuatorLimits, Aircraft};
 
 impl Settings {
@@ -21,6 +22,11 @@ impl Settings {
         let [v_noise, pitch_noise, rate_noise, path_noise] = base.estimator.process_noise;
         let [turn, thrust] = base.planner.weights.control;
         let own = PlaneSettings::PRESET;
+        // Plans of an aircraft for whose level flight the preset's thrust is too low may use all of its motor.
+        let level = Trim::at_speed(&aircraft.airframe, aircraft.cruise, 0.0);
+        let level = level.map_or(0.0, |trim| trim.control.thrust);
+        let plans = own.thrust_max * units.force();
+        let motor = actuators.thrust_max.filter(|_| plans < level);
         Self {
             units,
             airframe: aircraft.airframe,
@@ -57,7 +63,7 @@ impl Settings {
                     margin: own.margin * units.length,
                     body_radius: aircraft.body_radius,
                     band: own.band * units.length,
-                    thrust_max: own.thrust_max * units.force(),
+                    thrust_max: motor.unwrap_or(plans),
                     ..own
                 }),
                 ..base.planner

@@ -1,7 +1,6 @@
 //! The lateral part of an aircraft file: span, inertia, derivatives and surfaces beside those of the vertical plane.
 
 use crate::file_error::{ScenarioError, ensure};
-use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Derivatives, LateralAirframe};
 use serde::{Deserialize, Serialize};
 
@@ -86,74 +85,24 @@ impl Lateral {
         }
     }
 
-    /// Checks each key by itself, and that a positive deflection turns to the right.
+    /// Checks what no key shows by itself.
     pub(super) fn check(&self) -> Result<(), ScenarioError> {
-        let positive = [
-            (self.span, "aircraft.lateral.span"),
-            (self.roll_inertia, "aircraft.lateral.roll_inertia"),
-            (self.yaw_inertia, "aircraft.lateral.yaw_inertia"),
-        ];
-        for (value, key) in positive {
-            let sound = value > 0.0 && value.is_finite();
-            ensure(sound, key, "give a number above 0")?;
-        }
-        let product = self.product_inertia * self.product_inertia;
-        ensure(
-            product < self.roll_inertia * self.yaw_inertia,
-            "aircraft.lateral.product_inertia",
-            "give a number whose square is below roll_inertia times yaw_inertia",
-        )?;
         let all = [
             (&self.side, "aircraft.lateral.side"),
             (&self.roll, "aircraft.lateral.roll"),
             (&self.yaw, "aircraft.lateral.yaw"),
         ];
         for (of, key) in all {
-            let numbers = [
-                of.sideslip,
-                of.roll_rate,
-                of.yaw_rate,
-                of.aileron,
-                of.rudder,
-            ];
-            let finite = numbers.iter().all(|number| number.is_finite());
-            ensure(finite, key, "give finite numbers")?;
             let has_rudder = self.rudder.is_some() || of.rudder == 0.0;
             let advice =
                 "add the table `lateral.rudder`, or leave the derivatives by the rudder out";
             ensure(has_rudder, key, advice)?;
         }
+        let product = self.product_inertia * self.product_inertia;
         ensure(
-            self.roll.roll_rate < 0.0,
-            "aircraft.lateral.roll.roll_rate",
-            "give a negative number: a damping",
-        )?;
-        let right = "give a positive number: a positive deflection turns to the right. If your source has the other \
-                     sign, turn the signs of all derivatives by this surface";
-        let rolls = self.roll.aileron > 0.0;
-        ensure(rolls, "aircraft.lateral.roll.aileron", right)?;
-        let yaws = self.rudder.is_none() || self.yaw.rudder > 0.0;
-        ensure(yaws, "aircraft.lateral.yaw.rudder", right)?;
-        self.aileron.check("aircraft.lateral.aileron")?;
-        self.rudder
-            .map_or(Ok(()), |it| it.check("aircraft.lateral.rudder"))
-    }
-}
-
-impl Surface {
-    fn check(&self, key: &'static str) -> Result<(), ScenarioError> {
-        let numbers = [
-            self.range,
-            self.rate,
-            self.bandwidth,
-            self.damping.unwrap_or(1.0),
-        ];
-        let positive = numbers.iter().all(|it| *it > 0.0 && it.is_finite());
-        ensure(positive, key, "give numbers above 0")?;
-        let damping = self.damping.unwrap_or(1.0);
-        let slow = self.bandwidth * TICK_PERIOD <= 2.0 && damping <= 2.0 && self.range < 90.0;
-        let advice =
-            "give a range below 90 deg, a bandwidth of at most 200 rad/s, a damping of at most 2";
-        ensure(slow, key, advice)
+            product < self.roll_inertia * self.yaw_inertia,
+            "aircraft.lateral.product_inertia",
+            "give a number whose square is below roll_inertia times yaw_inertia",
+        )
     }
 }

@@ -4,6 +4,7 @@
 mod choice;
 mod lateral;
 mod numbers;
+mod ranges;
 mod similar;
 
 use crate::file_error::ScenarioError;

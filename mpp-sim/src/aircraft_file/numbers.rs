@@ -1,9 +1,10 @@
 //! From an aircraft file to the numbers of core and plant.
 
-use super::{AircraftFile, Lateral};
+use super::AircraftFile;
+use super::ranges::check_turns;
 use crate::file_error::{ScenarioError, ensure};
-use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
+use mpp_core::planner::SetupError;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;
 use mpp_core::vehicle::{ActuatorLimits, Trim};
@@ -37,8 +38,21 @@ impl AircraftModel {
     /// # Errors
     /// [`ScenarioError::Value`] with the key of the first number that makes no sense.
     pub fn new(file: AircraftFile) -> Result<Self, ScenarioError> {
-        check(&file)?;
+        check_name(&file.name)?;
+        if let Some(lateral) = &file.lateral {
+            check_turns(lateral)?;
+            lateral.check()?;
+        }
         let airframe = file.airframe();
+        let known = Aircraft {
+            airframe,
+            cruise: file.cruise,
+            body_radius: file.body_radius,
+            stall: None,
+        };
+        // There is no level flight to look for while a number makes no sense.
+        let numbers = Settings::flight_of(&known, &ActuatorLimits::NONE).out_of_range();
+        numbers.map_or(Ok(()), |setting| Err(file.refusal(setting)))?;
         let trim = Trim::at_speed(&airframe, file.cruise, 0.0)
             .map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
         let (elevator, alpha) = (trim.control.elevator, trim.state.angle_of_attack());
@@ -69,10 +83,8 @@ impl AircraftModel {
         );
         ensure(!stalls, "aircraft.lift.stall", advice)?;
         let known = Aircraft {
-            airframe,
-            cruise: file.cruise,
-            body_radius: file.body_radius,
             stall: file.lift.stall.map(|stall| stall - alpha),
+            ..known
         };
         let model = Self {
             file,
@@ -80,9 +92,25 @@ impl AircraftModel {
             actuators,
             trim,
         };
-        let flies = FlightLoop::new(&model.settings());
-        flies.map_err(|error| ScenarioError::Value("aircraft", error.to_string()))?;
-        Ok(model)
+        match FlightLoop::new(&model.settings()) {
+            Ok(_) => Ok(model),
+            Err(error) => Err(model.refusal(error)),
+        }
+    }
+
+    /// Why the core cannot fly the aircraft, by the key from which it comes.
+    fn refusal(&self, error: SetupError) -> ScenarioError {
+        match error {
+            SetupError::OutOfRange(setting) => self.file.refusal(setting),
+            SetupError::ThrustTooLow => {
+                let needed = self.trim.control.thrust;
+                let advice = format!(
+                    "level flight at `cruise` needs {needed:.2} N: give at least that, or check drag and cruise"
+                );
+                ScenarioError::Value("aircraft.thrust.max", advice)
+            }
+            error => ScenarioError::Value("aircraft", error.to_string()),
+        }
     }
 
     /// Preset `flight` for the aircraft.
@@ -122,73 +150,4 @@ fn check_name(name: &str) -> Result<(), ScenarioError> {
         "give 1 to {LONGEST_NAME} bytes without slashes and control characters: files of flights have it in their names"
     );
     ensure(fits && !splits, "aircraft.name", advice)
-}
-
-/// Checks each key by itself.
-fn check(file: &AircraftFile) -> Result<(), ScenarioError> {
-    check_name(&file.name)?;
-    let positive = [
-        (file.mass, "aircraft.mass"),
-        (file.pitch_inertia, "aircraft.pitch_inertia"),
-        (file.wing_area, "aircraft.wing_area"),
-        (file.chord, "aircraft.chord"),
-        (file.air_density, "aircraft.air_density"),
-        (file.cruise, "aircraft.cruise"),
-        (file.lift.alpha, "aircraft.lift.alpha"),
-        (-file.moment.alpha, "aircraft.moment.alpha"),
-        (file.lift.stall.unwrap_or(1.0), "aircraft.lift.stall"),
-        (file.thrust.max.unwrap_or(1.0), "aircraft.thrust.max"),
-        (file.thrust.lag.unwrap_or(1.0), "aircraft.thrust.lag"),
-        (file.elevator.rate.unwrap_or(1.0), "aircraft.elevator.rate"),
-    ];
-    for (value, key) in positive {
-        let advice = if key == "aircraft.moment.alpha" {
-            "give a negative number: the planner flies aircraft that are stable in pitch"
-        } else {
-            "give a number above 0"
-        };
-        ensure(value > 0.0 && value.is_finite(), key, advice)?;
-    }
-    let not_negative = [
-        (file.body_radius, "aircraft.body_radius"),
-        (file.drag.zero, "aircraft.drag.zero"),
-        (file.drag.induced, "aircraft.drag.induced"),
-        (-file.moment.pitch_rate, "aircraft.moment.pitch_rate"),
-        (-file.moment.alpha_rate, "aircraft.moment.alpha_rate"),
-        (
-            -file.moment.alpha_rate_time,
-            "aircraft.moment.alpha_rate_time",
-        ),
-    ];
-    for (value, key) in not_negative {
-        let advice = if key.starts_with("aircraft.moment") {
-            "give 0 or a negative number: a damping"
-        } else {
-            "give 0 or more"
-        };
-        ensure(value >= 0.0 && value.is_finite(), key, advice)?;
-    }
-    let finite = [
-        (file.lift.zero, "aircraft.lift.zero"),
-        (file.moment.zero, "aircraft.moment.zero"),
-        (file.elevator.lift, "aircraft.elevator.lift"),
-        (file.elevator.min.unwrap_or(0.0), "aircraft.elevator.min"),
-        (file.elevator.max.unwrap_or(0.0), "aircraft.elevator.max"),
-    ];
-    for (value, key) in finite {
-        ensure(value.is_finite(), key, "give a finite number")?;
-    }
-    let moves = file.elevator.moment != 0.0 && file.elevator.moment.is_finite();
-    ensure(
-        moves,
-        "aircraft.elevator.moment",
-        "give a finite number other than 0",
-    )?;
-    let slow = file.thrust.lag.is_none_or(|lag| lag >= 0.1 * TICK_PERIOD);
-    ensure(
-        slow,
-        "aircraft.thrust.lag",
-        "give at least 0.001 s, or leave it out",
-    )?;
-    file.lateral.as_ref().map_or(Ok(()), Lateral::check)
 }

@@ -1,7 +1,7 @@
 use super::*;
-use mpp_core::settings::Aircraft;
+use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;
-use mpp_core::vehicle::Airframe;
+use mpp_core::vehicle::{ActuatorLimits, Airframe};
 
 fn known(name: &str) -> AircraftModel {
     AircraftModel::new(AircraftFile::known(name).unwrap()).unwrap()
@@ -48,7 +48,7 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         ("alpha = -0.9", "alpha = 0.1", "aircraft.moment.alpha"),
         ("moment = -1.0", "moment = 0.0", "aircraft.elevator.moment"),
         ("max = 20.0", "max = -5.0", "aircraft.elevator.max"),
-        ("max = 10.0", "max = 0.5", "aircraft"),
+        ("max = 10.0", "max = 0.5", "aircraft.thrust.max"),
         ("stall = 0.24", "stall = 0.01", "aircraft.lift.stall"),
         (
             "pitch_rate = -10.0",
@@ -62,7 +62,11 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         ),
         ("lag = 0.1", "lag = inf", "aircraft.thrust.lag"),
         // Wider than the planner's clearance field.
-        ("body_radius = 0.15", "body_radius = 30.0", "aircraft"),
+        (
+            "body_radius = 0.15",
+            "body_radius = 30.0",
+            "aircraft.body_radius",
+        ),
         ("span = 1.5 ", "span = 0.0 ", "aircraft.lateral.span"),
         (
             "product_inertia = 0.01",
@@ -89,8 +93,16 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
             "",
             "aircraft.lateral.side",
         ),
-        ("yaw_rate = -0.12", "yaw_rate = inf", "aircraft.lateral.yaw"),
-        ("damping = 1.0", "damping = 0.0", "aircraft.lateral.aileron"),
+        (
+            "yaw_rate = -0.12",
+            "yaw_rate = inf",
+            "aircraft.lateral.yaw.yaw_rate",
+        ),
+        (
+            "damping = 1.0",
+            "damping = 0.0",
+            "aircraft.lateral.aileron.damping",
+        ),
         // So fast that a regulator of 100 Hz does not hold it.
         (
             "pitch_inertia = 0.08",
@@ -120,6 +132,132 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         let error = AircraftFile::parse("my.toml", &usual.replacen(from, to, 1)).unwrap_err();
         let text = error.to_string();
         assert!(text.contains("my.toml") && text.contains(named), "{text}");
+    }
+}
+
+/// Every number of the vertical plane that is out of its range is refused by its key and range, and so is a sum of two keys.
+#[test]
+fn a_number_out_of_range_is_refused_with_the_range() {
+    let usual = include_str!("../../../aircraft/example.toml");
+    for (from, to, told) in [
+        (
+            "mass = 2.0 ",
+            "mass = 2e6 ",
+            "mass: give 0.01 to 1000000 kg",
+        ),
+        (
+            "wing_area = 0.3 ",
+            "wing_area = 3e4 ",
+            "wing_area: give 0.001 to 1000 m^2",
+        ),
+        (
+            "chord = 0.2 ",
+            "chord = 200.0 ",
+            "chord: give 0.001 to 100 m",
+        ),
+        ("zero = 0.2 ", "zero = 9.0 ", "lift.zero: give -5 to 5"),
+        (
+            "alpha_rate = 1.5",
+            "alpha_rate = 1e3",
+            "lift.alpha_rate: give -0.4 to 0.4 1/rad, times 4 mass",
+        ),
+        (
+            "alpha_rate = -3.0",
+            "alpha_rate = 3.0",
+            "moment.alpha_rate: give -100 to 0 ",
+        ),
+        (
+            "alpha_rate = -3.0",
+            "alpha_rate_time = 3.0",
+            "moment.alpha_rate_time: give -100 to 0 s/rad",
+        ),
+        (
+            "lift = 0.35",
+            "lift = 1e4",
+            "elevator.lift: give -100 to 100 per unit",
+        ),
+        (
+            "min = -25.0",
+            "min = nan",
+            "elevator.min: give 0.001 to 10000 units below",
+        ),
+        (
+            "max = 20.0",
+            "max = inf",
+            "elevator.max: give 0.001 to 10000 units above",
+        ),
+        (
+            "rate = 300.0",
+            "rate = 0.0",
+            "elevator.rate: give 0.001 to 1000000 units/s",
+        ),
+        (
+            "stall = 0.24",
+            "stall = 2.0",
+            "lift.stall: give 0.001 to 1.5 rad above",
+        ),
+        (
+            "lag = 0.1",
+            "lag = 0.0001",
+            "thrust.lag: give 0.001 to 60 s",
+        ),
+        // Plans may not turn the wing by so much.
+        (
+            "alpha = 4.8",
+            "alpha = 0.1",
+            "lift.alpha: it gives the planner",
+        ),
+    ] {
+        let text = usual.replacen(from, to, 1);
+        assert_ne!(text, usual, "{from}");
+        let error = AircraftModel::new(AircraftFile::parse("a", &text).unwrap()).unwrap_err();
+        let error = error.to_string();
+        assert!(error.starts_with(&format!("aircraft.{told}")), "{error}");
+    }
+}
+
+/// What follows from cruise and mass alone is in range at the ends of theirs.
+#[test]
+fn the_units_of_an_aircraft_are_in_range_where_cruise_and_mass_are() {
+    for (cruise, mass, wing_area) in [(1.0, 0.01, 0.1), (300.0, 1e6, 130.0), (20.0, 0.01, 1e-3)] {
+        let aircraft = Aircraft {
+            airframe: Airframe {
+                mass,
+                wing_area,
+                ..Airframe::REFERENCE
+            },
+            cruise,
+            ..Aircraft::REFERENCE
+        };
+        let settings = Settings::flight_of(&aircraft, &ActuatorLimits::NONE);
+        assert_eq!(settings.out_of_range(), None, "{cruise} m/s, {mass} kg");
+    }
+}
+
+/// The motor of an aircraft with much drag is as strong as the file says, and not as plans of the reference aircraft are.
+#[test]
+fn the_thrust_of_a_file_carries_level_flight() {
+    let mut file = AircraftFile::known("example").unwrap();
+    file.drag.zero = 0.6;
+    file.thrust.max = Some(40.0);
+    let model = AircraftModel::new(file.clone()).unwrap();
+    let needed = model.trim.control.thrust;
+    let plans = model.settings().planner.plane().unwrap().thrust_max;
+    assert!(needed > 0.7 * 2.0 * 9.81, "{needed}");
+    assert!((plans - 40.0).abs() < 1e-12);
+    for (most, refused) in [
+        (Some(1.01 * needed), false),
+        (Some(0.99 * needed), true),
+        (None, true),
+    ] {
+        file.thrust.max = most;
+        let told = AircraftModel::new(file.clone()).map_err(|error| error.to_string());
+        let advice = format!("aircraft.thrust.max: level flight at `cruise` needs {needed:.2} N");
+        assert_eq!(
+            told.is_err_and(|error| error.starts_with(&advice)),
+            refused,
+            "{most:?}"
+        );
     }
 }
 

@@ -13,13 +13,13 @@ fn an_aircraft_file_that_makes_no_sense_is_refused_by_file_and_key() {
         (
             "mass = 2.0 ",
             "mass = -2.0 ",
-            "my.toml: aircraft.mass: give a number above 0",
+            "my.toml: aircraft.mass: give 0.01 to 1000000 kg",
         ),
         ("mass = 2.0 ", "# ", "missing field `mass`"),
         (
             "body_radius = 0.15",
             "body_radius = 30.0",
-            "body_radius is out of range",
+            "my.toml: aircraft.body_radius: give 0 to 2 m",
         ),
         (
             "max = 20.0",
@@ -29,7 +29,7 @@ fn an_aircraft_file_that_makes_no_sense_is_refused_by_file_and_key() {
         (
             "aileron = 0.17",
             "aileron = -0.17",
-            "my.toml: aircraft.lateral.roll.aileron: give a positive number",
+            "my.toml: aircraft.lateral.roll.aileron: give 0.000001 to 10 1/rad: positive turns",
         ),
         ("span = 1.5", "# ", "missing field `span`"),
     ] {

@@ -341,7 +341,7 @@ fn a_refused_number_has_its_name_and_range() {
         |config| config.aircraft.airframe.mass = -3.0,
         MppStatus::OutOfRange,
     );
-    assert_eq!((name.as_str(), range), ("airframe.mass", [0.01, 1e5]));
+    assert_eq!((name.as_str(), range), ("airframe.mass", [0.01, 1e6]));
     let (name, _) = refuse(
         |config| config.aircraft.cruise = 500.0,
         MppStatus::OutOfRange,
