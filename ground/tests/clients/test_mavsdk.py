@@ -1,6 +1,7 @@
 """mavsdk for Python, used as in a program on a companion computer."""
 
 import json
+import math
 import statistics
 
 import pytest
@@ -16,7 +17,7 @@ from mavsdk.plugins.info import Info
 from mavsdk.plugins.log_files import LogFiles, LogFilesError, LogFilesResult
 from mavsdk.plugins.mission_raw import MissionRaw
 from mavsdk.plugins.param import Param, ParamError
-from mavsdk.plugins.telemetry import Telemetry
+from mavsdk.plugins.telemetry import FlightMode, LandedState, Telemetry
 
 
 def test_mavsdk_sees_a_healthy_vehicle_in_the_air(simulate):
@@ -28,9 +29,10 @@ def test_mavsdk_sees_a_healthy_vehicle_in_the_air(simulate):
         # A program that waits for these goes on.
         until(telemetry.health_all_ok, "a healthy vehicle")
         until(telemetry.in_air, "a vehicle in the air")
-        # It makes 65.5 V and -1 % of the values that stand for none.
-        until(lambda: telemetry.battery().remaining_percent == -1, "no battery")
-        assert telemetry.battery().voltage_v == pytest.approx(65.535)
+        until(lambda: telemetry.battery().remaining_percent == 100, "a full battery")
+        assert telemetry.battery().voltage_v == pytest.approx(16.2)
+        assert telemetry.landed_state() == LandedState.IN_AIR
+        until(lambda: telemetry.flight_mode() == FlightMode.MISSION, "the mode AUTO")
         assert (telemetry.gps_info().fix_type, telemetry.gps_info().num_satellites) == (6, 10)
         assert telemetry.raw_gps().horizontal_uncertainty_m == pytest.approx(0.02)
         assert MissionRaw(system).download_mission() == []
@@ -57,7 +59,13 @@ def test_what_a_program_waits_for_comes(simulate):
         assert (home.absolute_altitude_m, altitude.altitude_relative_m) == pytest.approx((20, 50))
         assert altitude.altitude_amsl_m == pytest.approx(70)
         assert came["unix_epoch_time"][-1] > 1_767_225_600_000_000
+        imu, odometry = came["imu"][-1], came["odometry"][-1]
+        assert imu.angular_velocity_frd.right_rad_s == 0 and math.isnan(imu.acceleration_frd.down_m_s2)
+        assert (odometry.position_body.x_m, odometry.position_body.z_m) == (0, -50)
+        assert odometry.velocity_body.x_m_s == 0
+        assert odometry.q.z == pytest.approx(math.sin(math.pi / 4), abs=0.01)
         until(telemetry.in_air, "a vehicle in the air")
+        assert telemetry.landed_state() == LandedState.IN_AIR
         assert telemetry.velocity_ned().north_m_s == 0
         assert telemetry.heading().heading_deg == 90
 

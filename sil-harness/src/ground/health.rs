@@ -19,6 +19,9 @@ const PITCH: u32 = 0x20_0000 | 7;
 const SENSORS: u32 = AIRSPEED | POSITION | LIDAR | MOTORS | PITCH;
 /// A fence that does not exist is not broken. Some stations look at this bit alone.
 const GEOFENCE: u32 = 0x10_0000;
+/// Voltage of the battery \[mV\], which the simulation does not have: as much as PX4's simulation tells of a full one. mavsdk
+/// makes 65.5 V or 0 V of the values that stand for none.
+const SUPPLY: u16 = 16_200;
 /// The vehicle would fly if it were armed.
 const PREARM: u32 = 0x1000_0000;
 
@@ -98,10 +101,9 @@ impl Vehicle {
             onboard_control_sensors_present: SENSORS | PREARM,
             onboard_control_sensors_enabled: (SENSORS | PREARM) & !idle,
             onboard_control_sensors_health: healthy(&self.sensors, &self.doubts, self.armed),
-            // There is no battery.
-            voltage_battery: u16::MAX,
+            voltage_battery: SUPPLY,
             current_battery: -1,
-            battery_remaining: -1,
+            battery_remaining: 100,
             errors_comm: count(self.damaged_frames() as usize),
             errors_count1: count(rejections),
             errors_count2: count(self.security.refused as usize),
