@@ -297,6 +297,35 @@ mod tests {
         assert!(gap.abs() < 1e-3 * lost, "{gap} of {lost} J");
     }
 
+    /// Far beyond the stall the wing is a flat plate, to either side of its angle of no lift.
+    #[test]
+    fn the_wing_stalls_to_either_side() {
+        let file = AircraftFile::known("zagi").unwrap();
+        let (airframe, more) = (file.airframe(), Aerodynamics::of(&file));
+        let no_lift = -airframe.lift_zero / airframe.lift_alpha;
+        let lift = |angle: f64| {
+            let air = AirState {
+                airspeed: 15.0,
+                pitch: no_lift + angle,
+                pitch_rate: 0.0,
+                flight_path: 0.0,
+            };
+            let at = more.at(&airframe, &air);
+            at.lift_zero + at.lift_alpha * air.angle_of_attack()
+        };
+        for angle in [0.2, 0.45, 0.5, 0.7, 1.0] {
+            assert!((lift(angle) + lift(-angle)).abs() < 1e-12, "{angle}");
+        }
+        for angle in [0.8, -0.8] {
+            assert!(
+                (lift(angle) - flat_plate(angle)).abs() < 1e-3,
+                "{angle}: {}",
+                lift(angle)
+            );
+        }
+        assert!((lift(0.2) - airframe.lift_alpha * 0.2).abs() < 1e-3);
+    }
+
     #[test]
     fn nonsense_is_refused_and_changes_nothing() {
         let (mut plant, control) = trimmed(Airframe::PAPER);

@@ -12,6 +12,11 @@ pub enum PlantError {
     /// The equations left their domain (an airspeed of zero): the flight ends, as one beyond the limit of the flight path.
     #[error("the aircraft's state is no longer a finite number")]
     NonFiniteState,
+    /// The equations of six degrees of freedom left their domain: the flight ends likewise.
+    #[error(
+        "the aircraft departed: at 80 deg of sideslip or without airspeed the equations of motion end"
+    )]
+    Departed,
 }
 
 /// The true aircraft, and the air that it flies in.

@@ -43,9 +43,9 @@ pub struct Coefficient {
     pub yaw_rate: f64,
     /// By the deflection of the aileron.
     pub aileron: f64,
-    /// By the deflection of the rudder; 0 without a rudder.
-    #[serde(default)]
-    pub rudder: f64,
+    /// By the deflection of the rudder; only a wing without a rudder leaves it out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rudder: Option<f64>,
 }
 
 /// A control surface and its servo, which follows its command in first order, or in second order with a `damping`.
@@ -72,7 +72,7 @@ impl Lateral {
             roll_rate: of.roll_rate,
             yaw_rate: of.yaw_rate,
             aileron: of.aileron,
-            rudder: of.rudder,
+            rudder: of.rudder.unwrap_or(0.0),
         };
         LateralAirframe {
             span: self.span,
@@ -88,15 +88,17 @@ impl Lateral {
     /// Checks what no key shows by itself.
     pub(super) fn check(&self) -> Result<(), ScenarioError> {
         let all = [
-            (&self.side, "aircraft.lateral.side"),
-            (&self.roll, "aircraft.lateral.roll"),
-            (&self.yaw, "aircraft.lateral.yaw"),
+            (&self.side, "aircraft.lateral.side.rudder"),
+            (&self.roll, "aircraft.lateral.roll.rudder"),
+            (&self.yaw, "aircraft.lateral.yaw.rudder"),
         ];
-        for (of, key) in all {
-            let has_rudder = self.rudder.is_some() || of.rudder == 0.0;
+        let has_rudder = self.rudder.is_some();
+        for (of, by_rudder) in all {
             let advice =
                 "add the table `lateral.rudder`, or leave the derivatives by the rudder out";
-            ensure(has_rudder, key, advice)?;
+            ensure(has_rudder || of.rudder.is_none(), by_rudder, advice)?;
+            let advice = "give this derivative, if need be 0: the aircraft has a rudder";
+            ensure(!has_rudder || of.rudder.is_some(), by_rudder, advice)?;
         }
         let product = self.product_inertia * self.product_inertia;
         ensure(

@@ -91,7 +91,7 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         (
             "[lateral.rudder]\nrange = 25.0\nrate = 300.0\nbandwidth = 30.0",
             "",
-            "aircraft.lateral.side",
+            "aircraft.lateral.side.rudder",
         ),
         (
             "yaw_rate = -0.12",
@@ -103,6 +103,8 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
             "damping = 0.0",
             "aircraft.lateral.aileron.damping",
         ),
+        ("\nrudder = -0.2", "", "aircraft.lateral.side.rudder"),
+        ("\nrudder = 0.08", "", "aircraft.lateral.yaw.rudder"),
         // So fast that a regulator of 100 Hz does not hold it.
         (
             "pitch_inertia = 0.08",
@@ -119,9 +121,17 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         );
     }
     for (from, to, named) in [
-        ("mass = 2.0 ", "", "missing field `mass`"),
-        ("yaw_rate = -0.12", "", "missing field `yaw_rate`"),
-        ("yaw_inertia = 0.17", "", "missing field `yaw_inertia`"),
+        ("mass = 2.0 ", "", "my.toml: missing field `mass`"),
+        (
+            "yaw_rate = -0.12",
+            "",
+            "my.toml: table [lateral.yaw]: missing field `yaw_rate`",
+        ),
+        (
+            "yaw_inertia = 0.17",
+            "",
+            "my.toml: table [lateral]: missing field `yaw_inertia`",
+        ),
         ("mass = 2.0 ", "mas = 2.0 ", "unknown field `mas`"),
         (
             "unit = \"deg\"",
@@ -132,6 +142,8 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
         let error = AircraftFile::parse("my.toml", &usual.replacen(from, to, 1)).unwrap_err();
         let text = error.to_string();
         assert!(text.contains("my.toml") && text.contains(named), "{text}");
+        let missing = named.contains("missing");
+        assert!(!missing || text.lines().count() == 1, "{text}");
     }
 }
 

@@ -162,7 +162,7 @@ impl Flight {
         let (wind, reply) = (world.plant.wind(), &exchanged.reply);
         let applied = match world.plant.step(control(reply)) {
             // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
-            Err(PlantError::NonFiniteState) => {
+            Err(PlantError::NonFiniteState | PlantError::Departed) => {
                 self.judge.end = Some(Outcome::FlightPathLimit);
                 return Ok(false);
             }

@@ -8,7 +8,7 @@ mod servo;
 mod tests;
 mod wind;
 
-pub use motion::{LateralState, SpaceDynamics, SpaceState};
+pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use quaternion::Quaternion;
 pub use servo::Servo;
 pub use wind::{SpaceWind, WindConfig};

@@ -3,7 +3,8 @@
 //! The attitude is a turn after a pitch: the quaternion `attitude` turns a *carried plane*, and in this plane the aircraft
 //! has the pitch and the flight path angle of [`AirState`]. The carried plane turns with roll rate and yaw rate, and never
 //! with the pitch rate. So the longitudinal equations hold in it with gravity seen from there, and no attitude is
-//! singular. The sideslip is: the equations hold below 90 deg of it. Beyond that drag pushes, and the flight is not physical.
+//! singular. The sideslip is: the equations divide by its cosine, and beyond 90 deg drag would push. So a flight ends at
+//! [`MOST_SIDESLIP`] with [`PlantError::Departed`].
 //! Without lateral state and command each sum has the same terms as in [`Dynamics`](crate::dynamics::Dynamics), or zeros besides:
 //! the motion is that of the vertical plane, bit for bit.
 //!
@@ -20,9 +21,14 @@
 use super::quaternion::Quaternion;
 use crate::dynamics::{Aerodynamics, SUBSTEPS, moved as moved_plane};
 use crate::plant::PlantError;
+use core::f64::consts::PI;
 use mpp_core::vehicle::{
     AirState, Airframe, Control, GRAVITY, LateralAirframe, LateralControl, VehicleState,
 };
+
+/// Sideslip at which a flight ends \[rad\]: 80 deg. No step reaches the pole at 90 deg from there, unless it turns by more than
+/// 17 rad/s.
+pub const MOST_SIDESLIP: f64 = 80.0 * (PI / 180.0);
 
 /// What a vertical plane does not know of the state.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -98,6 +104,15 @@ impl SpaceState {
         libm::atan2(y, x)
     }
 
+    /// Refuses a state in which the equations of motion do not hold.
+    fn check_departure(&self) -> Result<(), PlantError> {
+        let slips = self.lateral.sideslip.abs() >= MOST_SIDESLIP;
+        if slips || self.plane.air.airspeed <= 0.0 {
+            return Err(PlantError::Departed);
+        }
+        Ok(())
+    }
+
     /// Whether every value is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
@@ -151,12 +166,14 @@ impl SpaceDynamics {
         let substep = dt / f64::from(SUBSTEPS);
         let rate = |at: &SpaceState| self.rate(at, control, lateral);
         let mut state = self.state;
+        state.check_departure()?;
         for _ in 0..SUBSTEPS {
             state = runge_kutta(rate, &state, substep);
             state.lateral.attitude = state.lateral.attitude.normalised();
-        }
-        if !state.is_finite() {
-            return Err(PlantError::NonFiniteState);
+            if !state.is_finite() {
+                return Err(PlantError::NonFiniteState);
+            }
+            state.check_departure()?;
         }
         self.state = state;
         Ok(())
