@@ -249,6 +249,8 @@ fn implausible_lateral_tables_are_doubted_by_key() {
         keys(AircraftFile::known("reference").unwrap()),
         Vec::<&str>::new()
     );
+    let zagi = keys(AircraftFile::known("zagi").unwrap());
+    assert!(zagi.contains(&"lateral.yaw.aileron"), "{zagi:?}");
     let without = AircraftFile {
         lateral: None,
         ..AircraftFile::known("example").unwrap()

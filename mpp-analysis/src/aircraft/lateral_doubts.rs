@@ -54,9 +54,16 @@ fn of_body(model: &AircraftModel, lateral: &LateralAirframe) -> [Option<Doubt>; 
 }
 
 /// Signs that nearly all aircraft have.
-fn of_signs(lateral: &LateralAirframe) -> [Option<Doubt>; 4] {
+fn of_signs(lateral: &LateralAirframe) -> [Option<Doubt>; 5] {
     let (side, roll, yaw) = (&lateral.side, &lateral.roll, &lateral.yaw);
+    // The lateral control departure parameter: the stiffness in yaw while the ailerons hold the bank.
+    let departure = yaw.sideslip - roll.sideslip * yaw.aileron / roll.aileron;
     [
+        doubt(
+            "lateral.yaw.aileron",
+            departure < 0.0,
+            "ailerons that hold the bank let the nose run away".to_owned(),
+        ),
         doubt(
             "lateral.yaw.sideslip",
             yaw.sideslip < 0.005,

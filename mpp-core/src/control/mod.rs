@@ -1,9 +1,11 @@
 //! Linear quadratic regulator of the flight path by the elevator (paper, II-B).
 
+mod lateral;
 mod riccati;
 mod sampled;
 
 use crate::vehicle::{AirState, Control, Linearization};
+pub use lateral::{LateralMotion, LateralRegulator, NoLateralGain};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 pub use riccati::{RiccatiError, solve_riccati};
 pub(crate) use sampled::holds;

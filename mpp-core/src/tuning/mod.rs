@@ -270,3 +270,20 @@ pub mod stability {
     /// planner corrects, and a height that nothing holds stand still. Source: derived.
     pub const MOST_GROWTH: f64 = 1.001;
 }
+
+/// The lateral regulator. Its weights count a radian of bank error as 1.
+pub mod lateral {
+    /// Bandwidth with which the reference aircraft reaches a bank [rad/s]; others have it in their own unit of time. More
+    /// holds the bank better in gusts, and needs faster servos. Source: `mpp-sim/tests/bank.rs`.
+    pub const BANDWIDTH: f64 = 6.0;
+    /// Weight of the squared sideslip [-]. More damps the yaw more, and uses more rudder. Source: `mpp-sim/tests/bank.rs`.
+    pub const SIDESLIP: f64 = 1.0;
+    /// Weight of the squared rudder [-]. Less damps the yaw more. Source: `mpp-sim/tests/bank.rs`.
+    pub const RUDDER: f64 = 1.0;
+    /// Time in which the integral of a bank error equals the error's own aileron \[s\]. Less takes away slow gusts sooner, and
+    /// overshoots. Source: `mpp-sim/tests/bank.rs`.
+    pub const INTEGRAL_TIME: f64 = 1.0;
+    /// Share of the aileron that the integral may use [-]. More holds stronger asymmetries, and leaves less against gusts.
+    /// Source: chosen.
+    pub const INTEGRAL_SHARE: f64 = 1.0 / 3.0;
+}

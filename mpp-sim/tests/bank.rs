@@ -1,0 +1,135 @@
+//! The lateral regulator of the core on the plant in six degrees of freedom.
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+use mpp_core::control::{LateralMotion, LateralRegulator};
+use mpp_core::vehicle::LateralControl;
+use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::space::{SpaceAircraft, SpaceState, WindConfig};
+
+fn scenarios(seed: u64) -> impl Iterator<Item = Scenario> {
+    let known = AircraftFile::KNOWN.into_iter();
+    let files = known.map(|(name, _)| AircraftFile::known(name).unwrap());
+    files
+        .filter(|file| file.lateral.is_some())
+        .map(move |file| Scenario {
+            aircraft: AircraftModel::new(file).unwrap(),
+            ..Scenario::new(Preset::Flight, seed)
+        })
+}
+
+/// An aileron of zagi turns the nose away more than the wing turns it back: level flight holds, turns slip by 20 deg.
+fn departs(name: &str) -> bool {
+    name == "zagi"
+}
+
+fn regulator(scenario: &Scenario) -> LateralRegulator {
+    let (model, table) = (
+        &scenario.aircraft,
+        scenario.aircraft.file.lateral.as_ref().unwrap(),
+    );
+    let range = |surface: &mpp_sim::aircraft_file::Surface| surface.range.to_radians();
+    let limits = [
+        range(&table.aileron),
+        table.rudder.as_ref().map_or(0.0, range),
+    ];
+    let airframe = &model.known.airframe;
+    LateralRegulator::design(airframe, &table.airframe(), &model.trim, limits).unwrap()
+}
+
+fn motion(state: &SpaceState) -> LateralMotion {
+    LateralMotion {
+        airspeed: state.plane.air.airspeed,
+        bank: state.bank(),
+        roll_rate: state.lateral.roll_rate,
+        yaw_rate: state.lateral.yaw_rate,
+    }
+}
+
+/// The states of a flight with the controls of level flight and a wanted bank.
+fn flown(scenario: &Scenario, wind: WindConfig, ticks: u32, bank: f64) -> Vec<SpaceState> {
+    let mut aircraft = SpaceAircraft::new(scenario, wind).unwrap();
+    let mut regulator = regulator(scenario);
+    let trim = scenario.trim().unwrap().control;
+    let step = |_| {
+        let command: LateralControl = regulator.step(&motion(aircraft.state()), bank);
+        aircraft.step(trim, command).unwrap();
+        *aircraft.state()
+    };
+    (0..ticks).map(step).collect()
+}
+
+/// Light turbulence of MIL-F-8785C, section 3.7.3.4: a tenth of a wind of 15 knots.
+const LIGHT: f64 = 0.77;
+
+#[test]
+fn bank_stays_level_in_light_turbulence() {
+    for seed in 1..=3 {
+        for mut scenario in scenarios(seed) {
+            scenario.faults.gusts.intensity = LIGHT;
+            let wind = WindConfig {
+                lateral_gusts: LIGHT,
+                ..WindConfig::default()
+            };
+            let states = flown(&scenario, wind, 3000, 0.0);
+            let squares: f64 = states.iter().map(|state| state.bank().powi(2)).sum();
+            let rms = (squares / states.len() as f64).sqrt().to_degrees();
+            let name = &scenario.aircraft.file.name;
+            assert!(rms < if departs(name) { 6.0 } else { 3.0 }, "{name}: {rms}");
+        }
+    }
+}
+
+#[test]
+fn a_turn_is_reached_and_coordinated() {
+    for scenario in scenarios(1).filter(|it| !departs(&it.aircraft.file.name)) {
+        for bank in [30_f64, -30.0] {
+            let unit = scenario.aircraft.units().time;
+            let ticks = (400.0 * unit) as u32;
+            let states = flown(&scenario, WindConfig::default(), ticks, bank.to_radians());
+            let name = &scenario.aircraft.file.name;
+            let share = |state: &SpaceState| state.bank().to_degrees() / bank;
+            let most = states.iter().map(share).fold(0.0, f64::max);
+            let early = &states[..ticks as usize / 4];
+            let end = states.last().unwrap();
+            assert!(early.iter().any(|state| share(state) > 0.9), "{name}");
+            let held = (share(end) - 1.0).abs();
+            assert!(most < 1.25 && held < 0.05, "{name}: {most}, {held}");
+            let slip = end.lateral.sideslip.to_degrees();
+            assert!(slip.abs() < 3.0, "{name}: {slip}");
+        }
+    }
+}
+
+#[test]
+fn a_motion_that_is_no_number_gives_neutral_surfaces() {
+    let scenario = scenarios(1).next().unwrap();
+    let mut regulator = regulator(&scenario);
+    let level = motion(
+        SpaceAircraft::new(&scenario, WindConfig::default())
+            .unwrap()
+            .state(),
+    );
+    let bad = LateralMotion {
+        roll_rate: f64::NAN,
+        ..level
+    };
+    let before = regulator;
+    for (motion, bank) in [(bad, 0.1), (level, f64::INFINITY)] {
+        assert_eq!(regulator.step(&motion, bank), LateralControl::default());
+    }
+    assert_eq!(regulator, before);
+    assert!(regulator.step(&level, 0.1).aileron > 0.0);
+}
+
+#[test]
+fn an_aileron_that_turns_nothing_has_no_regulator() {
+    let scenario = scenarios(1).next().unwrap();
+    let model = &scenario.aircraft;
+    let mut lateral = model.file.lateral.as_ref().unwrap().airframe();
+    lateral.roll.aileron = 0.0;
+    lateral.yaw.aileron = 0.0;
+    let airframe = &model.known.airframe;
+    let refused = LateralRegulator::design(airframe, &lateral, &model.trim, [0.4; 2]);
+    assert!(refused.unwrap_err().to_string().contains("lateral table"));
+}
