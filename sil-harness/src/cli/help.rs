@@ -59,6 +59,14 @@ Examples:
   sil-harness aircraft zagi
   sil-harness aircraft my.toml --flights 100";
 
+pub(super) const SPACE: &str = "\
+Examples:
+  sil-harness space --aircraft ultrastick
+  sil-harness space --aircraft x8 --bank -20 --wind 0,4,0 --gusts light --out turn.csv
+
+Elevator and thrust stay those of level flight, so a turn loses height.
+Exit codes: 0 flown, 2 usage, 4 extreme state: the aircraft departed, 1 anything else";
+
 pub(super) const FIGURES: &str = "\
 Examples:
   sil-harness figures --out out/figures --rows rows.jsonl";

@@ -25,6 +25,7 @@ mod pdf;
 mod replay;
 mod scenario;
 mod signals;
+mod space;
 mod values;
 
 use answer::complain;
@@ -53,6 +54,8 @@ enum Command {
     /// Tell what follows from an aircraft file: trim, modes, what the planner makes of it; with --flights, how
     /// well it flies
     Aircraft(aircraft::AircraftArgs),
+    /// Hold a bank for 20 s in six degrees of freedom, by the lateral regulator, in wind and gusts
+    Space(space::SpaceArgs),
     /// Draw counterparts of the paper's figures
     Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
@@ -84,6 +87,7 @@ pub fn run() -> ExitCode {
         Some(Command::Campaign(args)) => fault_campaign::run(&args),
         Some(Command::Ceiling(args)) => ceiling::run(&args),
         Some(Command::Aircraft(args)) => aircraft::run(&args),
+        Some(Command::Space(args)) => space::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),

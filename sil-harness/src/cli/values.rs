@@ -100,6 +100,22 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| advice)
 }
 
+/// Reads a bank \[deg\].
+pub(super) fn bank(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|it| (-60.0..=60.0).contains(it));
+    found.ok_or_else(|| "give -60 to 60 deg".to_owned())
+}
+
+/// Reads a wind on three axes [m/s].
+pub(super) fn wind(text: &str) -> Result<[f64; 3], String> {
+    let parts: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let found = parts
+        .ok()
+        .and_then(|parts| <[f64; 3]>::try_from(parts).ok());
+    let weak = found.filter(|wind| wind.iter().all(|it| it.abs() <= 30.0));
+    weak.ok_or_else(|| "give X,Y,Z, three speeds of at most 30 m/s".to_owned())
+}
+
 /// Reads a time to wait \[s\].
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let found = text

@@ -8,6 +8,7 @@ mod json;
 mod pages;
 mod peers;
 mod refused;
+mod space;
 mod speech;
 
 use serde_json::Value;

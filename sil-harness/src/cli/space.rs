@@ -1,0 +1,223 @@
+//! `space`: the lateral regulator holds a bank in six degrees of freedom.
+
+use super::answer::{FAILURE, Failure, USAGE, data};
+use super::values::{bank, seed, wind};
+use crate::files::{read_aircraft, write_whole};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::control::{LateralMotion, LateralRegulator};
+use mpp_core::vehicle::GRAVITY;
+use mpp_sim::aircraft_file::AircraftModel;
+use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::space::{SpaceAircraft, SpaceState, WindConfig};
+use serde::Serialize;
+use std::fmt::{self, Write as _};
+use std::path::PathBuf;
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = super::help::SPACE)]
+pub(super) struct SpaceArgs {
+    /// Name of an aircraft that comes with the project, or a file, with a lateral table
+    #[arg(long, value_name = "NAME|FILE")]
+    aircraft: String,
+    /// Bank to take at once and to hold, to the right positive, -60 to 60 \[deg\]
+    #[arg(long, default_value_t = 30.0, value_name = "DEG", value_parser = bank, allow_negative_numbers = true)]
+    bank: f64,
+    /// Steady wind ahead, to the right and up [m/s]
+    #[arg(long, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
+    wind: Option<[f64; 3]>,
+    /// Turbulence of MIL-F-8785C at low altitude
+    #[arg(long)]
+    gusts: Option<Turbulence>,
+    /// Seed of the gusts
+    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    seed: u64,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// File to write: a CSV table of the ticks
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Turbulence {
+    /// Wind of 15 knots, vertical gusts of 0.77 m/s
+    Light,
+    /// Wind of 30 knots, vertical gusts of 1.54 m/s
+    Moderate,
+    /// Wind of 45 knots, vertical gusts of 2.31 m/s
+    Severe,
+}
+
+impl Turbulence {
+    /// Standard deviation of the vertical gusts: a tenth of the wind [m/s].
+    fn intensity(self) -> f64 {
+        match self {
+            Self::Light => 0.77,
+            Self::Moderate => 1.54,
+            Self::Severe => 2.31,
+        }
+    }
+}
+
+/// Duration of the flight, and of its end over which the turn is measured \[ticks\].
+const TICKS: usize = 2000;
+const MEASURED: usize = 1000;
+/// Exit code of a flight that ends in an extreme state.
+const EXTREME: u8 = 4;
+
+/// What the flight did, over its last 10 s where nothing else stands.
+#[derive(Debug, Serialize)]
+struct Turned {
+    aircraft: String,
+    bank_deg: f64,
+    /// Root of the mean squared bank error.
+    bank_rms_deg: f64,
+    /// Over the whole flight.
+    most_sideslip_deg: f64,
+    /// Over the whole flight.
+    altitude_change: f64,
+    /// Mean airspeed over mean turn rate, through the air; null without a bank.
+    radius: Option<f64>,
+    /// `v^2 / (g tan bank)` with the mean airspeed and the wanted bank.
+    radius_level: Option<f64>,
+}
+
+impl fmt::Display for Turned {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "aircraft            {}", self.aircraft)?;
+        writeln!(f, "bank                {:8.1} deg", self.bank_deg)?;
+        writeln!(
+            f,
+            "bank error, RMS     {:8.2} deg, last 10 s",
+            self.bank_rms_deg
+        )?;
+        writeln!(f, "greatest sideslip   {:8.2} deg", self.most_sideslip_deg)?;
+        write!(f, "change of altitude  {:8.1} m", self.altitude_change)?;
+        if let (Some(flown), Some(level)) = (self.radius, self.radius_level) {
+            write!(
+                f,
+                "\nradius of the turn  {flown:8.1} m, v^2 / (g tan bank) is {level:.1} m"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
+    let states = fly(args)?;
+    let turned = Turned::of(args, &states);
+    if let Some(out) = &args.out {
+        write_whole(out, table(&states).as_bytes())
+            .map_err(|error| Failure::new(FAILURE, error))?;
+    }
+    if args.json {
+        data(serde_json::to_string(&turned).map_err(|error| Failure::new(FAILURE, error))?)?;
+    } else {
+        data(&turned)?;
+    }
+    Ok(0)
+}
+
+/// The states of the flight after each tick. Elevator and thrust stay those of level flight.
+fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
+    let usage = |error: &dyn fmt::Display| Failure::new(USAGE, error);
+    let file = read_aircraft(&args.aircraft).map_err(|error| usage(&error))?;
+    let aircraft = AircraftModel::new(file).map_err(|error| usage(&error))?;
+    let mut scenario = Scenario {
+        aircraft,
+        ..Scenario::new(Preset::Flight, args.seed)
+    };
+    let intensity = args.gusts.map_or(0.0, Turbulence::intensity);
+    scenario.faults.gusts.intensity = intensity;
+    let wind = WindConfig {
+        steady: args.wind.unwrap_or_default(),
+        lateral_gusts: intensity,
+        ..WindConfig::default()
+    };
+    let mut plant = SpaceAircraft::new(&scenario, wind).map_err(|error| usage(&error))?;
+    let model = &scenario.aircraft;
+    let Some(lateral) = &model.file.lateral else {
+        return Err(usage(&"aircraft.lateral: give this table"));
+    };
+    let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());
+    let limits = [lateral.aileron.range.to_radians(), rudder];
+    let airframe = &model.known.airframe;
+    let mut regulator =
+        LateralRegulator::design(airframe, &lateral.airframe(), &model.trim, limits)
+            .map_err(|error| usage(&error))?;
+    let bank = args.bank.to_radians();
+    let mut states = Vec::with_capacity(TICKS);
+    for tick in 0..TICKS {
+        let state = plant.state();
+        let motion = LateralMotion {
+            airspeed: state.plane.air.airspeed,
+            bank: state.bank(),
+            roll_rate: state.lateral.roll_rate,
+            yaw_rate: state.lateral.yaw_rate,
+        };
+        let command = regulator.step(&motion, bank);
+        plant.step(model.trim.control, command).map_err(|error| {
+            let after = tick as f64 * TICK_PERIOD;
+            Failure::new(EXTREME, format!("after {after:.2} s {error}"))
+        })?;
+        states.push(*plant.state());
+    }
+    Ok(states)
+}
+
+impl Turned {
+    fn of(args: &SpaceArgs, states: &[SpaceState]) -> Self {
+        let measured = &states[states.len().saturating_sub(MEASURED)..];
+        let mean = |of: &dyn Fn(&SpaceState) -> f64| {
+            measured.iter().map(of).sum::<f64>() / measured.len() as f64
+        };
+        let bank = args.bank.to_radians();
+        let slips = states.iter().map(|it| it.lateral.sideslip.abs());
+        let altitude = |state: Option<&SpaceState>| state.map_or(0.0, |it| it.plane.z);
+        // Courses wrap at 180 deg, steps between ticks do not.
+        let turns = measured.windows(2).map(|pair| match pair {
+            [from, to] => libm::remainder(to.course() - from.course(), std::f64::consts::TAU),
+            _ => 0.0,
+        });
+        let turn_rate = turns.sum::<f64>().abs() / ((measured.len() - 1) as f64 * TICK_PERIOD);
+        let speed = mean(&|it| it.plane.air.airspeed);
+        let turning = args.bank != 0.0;
+        Self {
+            aircraft: args.aircraft.clone(),
+            bank_deg: args.bank,
+            bank_rms_deg: mean(&|it| (it.bank() - bank).powi(2)).sqrt().to_degrees(),
+            most_sideslip_deg: slips.fold(0.0, f64::max).to_degrees(),
+            altitude_change: altitude(states.last()) - altitude(states.first()),
+            radius: turning.then_some(speed / turn_rate),
+            radius_level: turning.then_some(speed * speed / (GRAVITY * libm::tan(bank).abs())),
+        }
+    }
+}
+
+/// The ticks as CSV.
+fn table(states: &[SpaceState]) -> String {
+    let mut text =
+        "t,x,y,z,airspeed,bank_deg,course_deg,sideslip_deg,roll_rate_deg,yaw_rate_deg\n".to_owned();
+    for (tick, state) in states.iter().enumerate() {
+        let (plane, side) = (&state.plane, &state.lateral);
+        let angles = [
+            state.bank(),
+            state.course(),
+            side.sideslip,
+            side.roll_rate,
+            side.yaw_rate,
+        ];
+        let t = (tick + 1) as f64 * TICK_PERIOD;
+        let _ = write!(
+            text,
+            "{t:.2},{},{},{},{}",
+            plane.x, side.y, plane.z, plane.air.airspeed
+        );
+        angles.iter().for_each(|angle| {
+            let _ = write!(text, ",{}", angle.to_degrees());
+        });
+        text.push('\n');
+    }
+    text
+}
