@@ -9,7 +9,7 @@ use super::direction::{Direction, Stand};
 use super::{Active, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
 use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, ControlVector, add_all, dot};
+use crate::qp::controls::{CONTROLS, ControlVector, dot};
 use crate::qp::factor::CAPACITY;
 use crate::qp::rows::{RowKind, RowPattern};
 
@@ -174,14 +174,15 @@ impl Solver {
         let mut sum = [0.0; CONTROLS];
         let (mut excess, mut lengths) = (0.0, 0.0);
         for (row, weight) in &self.certificate {
-            if let (Some(pattern), Some(bound)) =
-                (RowPattern::of(*row), self.problem.bounds.0.get(*row))
-            {
+            if let (Some(pattern), Some(bound), Some(price)) = (
+                RowPattern::of(*row),
+                self.problem.bounds.0.get(*row),
+                shared.prices.get(*row),
+            ) {
                 excess += weight * (pattern.value(&self.outputs) - bound);
-                let mut normal = [0.0; CONTROLS];
-                shared.add_normal(&mut normal, &pattern, *weight);
-                lengths += libm::sqrt(dot(&normal, &normal));
-                add_all(&mut sum, &normal, 1.0);
+                shared.add_normal(&mut sum, &pattern, *weight);
+                // The price is the inverse of the normal's squared length.
+                lengths += weight / libm::sqrt(*price);
             }
         }
         let mut terms = self.certificate.iter();
