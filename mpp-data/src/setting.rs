@@ -112,7 +112,7 @@ settings! {
     CruiseAirspeed, "cruise", "m/s", [1.0, 300.0];
     WindChange, "wind_change", "m/s in 1 s", [1e-3, 100.0];
     Altitude, "planner.altitude", "m", [-1e3, 2e4];
-    Sight, "the range of the lidar (sight)", "m", [1.0, 1e4];
+    Sight, "the range of the lidar (sight)", "m", [1.0, 1e5];
     PenaltyLinear, "penalty.linear", "1/m", [1e-6, 1e12];
     AngleOfAttackLimit, "attitude.angle_of_attack", "rad", [1e-3, 1.5];
     FlightPathLimit, "attitude.flight_path", "rad", [1e-3, 1.5];

@@ -218,7 +218,7 @@ typedef struct mpp_config {
   uint32_t latency_ticks;
   // Seed of the planner's random numbers.
   uint64_t seed;
-  // Longest range that the lidar reports [m], 1 to 10000.
+  // Longest range that the lidar reports [m], 1 to 100000.
   float range_max;
   // Height to which the aircraft returns [m], -1000 to 20000.
   double altitude;

@@ -11,8 +11,8 @@ pub fn stall_sides(stall: f64, airframe: &Airframe, airspeed: f64) -> [f64; 2] {
     [below, stall].map(|side| STALL_SHARE * side)
 }
 
-/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that will be there when the elevator
-/// acts, because the elevator alone could balance the aircraft beyond the stall, and a wing that pitches up swings through.
+/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that is there and the one that
+/// will be there when the elevator acts, because the elevator alone could balance the aircraft beyond the stall, and a wing that pitches up swings through.
 #[derive(Clone, Copy, Debug)]
 pub struct StallGuard {
     /// Elevator command and angle of attack \[rad\] of level flight.
@@ -52,11 +52,12 @@ impl StallGuard {
         let [elevator, level] = self.trim;
         let there = air.angle_of_attack();
         let rate = air.pitch_rate - self.path_rate * (there - level);
-        let angle_of_attack = there + self.lead * rate;
+        let soon = there + self.lead * rate;
         let balanced = level + self.per_unit * (command.elevator - elevator);
-        let [least, most] = self
-            .limits
-            .map(|limit| limit + STALL_LEAD * (limit - angle_of_attack));
+        // The rate may only tighten a limit.
+        let [least, most] = self.limits;
+        let least = least + STALL_LEAD * (least - there.min(soon));
+        let most = most + STALL_LEAD * (most - there.max(soon));
         let kept = balanced.min(most).max(least);
         // A command within the limits keeps its bits.
         if libm::fabs(kept - balanced) > 0.0 {

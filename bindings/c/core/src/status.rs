@@ -132,7 +132,7 @@ const TEXTS: [(MppStatus, &CStr); 25] = [
     ),
     (
         MppStatus::Range,
-        c"range_max is out of range or not a finite number: give 1 to 10000 metres",
+        c"range_max is out of range or not a finite number: give 1 to 100000 metres",
     ),
     (
         MppStatus::Altitude,

@@ -27,7 +27,7 @@ pub struct MppConfig {
     pub latency_ticks: u32,
     /// Seed of the planner's random numbers.
     pub seed: u64,
-    /// Longest range that the lidar reports [m], 1 to 10000.
+    /// Longest range that the lidar reports [m], 1 to 100000.
     pub range_max: f32,
     /// Height to which the aircraft returns [m], -1000 to 20000.
     pub altitude: f64,
