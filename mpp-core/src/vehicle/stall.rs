@@ -11,8 +11,9 @@ pub fn stall_sides(stall: f64, airframe: &Airframe, airspeed: f64) -> [f64; 2] {
     [below, stall].map(|side| STALL_SHARE * side)
 }
 
-/// The regulator's guard against the stall. It bounds the elevator by the angle of attack that is there and the one that
-/// will be there when the elevator acts, because the elevator alone could balance the aircraft beyond the stall, and a wing that pitches up swings through.
+/// The regulator's guard against the stall, because the elevator alone could balance the aircraft beyond the stall, and a wing
+/// that pitches up swings through. It bounds the elevator by the angle of attack that is there, and by the one that will be
+/// there when the elevator acts.
 #[derive(Clone, Copy, Debug)]
 pub struct StallGuard {
     /// Elevator command and angle of attack \[rad\] of level flight.
