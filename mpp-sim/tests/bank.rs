@@ -4,8 +4,9 @@
 use mpp_core::control::{LateralMotion, LateralRegulator};
 use mpp_core::vehicle::LateralControl;
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+use mpp_sim::plant::Plant;
 use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::{SpaceAircraft, SpaceState, WindConfig};
+use mpp_sim::space::{CourseHold, SpaceAircraft, SpaceState, WindConfig, regulator};
 
 fn scenarios(seed: u64) -> impl Iterator<Item = Scenario> {
     let known = AircraftFile::KNOWN.into_iter();
@@ -23,20 +24,6 @@ fn departs(name: &str) -> bool {
     name == "zagi"
 }
 
-fn regulator(scenario: &Scenario) -> LateralRegulator {
-    let (model, table) = (
-        &scenario.aircraft,
-        scenario.aircraft.file.lateral.as_ref().unwrap(),
-    );
-    let range = |surface: &mpp_sim::aircraft_file::Surface| surface.range.to_radians();
-    let limits = [
-        range(&table.aileron),
-        table.rudder.as_ref().map_or(0.0, range),
-    ];
-    let airframe = &model.known.airframe;
-    LateralRegulator::design(airframe, &table.airframe(), &model.trim, limits).unwrap()
-}
-
 fn motion(state: &SpaceState) -> LateralMotion {
     LateralMotion {
         airspeed: state.plane.air.airspeed,
@@ -49,7 +36,7 @@ fn motion(state: &SpaceState) -> LateralMotion {
 /// The states of a flight with the controls of level flight and a wanted bank.
 fn flown(scenario: &Scenario, wind: WindConfig, ticks: u32, bank: f64) -> Vec<SpaceState> {
     let mut aircraft = SpaceAircraft::new(scenario, wind).unwrap();
-    let mut regulator = regulator(scenario);
+    let mut regulator = regulator(scenario).unwrap();
     let trim = scenario.trim().unwrap().control;
     let step = |_| {
         let command: LateralControl = regulator.step(&motion(aircraft.state()), bank);
@@ -104,7 +91,7 @@ fn a_turn_is_reached_and_coordinated() {
 #[test]
 fn a_motion_that_is_no_number_gives_neutral_surfaces() {
     let scenario = scenarios(1).next().unwrap();
-    let mut regulator = regulator(&scenario);
+    let mut regulator = regulator(&scenario).unwrap();
     let level = motion(
         SpaceAircraft::new(&scenario, WindConfig::default())
             .unwrap()
@@ -132,4 +119,31 @@ fn an_aileron_that_turns_nothing_has_no_regulator() {
     let airframe = &model.known.airframe;
     let refused = LateralRegulator::design(airframe, &lateral, &model.trim, [0.4; 2]);
     assert!(refused.unwrap_err().to_string().contains("lateral table"));
+}
+
+/// Without anything from the side the planner's plane is flown bit for bit, and in gusts the track is held.
+#[test]
+fn the_course_is_held() {
+    for mut scenario in scenarios(4) {
+        let trim = scenario.trim().unwrap().control;
+        let name = scenario.aircraft.file.name.clone();
+        let mut plane = mpp_sim::aircraft::Aircraft::new(&scenario).unwrap();
+        let mut calm = CourseHold::new(&scenario).unwrap();
+        for _ in 0..500 {
+            plane.step(trim).unwrap();
+            calm.step(trim).unwrap();
+            assert_eq!(plane.state(), calm.state(), "{name}");
+        }
+        scenario.faults.gusts.intensity = 0.77;
+        let mut gusty = CourseHold::new(&scenario).unwrap();
+        let mut off = 0.0_f64;
+        for _ in 0..2000 {
+            gusty.step(trim).unwrap();
+            off = off.max(gusty.space().lateral.y.abs());
+        }
+        println!("{name}: {off:.2} m off the track");
+        let unit = scenario.aircraft.units().length;
+        assert!(departs(&name) || off < unit.max(1.0), "{name}: {off} m");
+        assert!(off > 0.0, "{name} flies in gusts from the side");
+    }
 }

@@ -1,6 +1,7 @@
 //! The plant in six degrees of freedom: an aircraft with a lateral table behind its actuators, in wind on three axes. In
 //! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
 
+mod course;
 mod motion;
 mod quaternion;
 mod servo;
@@ -8,6 +9,7 @@ mod servo;
 mod tests;
 mod wind;
 
+pub use course::CourseHold;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use quaternion::Quaternion;
 pub use servo::Servo;
@@ -19,6 +21,7 @@ use crate::file_error::ScenarioError;
 use crate::plant::PlantError;
 use crate::scenario::Scenario;
 use mpp_core::config::TICK_PERIOD;
+use mpp_core::control::LateralRegulator;
 use mpp_core::vehicle::{Control, LateralControl};
 
 /// Motion, actuators and air of one flight.
@@ -111,6 +114,23 @@ impl SpaceAircraft {
         }
         Ok((given, surfaces))
     }
+}
+
+/// The lateral regulator of a scenario's aircraft.
+///
+/// # Errors
+/// [`ScenarioError`] when the aircraft's file has no lateral table, or no gain holds a bank.
+pub fn regulator(scenario: &Scenario) -> Result<LateralRegulator, ScenarioError> {
+    let model = &scenario.aircraft;
+    let bad = |advice: String| ScenarioError::Value("aircraft.lateral", advice);
+    let Some(lateral) = &model.file.lateral else {
+        return Err(bad("give this table".to_owned()));
+    };
+    let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());
+    let limits = [lateral.aileron.range.to_radians(), rudder];
+    let airframe = &model.known.airframe;
+    LateralRegulator::design(airframe, &lateral.airframe(), &model.trim, limits)
+        .map_err(|error| bad(error.to_string()))
 }
 
 /// Moves the position with the wind [m/s] for `dt` \[s\].

@@ -63,8 +63,10 @@ pub(super) const SPACE: &str = "\
 Examples:
   sil-harness space --aircraft ultrastick
   sil-harness space --aircraft x8 --bank -20 --wind 0,4,0 --gusts light --out turn.csv
+  sil-harness space --aircraft rascal --flights 100 --gusts light
 
-Elevator and thrust stay those of level flight, so a turn loses height.
+Elevator and thrust stay those of level flight, so a turn loses height. With --flights the planner commands them, and the
+course is held.
 Exit codes: 0 flown, 2 usage, 4 extreme state: the aircraft departed, 1 anything else";
 
 pub(super) const FIGURES: &str = "\

@@ -10,6 +10,7 @@ mod campaign;
 mod ceiling;
 mod check;
 mod core;
+mod courses;
 mod detail;
 mod export;
 mod fault_campaign;

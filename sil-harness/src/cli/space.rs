@@ -1,14 +1,15 @@
 //! `space`: the lateral regulator holds a bank in six degrees of freedom.
 
 use super::answer::{FAILURE, Failure, USAGE, data};
+use super::courses::courses;
 use super::values::{bank, seed, wind};
 use crate::files::{read_aircraft, write_whole};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::control::{LateralMotion, LateralRegulator};
+use mpp_core::control::LateralMotion;
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
 use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::{SpaceAircraft, SpaceState, WindConfig};
+use mpp_sim::space::{SpaceAircraft, SpaceState, WindConfig, regulator};
 use serde::Serialize;
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
@@ -31,6 +32,9 @@ pub(super) struct SpaceArgs {
     /// Seed of the gusts
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
+    /// Let the planner fly this number of flights in its vertical plane, with the course held, past 20 and 40 scaled obstacles
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "json", "out"])]
+    flights: u32,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -105,6 +109,10 @@ impl fmt::Display for Turned {
 }
 
 pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
+    if args.flights > 0 {
+        let intensity = args.gusts.map_or(0.0, Turbulence::intensity);
+        return courses(&args.aircraft, args.flights, args.seed, intensity);
+    }
     let states = fly(args)?;
     let turned = Turned::of(args, &states);
     if let Some(out) = &args.out {
@@ -137,15 +145,7 @@ fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
     };
     let mut plant = SpaceAircraft::new(&scenario, wind).map_err(|error| usage(&error))?;
     let model = &scenario.aircraft;
-    let Some(lateral) = &model.file.lateral else {
-        return Err(usage(&"aircraft.lateral: give this table"));
-    };
-    let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());
-    let limits = [lateral.aileron.range.to_radians(), rudder];
-    let airframe = &model.known.airframe;
-    let mut regulator =
-        LateralRegulator::design(airframe, &lateral.airframe(), &model.trim, limits)
-            .map_err(|error| usage(&error))?;
+    let mut regulator = regulator(&scenario).map_err(|error| usage(&error))?;
     let bank = args.bank.to_radians();
     let mut states = Vec::with_capacity(TICKS);
     for tick in 0..TICKS {

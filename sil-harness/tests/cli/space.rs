@@ -38,6 +38,15 @@ fn a_bank_is_held_and_told() {
 }
 
 #[test]
+fn the_planner_flies_its_plane_in_space() {
+    let output = space("--aircraft x8 --flights 2 --gusts light --seed 780000");
+    let talk = String::from_utf8_lossy(&output.stdout);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(talk.matches("in the plane 2 [").count(), 2, "{talk}");
+    assert_eq!(talk.matches("in space 2 [").count(), 2, "{talk}");
+}
+
+#[test]
 fn gusts_follow_the_seed_and_ticks_are_written() {
     let out = scratch("turn.csv");
     let flown = |seed: u32| {
