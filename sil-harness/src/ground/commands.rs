@@ -2,13 +2,12 @@
 
 use super::channels::Turn;
 use super::demands::{Address, Command, Demand};
-use super::modes::mode_of;
 use super::parameters::decimal;
 use super::severity::Severity;
 use super::vehicle::{Vehicle, Waiting};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, MessageData};
-use mpp_sim::orders::Order;
+use mpp_sim::orders::{Mode, Order};
 
 /// Numbers of MAV_CMD.
 mod number {
@@ -47,6 +46,20 @@ enum Outcome {
     Denied = 2,
     Unsupported = 3,
     Failed = 4,
+}
+
+/// A mode's number in ArduPlane's table, which ground stations use for fixed wings.
+pub(super) fn mode_number(mode: Mode) -> u32 {
+    match mode {
+        Mode::Auto => 10,
+        Mode::Cruise => 7,
+    }
+}
+
+fn mode_of(number: u32) -> Option<Mode> {
+    [Mode::Auto, Mode::Cruise]
+        .into_iter()
+        .find(|mode| mode_number(*mode) == number)
 }
 
 impl Vehicle {

@@ -1,6 +1,6 @@
 //! Requests that anybody may make, and every message that can be sent on request.
 
-use super::commands::CUSTOM_MODE;
+use super::commands::{CUSTOM_MODE, mode_number};
 use super::demands::Address;
 use super::severity::Severity;
 use super::tlog::EPOCH_US;
@@ -128,13 +128,12 @@ impl Vehicle {
     pub(super) fn send_heartbeat(&mut self) {
         let armed = if self.armed { ARMED } else { 0 };
         let by_plan = if self.mode == Mode::Auto { AUTO } else { 0 };
-        let (mode, state) = (self.mode, STATES[usize::from(self.armed)]);
-        self.send_modes(|number| HEARTBEAT_DATA {
-            custom_mode: number(mode),
+        self.send(&HEARTBEAT_DATA {
+            custom_mode: mode_number(self.mode),
             mavtype: FIXED_WING,
             autopilot: GENERIC,
             base_mode: MODE_FLAGS | by_plan | armed,
-            system_status: state,
+            system_status: STATES[usize::from(self.armed)],
             mavlink_version: MINOR_MAVLINK_VERSION,
         });
     }

@@ -28,7 +28,6 @@ mod inquiries;
 mod last;
 mod metadata;
 mod missions;
-mod modes;
 mod motion;
 mod notes;
 pub mod param_file;

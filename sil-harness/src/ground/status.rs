@@ -1,6 +1,7 @@
 //! What a station asks of a healthy vehicle beside its motion: whether it flies, where it is by its navigation, the
 //! wind, and its modes.
 
+use super::commands::mode_number;
 use super::last::Last;
 use super::metadata::GENERAL_URI;
 use super::vehicle::Vehicle;
@@ -55,14 +56,11 @@ impl Vehicle {
             }),
             GPS_RAW_INT_DATA::ID => self.send_fix(),
             WIND_COV_DATA::ID => self.send_wind(),
-            CURRENT_MODE_DATA::ID => {
-                let mode = self.mode;
-                self.send_modes(|number| CURRENT_MODE_DATA {
-                    standard_mode: standard(mode),
-                    custom_mode: number(mode),
-                    intended_custom_mode: number(mode),
-                });
-            }
+            CURRENT_MODE_DATA::ID => self.send(&CURRENT_MODE_DATA {
+                standard_mode: standard(self.mode),
+                custom_mode: mode_number(self.mode),
+                intended_custom_mode: mode_number(self.mode),
+            }),
             COMPONENT_METADATA_DATA::ID => self.send(&COMPONENT_METADATA_DATA {
                 time_boot_ms: self.milliseconds(),
                 file_crc: self.files.general_sum(),
@@ -132,11 +130,11 @@ impl Vehicle {
         for (index, (mode, name)) in (1..).zip(MODES) {
             if number == 0 || number == u32::from(index) {
                 listed = true;
-                self.send_modes(|number| AVAILABLE_MODES_DATA {
+                self.send(&AVAILABLE_MODES_DATA {
                     number_modes: MODES.len() as u8,
                     mode_index: index,
                     standard_mode: standard(mode),
-                    custom_mode: number(mode),
+                    custom_mode: mode_number(mode),
                     properties: if mode == Mode::Auto { AUTO_MODE } else { 0 },
                     mode_name: text(name),
                 });

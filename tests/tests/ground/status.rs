@@ -299,18 +299,3 @@ fn the_mode_is_told_to_those_who_ask() {
     let (auto, cruise) = ((10, 0), (7, 3));
     assert_eq!(modes, [(100, auto), (200, cruise)]);
 }
-
-/// Who asked for the version gets PX4's numbers of modes, and may use them.
-#[test]
-fn modes_have_numbers_that_the_station_knows() {
-    let mut radio = Radio::new(&CONFIG);
-    let version = request(AUTOPILOT_VERSION_DATA::ID, 0.0);
-    let cruise = command(176, 1.0, 196_608.0);
-    radio.at(90, &version).at(150, &cruise);
-    radio.fly(&short());
-    let modes = radio.all(|message| match message {
-        MavMessage::HEARTBEAT(heartbeat) => Some(heartbeat.custom_mode),
-        _ => None,
-    });
-    assert_eq!(modes, [(0, 10), (100, 0x0404_0000), (200, 0x0003_0000)]);
-}
