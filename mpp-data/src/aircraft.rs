@@ -39,14 +39,9 @@ impl Aircraft {
     pub fn elevator_unit(&self) -> f64 {
         let (own, reference) = (&self.airframe, Airframe::REFERENCE);
         let angle = self.angle_unit();
-        let stiffness = |a: &Airframe, cruise: f64| {
-            a.moment_alpha
-                + a.moment_pitch_rate
-                    * (0.5 * a.air_density * a.wing_area * a.lift_alpha * cruise / a.mass)
-        };
         libm::fabs(
-            angle * (stiffness(own, self.cruise) * reference.moment_elevator)
-                / (stiffness(&reference, Self::REFERENCE.cruise) * own.moment_elevator),
+            angle * (own.turn_stiffness(self.cruise) * reference.moment_elevator)
+                / (reference.turn_stiffness(Self::REFERENCE.cruise) * own.moment_elevator),
         )
     }
 }

@@ -133,6 +133,15 @@ impl Airframe {
         self.mass * GRAVITY / (0.5 * self.air_density * (airspeed * airspeed) * self.wing_area)
     }
 
+    /// Moment per angle of attack \[1/rad\] that the elevator balances in a steady turn at an airspeed [m/s]: stiffness, and
+    /// damping of the turn that the angle gives (the distance to the manoeuvre point).
+    #[must_use]
+    pub fn turn_stiffness(&self, airspeed: f64) -> f64 {
+        self.moment_alpha
+            + self.moment_pitch_rate
+                * (0.5 * self.air_density * self.wing_area * self.lift_alpha * airspeed / self.mass)
+    }
+
     /// The airframe whose lift is that with the elevator in balance at each angle of attack and each rate, and
     /// whose elevator has no lift of its own.
     #[must_use]

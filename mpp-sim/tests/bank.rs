@@ -24,22 +24,13 @@ fn departs(name: &str) -> bool {
     name == "zagi"
 }
 
-fn motion(state: &SpaceState) -> LateralMotion {
-    LateralMotion {
-        airspeed: state.plane.air.airspeed,
-        bank: state.bank(),
-        roll_rate: state.lateral.roll_rate,
-        yaw_rate: state.lateral.yaw_rate,
-    }
-}
-
 /// The states of a flight with the controls of level flight and a wanted bank.
 fn flown(scenario: &Scenario, wind: WindConfig, ticks: u32, bank: f64) -> Vec<SpaceState> {
     let mut aircraft = SpaceAircraft::new(scenario, wind).unwrap();
     let mut regulator = regulator(scenario).unwrap();
     let trim = scenario.trim().unwrap().control;
     let step = |_| {
-        let command: LateralControl = regulator.step(&motion(aircraft.state()), bank);
+        let command: LateralControl = regulator.step(&aircraft.state().lateral_motion(), bank);
         aircraft.step(trim, command).unwrap();
         *aircraft.state()
     };
@@ -92,11 +83,8 @@ fn a_turn_is_reached_and_coordinated() {
 fn a_motion_that_is_no_number_gives_neutral_surfaces() {
     let scenario = scenarios(1).next().unwrap();
     let mut regulator = regulator(&scenario).unwrap();
-    let level = motion(
-        SpaceAircraft::new(&scenario, WindConfig::default())
-            .unwrap()
-            .state(),
-    );
+    let aircraft = SpaceAircraft::new(&scenario, WindConfig::default()).unwrap();
+    let level = aircraft.state().lateral_motion();
     let bad = LateralMotion {
         roll_rate: f64::NAN,
         ..level

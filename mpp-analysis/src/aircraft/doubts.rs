@@ -52,9 +52,7 @@ fn of_airframe(model: &AircraftModel) -> [Option<Doubt>; 4] {
     let span =
         (model.file.lateral.as_ref()).map_or((TYPICAL_ASPECT * a.wing_area).sqrt(), |it| it.span);
     let gyration = (a.pitch_inertia / a.mass).sqrt();
-    // Over the stiffness, in a path rate that a unit of the lift coefficient gives.
-    let per_lift = 0.5 * a.air_density * a.wing_area / a.mass;
-    let damping = a.moment_pitch_rate * per_lift * a.lift_alpha * cruise / a.moment_alpha;
+    let damping = a.turn_stiffness(cruise) / a.moment_alpha - 1.0;
     [
         doubt(
             "moment.pitch_rate",

@@ -5,7 +5,7 @@ use super::{LateralState, SpaceAircraft, SpaceState, WindConfig};
 use crate::file_error::ScenarioError;
 use crate::plant::{Plant, PlantError};
 use crate::scenario::Scenario;
-use mpp_core::control::{LateralMotion, LateralRegulator};
+use mpp_core::control::LateralRegulator;
 use mpp_core::units::Units;
 use mpp_core::vehicle::{AirState, Control, GRAVITY, VehicleState};
 
@@ -73,13 +73,7 @@ impl Plant for CourseHold {
     }
 
     fn step(&mut self, command: Control) -> Result<Control, PlantError> {
-        let state = self.aircraft.state();
-        let motion = LateralMotion {
-            airspeed: state.plane.air.airspeed,
-            bank: state.bank(),
-            roll_rate: state.lateral.roll_rate,
-            yaw_rate: state.lateral.yaw_rate,
-        };
+        let motion = self.aircraft.state().lateral_motion();
         let lateral = self.regulator.step(&motion, self.wanted_bank());
         let (given, _) = self.aircraft.step(command, lateral)?;
         self.seen = in_plane(self.aircraft.state());

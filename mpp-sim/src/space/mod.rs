@@ -16,6 +16,7 @@ pub use servo::Servo;
 pub use wind::{SpaceWind, WindConfig};
 
 use crate::aircraft::Actuation;
+use crate::aircraft_file::Lateral;
 use crate::dynamics::Aerodynamics;
 use crate::file_error::ScenarioError;
 use crate::plant::PlantError;
@@ -41,11 +42,7 @@ impl SpaceAircraft {
     /// [`ScenarioError`] when the aircraft's file has no lateral table, or the core's airframe no level flight.
     pub fn new(scenario: &Scenario, wind: WindConfig) -> Result<Self, ScenarioError> {
         let file = &scenario.aircraft.file;
-        let Some(table) = &file.lateral else {
-            let advice =
-                "give this table: an aircraft without it flies in the vertical plane alone";
-            return Err(ScenarioError::Value("aircraft.lateral", advice.to_owned()));
-        };
+        let table = lateral(scenario)?;
         let no_trim = |error: mpp_core::vehicle::TrimError| {
             ScenarioError::Value("aircraft", error.to_string())
         };
@@ -122,15 +119,19 @@ impl SpaceAircraft {
 /// [`ScenarioError`] when the aircraft's file has no lateral table, or no gain holds a bank.
 pub fn regulator(scenario: &Scenario) -> Result<LateralRegulator, ScenarioError> {
     let model = &scenario.aircraft;
-    let bad = |advice: String| ScenarioError::Value("aircraft.lateral", advice);
-    let Some(lateral) = &model.file.lateral else {
-        return Err(bad("give this table".to_owned()));
-    };
+    let lateral = lateral(scenario)?;
     let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());
     let limits = [lateral.aileron.range.to_radians(), rudder];
     let airframe = &model.known.airframe;
     LateralRegulator::design(airframe, &lateral.airframe(), &model.trim, limits)
-        .map_err(|error| bad(error.to_string()))
+        .map_err(|error| ScenarioError::Value("aircraft.lateral", error.to_string()))
+}
+
+fn lateral(scenario: &Scenario) -> Result<&Lateral, ScenarioError> {
+    scenario.aircraft.file.lateral.as_ref().ok_or_else(|| {
+        let advice = "give this table: an aircraft without it flies in the vertical plane alone";
+        ScenarioError::Value("aircraft.lateral", advice.to_owned())
+    })
 }
 
 /// Moves the position with the wind [m/s] for `dt` \[s\].

@@ -22,6 +22,7 @@ use super::quaternion::Quaternion;
 use crate::dynamics::{Aerodynamics, SUBSTEPS, moved as moved_plane};
 use crate::plant::PlantError;
 use core::f64::consts::PI;
+use mpp_core::control::LateralMotion;
 use mpp_core::vehicle::{
     AirState, Airframe, Control, GRAVITY, LateralAirframe, LateralControl, VehicleState,
 };
@@ -95,6 +96,17 @@ impl SpaceState {
         let [x, y, z] = self.lateral.attitude.world_in([0.0, 0.0, 1.0]);
         let slide = cos_slip * y + sin_slip * (z * sin_path - x * cos_path);
         libm::atan2(slide, x * sin_path + z * cos_path)
+    }
+
+    /// What the lateral regulator knows of the motion.
+    #[must_use]
+    pub fn lateral_motion(&self) -> LateralMotion {
+        LateralMotion {
+            airspeed: self.plane.air.airspeed,
+            bank: self.bank(),
+            roll_rate: self.lateral.roll_rate,
+            yaw_rate: self.lateral.yaw_rate,
+        }
     }
 
     /// Course through the air \[rad\], to the right positive.

@@ -1,6 +1,6 @@
 //! `space --flights`: the planner of the vertical plane on the plant in six degrees of freedom, with the course held.
 
-use super::answer::{Failure, USAGE, data};
+use super::answer::{FAILURE, Failure, USAGE, data};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::flown_cells;
 use mpp_analysis::campaign::wilson;
@@ -20,6 +20,10 @@ impl Ground for Nobody {}
 
 fn usage(error: impl Display) -> Failure {
     Failure::new(USAGE, error)
+}
+
+fn failure(error: impl Display) -> Failure {
+    Failure::new(FAILURE, error)
 }
 
 /// Flies the same fields in the plane and in space, past 20 and 40 obstacles that are scaled to the aircraft, and prints both
@@ -61,7 +65,7 @@ pub(super) fn courses(
 }
 
 fn in_plane(scenario: &Scenario) -> Result<bool, Failure> {
-    let log = fly(scenario, &mut PipeLink::of(scenario), |_| {}).map_err(usage)?;
+    let log = fly(scenario, &mut PipeLink::of(scenario), |_| {}).map_err(failure)?;
     Ok(log.summary.strict)
 }
 
@@ -74,6 +78,6 @@ fn in_space(scenario: &Scenario, model: &AircraftModel) -> Result<bool, Failure>
     };
     world.plant = Box::new(CourseHold::new(&whole).map_err(usage)?);
     let mut link = PipeLink::of(scenario);
-    let log = fly_in(&mut world, scenario, &mut link, &mut Nobody).map_err(usage)?;
+    let log = fly_in(&mut world, scenario, &mut link, &mut Nobody).map_err(failure)?;
     Ok(log.summary.strict)
 }

@@ -5,7 +5,6 @@ use super::courses::courses;
 use super::values::{bank, seed, wind};
 use crate::files::{read_aircraft, write_whole};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::control::LateralMotion;
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
 use mpp_sim::scenario::{Preset, Scenario};
@@ -149,14 +148,7 @@ fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
     let bank = args.bank.to_radians();
     let mut states = Vec::with_capacity(TICKS);
     for tick in 0..TICKS {
-        let state = plant.state();
-        let motion = LateralMotion {
-            airspeed: state.plane.air.airspeed,
-            bank: state.bank(),
-            roll_rate: state.lateral.roll_rate,
-            yaw_rate: state.lateral.yaw_rate,
-        };
-        let command = regulator.step(&motion, bank);
+        let command = regulator.step(&plant.state().lateral_motion(), bank);
         plant.step(model.trim.control, command).map_err(|error| {
             let after = tick as f64 * TICK_PERIOD;
             Failure::new(EXTREME, format!("after {after:.2} s {error}"))

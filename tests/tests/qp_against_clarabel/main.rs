@@ -25,7 +25,7 @@ const MOST_BORDERLINE: usize = 3;
 /// Number of programs that are moved to the edge of feasibility, and from there to both sides.
 const PROGRAMS_AT_THE_EDGE: usize = 3_000;
 /// Most programs just outside of the edge where rounding may hide the proof. The solver's result
-/// then breaks rows and is rejected: 47 of 9,000 so far.
+/// then breaks rows and is rejected: 35 of 9,000 so far.
 const MOST_UNPROVED: usize = 60;
 /// Absolute controls [N or elevator], summed over the horizon, for which rounding in a proof may
 /// leave room: thirty for each control, where flights take one.
