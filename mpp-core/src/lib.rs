@@ -76,6 +76,10 @@
 //! A real loop also uses two results of a step. After [`moved`](flight::StepOutput::moved) it drops the cycle
 //! and calls [`planner::Planner::forget`]. While [`is_lost`](flight::FlightLoop::is_lost) holds it begins no cycle.
 #![no_std]
+#![expect(
+    clippy::duplicate_mod,
+    reason = "`qp::kernel` is compiled once for each shape of programs"
+)]
 #![forbid(unsafe_code)]
 
 pub mod config;

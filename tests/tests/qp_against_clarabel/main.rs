@@ -5,6 +5,7 @@
 mod instances;
 mod oracle;
 mod proof;
+mod space;
 
 use clarabel::solver::SolverStatus;
 use instances::{Draw, Instance, Preset, next_instances};

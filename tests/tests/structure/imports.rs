@@ -123,6 +123,18 @@ impl Tree<'_> {
                 continue;
             };
             let name = child.ident.to_string();
+            if let Some(path) = path_of(&child.attrs) {
+                // `#[path = "../NAME/mod.rs"]`: a folder beside this one.
+                let outer = folder
+                    .trim_end_matches('/')
+                    .rsplit_once('/')
+                    .map_or("", |it| it.0);
+                let file = format!("{outer}/{}", path.trim_start_matches("../"));
+                let folder = file.trim_end_matches("mod.rs").to_owned();
+                let index = self.add_file(&file, &folder, at);
+                self.modules[at].children.insert(name, index);
+                continue;
+            }
             let folder = format!("{folder}{name}/");
             let index = if let Some((_, items)) = &child.content {
                 self.add_module(file, &folder, at, items)
@@ -241,6 +253,21 @@ fn is_test(attributes: &[Attribute]) -> bool {
         let argument = attribute.parse_args::<syn::Ident>();
         attribute.path().is_ident("cfg") && argument.is_ok_and(|argument| argument == "test")
     })
+}
+
+/// The value of an attribute `path`.
+fn path_of(attributes: &[Attribute]) -> Option<String> {
+    let own = attributes.iter().find(|own| own.path().is_ident("path"))?;
+    let syn::Meta::NameValue(pair) = &own.meta else {
+        return None;
+    };
+    let syn::Expr::Lit(literal) = &pair.value else {
+        return None;
+    };
+    match &literal.lit {
+        syn::Lit::Str(path) => Some(path.value()),
+        _ => None,
+    }
 }
 
 fn attributes(item: &Item) -> &[Attribute] {

@@ -31,7 +31,7 @@ const SIZES: [(&str, &str); 11] = [
     ("planner/shared.rs", "STEPS_PER_SLICE"),
     ("planner/plane/candidate.rs", "ANGLE_SCALE"),
     ("planner/summary.rs", "FEASIBLE"),
-    ("qp/solve/mod.rs", "MAX_ITERATIONS"),
+    ("qp/kernel/solve/mod.rs", "MAX_ITERATIONS"),
     ("trajectory.rs", "STEPS"),
     ("vehicle/point_mass.rs", "LEAST_AIRSPEED"),
 ];

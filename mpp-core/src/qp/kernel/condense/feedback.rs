@@ -11,18 +11,20 @@
 //! The vector `v` holds the *normalised controls*. In all normalised controls of the horizon the Hessian is
 //! the identity.
 
+use super::super::super::{
+    INPUTS, MOTION, POSITION, STATES, StageControl, StageState, inverse_root,
+};
+use super::super::{CONTROLS, ControlVector, Dynamics, Weights};
 use crate::config::STAGES;
-use crate::qp::controls::ControlVector;
-use crate::qp::{Dynamics, MOTION, POSITION, STATES, StageControl, StageState, Weights};
-use nalgebra::{ArrayStorage, Matrix2, SMatrix, SVector, Vector2};
+use nalgebra::{ArrayStorage, SMatrix, SVector};
 
 /// Feedback of one stage.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Feedback {
-    /// `F`, 2 x 6.
-    pub(super) gain: SMatrix<f64, 2, STATES>,
-    /// `T`, 2 x 2, lower triangular.
-    pub(super) scale: Matrix2<f64>,
+    /// `F`, `INPUTS` x `STATES`.
+    pub(super) gain: SMatrix<f64, INPUTS, STATES>,
+    /// `T`, `INPUTS` x `INPUTS`, lower triangular.
+    pub(super) scale: SMatrix<f64, INPUTS, INPUTS>,
     /// `S d`: the part of the slope `s` that the offset of the stage adds.
     offset_slope: SVector<f64, STATES>,
 }
@@ -31,8 +33,8 @@ impl Feedback {
     /// Feedback of zeros, to be filled.
     pub(super) const fn none() -> Self {
         Self {
-            gain: SMatrix::from_array_storage(ArrayStorage([[0.0; 2]; STATES])),
-            scale: Matrix2::from_array_storage(ArrayStorage([[0.0; 2]; 2])),
+            gain: SMatrix::from_array_storage(ArrayStorage([[0.0; INPUTS]; STATES])),
+            scale: SMatrix::from_array_storage(ArrayStorage([[0.0; INPUTS]; INPUTS])),
             offset_slope: SVector::from_array_storage(ArrayStorage([[0.0; STATES]])),
         }
     }
@@ -49,7 +51,7 @@ impl Feedback {
         feedforward: &StageControl,
         normalised: &StageControl,
     ) -> StageControl {
-        let [g, v] = [feedforward, normalised].map(|pair| Vector2::from(*pair));
+        let [g, v] = [feedforward, normalised].map(|control| SVector::from(*control));
         let state = SVector::from(*state);
         (self.scale * v - self.gain * state - g).into()
     }
@@ -64,8 +66,9 @@ pub(super) fn design(
     weights: &Weights,
     feedback: &mut [Feedback; STAGES],
 ) -> Option<()> {
-    let control = Matrix2::from_diagonal(&Vector2::from(weights.control));
-    let mut cost = SMatrix::<f64, STATES, STATES>::from_diagonal_element(weights.terminal);
+    let control = SMatrix::<f64, INPUTS, INPUTS>::from_diagonal(&SVector::from(weights.control));
+    let mut cost =
+        SMatrix::<f64, STATES, STATES>::from_diagonal(&SVector::from(weights.of_misses()));
     for (stage, feedback) in dynamics.iter().zip(feedback).rev() {
         let Dynamics { motion, b, offset } = stage;
         let by_control = cost * b;
@@ -97,9 +100,10 @@ pub(super) fn feedforward(
     feedback: &[Feedback; STAGES],
     target: &StageState,
 ) -> ControlVector {
-    let mut controls = [[0.0; 2]; STAGES];
-    let mut slope = SVector::from(*target) * -weights.terminal;
-    let stages = dynamics.iter().zip(feedback).zip(&mut controls);
+    let mut controls = [0.0; CONTROLS];
+    let mut slope = -SVector::from(*target).component_mul(&SVector::from(weights.of_misses()));
+    let places = controls.as_chunks_mut::<INPUTS>().0.iter_mut().take(STAGES);
+    let stages = dynamics.iter().zip(feedback).zip(places);
     for ((stage, feedback), control) in stages.rev() {
         let Feedback {
             gain,
@@ -115,23 +119,4 @@ pub(super) fn feedforward(
         *control = (scale * (scale.transpose() * pull)).into();
     }
     controls
-        .as_flattened()
-        .try_into()
-        .unwrap_or([0.0; 2 * STAGES])
-}
-
-/// The lower triangle `T` with `T T' = M^-1`, or `None` if `M` is not positive definite.
-fn inverse_root(matrix: &Matrix2<f64>) -> Option<Matrix2<f64>> {
-    let [[first, coupling], [_, second]]: [[f64; 2]; 2] = (*matrix).into();
-    let root = |square: f64| (square > 0.0 && square.is_finite()).then(|| libm::sqrt(square));
-    // `M = U U'` with an upper triangle `U`, and `T` is the inverse of `U'`.
-    let corner = root(second)?;
-    let beside = coupling / corner;
-    let diagonal = root(first - beside * beside)?;
-    Some(Matrix2::new(
-        1.0 / diagonal,
-        0.0,
-        -beside / (diagonal * corner),
-        1.0 / corner,
-    ))
 }

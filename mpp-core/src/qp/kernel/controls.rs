@@ -1,11 +1,12 @@
 //! Vectors over the controls of the horizon.
 
+use super::super::INPUTS;
 use crate::config::STAGES;
 
-/// Number of controls in the whole horizon. They are ordered by stage.
-pub(super) const CONTROLS: usize = 2 * STAGES;
+/// Number of controls in the whole horizon, rounded up to a multiple of four. They are ordered by stage; what fills up is zero.
+pub(in crate::qp) const CONTROLS: usize = (INPUTS * STAGES).next_multiple_of(4);
 
-pub(super) type ControlVector = [f64; CONTROLS];
+pub(in crate::qp) type ControlVector = [f64; CONTROLS];
 
 /// `sum += factor term`, up to the end of the shorter one. An image that is built for size keeps loops as they
 /// are, so this one takes four entries at a time.
@@ -23,7 +24,7 @@ pub(super) fn add_scaled(sum: &mut [f64], term: &[f64], factor: f64) {
 
 /// Product of `b` with the first entries of `a`. The function keeps four independent sums, which need not
 /// wait for each other.
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(in crate::qp) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (chunks, rest) = b.as_chunks::<4>();
     let mut sums = [0.0; 4];
     for (a, b) in a.as_chunks::<4>().0.iter().zip(chunks) {

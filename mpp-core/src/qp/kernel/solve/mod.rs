@@ -17,13 +17,13 @@ mod select;
 mod step;
 mod working_set;
 
-use super::condense::{Condensed, outputs};
-use super::controls::{CONTROLS, ControlVector};
-use super::excess::{Shortlist, WorstExcess, worst_excess};
+use super::super::{Bounds, RowKind};
+use super::super::{OUTPUTS, Problem, outputs, worst_excess};
 use super::factor::{CAPACITY, Direction as Aligned, Factor};
-use super::rows::{Bounds, OUTPUTS, RowKind, RowPattern};
-use super::{Problem, STATES, Solution, Status};
+use super::shortlist::Shortlist;
+use super::{CONTROLS, Condensed, ControlVector, RowPattern, Solution};
 use crate::config::STAGES;
+use crate::qp::Status;
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -156,14 +156,7 @@ impl Solver {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            problem: Problem {
-                initial: [0.0; STATES],
-                target: [0.0; STATES],
-                bounds: Bounds::none(),
-                penalty: None,
-                hard_angle_of_attack: [false; 2],
-                cost_limit: f64::INFINITY,
-            },
+            problem: Problem::EMPTY,
             feedforward: [0.0; CONTROLS],
             normalised: [0.0; CONTROLS],
             trajectory: Solution::new(),
@@ -230,9 +223,9 @@ impl Solver {
         self.absurd_rise = if self.problem.penalty.is_some() {
             f64::INFINITY
         } else {
-            let miss = shared.weights.terminal * ABSURD_MISS * ABSURD_MISS;
-            let [first, second] = shared.weights.control;
-            let control = STAGES as f64 * (first + second) * ABSURD_CONTROL * ABSURD_CONTROL;
+            let miss = shared.weights.of_position() * ABSURD_MISS * ABSURD_MISS;
+            let effort: f64 = shared.weights.control.iter().sum();
+            let control = STAGES as f64 * effort * ABSURD_CONTROL * ABSURD_CONTROL;
             0.5 * miss.max(control) + ABSURD_FACTOR * self.dual
         };
         self.status = if self.dual.is_finite() && numbers {
@@ -338,23 +331,9 @@ impl Solver {
 
     /// Worst violation of soft and of hard rows that controls can change.
     fn worst_violations(&self, shared: &Condensed, outputs: &[f64; OUTPUTS]) -> (f64, f64) {
-        let WorstExcess {
-            position,
-            attitude,
-            thrust,
-        } = worst_excess(outputs, &self.problem.bounds, &shared.prices);
-        let [up, climb, down, dive] = attitude;
-        let kinds = [
-            (RowKind::Position(0, 0), position),
-            (RowKind::Attitude(0, 0), up),
-            (RowKind::Attitude(0, 1), climb),
-            (RowKind::Attitude(0, 2), down),
-            (RowKind::Attitude(0, 3), dive),
-            (RowKind::Thrust(0, 0), thrust),
-        ];
         let (mut soft, mut hard) = (0.0_f64, 0.0_f64);
-        for (kind, excess) in kinds {
-            let worst = if self.softens(kind) {
+        for (kind, excess) in worst_excess(shared, outputs, &self.problem.bounds) {
+            let worst = if self.problem.softens(kind) {
                 &mut soft
             } else {
                 &mut hard
@@ -374,19 +353,7 @@ impl Solver {
     }
 
     pub(super) fn is_soft(&self, row: usize) -> bool {
-        self.softens(RowKind::of(row))
-    }
-
-    /// Whether the program has a price that softens rows of a kind, at any boundary or stage.
-    fn softens(&self, kind: RowKind) -> bool {
-        let [hard_up, hard_down] = self.problem.hard_angle_of_attack;
-        self.problem.penalty.is_some()
-            && match kind {
-                RowKind::Attitude(_, 0) => !hard_up,
-                RowKind::Attitude(_, 2) => !hard_down,
-                RowKind::Position(..) | RowKind::Attitude(..) => true,
-                RowKind::Thrust(..) => false,
-            }
+        self.problem.softens(RowKind::of(row))
     }
 }
 

@@ -5,13 +5,11 @@
 //! It is also the squared norm of a vector. The vector keeps its digits down to the rounding of the
 //! controls, so this module computes the complement from the vector.
 
+use super::super::super::value_at_start;
+use super::super::dot;
 use super::direction::{Direction, Stand};
-use super::{Active, Entering, Solver, TOLERANCE};
+use super::{Active, CAPACITY, CONTROLS, Condensed, ControlVector, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
-use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, ControlVector, dot};
-use crate::qp::factor::CAPACITY;
-use crate::qp::rows::{RowKind, RowPattern};
 
 /// Greatest contradiction between rows [m, rad or N] that may come from rounding.
 const NEGLIGIBLE: f64 = 1e-8;
@@ -35,13 +33,10 @@ impl Solver {
             if *price > 0.0 || self.is_soft(row) {
                 continue;
             }
-            let value = match (RowKind::of(row), RowPattern::of(row)) {
-                (RowKind::Position(0, direction), _) => {
-                    let [up, forward] = crate::corridor::DIRECTION_VECTORS[direction % 8];
-                    forward * self.problem.initial[0] + up * self.problem.initial[1]
-                }
-                (_, Some(pattern)) => pattern.value(&self.outputs),
-                (_, None) => continue,
+            let pattern = shared.pattern(row);
+            let value = pattern.map(|pattern| pattern.value(&self.outputs));
+            let Some(value) = value.or_else(|| value_at_start(row, &self.problem.initial)) else {
+                continue;
             };
             if value - bound > TOLERANCE {
                 let _ = self.certificate.push((row, 1.0));
@@ -57,7 +52,12 @@ impl Solver {
         if self.problem.penalty.is_some() {
             return None;
         }
-        let (first, second) = self.problem.bounds.crossing_faces(CROSSING)?;
+        let mut found = None;
+        let bounds = &self.problem.bounds;
+        bounds.crossing_faces(CROSSING, |one, other| {
+            found = found.or(Some((one, other)));
+        });
+        let (first, second) = found?;
         let _ = self.certificate.push((first, 1.0));
         let _ = self.certificate.push((second, 1.0));
         Some(Status::Infeasible)
@@ -175,7 +175,7 @@ impl Solver {
         let (mut excess, mut lengths) = (0.0, 0.0);
         for (row, weight) in &self.certificate {
             if let (Some(pattern), Some(bound), Some(price)) = (
-                RowPattern::of(*row),
+                shared.pattern(*row),
                 self.problem.bounds.0.get(*row),
                 shared.prices.get(*row),
             ) {

@@ -1,10 +1,9 @@
 //! One step of the method: from one event to the next.
 
+use super::super::controls::add_all;
 use super::direction::{Direction, Stand};
-use super::{Active, Entering, Solver};
+use super::{Active, Condensed, Entering, Solver};
 use crate::qp::Status;
-use crate::qp::condense::Condensed;
-use crate::qp::controls::add_all;
 
 /// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
 /// depends on the active rows.

@@ -1,14 +1,13 @@
-//! Working sets of several rows: a start between faces that cross, and blocks of thrust rows.
+//! Working sets of several rows: a start between faces that cross, and blocks of rows of inputs.
 
-use super::{Active, Solver};
-use crate::config::{DIRECTIONS, STAGES};
+use super::super::super::{LAST_ROWS, ROWS};
+use super::super::controls::add_all;
+use super::super::dot;
+use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver};
 use crate::qp::Status;
-use crate::qp::condense::Condensed;
-use crate::qp::controls::CONTROLS;
-use crate::qp::controls::{add_all, dot};
-use crate::qp::factor::{CAPACITY, Direction as Aligned};
-use crate::qp::rows::{ATTITUDE_ROWS, POSITION_ROWS, RowPattern, parts};
 
+/// Greatest number of rows in a block: one of each of the last pairs.
+const PAIRED: usize = (ROWS - LAST_ROWS) / 2;
 /// Share of its norm that a row of a block has to have apart from the rows before it.
 const APART: f64 = 0.1;
 /// Least crossing \[m\] of faces between which a program starts.
@@ -24,29 +23,24 @@ impl Solver {
     // Not inlined, so that it does not lie on the stack beneath the steps.
     #[inline(never)]
     pub(super) fn start_between_crossing_faces(&mut self, shared: &Condensed) {
-        const HALF: usize = DIRECTIONS / 2;
-        let mut pairs: heapless::Vec<usize, PAIRS> = heapless::Vec::new();
-        for (stage, faces) in parts(&self.problem.bounds.0).0.iter().enumerate().skip(1) {
-            let (one, other) = faces.split_at(HALF);
-            for (direction, (one, other)) in one.iter().zip(other).enumerate() {
-                let row = stage * DIRECTIONS + direction;
-                if one + other < -LEAST_CROSSING
-                    && shared.prices.get(row).is_some_and(|price| *price > 0.0)
-                {
-                    let _ = pairs.push(row);
+        let mut pairs: heapless::Vec<(usize, usize), PAIRS> = heapless::Vec::new();
+        self.problem
+            .bounds
+            .crossing_faces(LEAST_CROSSING, |one, other| {
+                if shared.prices.get(one).is_some_and(|price| *price > 0.0) {
+                    let _ = pairs.push((one, other));
                 }
-            }
-        }
+            });
         if pairs.is_empty() {
             return;
         }
-        for row in pairs.iter().flat_map(|row| [*row, *row + HALF]) {
+        for row in pairs.iter().flat_map(|(one, other)| [*one, *other]) {
             let _ = self.take_up(shared, row, true, 0.0);
         }
         self.start_settle(shared);
     }
 
-    /// Takes up all violated thrust rows at once, if the worst row is one. They hardly depend on each other. Returns
+    /// Takes up all violated rows of inputs at once, if the worst row is one. They hardly depend on each other. Returns
     /// `None`, and changes nothing, if there is only one.
     #[inline(never)]
     pub(super) fn take_up_block(
@@ -54,24 +48,24 @@ impl Solver {
         shared: &Condensed,
         worst: Active,
     ) -> Option<Option<Status>> {
-        const FIRST: usize = POSITION_ROWS + ATTITUDE_ROWS;
-        if worst.row < FIRST {
+        if worst.row < LAST_ROWS {
             return None;
         }
-        let mut rows: heapless::Vec<usize, STAGES> = heapless::Vec::new();
-        for (stage, [rise, reserve]) in parts(&self.open.0).2.iter().enumerate() {
-            let row = FIRST + 2 * stage;
-            let Some(pattern) = RowPattern::of(row) else {
+        let mut rows: heapless::Vec<usize, PAIRED> = heapless::Vec::new();
+        let limits = self.open.0.get(LAST_ROWS..).unwrap_or(&[]);
+        for (pair, [rise, reserve]) in limits.as_chunks::<2>().0.iter().enumerate() {
+            let row = LAST_ROWS + 2 * pair;
+            let Some(pattern) = shared.pattern(row) else {
                 continue;
             };
-            let thrust = if self.stale {
+            let input = if self.stale {
                 pattern.value(&self.free) + shared.change(&pattern, &self.normalised)
             } else {
                 pattern.value(&self.outputs)
             };
-            if thrust - rise > 0.0 {
+            if input - rise > 0.0 {
                 let _ = rows.push(row);
-            } else if -thrust - reserve > 0.0 {
+            } else if -input - reserve > 0.0 {
                 let _ = rows.push(row + 1);
             }
         }
@@ -101,7 +95,7 @@ impl Solver {
     /// Appends a row to the active rows, if more than a share `apart` of its norm does not depend on them.
     #[inline(never)]
     fn take_up(&mut self, shared: &Condensed, row: usize, yielded: bool, apart: f64) -> bool {
-        self.inactive(row).is_some_and(|own| {
+        self.inactive(shared, row).is_some_and(|own| {
             let own = Active {
                 yielded,
                 fresh: true,

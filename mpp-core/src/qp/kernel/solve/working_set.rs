@@ -1,10 +1,8 @@
 //! Rows that become active, and rows that leave.
 
-use super::{Active, Solver, TOLERANCE};
+use super::super::dot;
+use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver, TOLERANCE};
 use crate::qp::Status;
-use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, dot};
-use crate::qp::factor::{CAPACITY, Direction as Aligned};
 
 impl Solver {
     /// Appends a row to the active rows and the factor. With a share `apart`, it appends only a row of which more

@@ -1,12 +1,10 @@
 //! The row that enters next: by a short list while its rows count enough, else by a look at all rows.
 
-use super::{Active, Entering, Solver, TOLERANCE};
+use super::super::super::most_violated;
+use super::super::dot;
+use super::super::shortlist::{LISTED, count};
+use super::{Active, Aligned, CONTROLS, Condensed, Entering, Solver, TOLERANCE};
 use crate::qp::Status;
-use crate::qp::condense::Condensed;
-use crate::qp::controls::{CONTROLS, dot};
-use crate::qp::excess::{LISTED, count, most_violated};
-use crate::qp::factor::Direction as Aligned;
-use crate::qp::rows::RowPattern;
 
 /// Number of steps after which the controls are computed again from the multipliers before the solver ends.
 const DRIFT: usize = 40;
@@ -26,16 +24,16 @@ impl Solver {
         loop {
             self.refresh(shared);
             most_violated(
+                shared,
                 &self.outputs,
                 &self.open,
-                &shared.prices,
                 by_effort,
                 self.attitude_rows,
                 &mut self.list,
             );
             if let Some((listed, row)) = self.list.take_first() {
                 self.listed = listed;
-                let own = self.inactive(row).ok_or(Status::NumericalFailure)?;
+                let own = self.inactive(shared, row).ok_or(Status::NumericalFailure)?;
                 return Ok((own, self.violation(&own)));
             }
             if self.drift < DRIFT {
@@ -47,14 +45,14 @@ impl Solver {
 
     /// A row without a multiplier.
     #[inline(never)]
-    pub(super) fn inactive(&self, row: usize) -> Option<Active> {
+    pub(super) fn inactive(&self, shared: &Condensed, row: usize) -> Option<Active> {
         let price = match self.problem.penalty {
             Some(penalty) if self.is_soft(row) => penalty.linear,
             _ => f64::INFINITY,
         };
         Some(Active {
             row,
-            pattern: RowPattern::of(row)?,
+            pattern: shared.pattern(row)?,
             multiplier: 0.0,
             yielded: false,
             price,
@@ -99,7 +97,7 @@ impl Solver {
                 .0
                 .get(row)
                 .is_some_and(|bound| *bound < f64::INFINITY);
-            let own = self.inactive(row).filter(|_| open);
+            let own = self.inactive(shared, row).filter(|_| open);
             let found = own.map(|own| (own, self.excess_now(shared, &own)));
             let Some((own, excess)) = found.filter(|(_, excess)| *excess > TOLERANCE) else {
                 let _ = done.push(row);
