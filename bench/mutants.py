@@ -58,11 +58,11 @@ def main():
     if survivors:
         files = sorted({name.split(":")[0] for name in survivors})
         # The flights are those of another crate than the mutants, whose baseline cargo-mutants would fly.
-        subprocess.run(["cargo", "test", "-p", "mpp-tests", "--test", "golden"], cwd=ROOT, check=True)
+        subprocess.run(["cargo", "test", "-p", "mpp-tests", "--test", "all", "golden::"], cwd=ROOT, check=True)
         more = ["--test-package", "mpp-tests", "--baseline", "skip"]
         for name in survivors:
             more += ["--re", quoted(name)]
-        second = mutate(options.out / "flights", files, more, ["--", "--test", "golden"])
+        second = mutate(options.out / "flights", files, more, ["--", "--test", "all", "golden::"])
         beaten = set(second["caught"] + second["timeout"])
         left = [name for name in survivors if name not in beaten]
     viable = sum(len(first[verdict]) for verdict in ("caught", "missed", "timeout"))

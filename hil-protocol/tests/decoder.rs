@@ -1,13 +1,9 @@
 //! Tests the decoder on everything that a line can do to a frame.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
-mod support;
-
+use crate::support::{any, found, frame, oracle};
 use hil_protocol::*;
 use proptest::collection::vec;
 use proptest::prelude::*;
-use support::{any, found, frame, oracle};
 
 /// A short message with an empty list, zeros and non-zeros in its payload.
 fn scan() -> Message {

@@ -1,7 +1,5 @@
 //! Tests that the longest payload of each message is as long as its `MAX_SIZE` says, and fits.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use hil_protocol::*;
 use serde::Serialize;
 

@@ -1,15 +1,8 @@
 //! Tests the 100 Hz loop with a clock that jumps, goes back, or tells no time.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod lively;
-    pub(crate) mod sensors;
-    pub(crate) mod trajectories;
-}
-
-use common::lively::lively;
-use common::sensors::frame;
-use common::trajectories::trajectory;
+use crate::common::lively::lively;
+use crate::common::sensors::frame;
+use crate::common::trajectories::trajectory;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::PositionVerdict;
 use mpp_core::flight::FlightLoop;

@@ -1,15 +1,8 @@
 //! Tests flights of the nonlinear aircraft with planner and flight loop together.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod clearance;
-    pub(crate) mod sensors;
-    pub(crate) mod world;
-}
-
-use common::clearance::clearance;
-use common::sensors::frame;
-use common::world::{Disc, scan};
+use crate::common::clearance::clearance;
+use crate::common::sensors::frame;
+use crate::common::world::{Disc, scan};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;

@@ -1,14 +1,8 @@
 //! Tests faces between segments and cells. A segment whose ends keep the faces keeps its distance
 //! all along.
 
-mod common {
-    pub(crate) mod draw;
-    pub(crate) mod pose;
-    pub(crate) mod rolling_grid;
-}
-
-use common::draw::Draw;
-use common::rolling_grid::{field, random_map};
+use crate::common::draw::Draw;
+use crate::common::rolling_grid::{field, random_map};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS, Keep};
 use mpp_core::map::DistanceField;
@@ -203,7 +197,7 @@ fn floor_and_ceiling_bound_the_height_of_every_stage_and_nothing_else_does() {
         }
         for far in [-50.0, 50.0] {
             let there = (knot.x + far, knot.z);
-            assert!(crate::slack(&corridor, &knots, stage, there) > 0.0);
+            assert!(self::slack(&corridor, &knots, stage, there) > 0.0);
         }
     }
 }

@@ -1,17 +1,9 @@
 //! Tests the distance field and the surface of random maps against the definition.
 
-mod common {
-    pub(crate) mod cells;
-    pub(crate) mod completed;
-    pub(crate) mod draw;
-    pub(crate) mod pose;
-    pub(crate) mod rolling_grid;
-}
-
-use common::cells::{CELL, COLS, ROWS, centre, occupied};
-use common::completed::Cells;
-use common::draw::Draw;
-use common::rolling_grid::{field, random_map};
+use crate::common::cells::{CELL, COLS, ROWS, centre, occupied};
+use crate::common::completed::Cells;
+use crate::common::draw::Draw;
+use crate::common::rolling_grid::{field, random_map};
 use mpp_core::map::{DistanceField, FAR, RollingGrid};
 
 /// Distances are kept in 64ths of a metre, rounded down.

@@ -1,13 +1,7 @@
 //! Tests moving air and limited actuators, in the flight loop and in plans.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod sensors;
-    pub(crate) mod world;
-}
-
-use common::sensors::frame;
-use common::world::scan;
+use crate::common::sensors::frame;
+use crate::common::world::scan;
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
 use mpp_core::estimate::Ekf;
 use mpp_core::flight::FlightLoop;

@@ -1,10 +1,6 @@
 //! Tests the estimate of the elevator's effect on an aircraft that flies a plan under a regulator.
 
-mod common {
-    pub(crate) mod gaussian;
-}
-
-use common::gaussian::gaussian;
+use crate::common::gaussian::gaussian;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{ElevatorEffect, Trust};
 use mpp_core::vehicle::{AirState, Airframe, Control, Trim, air_rate};

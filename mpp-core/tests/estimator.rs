@@ -1,11 +1,6 @@
 //! Tests the filter against a simulated aircraft, and against its own textbook form.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod draw;
-}
-
-use common::draw::Draw;
+use crate::common::draw::Draw;
 use mpp_core::estimate::{Diverged, Ekf, EkfTuning, MeasurementStatus};
 use mpp_core::sense::Measurement;
 use mpp_core::vehicle::{AirState, Airframe, Control, JacobianForm, Trim, air_rate};

@@ -1,17 +1,9 @@
 //! Tests the 100 Hz loop: the hand-over of trajectories, and the faults that it survives.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod horizon;
-    pub(crate) mod lively;
-    pub(crate) mod sensors;
-    pub(crate) mod trajectories;
-}
-
-use common::horizon::HORIZON;
-use common::lively::lively;
-use common::sensors::frame;
-use common::trajectories::trajectory;
+use crate::common::horizon::HORIZON;
+use crate::common::lively::lively;
+use crate::common::sensors::frame;
+use crate::common::trajectories::trajectory;
 use mpp_core::config::{KNOTS, TICK_PERIOD};
 use mpp_core::estimate::{MeasurementStatus, PositionVerdict};
 use mpp_core::flight::{Adoption, FlightLoop, Mode};

@@ -1,14 +1,8 @@
 //! Tests what the programs of preset `flight` know of the aircraft: the lag of its motor, and the ends of motor and
 //! elevator.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod planning;
-    pub(crate) mod world;
-}
-
-use common::planning::{level, plan, planner};
-use common::world::scan;
+use crate::common::planning::{level, plan, planner};
+use crate::common::world::scan;
 use mpp_core::config::STAGE_PERIOD;
 use mpp_core::qp::{Condensed, RowKind, Solution, Solver, Status};
 use mpp_core::settings::Settings;

@@ -1,7 +1,5 @@
 //! Tests the filter of the motion through the air with measurements that come late.
 
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{Ekf, EkfTuning, Innovation, LaggedEkf, MeasurementStatus, Taken};
 use mpp_core::sense::Measurement;

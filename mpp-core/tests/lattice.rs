@@ -1,15 +1,9 @@
 //! Tests the paths of the lattice: the rules of every path, how paths pass obstacles, and that no
 //! path is cheaper.
 
-mod common {
-    pub(crate) mod draw;
-    pub(crate) mod pose;
-    pub(crate) mod rolling_grid;
-}
-
-use common::draw::Draw;
-use common::pose::pose;
-use common::rolling_grid::{field, random_map};
+use crate::common::draw::Draw;
+use crate::common::pose::pose;
+use crate::common::rolling_grid::{field, random_map};
 use mpp_core::lattice::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;

@@ -1,13 +1,7 @@
 //! Tests the flight loop with an aircraft that lifts more or less than the core was told.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod sensors;
-    pub(crate) mod world;
-}
-
-use common::sensors::frame;
-use common::world::scan;
+use crate::common::sensors::frame;
+use crate::common::world::scan;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::LiftEstimator;
 use mpp_core::flight::FlightLoop;

@@ -1,13 +1,7 @@
 //! Tests the occupancy grid against brute force, and the checks of a scan.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod draw;
-    pub(crate) mod grids;
-}
-
-use common::draw::Draw;
-use common::grids::grid;
+use crate::common::draw::Draw;
+use crate::common::grids::grid;
 use mpp_core::config::MAX_BEAMS;
 use mpp_core::paper::OccupancyGrid;
 use mpp_core::paper::Rules;

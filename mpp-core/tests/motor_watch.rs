@@ -1,10 +1,6 @@
 //! Tests the watch of the motor on an aircraft that the regulator holds in level flight.
 
-mod common {
-    pub(crate) mod gaussian;
-}
-
-use common::gaussian::gaussian;
+use crate::common::gaussian::gaussian;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{MotorWatch, Progress, Trust};
 use mpp_core::flight::FlightLoop;

@@ -1,12 +1,7 @@
 //! Tests the estimate of position and wind against motions that are known.
 
-mod common {
-    pub(crate) mod gaussian;
-    pub(crate) mod sensors;
-}
-
-use common::gaussian::gaussian;
-use common::sensors::frame;
+use crate::common::gaussian::gaussian;
+use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{Navigation, Observation, PositionVerdict, WindFilter};
 use mpp_core::flight::FlightLoop;

@@ -1,7 +1,5 @@
 //! A plan of a similar aircraft in a similar world is the similar plan.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::{Aircraft, Settings};

@@ -1,11 +1,6 @@
 //! Tests RRT*-AR trees and their paths over random fields: structure, freedom, bounds.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod draw;
-}
-
-use common::draw::Draw;
+use crate::common::draw::Draw;
 use mpp_core::paper::Rules;
 use mpp_core::paper::config::{
     PATH_POINTS, SEARCH_COLS, SEARCH_ROW, SEARCH_ROWS, TREE_NODES, TREE_SAMPLES,

@@ -1,21 +1,12 @@
 //! Tests the planner: plans around obstacles, plans back to the altitude, and the report when there
 //! is no plan.
 
-mod common {
-    pub(crate) mod clearance;
-    pub(crate) mod planning;
-    pub(crate) mod presets;
-    pub(crate) mod scattered;
-    pub(crate) mod with_planner;
-    pub(crate) mod world;
-}
-
-use common::clearance::clearance;
-use common::planning::{level, plan, planner};
-use common::presets::presets;
-use common::scattered::{FEASIBLE, SCATTERED};
-use common::with_planner::with_planner;
-use common::world::{Disc, scan};
+use crate::common::clearance::clearance;
+use crate::common::planning::{level, plan, planner};
+use crate::common::presets::presets;
+use crate::common::scattered::{FEASIBLE, SCATTERED};
+use crate::common::with_planner::with_planner;
+use crate::common::world::{Disc, scan};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::{PlannerSettings, Settings};

@@ -1,20 +1,11 @@
 //! Tests the planner as an anytime machine: bounded, repeatable, and never worse with more slices.
 
-mod common {
-    pub(crate) mod planning;
-    pub(crate) mod presets;
-    pub(crate) mod scattered;
-    pub(crate) mod sensors;
-    pub(crate) mod with_planner;
-    pub(crate) mod world;
-}
-
-use common::planning::{level, plan, planner};
-use common::presets::presets;
-use common::scattered::{FEASIBLE, SCATTERED};
-use common::sensors::frame;
-use common::with_planner::with_planner;
-use common::world::{Disc, scan};
+use crate::common::planning::{level, plan, planner};
+use crate::common::presets::presets;
+use crate::common::scattered::{FEASIBLE, SCATTERED};
+use crate::common::sensors::frame;
+use crate::common::with_planner::with_planner;
+use crate::common::world::{Disc, scan};
 use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
 use mpp_core::paper::config::{TREE_RUNS, TREE_SAMPLES};

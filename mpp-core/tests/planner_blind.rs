@@ -1,12 +1,7 @@
 //! Tests what the flight planner does when the lidar shows nothing, or shows what cannot be.
 
-mod common {
-    pub(crate) mod planning;
-    pub(crate) mod world;
-}
-
-use common::planning::{level, plan, planner};
-use common::world::{Disc, scan};
+use crate::common::planning::{level, plan, planner};
+use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;

@@ -1,18 +1,10 @@
 //! Tests that the plan of a cycle is the best of its candidates' optima. Each optimum is solved
 //! here to the end.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod planning;
-    pub(crate) mod scattered;
-    pub(crate) mod with_planner;
-    pub(crate) mod world;
-}
-
-use common::planning::{level, plan, planner};
-use common::scattered::{FEASIBLE, SCATTERED};
-use common::with_planner::with_planner;
-use common::world::{Disc, scan};
+use crate::common::planning::{level, plan, planner};
+use crate::common::scattered::{FEASIBLE, SCATTERED};
+use crate::common::with_planner::with_planner;
+use crate::common::world::{Disc, scan};
 use mpp_core::corridor::Corridor;
 use mpp_core::paper::StageModel;
 use mpp_core::paper::config::TREE_SAMPLES;

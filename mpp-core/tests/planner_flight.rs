@@ -1,21 +1,11 @@
 //! Tests the cycle of preset `flight`: what it keeps from the cycle before, its bound, and what it
 //! hands over.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod clearance;
-    pub(crate) mod dense;
-    pub(crate) mod draw;
-    pub(crate) mod planning;
-    pub(crate) mod scattered;
-    pub(crate) mod world;
-}
-
-use common::clearance::clearance;
-use common::dense::dense;
-use common::planning::{level, plan, planner};
-use common::scattered::{FEASIBLE, SCATTERED};
-use common::world::scan;
+use crate::common::clearance::clearance;
+use crate::common::dense::dense;
+use crate::common::planning::{level, plan, planner};
+use crate::common::scattered::{FEASIBLE, SCATTERED};
+use crate::common::world::scan;
 use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::lattice::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};

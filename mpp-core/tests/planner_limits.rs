@@ -1,15 +1,8 @@
 //! The limits of a plan: where it may start, and what the elevator's rate allows.
 
-mod common {
-    pub(crate) mod dense;
-    pub(crate) mod draw;
-    pub(crate) mod planning;
-    pub(crate) mod world;
-}
-
-use common::dense::dense;
-use common::planning::{level, plan, planner};
-use common::world::scan;
+use crate::common::dense::dense;
+use crate::common::planning::{level, plan, planner};
+use crate::common::world::scan;
 use mpp_core::config::STAGE_PERIOD;
 use mpp_core::planner::Verdict;
 use mpp_core::settings::Settings;

@@ -1,11 +1,6 @@
 //! Tests settings that step and planner refuse: every number, and what no range shows.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
-mod common {
-    pub(crate) mod presets;
-}
-
-use common::presets::presets;
+use crate::common::presets::presets;
 use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};

@@ -1,13 +1,8 @@
 //! Tests the point mass against the equations of motion, differences, and its own limit of small
 //! steps.
 
-mod common {
-    pub(crate) mod airframes;
-    pub(crate) mod seeded;
-}
-
-use common::airframes::named;
-use common::seeded::seeded;
+use crate::common::airframes::named;
+use crate::common::seeded::seeded;
 use mpp_core::vehicle::{
     Airframe, PathControl, PathState, Trim, VehicleState, air_rate, vehicle_rate,
 };

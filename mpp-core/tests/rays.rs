@@ -1,12 +1,7 @@
 //! Tests rays, segments and corridors against marching in tiny steps.
 
-mod common {
-    pub(crate) mod draw;
-    pub(crate) mod grids;
-}
-
-use common::draw::Draw;
-use common::grids::{grid, point};
+use crate::common::draw::Draw;
+use crate::common::grids::{grid, point};
 use mpp_core::config::{KNOTS, STAGE_PERIOD, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::paper::Rules;

@@ -1,12 +1,7 @@
 //! Tests the Riccati solution against its equation, and the regulator against its properties.
 
-mod common {
-    pub(crate) mod airframes;
-    pub(crate) mod seeded;
-}
-
-use common::airframes::named;
-use common::seeded::seeded;
+use crate::common::airframes::named;
+use crate::common::seeded::seeded;
 use mpp_core::control::{Lqr, LqrWeights, RiccatiError, solve_riccati};
 use mpp_core::vehicle::{
     AirState, Airframe, Control, JacobianForm, Linearization, Trim, linearize,

@@ -1,10 +1,6 @@
 //! Tests paths as collocation points: equally spaced, ends exact, degenerate paths.
 
-mod common {
-    pub(crate) mod draw;
-}
-
-use common::draw::Draw;
+use crate::common::draw::Draw;
 use mpp_core::config::KNOTS;
 use mpp_core::paper::GridPoint;
 use mpp_core::paper::Rules;

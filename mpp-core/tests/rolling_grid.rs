@@ -1,16 +1,9 @@
 //! Tests what the rolling grid keeps, unlearns and forgets.
 
-mod common {
-    pub(crate) mod cells;
-    pub(crate) mod draw;
-    pub(crate) mod pose;
-    pub(crate) mod rolling_grid;
-}
-
-use common::cells::{CELL, COLS, ROWS, centre, occupied};
-use common::draw::Draw;
-use common::pose::pose;
-use common::rolling_grid::{field, noise, random_map};
+use crate::common::cells::{CELL, COLS, ROWS, centre, occupied};
+use crate::common::draw::Draw;
+use crate::common::pose::pose;
+use crate::common::rolling_grid::{field, noise, random_map};
 use mpp_core::map::RollingGrid;
 use mpp_core::sense::LidarScan;
 

@@ -1,12 +1,7 @@
 //! Tests settings at random: they are refused with an error, or the loop that they give flies.
 
-mod common {
-    pub(crate) mod seeded;
-    pub(crate) mod sensors;
-}
-
-use common::seeded::seeded;
-use common::sensors::frame;
+use crate::common::seeded::seeded;
+use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};

@@ -1,12 +1,7 @@
 //! Tests how a trajectory is placed in the world and sampled: knots, lines in between, ends.
 
-mod common {
-    pub(crate) mod horizon;
-    pub(crate) mod trajectories;
-}
-
-use common::horizon::HORIZON;
-use common::trajectories::trajectory;
+use crate::common::horizon::HORIZON;
+use crate::common::trajectories::trajectory;
 use mpp_core::config::{KNOTS, STAGE_PERIOD, STAGES, TICK_PERIOD};
 use mpp_core::qp::Solution;
 use mpp_core::trajectory::Trajectory;

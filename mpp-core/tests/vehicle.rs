@@ -1,13 +1,8 @@
 //! Tests the equations of motion against physics, Jacobians against differences, and trim against
 //! both.
 
-mod common {
-    pub(crate) mod airframes;
-    pub(crate) mod seeded;
-}
-
-use common::airframes::named;
-use common::seeded::seeded;
+use crate::common::airframes::named;
+use crate::common::seeded::seeded;
 use mpp_core::vehicle::{
     AirState, Airframe, Control, GRAVITY, JacobianForm, Linearization, Trim, TrimError,
     VehicleState, air_rate, linearize, vehicle_rate,

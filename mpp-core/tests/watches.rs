@@ -1,12 +1,7 @@
 //! Tests the watches of the sensors: biases of pitch and airspeed, and sensors that freeze or fall silent.
 
-mod common {
-    pub(crate) mod gaussian;
-    pub(crate) mod sensors;
-}
-
-use common::gaussian::gaussian;
-use common::sensors::frame;
+use crate::common::gaussian::gaussian;
+use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{AirspeedBias, Before, BiasMonitor, PitchBias, SensorMonitor, Trust};
 use mpp_core::flight::FlightLoop;

@@ -1,7 +1,5 @@
 //! Flights that are interrupted, and flights that are flown again from their logs.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
 use mpp_sim::orders::{Again, Ground, Mode, Order};

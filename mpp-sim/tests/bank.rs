@@ -1,5 +1,4 @@
 //! The lateral regulator of the core on the plant in six degrees of freedom.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use mpp_core::control::{LateralMotion, LateralRegulator};
 use mpp_core::vehicle::LateralControl;

@@ -1,5 +1,4 @@
 //! Whole flights with faults: what each fault does between the aircraft and the core.
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 #![expect(
     clippy::float_cmp,
     reason = "a command is the same one or another one, to the last bit"

@@ -1,7 +1,5 @@
 //! Orders that change the world: obstacles and disturbances in flight, and flights tick by tick.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_core::vehicle::{Control, VehicleState};
 use mpp_node::parameters::Tuning;
 use mpp_sim::disturbance::Disturbance;

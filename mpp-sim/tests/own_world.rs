@@ -1,5 +1,4 @@
 //! Worlds of one's own, flown through the same door as the scenario's: another plant, another field.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, VehicleState};

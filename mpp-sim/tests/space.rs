@@ -1,5 +1,4 @@
 //! Flights of the plant in six degrees of freedom: turns, wind, and whole flights in the vertical plane.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use mpp_core::vehicle::{Control, GRAVITY, LateralControl, VehicleState};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};

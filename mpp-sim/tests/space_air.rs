@@ -1,5 +1,4 @@
 //! What stands between commands and motion in six degrees of freedom: servos, and wind on three axes.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use mpp_core::vehicle::LateralControl;
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};

@@ -1,7 +1,5 @@
 //! Whole flights of aircraft from files: in other units, in other sizes, with terms that the core did not know.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
 use mpp_core::vehicle::{AirState, Control, StallGuard, Trim, air_rate};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};

@@ -1,7 +1,5 @@
 //! Logs from strangers: whatever stands in one, it is read or refused, in bounded time and memory.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_analysis::picture::replay::replay;
 use mpp_sim::flight::fly;
 use mpp_sim::log::FlightLog;

@@ -1,8 +1,6 @@
 //! Whether the crates can be published: what their packages say of themselves and hold, and whether the licences of
 //! all dependencies are ones that `deny.toml` allows.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 use mpp_tests::project::{PUBLISHED, files, root};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

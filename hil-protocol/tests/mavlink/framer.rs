@@ -1,7 +1,7 @@
 //! Tests the framer against an oracle, and against the reader of `mavlink-core`.
 
-use crate::oracle::{Shape, Span, crc, shape, unknown};
-use crate::streams::{Maker, Stream};
+use super::oracle::{Shape, Span, crc, shape, unknown};
+use super::streams::{Maker, Stream};
 use hil_protocol::mavlink::messages::HEARTBEAT_DATA;
 use hil_protocol::mavlink::{Frame, Framer, MAX_FRAME, Sender};
 use mavlink::dialects::common::MavMessage as Common;

@@ -1,6 +1,6 @@
 //! Tests messages there and back, and against the published dialect.
 
-use crate::oracle;
+use super::oracle;
 use hil_protocol::mavlink::messages::{self as ours, MavMessage as Ours};
 use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
 use mavlink::dialects::common::{self, MavMessage as Common};

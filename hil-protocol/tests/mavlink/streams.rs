@@ -1,6 +1,6 @@
 //! Streams such as noisy lines and attackers make them.
 
-use crate::oracle::{Span, crc, seed};
+use super::oracle::{Span, crc, seed};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Key, Sender, Signer, text};
 use rand_core::{Rng, SeedableRng};

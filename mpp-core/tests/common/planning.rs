@@ -1,5 +1,4 @@
 //! Planners that are set up, and whole cycles of them.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};

@@ -1,11 +1,11 @@
 //! Tests small programs against the simple way to solve them: all combinations of active rows are
 //! tried.
 
-use crate::dense::{
+use super::dense::{
     CONTROLS, DenseProgram, Stages, Vector, cost, flat, largest, solve_equations, staged,
 };
-use crate::programs::Setup;
-use crate::small_programs::{Made, difference, for_each_program};
+use super::programs::Setup;
+use super::small_programs::{Made, difference, for_each_program};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Penalty, Problem, Solution, Solver, Status};
 

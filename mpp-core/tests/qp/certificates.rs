@@ -1,8 +1,8 @@
 //! A verdict of infeasibility is about the rows alone: no weight of the cost changes it.
 
-use crate::conditions::assert_contradiction;
-use crate::dense::DenseProgram;
-use crate::programs::{Draw, Setup};
+use super::conditions::assert_contradiction;
+use super::dense::DenseProgram;
+use super::programs::{Draw, Setup};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{MAX_ITERATIONS, Problem, Solution, Solver, Status};
 

@@ -1,7 +1,7 @@
 //! The conditions that a trusted answer of the solver must keep: those of Karush, Kuhn and Tucker
 //! at an optimum, and a valid sum of rows at a contradiction. They use the dense program alone.
 
-use crate::dense::{CONTROLS, DenseProgram, flat, largest};
+use super::dense::{CONTROLS, DenseProgram, flat, largest};
 use mpp_core::qp::{Penalty, ROWS, Solution, Solver};
 
 /// Largest entry of a gradient that should vanish, relative to the largest term of its sum.

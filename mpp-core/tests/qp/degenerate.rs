@@ -1,10 +1,10 @@
 //! Tests rows that coincide, touch, oppose each other exactly or do nothing. The solver ends, and
 //! its answer is true.
 
-use crate::conditions::{ACCEPTED, assert_contradiction, assert_optimal};
-use crate::dense::DenseProgram;
-use crate::programs::{Draw, Setup, is_constant, left_hand_side};
-use crate::small_programs::{any_row, difference, number};
+use super::conditions::{ACCEPTED, assert_contradiction, assert_optimal};
+use super::dense::DenseProgram;
+use super::programs::{Draw, Setup, is_constant, left_hand_side};
+use super::small_programs::{any_row, difference, number};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{
     Bounds, Dynamics, MAX_ITERATIONS, Penalty, Problem, ROWS, RowKind, Solution, Solver,

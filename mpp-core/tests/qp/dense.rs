@@ -1,7 +1,7 @@
 //! Programs in the controls alone, made by rolling out one control after the other. They are dense
 //! and slow, and they share nothing with the code that condenses and solves them.
 
-use crate::programs::{left_hand_side, softens};
+use super::programs::{left_hand_side, softens};
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::qp::{Dynamics, Problem, ROWS, StageControl, StageState, Weights};
 

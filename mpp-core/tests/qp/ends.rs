@@ -1,6 +1,6 @@
 //! Tests how solves end: limits, caps, constants, contradictions and values that are no numbers.
 
-use crate::programs::{Draw, Setup, priced, violations};
+use super::programs::{Draw, Setup, priced, violations};
 use mpp_core::config::DIRECTIONS;
 use mpp_core::corridor::DIRECTION_VECTORS;
 use mpp_core::qp::{

@@ -1,7 +1,7 @@
 //! Tests changes of a program that must not change the result, or that must change it in a known
 //! way.
 
-use crate::programs::{Draw, Setup, is_constant, violations};
+use super::programs::{Draw, Setup, is_constant, violations};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty, Problem, ROWS, Solution, Solver, Status};
 
 /// Relative error that rounding leaves when the method takes another way to the same optimum.

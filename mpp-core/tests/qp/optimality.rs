@@ -1,6 +1,6 @@
 //! Tests the conditions of Karush, Kuhn and Tucker, evaluated with the model alone.
 
-use crate::programs::{Draw, Setup, is_constant, left_hand_side, priced, softens, violations};
+use super::programs::{Draw, Setup, is_constant, left_hand_side, priced, softens, violations};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Penalty, Problem, ROWS, Solution, Solver, Status};
 

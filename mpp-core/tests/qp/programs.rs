@@ -1,6 +1,6 @@
 //! Random programs about random tubes, with their rows and costs evaluated with the model alone.
 
-pub(crate) use crate::draw::Draw;
+pub(crate) use crate::common::draw::Draw;
 use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::paper::StageModel;

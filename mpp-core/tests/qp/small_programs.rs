@@ -1,6 +1,6 @@
 //! Random programs of few rows, some of which contradict each other.
 
-use crate::programs::{Draw, Setup, left_hand_side};
+use super::programs::{Draw, Setup, left_hand_side};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Bounds, Problem, ROWS, RowKind, StageControl};
 

@@ -1,7 +1,7 @@
 //! Tests programs that are another program in other units or upside down, and their optima.
 
-use crate::programs::{Draw, Setup};
-use crate::small_programs::{difference, number};
+use super::programs::{Draw, Setup};
+use super::small_programs::{difference, number};
 use mpp_core::config::STAGES;
 use mpp_core::qp::{
     Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, Solver, StageControl, StageState,

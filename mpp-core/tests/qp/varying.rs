@@ -1,9 +1,9 @@
 //! Tests stages that each have a model of their own, with offsets.
 
-use crate::conditions::{assert_contradiction, assert_optimal};
-use crate::dense::{DenseProgram, Stages, cost, roll_out};
-use crate::programs::{Draw, Setup};
-use crate::small_programs::difference;
+use super::conditions::{assert_contradiction, assert_optimal};
+use super::dense::{DenseProgram, Stages, cost, roll_out};
+use super::programs::{Draw, Setup};
+use super::small_programs::difference;
 use mpp_core::config::STAGES;
 use mpp_core::qp::{Bounds, CondenseError, Condensed, Penalty, Problem, Solution, Solver, Status};
 

@@ -1,6 +1,6 @@
 //! Flights that are flown again from their logs, and logs that cannot be.
 
-use crate::{run_in, scratch, talk};
+use super::{run_in, scratch, talk};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;

@@ -1,6 +1,6 @@
 //! Tests that what one address asks for changes nothing at another one.
 
-use crate::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
 use mpp_sim::scenario::Scenario;

@@ -1,6 +1,6 @@
 //! Commands are always acknowledged, carried out between ticks, and written to the log.
 
-use crate::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::flight::{fly, fly_with};
 use mpp_sim::log::FlightLog;

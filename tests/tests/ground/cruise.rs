@@ -1,6 +1,6 @@
 //! Tests the mode in which the vehicle does not look.
 
-use crate::radio::{CONFIG, Radio, command};
+use super::radio::{CONFIG, Radio, command};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::scenario::ScenarioFile;
 

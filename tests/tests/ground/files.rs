@@ -1,6 +1,6 @@
 //! Tests the files that a station can read.
 
-use crate::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;
 use mpp_node::parameters::PARAMETERS;

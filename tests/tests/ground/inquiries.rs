@@ -1,6 +1,6 @@
 //! Tests the requests of a station that do not change the flight.
 
-use crate::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::scenario::Scenario;
 use sil_harness::ground::vehicle::VehicleConfig;

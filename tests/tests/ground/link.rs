@@ -1,6 +1,6 @@
 //! Tests the link itself: bad, silent, signed, recorded.
 
-use crate::radio::{CONFIG, Channel, HERE, Radio, command, heartbeat, scenario, write};
+use super::radio::{CONFIG, Channel, HERE, Radio, command, heartbeat, scenario, write};
 use chacha20::ChaCha8Rng;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};

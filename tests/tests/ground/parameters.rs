@@ -1,6 +1,6 @@
 //! Tests the parameters that a station reads and writes.
 
-use crate::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::{ConfigureVerdict, ParameterVerdict};
 use mpp_core::settings::Settings;

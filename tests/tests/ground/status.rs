@@ -1,6 +1,6 @@
 //! Tests what a station asks of a healthy vehicle, and what it gets where there is nothing to get.
 
-use crate::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{MessageData, Sender, text};
 use mpp_sim::scenario::{Scenario, ScenarioFile};

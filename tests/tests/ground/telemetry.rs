@@ -1,6 +1,6 @@
 //! Tests that a station sees what the log holds.
 
-use crate::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::LidarScan;
 use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;

@@ -1,6 +1,6 @@
 //! Tests what comes unasked: place, accuracy, motion and throttle.
 
-use crate::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, scenario};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, MessageData};
 use mpp_node::parameters::Tuning;

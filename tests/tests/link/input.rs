@@ -1,7 +1,7 @@
 //! The harness's messages are damaged on the way. They are rejected and logged, and the flight goes
 //! on.
 
-use crate::{Spoilt, causes, short};
+use super::{Spoilt, causes, short};
 use hil_protocol::{
     AirData, ConfigureVerdict, MAX_FRAME, Message, Position, RejectionCause, SensorFrame, encode,
 };

@@ -1,6 +1,6 @@
 //! A lidar that fails: it is told, planned without, and believed again.
 
-use crate::{Spoilt, causes, short};
+use super::{Spoilt, causes, short};
 use hil_protocol::{LidarScan, Message, SensorState};
 use mpp_sim::faults::ScanFault;
 use mpp_sim::flight::fly;

@@ -1,6 +1,6 @@
 //! Tests a core that restarts at any moment.
 
-use crate::{Spoilt, causes, short};
+use super::{Spoilt, causes, short};
 use hil_protocol::{Hello, Message, Role, id};
 use mpp_sim::flight::{FlyError, fly_with};
 use mpp_sim::link::Link;

@@ -1,7 +1,7 @@
 //! Ticks that wrap around, jump or go back, and measurements that come late.
 
-use crate::input::level_flight;
-use crate::short;
+use super::input::level_flight;
+use super::short;
 use hil_protocol::{Hello, LidarScan, Message, RejectionCause, Role, SensorFrame};
 use mpp_sim::flight::fly;
 use mpp_sim::link::{Link, LinkError};
@@ -197,7 +197,7 @@ fn frames_that_come_twice_are_refused_once_each() {
 fn a_scan_that_comes_again_and_again_is_taken_once() {
     let usual = fly(&short(2), &mut PipeLink::new(), |_| {}).unwrap();
     let mut held = None;
-    let mut link = crate::Spoilt {
+    let mut link = super::Spoilt {
         pipe: PipeLink::new(),
         spoil: move |pipe: &mut PipeLink, message: &Message| match message {
             // The scan of tick 100 comes with tick 180 for the first time.
@@ -228,7 +228,7 @@ fn a_scan_that_comes_again_and_again_is_taken_once() {
 /// When the origin of the positions jumps, the plan under way is dropped: it counts from the old origin.
 #[test]
 fn a_plan_under_way_is_dropped_when_the_origin_jumps() {
-    let mut link = crate::Spoilt {
+    let mut link = super::Spoilt {
         pipe: PipeLink::new(),
         spoil: |pipe: &mut PipeLink, message: &Message| {
             let Message::SensorFrame(mut frame) = *message else {

@@ -1,7 +1,7 @@
 //! Clarabel's answers. The benchmark's `FullForm` writes the program in full, with states and
 //! controls as variables. It shares nothing with the solver under test.
 
-use crate::instances::{Instance, Preset};
+use super::instances::{Instance, Preset};
 use clarabel::solver::{IPSolver, SolverStatus};
 use mpp_analysis::bench::{Form, FullForm};
 use mpp_analysis::instance;

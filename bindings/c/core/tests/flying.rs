@@ -1,7 +1,6 @@
 //! Flies the aircraft of the usual configuration through the C interface, at the edges of the order of calls.
 
 #![expect(unsafe_code, reason = "a C interface takes pointers")]
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail as tests do")]
 
 use core::mem::MaybeUninit;
 use core::ptr::{from_mut, null_mut};

@@ -24,7 +24,7 @@ fn the_header_is_made_from_the_code() {
     let kept = std::fs::read_to_string(&path).unwrap_or_default();
     assert!(
         kept == made,
-        "{} is not what the code says: run `MPP_HEADER=save cargo test -p mpp-c --test header`",
+        "{} is not what the code says: run `MPP_HEADER=save cargo test -p mpp-c header::`",
         path.display()
     );
 }

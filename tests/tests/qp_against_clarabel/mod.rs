@@ -1,6 +1,5 @@
 //! Tests the program's solver against Clarabel on generated corridors. Clarabel is an interior
 //! point solver that shares nothing with ours.
-#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 
 mod instances;
 mod oracle;

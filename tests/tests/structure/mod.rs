@@ -190,6 +190,24 @@ fn no_files_import_each_other_in_a_circle() {
     }
 }
 
+/// Cargo does not look for tests beside `all.rs`: one that it does not name would never run.
+#[test]
+fn all_rs_names_every_integration_test() {
+    let mut sources = files(root(), "rs");
+    sources.retain(|file| file.ends_with("tests/all.rs"));
+    assert_eq!(sources.len(), 6, "crates with one test binary");
+    for file in sources {
+        let text = std::fs::read_to_string(&file).unwrap();
+        let module = |line: &str| Some(line.strip_prefix("mod ")?.strip_suffix(';')?.to_owned());
+        let named: BTreeSet<_> = text.lines().filter_map(module).collect();
+        let stem = |entry: PathBuf| entry.file_stem().unwrap().to_string_lossy().into_owned();
+        let entries = std::fs::read_dir(file.parent().unwrap()).unwrap();
+        let mut found: BTreeSet<_> = entries.map(|entry| stem(entry.unwrap().path())).collect();
+        assert!(found.remove("all"));
+        assert_eq!(named, found, "{}", file.display());
+    }
+}
+
 /// Greatest number of lines of a source file. What is longer has more than one task.
 const MOST_LINES: usize = 400;
 

@@ -1,7 +1,6 @@
 //! Tests flights with ground stations: what stations see, what they can change, and what they
 //! cannot change.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 #![expect(clippy::float_cmp, reason = "what is told is what is, to the last bit")]
 
 mod addresses;

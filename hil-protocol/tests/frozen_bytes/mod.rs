@@ -6,8 +6,6 @@
 //! and write all lines anew. Before the release, changes go into the table of versions in the
 //! crate's documentation, and the lines of the changed message are changed here.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 mod reports;
 
 use hil_protocol::*;

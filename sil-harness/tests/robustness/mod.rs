@@ -1,7 +1,5 @@
 //! What goes wrong around a flight: full disks, foreign files, signals, strangers on a socket.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
 mod files;
 #[cfg(unix)]
 mod keys;

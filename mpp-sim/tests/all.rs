@@ -1,0 +1,11 @@
+//! Integration tests of the simulation, in one binary: each of several would be linked alone.
+
+#![expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
+
+mod again;
+mod bank;
+mod faults;
+mod orders;
+mod own_world;
+mod space;
+mod space_air;
