@@ -1,6 +1,6 @@
 //! Programs in space against Clarabel: 54 inputs, faces with normals of their own, hard limits of the inputs.
 
-use crate::instances::Draw;
+use super::instances::Draw;
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::SupportedConeT::NonnegativeConeT;
 use clarabel::solver::{DefaultSettingsBuilder, DefaultSolver, IPSolver, SolverStatus};
