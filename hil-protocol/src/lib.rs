@@ -57,6 +57,8 @@
 //! it every parameter value that the core before the restart had accepted, and repeats the request whose
 //! answer it still waits for.
 //!
+//! Messages [15](ConfigureLateral) to [21](SpaceTrajectory) are those of an aircraft that banks. The core refuses them today.
+//!
 //! # Versions
 //!
 //! Postcard messages cannot grow: a peer that knows one field more reads wrong values. Therefore
@@ -72,7 +74,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.2.0, open | messages 10 to 14; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors, the elevator and the motor; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
+//! | 2 | 0.2.0, open | messages 10 to 21; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors, the elevator and the motor; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`]; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
 //!
 //! # Use
 //!
@@ -114,7 +116,13 @@ pub use message::report::{
 pub use message::session::{
     Configure, ConfigureReply, Hello, ParameterReply, Preset, Role, SetParameter,
 };
+pub use message::space::{
+    ConfigureLateral, InertialFrame, MAX_POINTS, PointPacket, SpacePosition, SpaceReport,
+    SpaceTrajectory, SurfaceCommand,
+};
 pub use message::verdict::{ConfigureVerdict, ParameterVerdict};
 pub use message::{Body, MAX_PAYLOAD, Message, id};
-pub use mpp_data::{ActuatorLimits, Aircraft, Airframe, OutOfRange, Setting};
+pub use mpp_data::{
+    ActuatorLimits, Aircraft, Airframe, Derivatives, LateralAirframe, OutOfRange, Setting,
+};
 pub use version::PROTOCOL_VERSION;

@@ -35,23 +35,7 @@ proptest! {
     #[test]
     fn a_frame_is_what_the_oracle_makes(message in any::message()) {
         let mut payload = [0; MAX_PAYLOAD];
-        let payload = match &message {
-            Message::Hello(body) => postcard::to_slice(body, &mut payload),
-            Message::Configure(body) => postcard::to_slice(body, &mut payload),
-            Message::ConfigureReply(body) => postcard::to_slice(body, &mut payload),
-            Message::SensorFrame(body) => postcard::to_slice(body, &mut payload),
-            Message::LidarScan(body) => postcard::to_slice(body, &mut payload),
-            Message::ActuatorCommand(body) => postcard::to_slice(body, &mut payload),
-            Message::StepReport(body) => postcard::to_slice(body, &mut payload),
-            Message::PlanReport(body) => postcard::to_slice(body, &mut payload),
-            Message::Rejection(body) => postcard::to_slice(body, &mut payload),
-            Message::SetParameter(body) => postcard::to_slice(body, &mut payload),
-            Message::ParameterReply(body) => postcard::to_slice(body, &mut payload),
-            Message::PlanTrajectory(body) => postcard::to_slice(body, &mut payload),
-            Message::HealthReport(body) => postcard::to_slice(body, &mut payload),
-            Message::PlanControls(body) => postcard::to_slice(body, &mut payload),
-        }
-        .unwrap();
+        let payload = message.to_payload(&mut payload).unwrap();
         prop_assert_eq!(frame(&message), oracle::frame(b"MP", PROTOCOL_VERSION, message.id(), payload));
     }
 
@@ -187,8 +171,8 @@ fn each_fault_has_its_name() {
             Version { peer: 0 },
         ),
         (
-            oracle::frame(b"MP", PROTOCOL_VERSION, 15, &reply),
-            UnknownId { id: 15 },
+            oracle::frame(b"MP", PROTOCOL_VERSION, id::LAST + 1, &reply),
+            UnknownId { id: id::LAST + 1 },
         ),
         (
             oracle::frame(b"MP", PROTOCOL_VERSION, id::CONFIGURE_REPLY, &[99]),

@@ -163,3 +163,71 @@ fn of_a_frame() {
     let longest = Message::LidarScan(longest_scan());
     assert_eq!(encode(&longest, &mut buffer).unwrap().len(), MAX_FRAME);
 }
+
+#[test]
+fn of_an_aircraft_in_space() {
+    let value = f32::from_bits(0x4142_4344);
+    let part = Derivatives {
+        sideslip: FLOAT,
+        roll_rate: FLOAT,
+        yaw_rate: FLOAT,
+        aileron: FLOAT,
+        rudder: FLOAT,
+    };
+    let lateral = ConfigureLateral {
+        airframe: LateralAirframe {
+            span: FLOAT,
+            roll_inertia: FLOAT,
+            yaw_inertia: FLOAT,
+            product_inertia: FLOAT,
+            side: part,
+            roll: part,
+            yaw: part,
+        },
+        surfaces_max: [Some(FLOAT); 2],
+        surface_rate: Some(FLOAT),
+    };
+    assert_eq!(payload(&lateral), ConfigureLateral::MAX_SIZE);
+    let inertial = InertialFrame {
+        tick: u32::MAX,
+        attitude: [value; 3],
+        sigma: value,
+        rates: [value; 3],
+        force: [value; 3],
+    };
+    assert_eq!(payload(&inertial), InertialFrame::MAX_SIZE);
+    let position = SpacePosition {
+        tick: u32::MAX,
+        position: [FLOAT; 3],
+        sigma: value,
+        velocity: Some(([value; 3], value)),
+    };
+    assert_eq!(payload(&position), SpacePosition::MAX_SIZE);
+    let packet = PointPacket {
+        tick: u32::MAX,
+        sensor_time: u32::MAX,
+        interval: u16::MAX,
+        points: [[value; 3]; MAX_POINTS].into_iter().collect(),
+    };
+    assert_eq!(payload(&packet), PointPacket::MAX_SIZE);
+    let command = SurfaceCommand {
+        tick: u32::MAX,
+        aileron: FLOAT,
+        rudder: FLOAT,
+    };
+    assert_eq!(payload(&command), SurfaceCommand::MAX_SIZE);
+    let report = SpaceReport {
+        tick: u32::MAX,
+        estimate: [FLOAT; 5],
+        y: FLOAT,
+        wind: FLOAT,
+        reference: [FLOAT; 3],
+    };
+    assert_eq!(payload(&report), SpaceReport::MAX_SIZE);
+    let trajectory = SpaceTrajectory {
+        scan_tick: u32::MAX,
+        period: value,
+        knots: [[value; 5]; MAX_KNOTS].into_iter().collect(),
+    };
+    assert_eq!(payload(&trajectory), SpaceTrajectory::MAX_SIZE);
+}

@@ -1,11 +1,13 @@
 //! The lateral part of an airframe: what a vertical plane does not know.
 
+use serde::{Deserialize, Serialize};
+
 /// The lateral coefficients of an airframe, beside its longitudinal [`Airframe`](crate::Airframe).
 ///
 /// Body axes: x ahead, y to the right, z down. Bank, roll rate, yaw rate and moments are positive to the right; the
 /// sideslip is positive when the air comes from the right. A positive command of aileron or rudder turns the aircraft to
 /// the right.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LateralAirframe {
     /// Wing span `b` \[m\], the reference length of the lateral coefficients.
     pub span: f64,
@@ -24,7 +26,7 @@ pub struct LateralAirframe {
 }
 
 /// The derivatives of one lateral coefficient.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Derivatives {
     /// By the sideslip `beta` [1/rad].
     pub sideslip: f64,
@@ -65,6 +67,9 @@ impl Derivatives {
 }
 
 impl LateralAirframe {
+    /// Number of its numbers.
+    pub const COUNT: usize = 4 + 3 * 5;
+
     /// Roll and yaw acceleration [rad/s^2] of a rolling and a yawing moment [N m].
     #[must_use]
     pub fn acceleration(&self, [roll, yaw]: [f64; 2]) -> [f64; 2] {

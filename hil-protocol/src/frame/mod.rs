@@ -34,22 +34,7 @@ pub fn encode<'a>(
     message: &Message,
     buffer: &'a mut [u8; MAX_FRAME],
 ) -> Result<&'a [u8], EncodeError> {
-    match message {
-        Message::Hello(body) => encode_body(body, buffer),
-        Message::Configure(body) => encode_body(body, buffer),
-        Message::ConfigureReply(body) => encode_body(body, buffer),
-        Message::SensorFrame(body) => encode_body(body, buffer),
-        Message::LidarScan(body) => encode_body(body, buffer),
-        Message::ActuatorCommand(body) => encode_body(body, buffer),
-        Message::StepReport(body) => encode_body(body, buffer),
-        Message::PlanReport(body) => encode_body(body, buffer),
-        Message::Rejection(body) => encode_body(body, buffer),
-        Message::SetParameter(body) => encode_body(body, buffer),
-        Message::ParameterReply(body) => encode_body(body, buffer),
-        Message::PlanTrajectory(body) => encode_body(body, buffer),
-        Message::HealthReport(body) => encode_body(body, buffer),
-        Message::PlanControls(body) => encode_body(body, buffer),
-    }
+    encode_with(message.id(), buffer, |room| message.to_payload(room))
 }
 
 /// Does the work of [`encode`] for a message whose kind is known.
@@ -61,10 +46,18 @@ pub fn encode_body<'a, T: Body>(
     body: &T,
     buffer: &'a mut [u8; MAX_FRAME],
 ) -> Result<&'a [u8], EncodeError> {
-    let too_long = EncodeError::TooLong { id: T::ID };
+    encode_with(T::ID, buffer, |room| postcard::to_slice(body, room))
+}
+
+fn encode_with(
+    id: u8,
+    buffer: &mut [u8; MAX_FRAME],
+    write: impl FnOnce(&mut [u8]) -> postcard::Result<&mut [u8]>,
+) -> Result<&[u8], EncodeError> {
+    let too_long = EncodeError::TooLong { id };
     let room = buffer.get_mut(MAX_CODES + HEADER..).ok_or(too_long)?;
-    let payload = postcard::to_slice(body, room).map_err(|_| too_long)?.len();
-    seal(T::ID, payload, buffer).ok_or(too_long)
+    let payload = write(room).map_err(|_| too_long)?.len();
+    seal(id, payload, buffer).ok_or(too_long)
 }
 
 /// Makes a frame of the payload in the buffer, behind the room for header and codes.

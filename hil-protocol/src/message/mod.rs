@@ -4,6 +4,7 @@ pub(crate) mod flight;
 pub(crate) mod report;
 pub(crate) mod session;
 mod size;
+pub(crate) mod space;
 pub(crate) mod verdict;
 
 use crate::error::DecodeError;
@@ -12,40 +13,10 @@ use report::{HealthReport, PlanControls, PlanReport, PlanTrajectory, Rejection};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
-
-/// Message ids, the fourth byte of a frame. Append-only: a number is never used again.
-pub mod id {
-    /// [`Hello`](crate::Hello).
-    pub const HELLO: u8 = 1;
-    /// [`Configure`](crate::Configure).
-    pub const CONFIGURE: u8 = 2;
-    /// [`ConfigureReply`](crate::ConfigureReply).
-    pub const CONFIGURE_REPLY: u8 = 3;
-    /// [`SensorFrame`](crate::SensorFrame).
-    pub const SENSOR_FRAME: u8 = 4;
-    /// [`LidarScan`](crate::LidarScan).
-    pub const LIDAR_SCAN: u8 = 5;
-    /// [`ActuatorCommand`](crate::ActuatorCommand).
-    pub const ACTUATOR_COMMAND: u8 = 6;
-    /// [`StepReport`](crate::StepReport).
-    pub const STEP_REPORT: u8 = 7;
-    /// [`PlanReport`](crate::PlanReport).
-    pub const PLAN_REPORT: u8 = 8;
-    /// [`Rejection`](crate::Rejection).
-    pub const REJECTION: u8 = 9;
-    /// [`SetParameter`](crate::SetParameter).
-    pub const SET_PARAMETER: u8 = 10;
-    /// [`ParameterReply`](crate::ParameterReply).
-    pub const PARAMETER_REPLY: u8 = 11;
-    /// [`PlanTrajectory`](crate::PlanTrajectory).
-    pub const PLAN_TRAJECTORY: u8 = 12;
-    /// [`HealthReport`](crate::HealthReport).
-    pub const HEALTH_REPORT: u8 = 13;
-    /// [`PlanControls`](crate::PlanControls).
-    pub const PLAN_CONTROLS: u8 = 14;
-    /// The greatest of these numbers. All from [`HELLO`] on are used.
-    pub const LAST: u8 = PLAN_CONTROLS;
-}
+use space::{
+    ConfigureLateral, InertialFrame, PointPacket, SpacePosition, SpaceReport, SpaceTrajectory,
+    SurfaceCommand,
+};
 
 /// The struct of a message, which a frame carries.
 pub trait Body: Serialize + DeserializeOwned {
@@ -53,111 +24,109 @@ pub trait Body: Serialize + DeserializeOwned {
     const ID: u8;
 }
 
-/// Gives structs their numbers.
-macro_rules! bodies {
-    ($($body:ty => $id:ident,)*) => {
-        $(impl Body for $body {
-            const ID: u8 = id::$id;
-        })*
+/// Makes all that follows from the list of messages.
+macro_rules! messages {
+    ($($(#[$doc:meta])* $number:literal $id:ident $body:ident,)*) => {
+        /// Message ids, the fourth byte of a frame. Append-only: a number is never used again.
+        pub mod id {
+            $(
+                #[doc = concat!("[`", stringify!($body), "`](crate::", stringify!($body), ").")]
+                pub const $id: u8 = $number;
+            )*
+            /// The greatest of these numbers. All from [`HELLO`] on are used.
+            pub const LAST: u8 = [$($number),*].len() as u8;
+        }
+
+        $(
+            impl Body for $body {
+                const ID: u8 = id::$id;
+            }
+        )*
+
+        /// A message of any kind.
+        #[derive(Clone, Debug, PartialEq)]
+        pub enum Message {
+            $($(#[$doc])* $body($body),)*
+        }
+
+        impl Message {
+            /// The number that stands for this message in a frame's header, one of [`id`].
+            #[must_use]
+            pub const fn id(&self) -> u8 {
+                match self {
+                    $(Self::$body(_) => id::$id,)*
+                }
+            }
+
+            /// Reads the payload of the message with this id.
+            pub(crate) fn read(id: u8, payload: &[u8]) -> Result<Self, DecodeError> {
+                Ok(match id {
+                    $(id::$id => Self::$body(read(payload)?),)*
+                    _ => return Err(DecodeError::UnknownId { id }),
+                })
+            }
+
+            /// Writes the payload: the [postcard] form of the message's struct.
+            ///
+            /// # Errors
+            ///
+            /// Those of [`postcard::to_slice`]: the buffer is too short. One of [`MAX_PAYLOAD`] bytes is long enough.
+            pub fn to_payload<'a>(&self, buffer: &'a mut [u8]) -> postcard::Result<&'a mut [u8]> {
+                match self {
+                    $(Self::$body(body) => postcard::to_slice(body, buffer),)*
+                }
+            }
+        }
+
+        const _: () = {
+            $(assert!($body::MAX_SIZE <= MAX_PAYLOAD);)*
+        };
     };
 }
 
-bodies! {
-    Hello => HELLO,
-    Configure => CONFIGURE,
-    ConfigureReply => CONFIGURE_REPLY,
-    SensorFrame => SENSOR_FRAME,
-    LidarScan => LIDAR_SCAN,
-    ActuatorCommand => ACTUATOR_COMMAND,
-    StepReport => STEP_REPORT,
-    PlanReport => PLAN_REPORT,
-    Rejection => REJECTION,
-    SetParameter => SET_PARAMETER,
-    ParameterReply => PARAMETER_REPLY,
-    PlanTrajectory => PLAN_TRAJECTORY,
-    HealthReport => HEALTH_REPORT,
-    PlanControls => PLAN_CONTROLS,
-}
-
-/// A message of any kind.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "there is no heap to put the scan on"
-)]
-#[derive(Clone, Debug, PartialEq)]
-pub enum Message {
+messages! {
     /// Both directions: the first message, which identifies the sender.
-    Hello(Hello),
+    1 HELLO Hello,
     /// Harness to core: the configuration of a flight.
-    Configure(Configure),
+    2 CONFIGURE Configure,
     /// Core to harness: the verdict on a configuration.
-    ConfigureReply(ConfigureReply),
+    3 CONFIGURE_REPLY ConfigureReply,
     /// Harness to core: the measurements of one tick.
-    SensorFrame(SensorFrame),
+    4 SENSOR_FRAME SensorFrame,
     /// Harness to core: one sweep of the lidar.
-    LidarScan(LidarScan),
+    5 LIDAR_SCAN LidarScan,
     /// Core to harness: the actuator command of one tick.
-    ActuatorCommand(ActuatorCommand),
+    6 ACTUATOR_COMMAND ActuatorCommand,
     /// Core to harness: estimate and reference of one tick.
-    StepReport(StepReport),
+    7 STEP_REPORT StepReport,
     /// Core to harness: the result of one planning cycle.
-    PlanReport(PlanReport),
+    8 PLAN_REPORT PlanReport,
     /// Core to harness: an input that the core did not use, and the cause.
-    Rejection(Rejection),
+    9 REJECTION Rejection,
     /// Harness to core: a new value for a parameter.
-    SetParameter(SetParameter),
+    10 SET_PARAMETER SetParameter,
     /// Core to harness: the verdict on a new value.
-    ParameterReply(ParameterReply),
+    11 PARAMETER_REPLY ParameterReply,
     /// Core to harness: the trajectory that a planning cycle chose.
-    PlanTrajectory(PlanTrajectory),
+    12 PLAN_TRAJECTORY PlanTrajectory,
     /// Core to harness: the counters of the flight.
-    HealthReport(HealthReport),
+    13 HEALTH_REPORT HealthReport,
     /// Core to harness: the commands along the trajectory that is flown.
-    PlanControls(PlanControls),
-}
-
-impl Message {
-    /// The number that stands for this message in a frame's header, one of [`id`].
-    #[must_use]
-    pub const fn id(&self) -> u8 {
-        match self {
-            Self::Hello(_) => id::HELLO,
-            Self::Configure(_) => id::CONFIGURE,
-            Self::ConfigureReply(_) => id::CONFIGURE_REPLY,
-            Self::SensorFrame(_) => id::SENSOR_FRAME,
-            Self::LidarScan(_) => id::LIDAR_SCAN,
-            Self::ActuatorCommand(_) => id::ACTUATOR_COMMAND,
-            Self::StepReport(_) => id::STEP_REPORT,
-            Self::PlanReport(_) => id::PLAN_REPORT,
-            Self::Rejection(_) => id::REJECTION,
-            Self::SetParameter(_) => id::SET_PARAMETER,
-            Self::ParameterReply(_) => id::PARAMETER_REPLY,
-            Self::PlanTrajectory(_) => id::PLAN_TRAJECTORY,
-            Self::HealthReport(_) => id::HEALTH_REPORT,
-            Self::PlanControls(_) => id::PLAN_CONTROLS,
-        }
-    }
-
-    /// Reads the payload of the message with this id.
-    pub(crate) fn read(id: u8, payload: &[u8]) -> Result<Self, DecodeError> {
-        Ok(match id {
-            id::HELLO => Self::Hello(read(payload)?),
-            id::CONFIGURE => Self::Configure(read(payload)?),
-            id::CONFIGURE_REPLY => Self::ConfigureReply(read(payload)?),
-            id::SENSOR_FRAME => Self::SensorFrame(read(payload)?),
-            id::LIDAR_SCAN => Self::LidarScan(read(payload)?),
-            id::ACTUATOR_COMMAND => Self::ActuatorCommand(read(payload)?),
-            id::STEP_REPORT => Self::StepReport(read(payload)?),
-            id::PLAN_REPORT => Self::PlanReport(read(payload)?),
-            id::REJECTION => Self::Rejection(read(payload)?),
-            id::SET_PARAMETER => Self::SetParameter(read(payload)?),
-            id::PARAMETER_REPLY => Self::ParameterReply(read(payload)?),
-            id::PLAN_TRAJECTORY => Self::PlanTrajectory(read(payload)?),
-            id::HEALTH_REPORT => Self::HealthReport(read(payload)?),
-            id::PLAN_CONTROLS => Self::PlanControls(read(payload)?),
-            _ => return Err(DecodeError::UnknownId { id }),
-        })
-    }
+    14 PLAN_CONTROLS PlanControls,
+    /// Harness to core: the lateral part of the aircraft.
+    15 CONFIGURE_LATERAL ConfigureLateral,
+    /// Harness to core: attitude, body rates and specific force of one tick.
+    16 INERTIAL_FRAME InertialFrame,
+    /// Harness to core: a position in space.
+    17 SPACE_POSITION SpacePosition,
+    /// Harness to core: some points of a lidar in space.
+    18 POINT_PACKET PointPacket,
+    /// Core to harness: the command to the lateral surfaces of one tick.
+    19 SURFACE_COMMAND SurfaceCommand,
+    /// Core to harness: the lateral part of estimate and reference of one tick.
+    20 SPACE_REPORT SpaceReport,
+    /// Core to harness: the trajectory in space that a planning cycle chose.
+    21 SPACE_TRAJECTORY SpaceTrajectory,
 }
 
 /// Reads one struct from exactly these bytes.
@@ -171,19 +140,3 @@ pub(crate) fn read<T: Body>(payload: &[u8]) -> Result<T, DecodeError> {
 
 /// Size of the longest payload, a full [`LidarScan`] \[bytes\].
 pub const MAX_PAYLOAD: usize = LidarScan::MAX_SIZE;
-
-const _: () = {
-    assert!(Hello::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(Configure::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(ConfigureReply::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(SensorFrame::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(ActuatorCommand::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(StepReport::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(PlanReport::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(Rejection::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(SetParameter::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(ParameterReply::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(PlanTrajectory::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(HealthReport::MAX_SIZE <= MAX_PAYLOAD);
-    assert!(PlanControls::MAX_SIZE <= MAX_PAYLOAD);
-};

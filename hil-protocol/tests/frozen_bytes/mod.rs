@@ -7,6 +7,7 @@
 //! crate's documentation, and the lines of the changed message are changed here.
 
 mod reports;
+mod space;
 
 use hil_protocol::*;
 

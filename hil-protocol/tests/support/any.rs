@@ -28,6 +28,29 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
         of(plan_trajectory()).prop_map(Message::PlanTrajectory),
         of(plan_controls()).prop_map(Message::PlanControls),
         of(any::<(u32, [u32; HealthReport::NAMES.len()])>()).prop_map(Message::HealthReport),
+        space(),
+    ]
+}
+
+/// A message of an aircraft in space.
+fn space() -> impl Strategy<Value = Message> {
+    let lateral = uniform::<_, { LateralAirframe::COUNT }>(f64::ANY);
+    let lateral = (lateral, uniform3(option::of(f64::ANY)));
+    let inertial = (any::<u32>(), uniform::<_, 10>(f32::ANY));
+    let velocity = option::of(uniform4(f32::ANY));
+    let position = (any::<u32>(), uniform3(f64::ANY), f32::ANY, velocity);
+    let points = list::<_, MAX_POINTS>(uniform3(f32::ANY));
+    let packet = (any::<(u32, u32, u16)>(), points);
+    let report = (any::<u32>(), uniform::<_, 10>(f64::ANY));
+    let knots = list::<_, MAX_KNOTS>(uniform5(f32::ANY));
+    prop_oneof![
+        of(lateral).prop_map(Message::ConfigureLateral),
+        of(inertial).prop_map(Message::InertialFrame),
+        of(position).prop_map(Message::SpacePosition),
+        of(packet).prop_map(Message::PointPacket),
+        of((any::<u32>(), f64::ANY, f64::ANY)).prop_map(Message::SurfaceCommand),
+        of(report).prop_map(Message::SpaceReport),
+        of((any::<u32>(), f32::ANY, knots)).prop_map(Message::SpaceTrajectory),
     ]
 }
 
