@@ -28,6 +28,7 @@ mod planner_composition;
 mod planner_flight;
 mod planner_limits;
 mod planner_setup;
+mod planner_space;
 mod point_mass;
 mod qp;
 mod rays;

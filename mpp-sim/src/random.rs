@@ -48,6 +48,10 @@ pub enum Stream {
     Motion = 18,
     /// Sideways and rolling motion of the air.
     LateralGusts = 19,
+    /// Errors of the estimate in space.
+    SpaceEstimate = 20,
+    /// Noise of a lidar in space.
+    SpaceLidar = 21,
 }
 
 /// The generator of one subsystem: ChaCha with 8 rounds. It has the bits of `rand_chacha`, which is slower to build.

@@ -98,34 +98,66 @@ impl LateralRegulator {
     /// The command of this tick that brings the aircraft to a bank \[rad\] and holds it there. A motion or a bank that is not
     /// finite gives neutral surfaces.
     pub fn step(&mut self, motion: &LateralMotion, bank: f64) -> LateralControl {
+        let Some(mut command) = self.deflections(motion, bank, 0.0) else {
+            return LateralControl::default();
+        };
+        let pull = self.gain.m14 * (motion.bank - bank) * TICK_PERIOD / INTEGRAL_TIME;
+        self.integral = within(self.integral - pull, self.most_integral);
+        command.aileron += self.integral;
+        self.limited(command)
+    }
+
+    /// The command that follows a bank \[rad\] which changes at a rate [rad/s]. It has no integral: whoever plans the bank corrects
+    /// what is left.
+    #[must_use]
+    pub fn follow(&self, motion: &LateralMotion, bank: f64, bank_rate: f64) -> LateralControl {
+        let command = self.deflections(motion, bank, bank_rate);
+        self.limited(command.unwrap_or_default())
+    }
+
+    fn limited(&self, command: LateralControl) -> LateralControl {
+        let [aileron, rudder] = self.limits;
+        LateralControl {
+            aileron: within(command.aileron, aileron),
+            rudder: within(command.rudder, rudder),
+        }
+    }
+
+    /// Deflections without limits; `None` if a number is not finite.
+    fn deflections(
+        &self,
+        motion: &LateralMotion,
+        bank: f64,
+        bank_rate: f64,
+    ) -> Option<LateralControl> {
         let known = [
             motion.airspeed,
             motion.bank,
             motion.roll_rate,
             motion.yaw_rate,
+            bank,
+            bank_rate,
         ];
-        if !(bank.is_finite() && known.iter().all(|it| it.is_finite())) {
-            return LateralControl::default();
+        if !known.iter().all(|it| it.is_finite()) {
+            return None;
         }
         let ratio = self.airspeed / motion.airspeed.max(0.5 * self.airspeed);
         let (sin_bank, cos_bank) = libm::sincos(bank);
         let turn = GRAVITY * sin_bank / (cos_bank.max(0.1) * ratio.recip() * self.airspeed);
         let (sin_pitch, cos_pitch) = self.pitch;
-        let steady = Vector2::new(-turn * sin_pitch, turn * cos_pitch * cos_bank);
+        let roll = -turn * sin_pitch + bank_rate;
+        let steady = Vector2::new(roll, turn * cos_pitch * cos_bank);
         let error = Vector4::new(
             0.0,
             motion.roll_rate - steady.x,
             motion.yaw_rate - steady.y,
             motion.bank - bank,
         );
-        let [aileron, rudder] = self.limits;
-        let pull = self.gain.m14 * error.w * TICK_PERIOD / INTEGRAL_TIME;
-        self.integral = within(self.integral - pull, self.most_integral);
         let command = self.hold * steady * ratio - self.gain * error * (ratio * ratio);
-        LateralControl {
-            aileron: within(command.x + self.integral, aileron),
-            rudder: within(command.y, rudder),
-        }
+        Some(LateralControl {
+            aileron: command.x,
+            rudder: command.y,
+        })
     }
 }
 

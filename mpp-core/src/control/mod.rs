@@ -3,12 +3,14 @@
 mod lateral;
 mod riccati;
 mod sampled;
+mod space;
 
 use crate::vehicle::{AirState, Control, Linearization};
 pub use lateral::{LateralMotion, LateralRegulator, NoLateralGain};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 pub use riccati::{RiccatiError, solve_riccati};
 pub(crate) use sampled::holds;
+pub use space::{SpaceMotion, SpaceRegulator};
 
 /// Weights of the regulator: `Q` on `(v, theta, theta', gamma)` and `R` on the elevator.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,16 +3,21 @@
 //! | type | content |
 //! |---|---|
 //! | [`RollingGrid`] | the rolling occupancy grid: log-odds of earlier scans |
+//! | [`VoxelGrid`], [`VoxelField`] | the same in space |
 //! | [`DistanceField`] | the truncated distance field \(ESDF\): from a point to the nearest centre of an occupied cell of the grid |
 
 pub(crate) mod cell;
 mod distance_field;
 mod rolling_grid;
+pub(crate) mod voxel_field;
+pub(crate) mod voxels;
 
 pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
 pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
+pub use voxel_field::{MOST_CLEARANCE, VoxelField};
+pub use voxels::{CELL, CELLS, SpaceBeam, VoxelGrid};
 
 #[cfg(test)]
 mod tests {

@@ -14,6 +14,7 @@
 mod error;
 pub mod plane;
 mod shared;
+pub mod space;
 mod summary;
 
 use crate::config::KNOTS;

@@ -7,8 +7,10 @@
 //! `CONTRIBUTING.md` describes how to change a number: the golden flights show at once which flights
 //! changed.
 
+mod space;
 mod watches;
 
+pub use space::{space_judgement, space_lattice, space_program, voxels};
 pub use watches::{airspeed_bias, elevator, motor, pitch_bias, pitch_monitor, sensors};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of

@@ -6,6 +6,7 @@ mod lateral;
 mod linearize;
 mod point_mass;
 mod pose;
+mod space_path;
 mod stall;
 mod thrust_lag;
 mod trim;
@@ -22,6 +23,7 @@ pub use mpp_data::{
 };
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
+pub use space_path::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath, path_axes};
 pub use stall::{StallGuard, stall_sides};
 pub use thrust_lag::ThrustLag;
 pub use trim::{Trim, TrimError};

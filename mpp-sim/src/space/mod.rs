@@ -2,6 +2,8 @@
 //! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
 
 mod course;
+mod errors;
+mod flight;
 mod motion;
 mod quaternion;
 mod servo;
@@ -10,6 +12,8 @@ mod tests;
 mod wind;
 
 pub use course::CourseHold;
+pub use errors::{EstimateErrors, SpaceEstimator, true_path};
+pub use flight::{SpaceConfig, SpaceFlight};
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use quaternion::Quaternion;
 pub use servo::Servo;
@@ -64,6 +68,11 @@ impl SpaceAircraft {
             rudder: table.rudder.as_ref().map(Servo::new),
             wind: SpaceWind::new(seed, faults.gusts, wind, table.span, TICK_PERIOD),
         })
+    }
+
+    /// Moves the aircraft to another height \[m\] before it flies.
+    pub fn start_at(&mut self, height: f64) {
+        self.body.state.plane.z = height;
     }
 
     /// The true state.

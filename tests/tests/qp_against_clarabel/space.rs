@@ -86,7 +86,7 @@ impl Draw {
                 assert!(faces.push(boundary, self.normal(), bound));
             }
         }
-        problem.bounds.set_faces(&faces);
+        problem.bounds.set_faces(&faces, &[0.0; POSITION]);
         let (alpha, bank) = (self.between(0.1, 0.2), self.between(0.6, 1.0));
         problem
             .bounds

@@ -58,10 +58,13 @@ impl Faces {
 }
 
 impl Bounds {
-    /// Sets the bounds of the faces. Their normals go to [`Condensed::set_faces`].
-    pub fn set_faces(&mut self, faces: &Faces) {
-        for (row, bound) in self.0.iter_mut().zip(faces.bounds.as_flattened()) {
-            *row = *bound;
+    /// Sets the bounds of the faces, relative to the position of the program's start. Their normals go to
+    /// [`Condensed::set_faces`].
+    pub fn set_faces(&mut self, faces: &Faces, [x, y, z]: &[f64; POSITION]) {
+        let normals = faces.normals.as_flattened();
+        let rows = faces.bounds.as_flattened().iter().zip(normals);
+        for (row, (bound, [a, b, c])) in self.0.iter_mut().zip(rows) {
+            *row = bound - (a * x + b * y + c * z);
         }
     }
 }

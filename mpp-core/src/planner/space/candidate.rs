@@ -1,0 +1,220 @@
+//! Trajectories in space: as the pursuit of a path flies them, and as the controls of a program do.
+
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath};
+
+/// Distance ahead at which the pursuit aims, in seconds of cruise [s]. Less swings, more cuts corners. Source: S of
+/// [`crate::tuning::voxels`].
+const AIM: f64 = 0.75;
+/// Least squared distance of the aim \[m^2\].
+const LEAST_AIM: f64 = 9.0;
+/// Least upward pull that the pursuit asks for [m/s^2]: the direction of the lift needs it.
+const LEAST_UP: f64 = 0.5;
+/// Share of the bank's limit and of its rate that the pursuit uses; the rest is for the program [-].
+const BANK_USED: f64 = 0.92;
+const RATE_USED: f64 = 0.9;
+/// How far beyond the limits of a plan a roll-out may go: angle of attack \[rad\], bank and its rate [-]. Programs break soft rows
+/// by a little.
+const BEYOND_ATTACK: f64 = 0.03;
+const BANK_BEYOND: f64 = 0.97;
+const RATE_BEYOND: f64 = 0.95;
+
+/// A trajectory in space: knots 0.25 s apart, and the controls between them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpacePlan {
+    /// States at the knots.
+    pub knots: [SpacePath; KNOTS],
+    /// Controls of the stages.
+    pub controls: [SpaceControl; STAGES],
+}
+
+impl SpacePlan {
+    /// A plan of zeros, to be filled.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            knots: [SpacePath {
+                position: [0.0; 3],
+                airspeed: 0.0,
+                angle_of_attack: 0.0,
+                bank: 0.0,
+                flight_path: 0.0,
+                course: 0.0,
+            }; KNOTS],
+            controls: [SpaceControl {
+                bank_rate: 0.0,
+                angle_of_attack_rate: 0.0,
+                thrust: 0.0,
+            }; STAGES],
+        }
+    }
+
+    /// The plan that begins at a state, with a control that is chosen at the start of each stage.
+    pub(super) fn fly(
+        &mut self,
+        model: &SpaceModel,
+        start: &SpacePath,
+        mut choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
+    ) {
+        let [first, later @ ..] = &mut self.knots;
+        *first = *start;
+        let mut state = *start;
+        for (stage, (control, knot)) in self.controls.iter_mut().zip(later).enumerate() {
+            *control = choose(stage, &state);
+            state = state.after(model, control, STAGE_PERIOD);
+            *knot = state;
+        }
+    }
+
+    /// State and control at a time \[s\] after the first knot. Beyond the last knot the flight is straight and level.
+    #[must_use]
+    pub fn at(&self, model: &SpaceModel, time: f64) -> (SpacePath, SpaceControl) {
+        let time = time.max(0.0);
+        let stage = (time / STAGE_PERIOD) as usize;
+        let [.., last] = &self.knots;
+        match (self.knots.get(stage), self.controls.get(stage)) {
+            (Some(knot), Some(control)) => {
+                let within = time - stage as f64 * STAGE_PERIOD;
+                (knot.after(model, control, within), *control)
+            }
+            _ => {
+                let beyond = time - STAGES as f64 * STAGE_PERIOD;
+                let level = SpacePath {
+                    angle_of_attack: model.trim.state.angle_of_attack(),
+                    bank: 0.0,
+                    flight_path: 0.0,
+                    ..*last
+                };
+                let velocity = level.ground_velocity(&model.wind);
+                let position =
+                    core::array::from_fn(|axis| last.position[axis] + velocity[axis] * beyond);
+                let thrust = model.trim.control.thrust;
+                let control = SpaceControl {
+                    thrust,
+                    ..SpaceControl::default()
+                };
+                (SpacePath { position, ..level }, control)
+            }
+        }
+    }
+}
+
+impl Default for SpacePlan {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// Controls within the limits of roll-outs.
+pub(super) fn limited(
+    model: &SpaceModel,
+    state: &SpacePath,
+    wanted: &SpaceControl,
+) -> SpaceControl {
+    let rate = within(wanted.bank_rate, RATE_BEYOND * model.bank_rate);
+    let bank = within(state.bank + rate * STAGE_PERIOD, BANK_BEYOND * model.bank);
+    let [low, high] = model.angle_of_attack;
+    let rate = within(wanted.angle_of_attack_rate, model.angle_of_attack_rate);
+    let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
+    let reached = aimed.max(low - BEYOND_ATTACK).min(high + BEYOND_ATTACK);
+    SpaceControl {
+        bank_rate: (bank - state.bank) / STAGE_PERIOD,
+        angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
+        thrust: wanted.thrust.max(0.0).min(model.thrust_max),
+    }
+}
+
+fn within(value: f64, limit: f64) -> f64 {
+    value.max(-limit).min(limit)
+}
+
+/// Flies along points that lie ahead of each other.
+pub(super) struct Pursuit<'a> {
+    points: &'a [[f64; 3]],
+    /// The segment in which the aim lies.
+    segment: usize,
+}
+
+impl<'a> Pursuit<'a> {
+    pub(super) fn new(points: &'a [[f64; 3]]) -> Self {
+        Self { points, segment: 0 }
+    }
+
+    /// The control of the next stage: towards the point of the path some distance ahead, on a circle.
+    pub(super) fn control(&mut self, model: &SpaceModel, state: &SpacePath) -> SpaceControl {
+        let at = state.position;
+        let aim = self.aim(at[0] + AIM * model.trim.state.airspeed);
+        let way: [f64; 3] = core::array::from_fn(|axis| aim[axis] - at[axis]);
+        let square = dot(&way, &way).max(LEAST_AIM);
+        let velocity = state.ground_velocity(&model.wind);
+        let speed_squared = dot(&velocity, &velocity).max(1.0);
+        let climb = (velocity[2] / libm::sqrt(speed_squared)).max(-1.0).min(1.0);
+        let course = libm::atan2(velocity[1], velocity[0]);
+        let [_, up, right] = crate::vehicle::path_axes(libm::asin(climb), course);
+        let turn = 2.0 * speed_squared / square;
+        let up = turn * dot(&way, &up) + GRAVITY * libm::cos(state.flight_path);
+        towards(model, state, [up, turn * dot(&way, &right)], STAGE_PERIOD)
+    }
+
+    /// The point of the path at an x; beyond the end its last point, moved to this x.
+    fn aim(&mut self, x: f64) -> [f64; 3] {
+        let last = self.points.len().saturating_sub(2);
+        // The number of points bounds the loop.
+        for _ in 0..self.points.len() {
+            let next = self.points.get(self.segment + 1);
+            if self.segment >= last || next.is_none_or(|next| next[0] >= x) {
+                break;
+            }
+            self.segment += 1;
+        }
+        let from = self
+            .points
+            .get(self.segment)
+            .copied()
+            .unwrap_or([x, 0.0, 0.0]);
+        let to = self.points.get(self.segment + 1).copied().unwrap_or(from);
+        let share = ((x - from[0]) / (to[0] - from[0]).max(1e-3))
+            .max(0.0)
+            .min(1.0);
+        [
+            x.max(from[0]),
+            from[1] + share * (to[1] - from[1]),
+            from[2] + share * (to[2] - from[2]),
+        ]
+    }
+}
+
+/// Rates that reach, within `dt` \[s\] and the limits, the bank and the angle of attack of a wanted acceleration across the
+/// flight path, up and to the right [m/s^2].
+pub(super) fn towards(
+    model: &SpaceModel,
+    state: &SpacePath,
+    [up, right]: [f64; 2],
+    dt: f64,
+) -> SpaceControl {
+    let most_bank = BANK_USED * model.bank;
+    let [low, high] = model.angle_of_attack;
+    let most = model.pull(state.airspeed, high, model.trim.control.thrust);
+    let (mut upwards, mut sideways) = (up, right);
+    if libm::hypot(up.max(0.0), right) > most {
+        // The height is kept, and the turn is as tight as it can be.
+        upwards = up.max(0.0).min(0.98 * most);
+        let left = libm::sqrt((most * most - upwards * upwards).max(0.0));
+        sideways = within(right, left);
+    }
+    let bank = within(libm::atan2(sideways, upwards.max(LEAST_UP)), most_bank);
+    let pull = (up / libm::cos(bank).max(0.4)).max(0.0).min(most);
+    let attack = model.angle_for(state.airspeed, pull).max(low).min(high);
+    SpaceControl {
+        bank_rate: within((bank - state.bank) / dt, RATE_USED * model.bank_rate),
+        angle_of_attack_rate: within(
+            (attack - state.angle_of_attack) / dt,
+            model.angle_of_attack_rate,
+        ),
+        thrust: model.thrust_for(state.airspeed, attack, state.flight_path),
+    }
+}
+
+pub(super) fn dot(a: &[f64; 3], b: &[f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

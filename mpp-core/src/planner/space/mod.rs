@@ -1,0 +1,395 @@
+//! The planner in space: receding horizon planning through a map of voxels, for an aircraft that banks to turn.
+//!
+//! | phase | file | what it does |
+//! |---|---|---|
+//! | field | [`VoxelField`] | distances to what the map knows |
+//! | lattice | `lattice.rs` | paths on different sides of obstacles, and the cost-to-go |
+//! | candidates | `candidate.rs`, `judge.rs` | the previous plan (warm start) and the paths, flown under all limits, with their price |
+//! | programs | `faces.rs`, `program.rs` | each candidate gets a corridor and a QP that improves it; its controls are flown out |
+//!
+//! The cheapest trajectory is the plan. Any call of [`SpacePlanner::advance`] does a bounded amount of work, and
+//! [`SpacePlanner::best`] is a plan at any time after the first candidate.
+//!
+//! World: x ahead, y to the right, z up \[m\].
+
+mod candidate;
+mod faces;
+mod judge;
+mod lattice;
+mod program;
+
+pub use candidate::SpacePlan;
+pub use judge::SpaceJudgement;
+
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::{MOST_CLEARANCE, VoxelField, VoxelGrid};
+use crate::qp::Status;
+use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
+use crate::tuning::space_lattice::MORE_MARGIN;
+use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
+use candidate::{Pursuit, dot, limited, towards};
+use judge::judge;
+use lattice::{Lattice, Path, Rules, STATIONS, VIA};
+use program::{Frame, WEIGHTS};
+
+/// Most candidates: the previous plan and paths of the lattice.
+pub const SPACE_CANDIDATES: usize = 7;
+/// Least distance of the minima of paths, in places of the lattice.
+const APART: usize = 2;
+/// Steps of the solver in a slice, and in a program.
+const SLICE_STEPS: usize = 8;
+const MOST_STEPS: usize = 120;
+/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice, candidates with the one straight on, and programs with
+/// their solves.
+pub const MOST_SPACE_SLICES: usize =
+    1 + STATIONS + SPACE_CANDIDATES + 2 + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1);
+/// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of [`crate::tuning::voxels`].
+const LEVEL_SPAN: f64 = 0.75;
+/// Step for the direction to the nearest obstacle \[m\].
+const GRADIENT: f64 = 0.25;
+
+/// Distances and heights that a plan keeps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Keep {
+    /// Least distance of the body from the centres of occupied voxels \[m\]: its radius, half a voxel's diagonal, and errors.
+    pub margin: f64,
+    /// Half the span of a wing that banks \[m\]; 0 for a sphere.
+    pub half_span: f64,
+    /// Least and greatest height of the body \[m\].
+    pub heights: [f64; 2],
+    /// Half the width of the band \[m\].
+    pub half_width: f64,
+    /// Wanted height \[m\].
+    pub altitude: f64,
+}
+
+impl Keep {
+    /// Distance that the body keeps from an obstacle in the direction of a normal, with its wing along a unit vector \[m\].
+    fn distance(&self, normal: &[f64; 3], wing: &[f64; 3]) -> f64 {
+        self.margin + self.half_span * libm::fabs(dot(normal, wing))
+    }
+
+    /// The same at a point of a field with a clearance \[m\] there.
+    fn margin(&self, field: &VoxelField, point: &[f64; 3], clearance: f64, wing: &[f64; 3]) -> f64 {
+        if self.half_span <= 0.0 || clearance >= MOST_CLEARANCE {
+            return self.margin;
+        }
+        let slope: [f64; 3] = core::array::from_fn(|axis| {
+            let mut ahead = *point;
+            ahead[axis] += GRADIENT;
+            let mut back = *point;
+            back[axis] -= GRADIENT;
+            field.clearance(&ahead) - field.clearance(&back)
+        });
+        let steep = libm::sqrt(dot(&slope, &slope));
+        if steep < 1e-6 {
+            return self.margin + self.half_span;
+        }
+        self.distance(&slope.map(|it| it / steep), wing)
+    }
+
+    /// Distance beyond the band \[m\].
+    fn outside(&self, [_, y, z]: &[f64; 3]) -> f64 {
+        let [low, high] = self.heights;
+        (low - z).max(z - high).max(0.0) + (libm::fabs(*y) - self.half_width).max(0.0)
+    }
+}
+
+/// What a cycle is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    Idle,
+    Field,
+    Forward(usize),
+    Backward(usize),
+    Previous,
+    Candidate(usize),
+    Pose(usize),
+    Solve(usize),
+}
+
+/// A candidate and its worth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Candidate {
+    plan: SpacePlan,
+    judgement: SpaceJudgement,
+}
+
+/// Workspace of the planner in space, the map beside.
+#[derive(Clone, Debug)]
+pub struct SpacePlanner {
+    model: SpaceModel,
+    keep: Keep,
+    /// Number of candidates that a cycle proposes, and whether they get programs.
+    wanted: usize,
+    programs: bool,
+    field: VoxelField,
+    lattice: Lattice,
+    paths: heapless::Vec<Path, SPACE_CANDIDATES>,
+    candidates: heapless::Vec<Candidate, SPACE_CANDIDATES>,
+    best: Option<Candidate>,
+    start: SpacePath,
+    /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
+    previous: Option<(SpacePlan, f64)>,
+    phase: Phase,
+    faces: Faces,
+    problem: Problem,
+    shared: Condensed,
+    solver: Solver,
+    solution: Solution,
+    steps: usize,
+}
+
+impl SpacePlanner {
+    /// A planner for an aircraft.
+    #[must_use]
+    pub fn new(model: SpaceModel, keep: Keep) -> Self {
+        let mut lattice = Lattice::new();
+        lattice.set_up(&model);
+        Self {
+            model,
+            keep,
+            wanted: SPACE_CANDIDATES,
+            programs: true,
+            field: VoxelField::new(),
+            lattice,
+            paths: heapless::Vec::new(),
+            candidates: heapless::Vec::new(),
+            best: None,
+            start: SpacePath::default(),
+            previous: None,
+            phase: Phase::Idle,
+            faces: Faces::none(),
+            problem: Problem::EMPTY,
+            shared: Condensed::new(),
+            solver: Solver::new(),
+            solution: Solution::new(),
+            steps: 0,
+        }
+    }
+
+    /// Chooses the number of candidates, from 1 to [`SPACE_CANDIDATES`], and whether a program improves each.
+    pub fn choose(&mut self, candidates: usize, programs: bool) {
+        self.wanted = candidates.max(1).min(SPACE_CANDIDATES);
+        self.programs = programs;
+    }
+
+    /// Tells the wind that plans count on [m/s].
+    pub fn set_wind(&mut self, wind: [f64; 3]) {
+        self.model.wind = wind;
+    }
+
+    /// The model of the aircraft, with the wind.
+    #[must_use]
+    pub fn model(&self) -> &SpaceModel {
+        &self.model
+    }
+
+    /// Begins a cycle at the state in which the plan will be taken over, `shift` \[s\] after the first knot of the last plan.
+    pub fn begin(&mut self, start: &SpacePath, shift: f64) {
+        self.previous = self.best.map(|best| (best.plan, shift));
+        self.best = None;
+        self.start = *start;
+        self.candidates.clear();
+        self.paths.clear();
+        self.phase = Phase::Field;
+    }
+
+    /// Does a slice of the cycle. Returns true when it is done.
+    pub fn advance(&mut self, map: &VoxelGrid) -> bool {
+        self.phase = match self.phase {
+            Phase::Idle => return true,
+            Phase::Field => {
+                self.field.update(map, &self.start.position);
+                let velocity = self.start.ground_velocity(&self.model.wind);
+                self.lattice.begin(&self.start.position, &velocity);
+                Phase::Forward(0)
+            }
+            Phase::Forward(station) => self.extend(station),
+            Phase::Backward(station) => self.retreat(station),
+            Phase::Previous => self.propose_previous(),
+            Phase::Candidate(path) => self.propose(path),
+            Phase::Pose(candidate) => self.pose(candidate),
+            Phase::Solve(candidate) => self.solve(candidate),
+        };
+        self.phase == Phase::Idle
+    }
+
+    /// The best plan so far, and its worth.
+    #[must_use]
+    pub fn best(&self) -> Option<(&SpacePlan, &SpaceJudgement)> {
+        let best = self.best.as_ref()?;
+        Some((&best.plan, &best.judgement))
+    }
+
+    /// The distances of this cycle.
+    #[must_use]
+    pub fn field(&self) -> &VoxelField {
+        &self.field
+    }
+
+    fn rules(&self) -> Rules {
+        let level = LEVEL_SPAN * self.keep.half_span;
+        Rules {
+            margin: self.keep.margin + MORE_MARGIN + level,
+            altitude: self.keep.altitude,
+            heights: [self.keep.heights[0] + 0.5, self.keep.heights[1] - 0.5],
+            half_width: self.keep.half_width - 0.5,
+        }
+    }
+
+    fn extend(&mut self, station: usize) -> Phase {
+        let rules = self.rules();
+        self.lattice.price(station, &self.field, &rules);
+        self.lattice.extend(station);
+        if station + 1 < VIA {
+            Phase::Forward(station + 1)
+        } else {
+            Phase::Backward(STATIONS - 2)
+        }
+    }
+
+    fn retreat(&mut self, station: usize) -> Phase {
+        let rules = self.rules();
+        self.lattice.price(station, &self.field, &rules);
+        self.lattice.retreat(station);
+        if station > VIA {
+            Phase::Backward(station - 1)
+        } else {
+            Phase::Previous
+        }
+    }
+
+    /// The previous plan is flown twice from where the aircraft is: by its controls, and as a path. The better one counts.
+    fn propose_previous(&mut self) -> Phase {
+        if let Some((plan, shift)) = self.previous.filter(|_| self.wanted > 1) {
+            let model = self.model;
+            let at = |stage: usize| plan.at(&model, shift + stage as f64 * STAGE_PERIOD);
+            let mut flown = SpacePlan::new();
+            flown.fly(&model, &self.start, |stage, state| {
+                let ((now, control), (next, _)) = (at(stage), at(stage + 1));
+                let wanted = SpaceControl {
+                    bank_rate: (next.bank - now.bank) / STAGE_PERIOD,
+                    angle_of_attack_rate: (next.angle_of_attack - now.angle_of_attack)
+                        / STAGE_PERIOD,
+                    thrust: control.thrust,
+                };
+                limited(&model, state, &wanted)
+            });
+            let points: [[f64; 3]; KNOTS] = core::array::from_fn(|stage| at(stage).0.position);
+            let mut pursued = SpacePlan::new();
+            let mut pursuit = Pursuit::new(&points);
+            pursued.fly(&model, &self.start, |_, state| {
+                pursuit.control(&model, state)
+            });
+            let [flown, pursued] = [flown, pursued].map(|plan| self.judged(plan));
+            let better = if pursued.judgement.price < flown.judgement.price {
+                pursued
+            } else {
+                flown
+            };
+            self.take(better);
+        }
+        self.lattice.paths(APART, &mut self.paths);
+        self.paths
+            .truncate(self.wanted - self.candidates.len().min(self.wanted));
+        Phase::Candidate(0)
+    }
+
+    fn propose(&mut self, path: usize) -> Phase {
+        let model = self.model;
+        let mut plan = SpacePlan::new();
+        if let Some(points) = self.paths.get(path) {
+            let mut pursuit = Pursuit::new(points);
+            plan.fly(&model, &self.start, |_, state| {
+                pursuit.control(&model, state)
+            });
+        } else if self.candidates.is_empty() {
+            // No way through the lattice: straight on and level is something to start from.
+            plan.fly(&model, &self.start, |_, state| {
+                let up = crate::vehicle::GRAVITY - state.flight_path * state.airspeed;
+                towards(&model, state, [up, 0.0], STAGE_PERIOD)
+            });
+        } else {
+            return if self.programs {
+                Phase::Pose(0)
+            } else {
+                Phase::Idle
+            };
+        }
+        let candidate = self.judged(plan);
+        self.take(candidate);
+        Phase::Candidate(path + 1)
+    }
+
+    fn judged(&self, plan: SpacePlan) -> Candidate {
+        let judgement = judge(&self.field, &self.lattice, &self.model, &self.keep, &plan);
+        Candidate { plan, judgement }
+    }
+
+    fn take(&mut self, candidate: Candidate) {
+        self.consider(candidate);
+        let _ = self.candidates.push(candidate);
+    }
+
+    fn consider(&mut self, candidate: Candidate) {
+        let better = self
+            .best
+            .is_none_or(|best| candidate.judgement.price < best.judgement.price);
+        if better {
+            self.best = Some(candidate);
+        }
+    }
+
+    /// Poses the program of a candidate.
+    fn pose(&mut self, index: usize) -> Phase {
+        let Some(candidate) = self.candidates.get(index) else {
+            return Phase::Idle;
+        };
+        let plan = candidate.plan;
+        let frame = Frame {
+            model: &self.model,
+            start: self.start,
+        };
+        faces::separate(&self.field, &plan, &self.keep, &mut self.faces);
+        frame.pose(&plan, &self.faces, &self.keep, &mut self.problem);
+        let condensed = self
+            .shared
+            .condense_varying(&WEIGHTS, |dynamics| frame.linearise(&plan, dynamics));
+        if condensed.is_err() {
+            return Phase::Pose(index + 1);
+        }
+        self.shared.set_faces(&self.faces);
+        self.solver.start(&self.shared, &self.problem);
+        self.steps = 0;
+        Phase::Solve(index)
+    }
+
+    fn solve(&mut self, index: usize) -> Phase {
+        self.steps += SLICE_STEPS;
+        let status = self.solver.advance(&self.shared, SLICE_STEPS);
+        if status.is_none() && self.steps < MOST_STEPS {
+            return Phase::Solve(index);
+        }
+        // The controls of a program that is not finished are flown out too: a roll-out keeps the limits.
+        let ended = self.solver.solution(&self.shared, &mut self.solution);
+        if ended != Status::NumericalFailure {
+            let frame = Frame {
+                model: &self.model,
+                start: self.start,
+            };
+            let controls = frame.controls(&self.solution);
+            let model = self.model;
+            let mut plan = SpacePlan::new();
+            plan.fly(&model, &self.start, |stage, state| {
+                let wanted = controls.get(stage).copied().unwrap_or_default();
+                limited(&model, state, &wanted)
+            });
+            let candidate = self.judged(plan);
+            self.consider(candidate);
+        }
+        Phase::Pose(index + 1)
+    }
+}
+
+const _: () = assert!(STAGES + 1 == KNOTS);
