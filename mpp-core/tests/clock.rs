@@ -1,7 +1,6 @@
 //! Tests the 100 Hz loop with a clock that jumps, goes back, or tells no time.
 
-use crate::common::lively::lively;
-use crate::common::sensors::frame;
+use crate::common::sensors::{frame, lively};
 use crate::common::trajectories::trajectory;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::PositionVerdict;

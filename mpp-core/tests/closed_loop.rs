@@ -1,14 +1,14 @@
 //! Tests flights of the nonlinear aircraft with planner and flight loop together.
 
-use crate::common::clearance::clearance;
+use crate::common::motion::after_tick;
 use crate::common::sensors::frame;
-use crate::common::world::{Disc, scan};
+use crate::common::world::{Disc, clearance, scan};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::health::Health;
 use mpp_core::planner::Planner;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{AirState, VehicleState, vehicle_rate};
+use mpp_core::vehicle::VehicleState;
 
 /// The result of a flight.
 struct Flown {
@@ -39,13 +39,7 @@ fn fly(settings: &Settings, start_z: f64, discs: &[Disc], seconds: i32) -> Flown
             let verdict = planner.finish();
             flight.adopt(time, verdict, planner.best());
         }
-        for _ in 0..10 {
-            let rate = vehicle_rate(&settings.airframe, &state, out.control);
-            state.x += rate.x * TICK_PERIOD / 10.0;
-            state.z += rate.z * TICK_PERIOD / 10.0;
-            let air = state.air.to_vector() + rate.air.to_vector() * (TICK_PERIOD / 10.0);
-            state.air = AirState::from_vector(&air);
-        }
+        state = after_tick(&settings.airframe, &state, out.control);
         least_clearance = least_clearance.min(clearance(discs, state.x, state.z));
     }
     Flown {

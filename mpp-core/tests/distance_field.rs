@@ -1,7 +1,6 @@
 //! Tests the distance field and the surface of random maps against the definition.
 
-use crate::common::cells::{CELL, COLS, ROWS, centre, occupied};
-use crate::common::completed::Cells;
+use crate::common::cells::{CELL, COLS, Cells, ROWS, centre, occupied};
 use crate::common::draw::Draw;
 use crate::common::rolling_grid::{field, random_map};
 use mpp_core::map::{DistanceField, FAR, RollingGrid};

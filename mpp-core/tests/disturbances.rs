@@ -9,8 +9,9 @@ use mpp_core::planner::{Planner, SetupError, Verdict};
 use mpp_core::sense::Measurement;
 use mpp_core::settings::{Setting, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, Wind};
+use mpp_core::vehicle::{
+    ActuatorLimits, AirState, Airframe, Conditions, Control, Trim, VehicleState, Wind,
+};
 use proptest::prelude::*;
 
 const TRIM: Control = Control {

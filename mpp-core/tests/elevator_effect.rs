@@ -1,9 +1,10 @@
 //! Tests the estimate of the elevator's effect on an aircraft that flies a plan under a regulator.
 
-use crate::common::gaussian::gaussian;
+use crate::common::draw::gaussian;
+use crate::common::motion::air_after_tick;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{ElevatorEffect, Trust};
-use mpp_core::vehicle::{AirState, Airframe, Control, Trim, air_rate};
+use mpp_core::vehicle::{AirState, Airframe, Control, Trim};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
@@ -96,14 +97,11 @@ impl Flight {
 
 /// The motion after a tick in which a gust turns the flow by `shift` \[rad\].
 fn after_tick(airframe: &Airframe, state: &AirState, control: Control, shift: f64) -> AirState {
-    let mut vector = state.to_vector();
-    for _ in 0..10 {
-        let rate = air_rate(airframe, &AirState::from_vector(&vector), control);
-        vector += 0.1 * TICK_PERIOD * rate.to_vector();
+    let after = air_after_tick(airframe, state, control);
+    AirState {
+        flight_path: after.flight_path + shift,
+        ..after
     }
-    let mut after = AirState::from_vector(&vector);
-    after.flight_path += shift;
-    after
 }
 
 #[test]

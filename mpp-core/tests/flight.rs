@@ -1,9 +1,7 @@
 //! Tests the 100 Hz loop: the hand-over of trajectories, and the faults that it survives.
 
-use crate::common::horizon::HORIZON;
-use crate::common::lively::lively;
-use crate::common::sensors::frame;
-use crate::common::trajectories::trajectory;
+use crate::common::sensors::{frame, lively};
+use crate::common::trajectories::{HORIZON, trajectory};
 use mpp_core::config::{KNOTS, TICK_PERIOD};
 use mpp_core::estimate::{MeasurementStatus, PositionVerdict};
 use mpp_core::flight::{Adoption, FlightLoop, Mode};

@@ -2,8 +2,7 @@
 //! path is cheaper.
 
 use crate::common::draw::Draw;
-use crate::common::pose::pose;
-use crate::common::rolling_grid::{field, random_map};
+use crate::common::rolling_grid::{field, pose, random_map};
 use mpp_core::lattice::{CostToGo, Lattice, LatticePath, LatticeTask, MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;

@@ -1,5 +1,6 @@
 //! Tests the flight loop with an aircraft that lifts more or less than the core was told.
 
+use crate::common::motion::after_tick;
 use crate::common::sensors::frame;
 use crate::common::world::scan;
 use mpp_core::config::TICK_PERIOD;
@@ -7,9 +8,8 @@ use mpp_core::estimate::LiftEstimator;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::Planner;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::Conditions;
 use mpp_core::vehicle::{
-    ActuatorLimits, AirState, Airframe, Control, Trim, VehicleState, vehicle_rate,
+    ActuatorLimits, AirState, Airframe, Conditions, Control, Trim, VehicleState,
 };
 use proptest::prelude::*;
 
@@ -158,13 +158,7 @@ fn cruise(settings: &Settings, truth: &Airframe) -> (f64, VehicleState) {
         if tick >= 1500 {
             sum += control.elevator / 500.0;
         }
-        for _ in 0..10 {
-            let rate = vehicle_rate(truth, &state, control);
-            state.x += rate.x * TICK_PERIOD / 10.0;
-            state.z += rate.z * TICK_PERIOD / 10.0;
-            let air = state.air.to_vector() + rate.air.to_vector() * (TICK_PERIOD / 10.0);
-            state.air = AirState::from_vector(&air);
-        }
+        state = after_tick(truth, &state, control);
     }
     (sum, state)
 }

@@ -3,9 +3,8 @@
 use crate::common::draw::Draw;
 use crate::common::grids::grid;
 use mpp_core::config::MAX_BEAMS;
-use mpp_core::paper::OccupancyGrid;
-use mpp_core::paper::Rules;
 use mpp_core::paper::config::{GRID_COLS, GRID_ROWS, ORIGIN_COL, ORIGIN_ROW};
+use mpp_core::paper::{OccupancyGrid, Rules};
 use mpp_core::sense::{LidarScan, ScanError};
 
 const ROWS: i32 = GRID_ROWS as i32;

@@ -1,13 +1,13 @@
 //! Tests the watch of the motor on an aircraft that the regulator holds in level flight.
 
-use crate::common::gaussian::gaussian;
+use crate::common::draw::gaussian;
+use crate::common::motion::air_after_tick;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{MotorWatch, Progress, Trust};
 use mpp_core::flight::FlightLoop;
-use mpp_core::sense::Measurement;
-use mpp_core::sense::{AirData, Position, SensorFrame};
+use mpp_core::sense::{AirData, Measurement, Position, SensorFrame};
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{AirState, Airframe, Control, Trim, air_rate};
+use mpp_core::vehicle::{AirState, Airframe, Control, Trim};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
@@ -85,11 +85,7 @@ impl Flight {
             thrust,
             ..self.command
         };
-        for _ in 0..10 {
-            let rate = air_rate(&self.airframe, &self.air, acting).to_vector();
-            let next = self.air.to_vector() + 0.1 * TICK_PERIOD * rate;
-            self.air = AirState::from_vector(&next);
-        }
+        self.air = air_after_tick(&self.airframe, &self.air, acting);
         let kept = libm::exp(-TICK_PERIOD / 4.0);
         let before = self.gust;
         let drawn = gaussian(&mut self.random);

@@ -1,6 +1,6 @@
 //! Tests the estimate of position and wind against motions that are known.
 
-use crate::common::gaussian::gaussian;
+use crate::common::draw::gaussian;
 use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{Navigation, Observation, PositionVerdict, WindFilter};

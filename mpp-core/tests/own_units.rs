@@ -4,8 +4,7 @@ use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{ActuatorLimits, Airframe, VehicleState, Wind};
+use mpp_core::vehicle::{ActuatorLimits, Airframe, Conditions, VehicleState, Wind};
 
 /// Preset `flight` for the reference aircraft with limits, a body and an elevator with lift, and lengths `scale` times
 /// as long.

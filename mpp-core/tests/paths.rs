@@ -1,12 +1,10 @@
 //! Tests RRT*-AR trees and their paths over random fields: structure, freedom, bounds.
 
 use crate::common::draw::Draw;
-use mpp_core::paper::Rules;
 use mpp_core::paper::config::{
     PATH_POINTS, SEARCH_COLS, SEARCH_ROW, SEARCH_ROWS, TREE_NODES, TREE_SAMPLES,
 };
-use mpp_core::paper::{Extension, GOALS, Path, Search};
-use mpp_core::paper::{GridPoint, OccupancyGrid};
+use mpp_core::paper::{Extension, GOALS, GridPoint, OccupancyGrid, Path, Rules, Search};
 
 /// A grid with this many random obstacles ahead, padded.
 fn field(draw: &mut Draw, obstacles: usize) -> OccupancyGrid {

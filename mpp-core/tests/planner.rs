@@ -1,12 +1,8 @@
 //! Tests the planner: plans around obstacles, plans back to the altitude, and the report when there
 //! is no plan.
 
-use crate::common::clearance::clearance;
-use crate::common::planning::{level, plan, planner};
-use crate::common::presets::presets;
-use crate::common::scattered::{FEASIBLE, SCATTERED};
-use crate::common::with_planner::with_planner;
-use crate::common::world::{Disc, scan};
+use crate::common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
+use crate::common::world::{Disc, clearance, scan};
 use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::{PlannerSettings, Settings};

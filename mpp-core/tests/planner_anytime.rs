@@ -1,10 +1,7 @@
 //! Tests the planner as an anytime machine: bounded, repeatable, and never worse with more slices.
 
-use crate::common::planning::{level, plan, planner};
-use crate::common::presets::presets;
-use crate::common::scattered::{FEASIBLE, SCATTERED};
+use crate::common::planning::{FEASIBLE, SCATTERED, level, plan, planner, presets, with_planner};
 use crate::common::sensors::frame;
-use crate::common::with_planner::with_planner;
 use crate::common::world::{Disc, scan};
 use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
@@ -13,8 +10,7 @@ use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Weights};
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{Conditions, VehicleState};
 
 /// One slice for the map, the trees of a cycle at 10 samples a slice, and each path's corridor and
 /// program at 8 steps a slice.

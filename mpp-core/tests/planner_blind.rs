@@ -5,9 +5,7 @@ use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::Pose;
-use mpp_core::vehicle::{ActuatorLimits, VehicleState};
+use mpp_core::vehicle::{ActuatorLimits, Conditions, Pose, VehicleState};
 
 /// Plans one cycle, from a scan if there is one.
 fn plan_from(planner: &mut Planner, state: &VehicleState, scan: Option<&LidarScan>) -> Verdict {

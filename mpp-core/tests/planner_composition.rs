@@ -1,19 +1,15 @@
 //! Tests that the plan of a cycle is the best of its candidates' optima. Each optimum is solved
 //! here to the end.
 
-use crate::common::planning::{level, plan, planner};
-use crate::common::scattered::{FEASIBLE, SCATTERED};
-use crate::common::with_planner::with_planner;
+use crate::common::planning::{FEASIBLE, SCATTERED, level, plan, planner, with_planner};
 use crate::common::world::{Disc, scan};
 use mpp_core::corridor::Corridor;
-use mpp_core::paper::StageModel;
 use mpp_core::paper::config::TREE_SAMPLES;
-use mpp_core::paper::{CollocationPoints, Extension, Path, Search, resample};
+use mpp_core::paper::{CollocationPoints, Extension, Path, Search, StageModel, resample};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, Status};
 use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{VehicleState, linearize};
+use mpp_core::vehicle::{Conditions, VehicleState, linearize};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,19 +1,16 @@
 //! Tests the cycle of preset `flight`: what it keeps from the cycle before, its bound, and what it
 //! hands over.
 
-use crate::common::clearance::clearance;
 use crate::common::dense::dense;
-use crate::common::planning::{level, plan, planner};
-use crate::common::scattered::{FEASIBLE, SCATTERED};
-use crate::common::world::scan;
+use crate::common::planning::{FEASIBLE, SCATTERED, level, plan, planner};
+use crate::common::world::{clearance, scan};
 use mpp_core::config::{KNOTS, MAX_PATHS, STAGE_PERIOD, STAGES};
 use mpp_core::lattice::{MAX_LATTICE_PATHS, STATIONS};
 use mpp_core::planner::{PlanSummary, Planner, Verdict};
 use mpp_core::qp::{MAX_ITERATIONS, Penalty};
 use mpp_core::settings::{PlaneSettings, Settings};
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{PathControl, PathState, VehicleState};
+use mpp_core::vehicle::{Conditions, PathControl, PathState, VehicleState};
 
 /// The previous plan and the lattice's paths.
 const CANDIDATES: usize = 1 + MAX_LATTICE_PATHS;

@@ -1,6 +1,6 @@
 //! Tests settings that step and planner refuse: every number, and what no range shows.
 
-use crate::common::presets::presets;
+use crate::common::planning::presets;
 use mpp_core::config::MAX_PATHS;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};

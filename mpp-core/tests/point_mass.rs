@@ -1,8 +1,7 @@
 //! Tests the point mass against the equations of motion, differences, and its own limit of small
 //! steps.
 
-use crate::common::airframes::named;
-use crate::common::seeded::seeded;
+use crate::common::seeded::{named, seeded};
 use mpp_core::vehicle::{
     Airframe, PathControl, PathState, Trim, VehicleState, air_rate, vehicle_rate,
 };

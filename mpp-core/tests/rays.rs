@@ -4,10 +4,8 @@ use crate::common::draw::Draw;
 use crate::common::grids::{grid, point};
 use mpp_core::config::{KNOTS, STAGE_PERIOD, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
-use mpp_core::paper::Rules;
 use mpp_core::paper::config::{ORIGIN_COL, ORIGIN_ROW, RAY_LIMIT};
-use mpp_core::paper::{GridPoint, OccupancyGrid};
-use mpp_core::paper::{Padding, cast_ray};
+use mpp_core::paper::{GridPoint, OccupancyGrid, Padding, Rules, cast_ray};
 
 /// Step of the marching with which rays are compared \[m\].
 const MARCH: f64 = 1e-3;

@@ -1,7 +1,6 @@
 //! Tests the Riccati solution against its equation, and the regulator against its properties.
 
-use crate::common::airframes::named;
-use crate::common::seeded::seeded;
+use crate::common::seeded::{named, seeded};
 use mpp_core::control::{Lqr, LqrWeights, RiccatiError, solve_riccati};
 use mpp_core::vehicle::{
     AirState, Airframe, Control, JacobianForm, Linearization, Trim, linearize,

@@ -2,9 +2,7 @@
 
 use crate::common::draw::Draw;
 use mpp_core::config::KNOTS;
-use mpp_core::paper::GridPoint;
-use mpp_core::paper::Rules;
-use mpp_core::paper::{path_length, resample};
+use mpp_core::paper::{GridPoint, Rules, path_length, resample};
 
 /// Rounding of lengths that are summed in another order \[m\].
 const ROUNDING: f64 = 1e-9;

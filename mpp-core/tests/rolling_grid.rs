@@ -2,8 +2,7 @@
 
 use crate::common::cells::{CELL, COLS, ROWS, centre, occupied};
 use crate::common::draw::Draw;
-use crate::common::pose::pose;
-use crate::common::rolling_grid::{field, noise, random_map};
+use crate::common::rolling_grid::{field, noise, pose, random_map};
 use mpp_core::map::RollingGrid;
 use mpp_core::sense::LidarScan;
 

@@ -1,12 +1,13 @@
 //! Tests settings at random: they are refused with an error, or the loop that they give flies.
 
+use crate::common::motion::after_tick;
 use crate::common::seeded::seeded;
 use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::flight::FlightLoop;
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::settings::{Cruise, Settings};
-use mpp_core::vehicle::{AirState, Trim, VehicleState, vehicle_rate};
+use mpp_core::vehicle::{Trim, VehicleState};
 use proptest::prelude::*;
 
 /// Number of settings that are drawn.
@@ -39,13 +40,7 @@ fn fly(settings: &Settings, flight: &mut FlightLoop, trim: &Trim) {
         let most = limits.elevator_rate.unwrap_or(f64::MAX / 2.0) * TICK_PERIOD;
         assert!(step.abs() <= most * (1.0 + 1e-9) + 1e-9);
         last = control;
-        for _ in 0..4 {
-            let rate = vehicle_rate(&settings.airframe, &state, control);
-            let air = state.air.to_vector() + rate.air.to_vector() * (TICK_PERIOD / 4.0);
-            state.air = AirState::from_vector(&air);
-            state.x += rate.x * TICK_PERIOD / 4.0;
-            state.z += rate.z * TICK_PERIOD / 4.0;
-        }
+        state = after_tick(&settings.airframe, &state, control);
     }
 }
 

@@ -7,8 +7,9 @@ use mpp_core::config::{STAGE_PERIOD, STAGES};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{ActuatorLimits, Control, PathControl, PathState, ThrustLag, VehicleState};
+use mpp_core::vehicle::{
+    ActuatorLimits, Conditions, Control, PathControl, PathState, ThrustLag, VehicleState,
+};
 use proptest::prelude::*;
 
 /// Period of the integration that the plans are compared with \[s\].

@@ -1,7 +1,6 @@
 //! Tests how a trajectory is placed in the world and sampled: knots, lines in between, ends.
 
-use crate::common::horizon::HORIZON;
-use crate::common::trajectories::trajectory;
+use crate::common::trajectories::{HORIZON, trajectory};
 use mpp_core::config::{KNOTS, STAGE_PERIOD, STAGES, TICK_PERIOD};
 use mpp_core::qp::Solution;
 use mpp_core::trajectory::Trajectory;

@@ -1,8 +1,7 @@
 //! Tests the equations of motion against physics, Jacobians against differences, and trim against
 //! both.
 
-use crate::common::airframes::named;
-use crate::common::seeded::seeded;
+use crate::common::seeded::{named, seeded};
 use mpp_core::vehicle::{
     AirState, Airframe, Control, GRAVITY, JacobianForm, Linearization, Trim, TrimError,
     VehicleState, air_rate, linearize, vehicle_rate,

@@ -1,6 +1,6 @@
 //! Tests the watches of the sensors: biases of pitch and airspeed, and sensors that freeze or fall silent.
 
-use crate::common::gaussian::gaussian;
+use crate::common::draw::gaussian;
 use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::{AirspeedBias, Before, BiasMonitor, PitchBias, SensorMonitor, Trust};

@@ -21,3 +21,9 @@ impl Draw {
         low + (high - low) * self.unit()
     }
 }
+
+/// A number with the standard deviation 1.
+pub(crate) fn gaussian(random: &mut Pcg64Mcg) -> f64 {
+    let mut uniform = || ((random.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
+    (-2.0 * libm::log(uniform())).sqrt() * libm::cos(core::f64::consts::TAU * uniform())
+}

@@ -2,9 +2,8 @@
 
 use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};
-use mpp_core::settings::Settings;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::settings::{PlannerSettings, Settings};
+use mpp_core::vehicle::{Conditions, VehicleState};
 
 pub(crate) fn planner(settings: &Settings) -> Box<Planner> {
     let mut planner = Box::new(Planner::new());
@@ -27,3 +26,25 @@ pub(crate) fn plan(planner: &mut Planner, state: &VehicleState, discs: &[Disc]) 
     while planner.advance() {}
     planner.finish()
 }
+
+pub(crate) fn presets() -> [Settings; 3] {
+    [Settings::reference(), Settings::paper(), Settings::flight()]
+}
+
+pub(crate) fn with_planner(settings: Settings, planner: PlannerSettings) -> Settings {
+    Settings {
+        planner,
+        ..settings
+    }
+}
+
+/// A trajectory within this violation counts as feasible [m, rad].
+pub(crate) const FEASIBLE: f64 = 1e-6;
+
+pub(crate) const SCATTERED: [Disc; 5] = [
+    (118.0, 51.0, 1.0),
+    (128.0, 46.0, 1.5),
+    (131.0, 55.0, 1.0),
+    (140.0, 50.0, 1.0),
+    (146.0, 57.0, 1.0),
+];

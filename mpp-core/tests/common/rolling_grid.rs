@@ -1,9 +1,9 @@
 //! Rolling grids, built from scans.
 
 use crate::common::draw::Draw;
-use crate::common::pose::pose;
 use mpp_core::map::{DistanceField, RollingGrid};
 use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::Pose;
 
 /// A scan of 100 beams over 100 degrees. Ten beams at a time see an arc at a random range, or
 /// nothing.
@@ -37,4 +37,8 @@ pub(crate) fn field(map: &RollingGrid) -> DistanceField {
     let mut field = DistanceField::new();
     field.build(map, 0.0);
     field
+}
+
+pub(crate) fn pose(x: f64, z: f64, pitch: f64) -> Pose {
+    Pose { x, z, pitch }
 }

@@ -1,5 +1,6 @@
 //! Trajectories in which every number is different.
 
+use mpp_core::config::{STAGE_PERIOD, STAGES};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::{AirState, Control, VehicleState};
 
@@ -26,3 +27,6 @@ pub(crate) fn trajectory(start: f64) -> Trajectory {
     }
     trajectory
 }
+
+/// Length of a trajectory \[s\].
+pub(crate) const HORIZON: f64 = STAGES as f64 * STAGE_PERIOD;
