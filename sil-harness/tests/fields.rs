@@ -1,23 +1,15 @@
 //! Fields as a user meets them: read, written, refused, flown in campaigns.
 
+use crate::common::{harness, scratch};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::read::GzDecoder;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
-/// A directory of this test's own; the name keeps tests apart.
-#[expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
-fn scratch(name: &str) -> PathBuf {
-    let path = std::env::temp_dir().join(format!("sil-fields-{}-{name}", std::process::id()));
-    std::fs::create_dir_all(&path).unwrap();
-    path
-}
-
-#[expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 fn run(arguments: &[&str], files: &[(&str, &Path)]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_sil-harness"));
+    let mut command = harness();
     command.args(arguments);
     for (flag, file) in files {
         command.arg(flag).arg(file);
@@ -26,19 +18,16 @@ fn run(arguments: &[&str], files: &[(&str, &Path)]) -> Output {
 }
 
 /// The flights of a page: its longest text, through base64 and gzip.
-#[expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 fn unpacked(page: &str) -> String {
     let packed = page.split('"').max_by_key(|text| text.len()).unwrap();
     let bytes = BASE64_STANDARD.decode(packed).unwrap();
     std::io::read_to_string(GzDecoder::new(&bytes[..])).unwrap()
 }
 
-#[expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 fn result(output: &Output) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-#[expect(clippy::unwrap_used, reason = "helpers of tests fail by panicking")]
 fn log(output: &Output) -> Value {
     let path = result(output)["log"].as_str().unwrap().to_owned();
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()

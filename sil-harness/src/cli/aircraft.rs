@@ -1,6 +1,6 @@
 //! `aircraft`: what follows from an aircraft file, and how well it flies.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{Failure, data, print_json};
 use super::campaign::failure;
 use super::loudness::progress_bar;
 use super::signals::Signals;
@@ -71,9 +71,8 @@ struct AircraftOutput {
 }
 
 pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
-    let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
-    let file = read_aircraft(&args.aircraft).map_err(|error| usage(&error))?;
-    let model = AircraftModel::new(file.clone()).map_err(|error| usage(&error))?;
+    let file = read_aircraft(&args.aircraft).map_err(Failure::usage)?;
+    let model = AircraftModel::new(file.clone()).map_err(Failure::usage)?;
     let variants = if args.units {
         in_units(&file)
     } else if args.sizes {
@@ -99,7 +98,7 @@ pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
         }
     }
     if args.json {
-        data(serde_json::to_string(&output).map_err(|error| Failure::new(FAILURE, error))?)?;
+        print_json(&output)?;
     }
     Ok(0)
 }
@@ -130,8 +129,7 @@ fn six_digits(rate: f64) -> f64 {
 
 /// Flies one aircraft past each number of obstacles.
 fn fly_variant(args: &AircraftArgs, variant: &Variant) -> Result<Vec<Success>, Failure> {
-    let usage = |error| Failure::new(USAGE, error);
-    let model = AircraftModel::new(variant.file.clone()).map_err(usage)?;
+    let model = AircraftModel::new(variant.file.clone()).map_err(Failure::usage)?;
     let mut successes = Vec::new();
     for (obstacles, replan_hz) in flown_cells(&args.obstacles, model.units().time) {
         let mut scenario = ScenarioFile {
@@ -145,8 +143,8 @@ fn fly_variant(args: &AircraftArgs, variant: &Variant) -> Result<Vec<Success>, F
             replan_hz: vec![replan_hz],
             ..Lists::default()
         };
-        let campaign =
-            Campaign::new(scenario, lists, args.flights, Some(args.seed)).map_err(usage)?;
+        let campaign = Campaign::new(scenario, lists, args.flights, Some(args.seed))
+            .map_err(Failure::usage)?;
         let rows = fly(&campaign, args.threads)?;
         for cell in campaign.cells() {
             let of_cell = rows.iter().filter(|row| row.cell == cell);
@@ -191,7 +189,7 @@ fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
         _ => failure(&error),
     })?;
     let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner);
-    merge(campaign, rows).map_err(|error| Failure::new(FAILURE, error))
+    merge(campaign, rows).map_err(Failure::failed)
 }
 
 #[cfg(test)]

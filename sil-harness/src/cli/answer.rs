@@ -55,6 +55,22 @@ fn printed(result: std::io::Result<()>) -> Result<(), Failure> {
     }
 }
 
+/// Prints a line of data: a value as JSON.
+pub(super) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    data(serde_json::to_string(value).map_err(Failure::failed)?)
+}
+
+/// Prints a report, for people or as JSON.
+pub(super) fn print(
+    report: &(impl serde::Serialize + std::fmt::Display),
+    json: bool,
+) -> Result<(), Failure> {
+    if json {
+        return print_json(report);
+    }
+    data(report.to_string().trim_end())
+}
+
 /// Prints bytes of data as they are, with the same exception.
 pub(super) fn data_bytes(bytes: &[u8]) -> Result<(), Failure> {
     let mut stdout = std::io::stdout();
@@ -73,5 +89,15 @@ impl Failure {
             code,
             message: message.to_string(),
         }
+    }
+
+    /// The command line, or a file that it names, makes no sense.
+    pub(super) fn usage(message: impl std::fmt::Display) -> Self {
+        Self::new(USAGE, message)
+    }
+
+    /// The harness cannot do something, or it found an error.
+    pub(super) fn failed(message: impl std::fmt::Display) -> Self {
+        Self::new(FAILURE, message)
     }
 }

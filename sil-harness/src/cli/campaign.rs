@@ -1,6 +1,6 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
-use super::answer::{FAILURE, Failure, USAGE, data, talk};
+use super::answer::{FAILURE, Failure, USAGE, data, print_json, talk};
 use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
@@ -105,7 +105,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     args.loudness.set();
     if !args.report.is_empty() && !args.ceiling && args.threads > 0 {
         let why = "--report flies nothing: leave --threads out, or give --ceiling";
-        return Err(Failure::new(USAGE, why));
+        return Err(Failure::usage(why));
     }
     let (campaign, rows) = if args.report.is_empty() {
         flown(args)
@@ -117,7 +117,7 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         set_beside_ceiling(&campaign, &rows, &mut report, args.threads)?;
     }
     if args.json {
-        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
+        print_json(&report)?;
     } else {
         data(report.to_string().trim_end())?;
         if args.taxonomy {
@@ -212,13 +212,13 @@ pub(super) fn scenario(args: &CampaignArgs) -> Result<ScenarioFile, Failure> {
 fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>), Failure> {
     let scenario = scenario(args)?;
     let campaign = Campaign::new(scenario, lists(args)?, args.trials, args.seed);
-    let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
+    let campaign = campaign.map_err(Failure::usage)?;
     let signals = Signals::heed()?;
     let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
         Some(code) if matches!(error, CampaignError::Interrupted(_)) => Failure::new(code, error),
         _ => failure(&error),
     })?;
-    let rows = merge(&campaign, rows).map_err(|error| Failure::new(FAILURE, error))?;
+    let rows = merge(&campaign, rows).map_err(Failure::failed)?;
     Ok((campaign, rows))
 }
 

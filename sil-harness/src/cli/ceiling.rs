@@ -1,6 +1,6 @@
 //! `ceiling`: which fields can be passed at all, proven either way.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{Failure, print};
 use super::campaign::failure;
 use super::help::{OUTPUT, RUN, WORLD};
 use super::loudness::progress_bar;
@@ -42,7 +42,7 @@ pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
         args.fields,
         args.seed,
     );
-    let campaign = campaign.map_err(|error| Failure::new(USAGE, error))?;
+    let campaign = campaign.map_err(Failure::usage)?;
     let signals = Signals::heed()?;
     let cells = campaign.cells();
     let all = cells.len() * args.margin.len();
@@ -68,10 +68,6 @@ pub(super) fn run(args: &CeilingArgs) -> Result<u8, Failure> {
         }
     }
     progress.finish_and_clear();
-    if args.json {
-        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
-    } else {
-        data(report.to_string().trim_end())?;
-    }
+    print(&report, args.json)?;
     Ok(0)
 }

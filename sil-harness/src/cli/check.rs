@@ -1,6 +1,6 @@
 //! `check-reference`: checks our core and plant against recorded data.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{FAILURE, Failure, print};
 use crate::files::check_directory;
 use std::path::PathBuf;
 
@@ -14,12 +14,7 @@ pub(super) struct CheckArgs {
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<u8, Failure> {
-    let report = check_directory(&args.directory).map_err(|error| Failure::new(USAGE, error))?;
-    if args.json {
-        let text = serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?;
-        data(text)?;
-    } else {
-        data(report.to_string().trim_end())?;
-    }
+    let report = check_directory(&args.directory).map_err(Failure::usage)?;
+    print(&report, args.json)?;
     Ok(if report.passed() { 0 } else { FAILURE })
 }

@@ -1,6 +1,6 @@
 //! `core`: runs the flight core as a process of its own.
 
-use super::answer::{Failure, LINK, USAGE, talk};
+use super::answer::{Failure, LINK, talk};
 use super::values::{place, seconds};
 use crate::files::read_field;
 use crate::link::{PATIENCE, serve};
@@ -29,7 +29,7 @@ pub(super) struct CoreArgs {
 pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
     let oracle = match &args.oracle {
         Some(path) => {
-            let field = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+            let field = read_field(path).map_err(Failure::usage)?;
             Some(Oracle::new(&field.obstacles()))
         }
         None => None,

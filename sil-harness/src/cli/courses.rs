@@ -1,6 +1,6 @@
 //! `space --flights`: the planner of the vertical plane on the plant in six degrees of freedom, with the course held.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{Failure, data};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::flown_cells;
 use mpp_analysis::campaign::wilson;
@@ -19,11 +19,11 @@ struct Nobody;
 impl Ground for Nobody {}
 
 fn usage(error: impl Display) -> Failure {
-    Failure::new(USAGE, error)
+    Failure::usage(error)
 }
 
 fn failure(error: impl Display) -> Failure {
-    Failure::new(FAILURE, error)
+    Failure::failed(error)
 }
 
 /// Flies the same fields in the plane and in space, past 20 and 40 obstacles that are scaled to the aircraft, and prints both

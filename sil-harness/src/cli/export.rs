@@ -47,8 +47,7 @@ impl ExportArgs {
     /// The format of the flag or of the ending; the two must not differ.
     fn format(&self) -> Result<Format, Failure> {
         match (self.format, self.out.as_deref().and_then(Format::of)) {
-            (Some(flag), Some(ending)) if flag != ending => Err(Failure::new(
-                USAGE,
+            (Some(flag), Some(ending)) if flag != ending => Err(Failure::usage(
                 "--format, --out: the ending is that of another format: leave --format out, or give another ending",
             )),
             (flag, ending) => Ok(flag.or(ending).unwrap_or(Format::Csv)),
@@ -89,18 +88,17 @@ pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
         (None, Format::Parquet) => args.file.with_extension("parquet"),
     };
     if let Some(directory) = out.parent() {
-        let failed =
-            |error| Failure::new(FAILURE, format!("cannot write {}: {error}", out.display()));
+        let failed = |error| Failure::failed(format!("cannot write {}: {error}", out.display()));
         std::fs::create_dir_all(directory).map_err(failed)?;
     }
-    write_whole(&out, &bytes).map_err(|error| Failure::new(FAILURE, error))?;
+    write_whole(&out, &bytes).map_err(Failure::failed)?;
     talk(format_args!("{} bytes in {}", bytes.len(), out.display()));
     Ok(0)
 }
 
 fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
-    let usage = |why: &str| Failure::new(USAGE, format!("{}: {why}", args.file.display()));
-    let text = read_recorded(&args.file).map_err(|error| Failure::new(USAGE, error))?;
+    let usage = |why: &str| Failure::usage(format!("{}: {why}", args.file.display()));
+    let text = read_recorded(&args.file).map_err(Failure::usage)?;
     if is_row_file(&text) {
         if args.table.is_some() {
             return Err(usage("a row file has one table: leave --table out"));
@@ -112,7 +110,7 @@ fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
         }
         return of_table(&row_table(&args.file, &text)?, format);
     }
-    let log = parse_log(&args.file, &text).map_err(|error| Failure::new(USAGE, error))?;
+    let log = parse_log(&args.file, &text).map_err(Failure::usage)?;
     match (format, args.table) {
         (Format::Mcap, Some(_)) => Err(usage("MCAP holds every table: leave --table out")),
         (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),
@@ -125,7 +123,7 @@ fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
 }
 
 fn row_table(file: &Path, text: &str) -> Result<Table, Failure> {
-    let (_, found) = parse_rows(file, text).map_err(|error| Failure::new(USAGE, error))?;
+    let (_, found) = parse_rows(file, text).map_err(Failure::usage)?;
     rows::table(&found).map_err(|error| failed(&error))
 }
 

@@ -1,6 +1,6 @@
 //! `campaign --faults`: pairs of flights without and with named faults.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{Failure, print};
 use super::campaign::{CampaignArgs, failure, lists, scenario};
 use super::loudness::progress_bar;
 use super::signals::Signals;
@@ -9,16 +9,15 @@ use mpp_analysis::campaign::{FaultCampaign, FaultReport, NamedFault};
 
 pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
     args.loudness.set();
-    let usage = |error: &dyn std::fmt::Display| Failure::new(USAGE, error);
     if args.preset.len() > 1 || args.paths.len() > 1 {
-        return Err(usage(
-            &"--faults: give at most one --preset and one --paths",
+        return Err(Failure::usage(
+            "--faults: give at most one --preset and one --paths",
         ));
     }
-    let faults = NamedFault::of(&args.faults).map_err(|error| usage(&error))?;
+    let faults = NamedFault::of(&args.faults).map_err(Failure::usage)?;
     let scenario = scenario(args)?;
     let campaign = FaultCampaign::new(&scenario, &lists(args)?, args.trials, args.seed, &faults)
-        .map_err(|error| usage(&error))?;
+        .map_err(Failure::usage)?;
     let signals = Signals::heed()?;
     let progress = progress_bar(campaign.jobs().len() as u64, "pairs");
     let flown = run_faults(&campaign, args.threads, || {
@@ -33,10 +32,6 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         _ => failure(&error),
     })?;
     let report = FaultReport::new(&campaign, &flown);
-    if args.json {
-        data(serde_json::to_string(&report).map_err(|error| Failure::new(FAILURE, error))?)?;
-    } else {
-        data(report.to_string().trim_end())?;
-    }
+    print(&report, args.json)?;
     Ok(0)
 }

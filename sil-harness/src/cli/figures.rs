@@ -1,6 +1,6 @@
 //! `figures`: draws counterparts of the paper's figures.
 
-use super::answer::{FAILURE, Failure, USAGE, talk};
+use super::answer::{Failure, talk};
 use super::campaign::{rows_of, set_beside_ceiling};
 use super::pdf::pdf;
 use super::values::seed;
@@ -45,12 +45,10 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
         // Who cannot have it is told before anything is flown.
         pdf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1\" height=\"1\"/>")?;
     }
-    try_directory(&args.out).map_err(|error| Failure::new(FAILURE, error))?;
+    try_directory(&args.out).map_err(Failure::failed)?;
     let rows = (!args.rows.is_empty()).then(|| rows_of(&args.rows));
-    let rows = rows
-        .transpose()
-        .map_err(|error| Failure::new(USAGE, error))?;
-    let drawing = |error: FigureError| Failure::new(FAILURE, error);
+    let rows = rows.transpose().map_err(Failure::usage)?;
+    let drawing = |error: FigureError| Failure::failed(error);
     let mut pictures = vec![
         ("challenge", challenge(args.seed)?),
         (
@@ -80,7 +78,7 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     for (name, svg) in pictures {
         let path = args.out.join(name).with_extension("svg");
         let write = |path: &Path, bytes: &[u8]| {
-            write_whole(path, bytes).map_err(|error| Failure::new(FAILURE, error))?;
+            write_whole(path, bytes).map_err(Failure::failed)?;
             talk(path.display());
             Ok(())
         };
@@ -110,7 +108,7 @@ fn telling_cycle(seed: u64) -> Result<OneReplan, Failure> {
         Some((feasible.min(cycle.candidates.len() - feasible), cycle))
     });
     let telling = cycles.max_by_key(|(both, _)| *both);
-    let none = || Failure::new(FAILURE, "no cycle of this seed's flight could be planned");
+    let none = || Failure::failed("no cycle of this seed's flight could be planned");
     telling.map(|(_, cycle)| cycle).ok_or_else(none)
 }
 
@@ -129,9 +127,9 @@ fn challenge(seed: u64) -> Result<String, Failure> {
         };
         scenes.push((scene, vec![flown(&alone)?, flown(&many)?]));
     }
-    challenge_svg(&scenes).map_err(|error| Failure::new(FAILURE, error))
+    challenge_svg(&scenes).map_err(Failure::failed)
 }
 
 fn flown(scenario: &Scenario) -> Result<FlightLog, Failure> {
-    fly(scenario, &mut PipeLink::new(), |_| {}).map_err(|error| Failure::new(FAILURE, error))
+    fly(scenario, &mut PipeLink::new(), |_| {}).map_err(Failure::failed)
 }

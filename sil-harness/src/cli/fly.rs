@@ -1,6 +1,6 @@
 //! `fly`: flies one flight and writes its log and its picture.
 
-use super::answer::{FAILURE, Failure, LEFT_BAND, LINK, USAGE, data, talk};
+use super::answer::{FAILURE, Failure, LEFT_BAND, LINK, USAGE, data, print_json, talk};
 use super::detail::{flown_conditions, told_plans};
 use super::file_name::file_name;
 use super::ground::GroundArgs;
@@ -9,7 +9,7 @@ use super::loudness::{Loudness, progress_bar};
 use super::scenario::{ScenarioArgs, other, replace};
 use super::signals::Signals;
 use super::values::{generator, place, preset, seconds, seed, whole};
-use crate::files::{FileError, read_field, try_directory, write_field, write_log, write_whole};
+use crate::files::{read_field, try_directory, write_field, write_log, write_whole};
 use crate::link::{FifoLink, PATIENCE, TcpLink};
 use mpp_analysis::figure::flight_svg;
 use mpp_sim::field::FieldFile;
@@ -84,7 +84,7 @@ impl FlyArgs {
         let mut file = self.scenario.file()?;
         replace(&mut file.seed, self.seed);
         if let Some(path) = &self.field {
-            file.field = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+            file.field = read_field(path).map_err(Failure::usage)?;
         }
         replace(&mut file.generator.name, self.generator);
         replace(&mut file.obstacles, self.obstacles);
@@ -93,7 +93,7 @@ impl FlyArgs {
         replace(&mut file.replan_hz, self.replan_hz);
         replace(&mut file.oracle, self.oracle.then_some(true));
         let field = self.field.as_ref().map(|path| path.display().to_string());
-        let failed = |error: ScenarioError| Failure::new(USAGE, error.of_field(field.as_deref()));
+        let failed = |error: ScenarioError| Failure::usage(error.of_field(field.as_deref()));
         file.build().map_err(failed)
     }
 
@@ -102,13 +102,13 @@ impl FlyArgs {
         let Some(path) = &self.field else {
             return Ok(false);
         };
-        let asked = read_field(path).map_err(|error| Failure::new(USAGE, error))?;
+        let asked = read_field(path).map_err(Failure::usage)?;
         Ok(asked != FieldFile::of(&flown.placed))
     }
 
     /// The scenario of a log whose orders are given again.
     fn scenario_of(&self, log: &FlightLog) -> Result<Scenario, Failure> {
-        let usage = |why: String| Failure::new(USAGE, format!("--orders: {why}"));
+        let usage = |why: String| Failure::usage(format!("--orders: {why}"));
         let flown = (log.header.scenario()).map_err(|error| usage(error.to_string()))?;
         let rate = |hz: f64| (hz - flown.replan_hz()).abs() > 1e-9;
         let flags = [
@@ -157,15 +157,13 @@ fn connect(text: &str, patience: Option<Duration>) -> Result<Box<dyn Link>, Fail
         Some(("tcp", address)) if place(address).is_ok() => Ok(Box::new(
             TcpLink::connect(address, patience.unwrap_or(PATIENCE)).map_err(failed)?,
         )),
-        Some(("fifo", _)) if patience.is_some() => Err(Failure::new(
-            USAGE,
+        Some(("fifo", _)) if patience.is_some() => Err(Failure::usage(
             "--patience: FIFOs wait as long as it takes: leave it out, or give --link tcp:HOST:PORT",
         )),
         Some(("fifo", directory)) => Ok(Box::new(
             FifoLink::open(Path::new(directory)).map_err(failed)?,
         )),
-        _ => Err(Failure::new(
-            USAGE,
+        _ => Err(Failure::usage(
             "--link: give tcp:HOST:PORT or fifo:DIRECTORY",
         )),
     }
@@ -195,12 +193,11 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
         None => args.scenario()?,
     };
     let signals = Signals::heed()?;
-    let failed = |error: FileError| Failure::new(FAILURE, error);
-    try_directory(&args.out).map_err(failed)?;
+    try_directory(&args.out).map_err(Failure::failed)?;
     let mut link = args.connect(&scenario)?;
     if let Some(path) = &args.save_field {
         let field = FieldFile::of(&scenario.field().obstacles);
-        write_field(path, &field).map_err(failed)?;
+        write_field(path, &field).map_err(Failure::failed)?;
     }
     let progress = progress_bar(u64::from(scenario.ticks), "ticks");
     let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
@@ -261,7 +258,7 @@ fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
     let mut kept = Kept {
         log: None,
         figure: None,
-        hash: log.hash().map_err(|error| Failure::new(FAILURE, error))?,
+        hash: log.hash().map_err(Failure::failed)?,
         written: Ok(()),
     };
     kept.written = kept.write(out, name, log);
@@ -270,17 +267,16 @@ fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
 
 impl Kept {
     fn write(&mut self, out: &Path, name: &str, log: &FlightLog) -> Result<(), Failure> {
-        let failed = |error: FileError| Failure::new(FAILURE, error);
         let path = out.join(format!("{name}.json"));
-        write_log(&path, log).map_err(failed)?;
+        write_log(&path, log).map_err(Failure::failed)?;
         self.log = Some(path);
         if !log.ticks.t.is_empty() {
             let path = out.join(format!("{name}.svg"));
             let svg = flight_svg(log).map_err(|error| {
                 let what = format!("cannot write {}: {error}", path.display());
-                Failure::new(FAILURE, what)
+                Failure::failed(what)
             })?;
-            write_whole(&path, svg.as_bytes()).map_err(failed)?;
+            write_whole(&path, svg.as_bytes()).map_err(Failure::failed)?;
             self.figure = Some(path);
         }
         Ok(())
@@ -303,8 +299,7 @@ fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
         figure: shown(&kept.figure),
     };
     if args.json {
-        let text = serde_json::to_string(&line).map_err(|error| Failure::new(FAILURE, error))?;
-        data(text)?;
+        print_json(&line)?;
     } else {
         if let Some(file) = &line.log {
             let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");

@@ -1,6 +1,6 @@
 //! `completions` and `man`: what shells and `man` know of the command line.
 
-use super::answer::{FAILURE, Failure, data, talk};
+use super::answer::{Failure, data, talk};
 use crate::files::write_whole;
 use clap::Command;
 use clap_complete::Shell;
@@ -38,12 +38,7 @@ pub(super) fn man(args: &ManArgs, command: Command) -> Result<u8, Failure> {
         data(page(command)?.trim_end())?;
         return Ok(0);
     };
-    let failed = |error| {
-        Failure::new(
-            FAILURE,
-            format!("cannot write {}: {error}", directory.display()),
-        )
-    };
+    let failed = |error| Failure::failed(format!("cannot write {}: {error}", directory.display()));
     std::fs::create_dir_all(directory).map_err(failed)?;
     let name = command.get_name().to_owned();
     write_pages(directory, command, &name)
@@ -61,7 +56,7 @@ fn write_pages(directory: &Path, mut command: Command, name: &str) -> Result<u8,
     }
     let path = directory.join(format!("{name}.1"));
     let named = command.display_name(name.to_owned());
-    write_whole(&path, page(named)?.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
+    write_whole(&path, page(named)?.as_bytes()).map_err(Failure::failed)?;
     talk(path.display());
     Ok(0)
 }
@@ -69,6 +64,6 @@ fn write_pages(directory: &Path, mut command: Command, name: &str) -> Result<u8,
 fn page(command: Command) -> Result<String, Failure> {
     let mut text = Vec::new();
     let made = Man::new(command).render(&mut text);
-    made.map_err(|error| Failure::new(FAILURE, error))?;
+    made.map_err(Failure::failed)?;
     Ok(String::from_utf8_lossy(&text).into_owned())
 }

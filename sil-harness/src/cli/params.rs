@@ -1,6 +1,6 @@
 //! `params`: prints the parameters of a preset.
 
-use super::answer::{FAILURE, Failure, data};
+use super::answer::{Failure, data};
 use super::values::preset;
 use crate::ground::param_file;
 use mpp_node::parameters::{self, PARAMETERS, Parameter, Tuning};
@@ -19,7 +19,7 @@ pub(super) struct ParamsArgs {
 
 pub(super) fn run(args: &ParamsArgs) -> Result<u8, Failure> {
     let tuning = Tuning::new(&Scenario::new(args.preset, 0).configure())
-        .map_err(|why| Failure::new(FAILURE, why.to_string()))?;
+        .map_err(|why| Failure::failed(why.to_string()))?;
     if args.long {
         for (name, value) in param_file::values(&tuning) {
             let number = parameters::number(name).map(usize::from);

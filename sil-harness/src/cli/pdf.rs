@@ -23,10 +23,10 @@ pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Failure> {
     let wanted = families.iter().find(|name| *name == WANTED);
     let Some(family) = wanted.or(families.first()) else {
         let why = "a PDF needs a font, and this machine has none: install one, for example DejaVu Sans (fonts-dejavu-core)";
-        return Err(Failure::new(FAILURE, why));
+        return Err(Failure::failed(why));
     };
     fonts.set_sans_serif_family(family);
-    let failed = |error: String| Failure::new(FAILURE, format!("drawing the PDF: {error}"));
+    let failed = |error: String| Failure::failed(format!("drawing the PDF: {error}"));
     let tree = Tree::from_str(svg, &options).map_err(|error| failed(error.to_string()))?;
     svg2pdf::to_pdf(&tree, Default::default(), Default::default())
         .map_err(|error| failed(error.to_string()))

@@ -1,6 +1,6 @@
 //! `replay`: makes a page from a recorded flight.
 
-use super::answer::{FAILURE, Failure, USAGE, talk};
+use super::answer::{Failure, talk};
 use crate::files::{read_log, write_whole};
 use mpp_analysis::picture::replay::replay;
 use std::path::PathBuf;
@@ -19,27 +19,22 @@ pub(super) struct ReplayArgs {
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
-    let read = |path: &PathBuf| read_log(path).map_err(|error| Failure::new(USAGE, error));
+    let read = |path: &PathBuf| read_log(path).map_err(Failure::usage);
     let log = read(&args.log)?;
     let against = args.against.as_ref().map(read).transpose()?;
     let (page, whole) = replay(&log, against.as_ref())
-        .map_err(|error| Failure::new(USAGE, format!("{}: {error}", args.log.display())))?;
+        .map_err(|error| Failure::usage(format!("{}: {error}", args.log.display())))?;
     if !whole {
         talk(
             "the page has no scans and candidates of a flight: flown again, it does not come out the \
              same (another version, or settings that its log does not hold)",
         );
     }
-    let failed = |error| {
-        Failure::new(
-            FAILURE,
-            format!("cannot write {}: {error}", args.out.display()),
-        )
-    };
+    let failed = |error| Failure::failed(format!("cannot write {}: {error}", args.out.display()));
     if let Some(directory) = args.out.parent() {
         std::fs::create_dir_all(directory).map_err(failed)?;
     }
-    write_whole(&args.out, page.as_bytes()).map_err(|error| Failure::new(FAILURE, error))?;
+    write_whole(&args.out, page.as_bytes()).map_err(Failure::failed)?;
     talk(format_args!("page {}", args.out.display()));
     Ok(0)
 }

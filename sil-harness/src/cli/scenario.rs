@@ -1,7 +1,7 @@
 //! The arguments of every command that flies: a scenario file, and flags that take precedence over
 //! it.
 
-use super::answer::{Failure, USAGE};
+use super::answer::Failure;
 use super::help::{PLANNER, WORLD};
 use super::values::{Item, generator, navigation, scene, whole};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
@@ -49,7 +49,7 @@ impl ScenarioArgs {
     /// Reads the scenario file. The flags replace its values.
     pub(super) fn file(&self) -> Result<ScenarioFile, Failure> {
         let mut file = match &self.scenario {
-            Some(path) => read_scenario(path).map_err(|error| Failure::new(USAGE, error))?,
+            Some(path) => read_scenario(path).map_err(Failure::usage)?,
             None => ScenarioFile::default(),
         };
         if let Some(lidar) = self.lidar()? {
@@ -57,8 +57,7 @@ impl ScenarioArgs {
         }
         replace(&mut file.scene, self.scene);
         if let Some(aircraft) = &self.aircraft {
-            file.aircraft =
-                Some(read_aircraft(aircraft).map_err(|error| Failure::new(USAGE, error))?);
+            file.aircraft = Some(read_aircraft(aircraft).map_err(Failure::usage)?);
         }
         replace(&mut file.world_scale, self.world_scale);
         replace(&mut file.navigation.source, self.navigation);
@@ -70,7 +69,7 @@ impl ScenarioArgs {
 
     /// Reads the lidar's file, if there is one.
     fn lidar(&self) -> Result<Option<LidarTable>, Failure> {
-        let read = |path: &PathBuf| read_lidar(path).map_err(|error| Failure::new(USAGE, error));
+        let read = |path: &PathBuf| read_lidar(path).map_err(Failure::usage);
         self.lidar.as_ref().map(read).transpose()
     }
 
@@ -135,7 +134,7 @@ impl FieldArgs {
         let named = |path: &PathBuf| {
             Ok(NamedField {
                 name: path.display().to_string(),
-                content: read_field(path).map_err(|error| Failure::new(USAGE, error))?,
+                content: read_field(path).map_err(Failure::usage)?,
             })
         };
         Ok(Lists {

@@ -1,6 +1,6 @@
 //! Ctrl-C, and the end that a service manager asks for.
 
-use super::answer::{FAILURE, Failure};
+use super::answer::Failure;
 use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::io;
@@ -25,7 +25,7 @@ impl Signals {
         };
         listen(SIGINT)
             .and_then(|()| listen(SIGTERM))
-            .map_err(|error| Failure::new(FAILURE, format!("cannot heed signals: {error}")))?;
+            .map_err(|error| Failure::failed(format!("cannot heed signals: {error}")))?;
         Ok(Self(raised))
     }
 

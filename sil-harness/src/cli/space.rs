@@ -1,6 +1,6 @@
 //! `space`: the lateral regulator holds a bank in six degrees of freedom.
 
-use super::answer::{FAILURE, Failure, USAGE, data};
+use super::answer::{Failure, print};
 use super::courses::courses;
 use super::values::{bank, seed, wind};
 use crate::files::{read_aircraft, write_whole};
@@ -115,22 +115,16 @@ pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
     let states = fly(args)?;
     let turned = Turned::of(args, &states);
     if let Some(out) = &args.out {
-        write_whole(out, table(&states).as_bytes())
-            .map_err(|error| Failure::new(FAILURE, error))?;
+        write_whole(out, table(&states).as_bytes()).map_err(Failure::failed)?;
     }
-    if args.json {
-        data(serde_json::to_string(&turned).map_err(|error| Failure::new(FAILURE, error))?)?;
-    } else {
-        data(&turned)?;
-    }
+    print(&turned, args.json)?;
     Ok(0)
 }
 
 /// The states of the flight after each tick. Elevator and thrust stay those of level flight.
 fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
-    let usage = |error: &dyn fmt::Display| Failure::new(USAGE, error);
-    let file = read_aircraft(&args.aircraft).map_err(|error| usage(&error))?;
-    let aircraft = AircraftModel::new(file).map_err(|error| usage(&error))?;
+    let file = read_aircraft(&args.aircraft).map_err(Failure::usage)?;
+    let aircraft = AircraftModel::new(file).map_err(Failure::usage)?;
     let mut scenario = Scenario {
         aircraft,
         ..Scenario::new(Preset::Flight, args.seed)
@@ -142,9 +136,9 @@ fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
         lateral_gusts: intensity,
         ..WindConfig::default()
     };
-    let mut plant = SpaceAircraft::new(&scenario, wind).map_err(|error| usage(&error))?;
+    let mut plant = SpaceAircraft::new(&scenario, wind).map_err(Failure::usage)?;
     let model = &scenario.aircraft;
-    let mut regulator = regulator(&scenario).map_err(|error| usage(&error))?;
+    let mut regulator = regulator(&scenario).map_err(Failure::usage)?;
     let bank = args.bank.to_radians();
     let mut states = Vec::with_capacity(TICKS);
     for tick in 0..TICKS {

@@ -1,13 +1,12 @@
 //! Aircraft from files.
 
-use super::{harness, run, scratch};
+use crate::common::{harness, run, scratch};
 use serde_json::Value;
 
 #[test]
 fn an_aircraft_file_that_makes_no_sense_is_refused_by_file_and_key() {
     let usual = include_str!("../../../aircraft/example.toml");
     let folder = scratch("bad-aircraft");
-    std::fs::create_dir_all(&folder).unwrap();
     let path = folder.join("my.toml");
     for (from, to, told) in [
         (

@@ -1,6 +1,6 @@
 //! Files and flags as people bring them: with marks of editors, with endings, with numbers that they read somewhere.
 
-use super::{harness, run, scratch};
+use crate::common::{harness, run, scratch};
 use serde_json::Value;
 use std::process::Output;
 
@@ -8,16 +8,11 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-#[expect(
-    clippy::unwrap_used,
-    reason = "a binary that does not start fails the test"
-)]
 fn answer(command: &str) -> Output {
     harness().args(command.split(' ')).output().unwrap()
 }
 
 /// The result of a short flight with these flags.
-#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn result(name: &str, flags: &[&str]) -> (Value, String) {
     let flight = ["fly", "--duration", "2", "--json"];
     let (output, out) = run(name, &[&flight[..], flags].concat());
@@ -29,7 +24,6 @@ fn result(name: &str, flags: &[&str]) -> (Value, String) {
 #[test]
 fn a_byte_order_mark_is_no_part_of_a_file() {
     let folder = scratch("marks");
-    std::fs::create_dir_all(&folder).unwrap();
     let flown = |flag: &str, name: &str, content: &str| {
         let file = folder.join(name);
         std::fs::write(&file, content).unwrap();
@@ -66,7 +60,6 @@ fn more_paths_than_there_are_give_the_usual_flight() {
 #[test]
 fn a_flight_is_not_begun_if_something_about_it_cannot_be() {
     let folder = scratch("before");
-    std::fs::create_dir_all(&folder).unwrap();
     let file = folder.join("file");
     std::fs::write(&file, "MPP_PATHS,many\n").unwrap();
     let (file, below) = (file.display(), file.join("out"));
@@ -125,7 +118,6 @@ fn a_table_names_the_scene_that_was_flown_through() {
 #[test]
 fn rows_of_a_fault_that_begins_late_are_written() {
     let folder = scratch("late");
-    std::fs::create_dir_all(&folder).unwrap();
     let rows = folder.join("rows.jsonl");
     let faults = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/scenarios/faults");
     let flags = format!(

@@ -1,13 +1,9 @@
 //! `ceiling` and `campaign --ceiling` as a user meets them. What the verdicts mean is tested in `mpp-analysis`.
 
-use super::harness;
+use crate::common::harness;
 use serde_json::Value;
 use std::process::Output;
 
-#[expect(
-    clippy::unwrap_used,
-    reason = "a binary that does not start fails the test"
-)]
 fn answer(arguments: &[&str]) -> Output {
     harness().args(arguments).output().unwrap()
 }

@@ -1,13 +1,9 @@
 //! `export` as a user meets it. What the files hold is tested in `mpp-export`.
 
-use super::{harness, run};
+use crate::common::{harness, run};
 use std::path::Path;
 use std::process::Output;
 
-#[expect(
-    clippy::unwrap_used,
-    reason = "a binary that does not start fails the test"
-)]
 fn export(arguments: &[&str], file: &Path) -> Output {
     harness()
         .arg("export")

@@ -1,6 +1,6 @@
 //! Whether `docs/logs.md` names what `--json` prints.
 
-use super::{harness, scratch};
+use crate::common::{harness, scratch};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -52,7 +52,6 @@ fn printed(directory: &Path, commands: &[&str]) -> BTreeSet<String> {
 }
 
 /// The names in the table of a command; a row may have several.
-#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn documented(command: &str) -> Vec<&'static str> {
     let page = include_str!("../../../docs/logs.md");
     let (_, section) = page.split_once(&format!("### `{command}`\n")).unwrap();
@@ -74,7 +73,6 @@ fn covers(name: &str, path: &str) -> bool {
 #[test]
 fn every_name_that_json_prints_is_documented_and_no_other() {
     let directory = scratch("names");
-    std::fs::create_dir_all(&directory).unwrap();
     std::fs::write(directory.join("wall.toml"), WALL).unwrap();
     let odd = include_str!("../../../aircraft/example.toml");
     let odd = odd.replace("air_density = 1.225", "air_density = 1.5");

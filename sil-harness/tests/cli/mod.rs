@@ -11,33 +11,8 @@ mod refused;
 mod space;
 mod speech;
 
+use crate::common::{harness, place, run, scratch};
 use serde_json::Value;
-use std::path::PathBuf;
-use std::process::{Command, Output};
-
-fn harness() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_sil-harness"))
-}
-
-/// A directory of this test's own; the name keeps tests apart.
-fn scratch(name: &str) -> PathBuf {
-    std::env::temp_dir().join(format!("sil-harness-{}-{name}", std::process::id()))
-}
-
-#[expect(
-    clippy::unwrap_used,
-    reason = "a binary that does not start fails the test"
-)]
-fn run(name: &str, arguments: &[&str]) -> (Output, PathBuf) {
-    let out = scratch(name);
-    let output = harness()
-        .args(arguments)
-        .arg("--out")
-        .arg(&out)
-        .output()
-        .unwrap();
-    (output, out)
-}
 
 #[test]
 fn a_flight_prints_one_json_object_and_writes_log_and_picture() {
@@ -128,7 +103,7 @@ fn absurd_flags_are_usage_errors_that_say_what_to_do() {
 
 #[test]
 fn a_scenario_file_is_flown_and_flags_go_before_it() {
-    let file = scratch("scenario.toml");
+    let file = place("scenario.toml");
     let text = "seed = 5\nduration = 2\nscene = \"dynamics\"\n[faults.gusts]\nintensity = 1.0\n";
     std::fs::write(&file, text).unwrap();
     let path = file.to_str().unwrap();
@@ -157,10 +132,10 @@ fn a_scenario_file_is_flown_and_flags_go_before_it() {
 /// Any row of a campaign is flown again, to the same bytes, by `fly` with its flags and seed.
 #[test]
 fn a_campaigns_row_is_flown_again_in_full() {
-    let file = scratch("all.toml");
+    let file = place("all.toml");
     let text = include_str!("../../../docs/scenarios/all-together.toml");
     std::fs::write(&file, text.replace("replan_hz = 4.0", "duration = 3")).unwrap();
-    let rows = scratch("rows.jsonl");
+    let rows = place("rows.jsonl");
     let flags = ["--scenario", file.to_str().unwrap()];
     let output = harness()
         .arg("campaign")
@@ -321,7 +296,6 @@ fn the_reference_check_refuses_what_is_no_reference() {
         .unwrap();
     assert_eq!(missing.status.code(), Some(2));
     let empty = scratch("empty");
-    std::fs::create_dir_all(&empty).unwrap();
     let output = harness()
         .arg("check-reference")
         .arg(&empty)

@@ -1,6 +1,6 @@
 //! The commands that the pages show: those in a block that a comment `<!-- runnable -->` stands before are run.
 
-use super::{harness, scratch};
+use crate::common::{harness, scratch};
 use std::path::{Path, PathBuf};
 
 const MARK: &str = "<!-- runnable -->\n```console\n";
@@ -10,10 +10,6 @@ fn root() -> PathBuf {
 }
 
 /// README and the pages of `docs` with what stands below it.
-#[expect(
-    clippy::unwrap_used,
-    reason = "a page that cannot be read fails the test"
-)]
 fn pages() -> Vec<(PathBuf, String)> {
     let mut paths = vec![root().join("README.md")];
     let mut folders = vec![root().join("docs")];
@@ -63,7 +59,6 @@ fn the_commands_that_pages_mark_as_runnable_run() {
             continue;
         }
         let place = scratch(&format!("page{number}"));
-        std::fs::create_dir_all(&place).unwrap();
         for folder in ["docs", "aircraft"] {
             let target = root().join(folder).canonicalize().unwrap();
             std::os::unix::fs::symlink(target, place.join(folder)).unwrap();

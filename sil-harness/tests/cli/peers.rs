@@ -1,6 +1,6 @@
 //! A core in another process, and a listener of the telemetry.
 
-use super::{harness, run};
+use crate::common::{harness, run, scratch};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpStream, UdpSocket};
@@ -26,7 +26,6 @@ fn a_core_that_is_not_there_is_a_link_error() {
 }
 
 /// A core in another process that serves once, and its address for `--link`.
-#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn serving(flags: &[&str]) -> (Child, String) {
     let mut core = harness()
         .args([&["core", "--listen", "127.0.0.1:0", "--once"], flags].concat())
@@ -110,8 +109,7 @@ fn telemetry_goes_out_over_udp() {
 /// The lidar sees two metres, so only the field file tells of the circle in the way.
 #[test]
 fn a_core_that_was_told_the_field_is_its_oracle() {
-    let folder = std::env::temp_dir().join(format!("sil-oracle-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).unwrap();
+    let folder = scratch("told-field");
     let file = |name: &str, text: &str| {
         let path = folder.join(name);
         std::fs::write(&path, text).unwrap();

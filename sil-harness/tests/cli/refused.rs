@@ -1,11 +1,10 @@
 //! What is refused before anything is flown, and with which sentence.
 
-use super::{harness, run, scratch};
+use crate::common::{harness, place, run, scratch};
 use serde_json::Value;
 use std::path::Path;
 
 /// What a command that must be refused says.
-#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn refused(command: &str) -> String {
     let output = harness().args(command.split(' ')).output().unwrap();
     let talk = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -69,7 +68,7 @@ fn an_unknown_aircraft_is_refused_with_the_known_ones() {
 
 #[test]
 fn a_row_file_is_no_log() {
-    let rows = scratch("rows-for-logs.jsonl");
+    let rows = place("rows-for-logs.jsonl");
     std::fs::write(&rows, "{\"rows\":3}\n").unwrap();
     for command in ["replay", "fly --orders"] {
         let talk = refused(&format!("{command} {}", rows.display()));
@@ -123,7 +122,6 @@ fn a_home_that_is_no_place_is_refused_with_what_to_give() {
 #[test]
 fn files_that_would_fly_something_else_are_refused_by_name() {
     let directory = scratch("refused");
-    std::fs::create_dir_all(&directory).unwrap();
     let write = |name: &str, text: &str| {
         let path = directory.join(name);
         std::fs::write(&path, text).unwrap();
@@ -187,7 +185,7 @@ fn items_of_a_list_may_have_spaces_around_them() {
 /// The log of a flight with other parameters does not take the place of the plain flight's.
 #[test]
 fn a_flight_with_parameters_has_files_of_its_own() {
-    let parameters = scratch("own.params");
+    let parameters = place("own.params");
     std::fs::write(&parameters, "MPP_PATHS,5\n").unwrap();
     let log = |flags: &[&str]| {
         let (output, _) = run(
@@ -210,7 +208,7 @@ fn a_flight_with_parameters_has_files_of_its_own() {
 
 #[test]
 fn a_bench_takes_the_obstacles_of_its_scenario() {
-    let scenario = scratch("bench.toml");
+    let scenario = place("bench.toml");
     let obstacles = |text: &str, flags: &str| {
         std::fs::write(&scenario, text).unwrap();
         let command = format!("bench cycle --flights 1 --runs 1 --duration 1 --json{flags}");

@@ -1,10 +1,9 @@
 //! Turns in six degrees of freedom.
 
-use super::{harness, scratch};
+use crate::common::{harness, place};
 use serde_json::Value;
 use std::process::Output;
 
-#[expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 fn space(flags: &str) -> Output {
     let mut harness = harness();
     harness
@@ -48,7 +47,7 @@ fn the_planner_flies_its_plane_in_space() {
 
 #[test]
 fn gusts_follow_the_seed_and_ticks_are_written() {
-    let out = scratch("turn.csv");
+    let out = place("turn.csv");
     let flown = |seed: u32| {
         let flags = format!(
             "--aircraft x8 --gusts light --seed {seed} --out {}",

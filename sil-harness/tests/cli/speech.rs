@@ -1,6 +1,6 @@
 //! What the command line says: how much, for whom, and with which exit code.
 
-use super::{harness, run, scratch};
+use crate::common::{harness, run};
 
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
@@ -93,10 +93,10 @@ fn completions_and_manual_know_every_command() {
     assert!(page("sil-harness.1").contains(r"sil\-harness\-campaign(1)"));
     assert!(page("sil-harness-fly.1").contains("Words of the result"));
     assert!(page("sil-harness-bench-qp.1").contains("Clarabel"));
-    std::fs::remove_dir_all(out).unwrap();
+    std::fs::remove_dir_all(&out).unwrap();
     let main = harness().arg("man").output().unwrap();
     assert!(text(&main.stdout).contains(".TH sil-harness 1"));
-    assert!(!scratch("man").exists());
+    assert!(!out.exists());
 }
 
 /// Clarabel takes long to build and no flight needs it, so a build may be without it, and says so.

@@ -1,6 +1,6 @@
 //! Full disks, and files that hold something else.
 
-use super::{harness, run_in, scratch, talk};
+use crate::common::{harness, run_in, scratch, talk};
 use std::fs::File;
 use std::path::Path;
 use std::process::{Command, Output};

@@ -1,6 +1,6 @@
 //! Key files, and the times of signatures beside them.
 
-use super::{run_in, scratch, talk};
+use crate::common::{run_in, scratch, talk};
 use hil_protocol::mavlink::messages::COMMAND_LONG_DATA;
 use hil_protocol::mavlink::{Key, Sender, Signer};
 use mpp_sim::navigation::NavigationConfig;

@@ -1,6 +1,6 @@
 //! Campaigns that are killed, or that cannot write their rows.
 
-use super::{harness, run_in, scratch, talk};
+use crate::common::{harness, run_in, scratch, talk};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};

@@ -1,6 +1,6 @@
 //! The server of a live flight, among pages that are not its own.
 
-use super::{harness, talk};
+use crate::common::{harness, talk};
 use mpp_sim::log::Header;
 use mpp_sim::scenario::{Preset, Scenario};
 use sil_harness::live::{Live, Wish};

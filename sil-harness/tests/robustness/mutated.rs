@@ -1,6 +1,6 @@
 //! Files that hold nothing of the kind, files without an end, and files that were damaged.
 
-use super::{run_in, scratch, talk};
+use crate::common::{run_in, scratch, talk};
 use mpp_sim::scenario::ScenarioFile;
 use sil_harness::ground::param_file;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! Flights that are flown again from their logs, and logs that cannot be.
 
-use super::{run_in, scratch, talk};
+use crate::common::{run_in, scratch, talk};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
@@ -104,7 +104,7 @@ fn a_log_that_cannot_be_flown_is_refused_by_the_field() {
 
 #[test]
 fn flights_that_differ_do_not_overwrite_each_other() {
-    let directory = scratch("names");
+    let directory = scratch("differing");
     std::fs::write(
         directory.join("gusts.toml"),
         "[faults.gusts]\nintensity = 1.0\n",

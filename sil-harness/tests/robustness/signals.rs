@@ -1,6 +1,6 @@
 //! Flights and campaigns that are interrupted.
 
-use super::{harness, run_in, scratch};
+use crate::common::{harness, run_in, scratch};
 use mpp_sim::outcome::Outcome;
 use sil_harness::files::read_log;
 use std::path::Path;

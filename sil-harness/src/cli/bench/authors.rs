@@ -1,6 +1,6 @@
 //! The authors' own planning cycles, timed beside ours.
 
-use super::super::answer::{FAILURE, Failure, USAGE};
+use super::super::answer::Failure;
 use mpp_analysis::bench::CycleReport;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -63,15 +63,15 @@ fn timed(python: &Path, ours: &CycleReport, options: &[&str]) -> Result<Timed, F
                 "--authors {}: {error}: bench/authors/README.md sets it up",
                 python.display()
             );
-            Failure::new(USAGE, why)
+            Failure::usage(why)
         })?;
     if !output.status.success() {
         let why = String::from_utf8_lossy(&output.stderr);
         let last = why.trim_end().lines().last().unwrap_or_default();
-        return Err(Failure::new(FAILURE, format!("{SCRIPT}: {last}")));
+        return Err(Failure::failed(format!("{SCRIPT}: {last}")));
     }
     serde_json::from_slice(&output.stdout)
-        .map_err(|error| Failure::new(FAILURE, format!("{SCRIPT}: {error}")))
+        .map_err(|error| Failure::failed(format!("{SCRIPT}: {error}")))
 }
 
 impl fmt::Display for Comparison {

@@ -2,7 +2,7 @@
 
 mod authors;
 
-use super::answer::{FAILURE, Failure, USAGE, data, talk};
+use super::answer::{Failure, USAGE, print, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::values::{preset, seed};
 use crate::files::{read_instances, write_instances};
@@ -10,8 +10,6 @@ use indicatif::ProgressBar;
 use mpp_analysis::bench::{CycleBench, DENSE, SPARSE, generate, run_cycle};
 use mpp_analysis::instance::Instance;
 use mpp_sim::scenario::Preset;
-use serde::Serialize;
-use std::fmt::Display;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, clap::Args)]
@@ -106,26 +104,19 @@ fn run_cycle_bench(args: &CycleArgs) -> Result<u8, Failure> {
     replace(&mut file.replan_hz, args.replan_hz);
     replace(&mut file.seed, args.seed);
     let bench = CycleBench {
-        scenario: file.build().map_err(|error| Failure::new(USAGE, error))?,
+        scenario: file.build().map_err(Failure::usage)?,
         flights: args.flights,
         runs: args.runs,
     };
     let progress = ProgressBar::new(u64::from(args.flights));
     let report = run_cycle(&bench, || progress.inc(1));
     progress.finish_and_clear();
-    let report = report.map_err(|error| Failure::new(FAILURE, error))?;
+    let report = report.map_err(Failure::failed)?;
     let Some(python) = &args.authors else {
-        return print(&report, args.json);
+        print(&report, args.json)?;
+        return Ok(0);
     };
-    print(&authors::compare(python, report)?, args.json)
-}
-
-fn print(report: &(impl Serialize + Display), json: bool) -> Result<u8, Failure> {
-    if json {
-        data(serde_json::to_string(report).map_err(|error| Failure::new(FAILURE, error))?)?;
-    } else {
-        data(report.to_string().trim_end())?;
-    }
+    print(&authors::compare(python, report)?, args.json)?;
     Ok(0)
 }
 
@@ -133,11 +124,11 @@ fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
     if args.export.is_none() && cfg!(not(feature = "clarabel")) {
         let why = "bench qp: this program was built without Clarabel: build it with `--features clarabel`, \
                    or write the programs to a file with --export";
-        return Err(Failure::new(USAGE, why));
+        return Err(Failure::usage(why));
     }
     let instances = instances(args)?;
     if let Some(path) = &args.export {
-        write_instances(path, &instances).map_err(|error| Failure::new(FAILURE, error))?;
+        write_instances(path, &instances).map_err(Failure::failed)?;
         talk(format_args!(
             "{} programs in {}",
             instances.len(),
@@ -153,7 +144,8 @@ fn compare(instances: &[Instance], json: bool) -> Result<u8, Failure> {
     let progress = ProgressBar::new(instances.len() as u64);
     let report = mpp_analysis::bench::run_qp(instances, || progress.inc(1));
     progress.finish_and_clear();
-    print(&report.map_err(|error| Failure::new(FAILURE, error))?, json)
+    print(&report.map_err(Failure::failed)?, json)?;
+    Ok(0)
 }
 
 #[cfg(not(feature = "clarabel"))]
@@ -165,16 +157,16 @@ fn compare(_: &[Instance], _: bool) -> Result<u8, Failure> {
 fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {
     let mut instances = Vec::new();
     if let Some(path) = &args.instances {
-        instances.extend(read_instances(path).map_err(|error| Failure::new(USAGE, error))?);
+        instances.extend(read_instances(path).map_err(Failure::usage)?);
     }
     if let Some(count) = args.generate {
         let obstacles = if args.dense { DENSE } else { SPARSE };
         let generated = generate(args.preset, obstacles, count as usize, args.seed);
-        instances.extend(generated.map_err(|error| Failure::new(FAILURE, error))?);
+        instances.extend(generated.map_err(Failure::failed)?);
     }
     if instances.is_empty() {
         let why = "bench qp: give --instances FILE_OR_DIR, --generate N, or both";
-        return Err(Failure::new(USAGE, why));
+        return Err(Failure::usage(why));
     }
     Ok(instances)
 }
