@@ -7,10 +7,6 @@ use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
 
-#[expect(
-    clippy::unwrap_used,
-    reason = "a flight over a pipe has no link to lose"
-)]
 fn flown(scenario: &Scenario) -> FlightLog {
     fly(scenario, &mut PipeLink::new(), |_| {}).unwrap()
 }

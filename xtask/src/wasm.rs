@@ -3,6 +3,8 @@
 use crate::folders::{root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -53,7 +55,10 @@ pub(crate) fn page() -> Result<()> {
     for part in PARTS {
         page += &std::fs::read_to_string(root().join(part)).context(part)?;
     }
-    page += &format!("start(\"{}\");\n</script>\n</html>\n", base64(&module));
+    page += &format!(
+        "start(\"{}\");\n</script>\n</html>\n",
+        BASE64_STANDARD.encode(&module)
+    );
     let path = work("web")?.join("fly.html");
     std::fs::write(&path, &page)?;
     let sent = gzip(page.as_bytes())?.len();
@@ -102,44 +107,4 @@ fn gzip(bytes: &[u8]) -> Result<Vec<u8>> {
         .map_err(|_| anyhow::anyhow!("gzip reads nothing"))??;
     ensure!(packed.status.success(), "gzip failed: {}", packed.status);
     Ok(packed.stdout)
-}
-
-/// Bytes as text of 64 letters (RFC 4648).
-fn base64(bytes: &[u8]) -> String {
-    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for three in bytes.chunks(3) {
-        let at = |index: usize| u32::from(three.get(index).copied().unwrap_or(0));
-        let bits = at(0) << 16 | at(1) << 8 | at(2);
-        for place in 0..4 {
-            if place <= three.len() {
-                let letter = bits >> (18 - 6 * place) & 63;
-                text.push(char::from(LETTERS[letter as usize]));
-            } else {
-                text.push('=');
-            }
-        }
-    }
-    text
-}
-
-#[cfg(test)]
-mod tests {
-    use super::base64;
-
-    /// The examples of RFC 4648, section 10.
-    #[test]
-    fn bytes_are_written_as_the_standard_says() {
-        for (bytes, text) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foob", "Zm9vYg=="),
-            ("fooba", "Zm9vYmE="),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 }

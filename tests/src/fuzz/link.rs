@@ -3,6 +3,7 @@
 use super::aircraft::aircraft;
 use super::draw::Draw;
 use super::{ROUND, Report};
+use crc::Crc;
 use hil_protocol::{
     ActuatorCommand, ActuatorLimits, AirData, Configure, ConfigureVerdict, Decoder, GroundVelocity,
     Hello, LidarScan, MAX_FRAME, Message, ParameterVerdict, Position, Preset, Role, SensorFrame,
@@ -11,6 +12,8 @@ use hil_protocol::{
 use mpp_node::FlightNode;
 use mpp_node::parameters::{PARAMETERS, Tuning};
 use mpp_sim::scenario::{self, Scenario};
+
+const CRC: Crc<u32> = Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
 /// A core, what it was told, and what it answered.
 struct Bench {
@@ -74,55 +77,15 @@ fn framed(message: &Message) -> Vec<u8> {
 
 /// The frame with a damaged payload and a checksum that fits it.
 fn resealed(draw: &mut Draw, frame: &[u8]) -> Vec<u8> {
-    let mut plain = vec![];
-    let mut rest = frame;
-    while let [code, tail @ ..] = rest {
-        let length = usize::from(*code).saturating_sub(1).min(tail.len());
-        let (block, after) = tail.split_at(length);
-        plain.extend_from_slice(block);
-        rest = after;
-        if *code < 255 && rest.len() > 1 {
-            plain.push(0);
-        }
-        if rest.len() <= 1 {
-            break;
-        }
-    }
+    let mut plain = cobs::decode_vec(frame.strip_suffix(&[0]).unwrap_or(frame)).unwrap_or_default();
     plain.truncate(plain.len().saturating_sub(4));
     let mut payload = plain.split_off(plain.len().min(4));
     draw.damage(&mut payload);
     plain.extend(payload);
-    plain.extend(crc(&plain).to_le_bytes());
-    stuffed(&plain)
-}
-
-/// CRC-32/ISO-HDLC, bit by bit.
-fn crc(bytes: &[u8]) -> u32 {
-    !bytes.iter().fold(u32::MAX, |crc, byte| {
-        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
-            (crc >> 1) ^ (0xEDB8_8320 * (crc & 1))
-        })
-    })
-}
-
-/// The COBS form, with its delimiter.
-fn stuffed(plain: &[u8]) -> Vec<u8> {
-    let mut out = vec![];
-    for part in plain.split(|byte| *byte == 0) {
-        let mut chunks = part.chunks(254).peekable();
-        if chunks.peek().is_none() {
-            out.push(1);
-        }
-        while let Some(chunk) = chunks.next() {
-            out.push(chunk.len() as u8 + 1);
-            out.extend_from_slice(chunk);
-            if chunk.len() == 254 && chunks.peek().is_none() {
-                out.push(1);
-            }
-        }
-    }
-    out.push(0);
-    out
+    plain.extend(CRC.checksum(&plain).to_le_bytes());
+    let mut bytes = cobs::encode_vec(&plain);
+    bytes.push(0);
+    bytes
 }
 
 fn message(draw: &mut Draw, tick: u32) -> Message {

@@ -1,6 +1,6 @@
 //! Tests that what one address asks for changes nothing at another one.
 
-use super::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, heard, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, MessageData, Sender, text};
 use mpp_sim::scenario::Scenario;
@@ -51,10 +51,7 @@ fn rates_are_those_of_the_address_that_asked() {
     let from = |ticks: &[u32]| ticks.iter().filter(|tick| **tick >= 100).count();
     assert_eq!((from(&here), from(&there)), (100, 4));
     assert_eq!((here.len() - 100, there.len() - 4), (10, 10));
-    let told = radio.all(|message| match message {
-        MavMessage::MESSAGE_INTERVAL(told) => Some(told.interval_us),
-        _ => None,
-    });
+    let told = heard!(radio, MESSAGE_INTERVAL, |told| told.interval_us);
     assert_eq!(told, [(150, 500_000)]);
 }
 

@@ -1,6 +1,6 @@
 //! Commands are always acknowledged, carried out between ticks, and written to the log.
 
-use super::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, heard, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::flight::{fly, fly_with};
 use mpp_sim::log::FlightLog;
@@ -163,10 +163,7 @@ fn cruise_flies_level_and_slowly_without_scans() {
             order: Order::Mode { mode: Mode::Cruise }
         }]
     );
-    let modes = radio.all(|message| match message {
-        MavMessage::HEARTBEAT(heartbeat) => Some(heartbeat.custom_mode),
-        _ => None,
-    });
+    let modes = heard!(radio, HEARTBEAT, |heartbeat| heartbeat.custom_mode);
     assert!(
         modes
             .iter()
@@ -196,10 +193,9 @@ fn without_its_motor_the_aircraft_sinks() {
             .iter()
             .all(|(_, text)| !text.contains("Motor"))
     );
-    let motors = radio.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & 0x8000),
-        _ => None,
-    });
+    let motors = heard!(radio, SYS_STATUS, |status| status
+        .onboard_control_sensors_health
+        & 0x8000);
     assert!(motors.iter().all(|(_, bit)| *bit != 0));
 }
 

@@ -1,6 +1,6 @@
 //! Tests the mode in which the vehicle does not look.
 
-use super::radio::{CONFIG, Radio, command};
+use super::radio::{CONFIG, Radio, command, heard};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::scenario::ScenarioFile;
 
@@ -21,18 +21,13 @@ fn cruise(keys: &str) -> (Vec<Text>, Vec<(u32, SYS_STATUS_DATA)>) {
         .at(450, &command(176, 1.0, 7.0))
         .at(800, &command(176, 1.0, 10.0));
     radio.fly(&file.build().unwrap());
-    let texts = radio.all(|message| match message {
-        MavMessage::STATUSTEXT(status) => {
-            Some((status.severity, status.text.to_str().unwrap().to_owned()))
-        }
-        _ => None,
-    });
+    let texts = heard!(radio, STATUSTEXT, |status| (
+        status.severity,
+        status.text.to_str().unwrap().to_owned()
+    ));
     let told = |text: &str| text.contains("lidar") || text.contains("CRUISE");
     let texts = texts.into_iter().filter(|(_, (_, text))| told(text));
-    let status = radio.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.clone()),
-        _ => None,
-    });
+    let status = heard!(radio, SYS_STATUS, |status| status.clone());
     let texts = texts.map(|(tick, (severity, text))| (tick, severity, text));
     (texts.collect(), status)
 }

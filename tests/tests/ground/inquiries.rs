@@ -1,6 +1,6 @@
 //! Tests the requests of a station that do not change the flight.
 
-use super::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, heard, scenario};
 use hil_protocol::mavlink::messages::*;
 use mpp_sim::scenario::Scenario;
 use sil_harness::ground::vehicle::VehicleConfig;
@@ -17,10 +17,7 @@ fn the_heartbeat_is_that_of_a_fixed_wing_in_arduplanes_modes() {
     let mut radio = Radio::new(&CONFIG);
     radio.at(50, &command(176, 1.0, 7.0));
     radio.fly(&short());
-    let beats = radio.all(|message| match message {
-        MavMessage::HEARTBEAT(heartbeat) => Some(heartbeat.clone()),
-        _ => None,
-    });
+    let beats = heard!(radio, HEARTBEAT, |heartbeat| heartbeat.clone());
     let (custom, auto, stabilised, armed) = (1, 4, 16, 128);
     let expected = HEARTBEAT_DATA {
         custom_mode: 10,
@@ -55,10 +52,10 @@ fn an_interval_is_told_in_both_ways() {
         .at(90, &command(511, 30.0, 3e9))
         .at(95, &command(512, 244.0, 30.0));
     radio.fly(&short());
-    let told = radio.all(|message| match message {
-        MavMessage::MESSAGE_INTERVAL(told) => Some((told.message_id, told.interval_us)),
-        _ => None,
-    });
+    let told = heard!(radio, MESSAGE_INTERVAL, |told| (
+        told.message_id,
+        told.interval_us
+    ));
     let told: Vec<_> = told.into_iter().map(|(_, told)| told).collect();
     let expected = [
         (30, 100_000),
@@ -99,10 +96,11 @@ fn a_question_for_the_time_is_answered_once() {
         )
         .at(120, &TIMESYNC_DATA { tc1: 5, ..question });
     radio.fly(&short());
-    let told = radio.all(|message| match message {
-        MavMessage::TIMESYNC(sync) => Some((sync.tc1, sync.ts1, sync.target_system)),
-        _ => None,
-    });
+    let told = heard!(radio, TIMESYNC, |sync| (
+        sync.tc1,
+        sync.ts1,
+        sync.target_system
+    ));
     assert_eq!(told, [(0, (1, 77, 255)), (100, (1_000_000_000, 77, 255))]);
 }
 
@@ -122,10 +120,11 @@ fn a_ping_comes_back_and_an_answer_does_not() {
         },
     );
     radio.fly(&short());
-    let told = radio.all(|message| match message {
-        MavMessage::PING(ping) => Some((ping.seq, ping.target_system, ping.target_component)),
-        _ => None,
-    });
+    let told = heard!(radio, PING, |ping| (
+        ping.seq,
+        ping.target_system,
+        ping.target_component
+    ));
     assert_eq!(told, [(10, (3, 255, 190))]);
 }
 
@@ -195,10 +194,11 @@ fn what_the_empty_mission_lacks_is_acknowledged_as_an_error() {
             },
         );
     radio.fly(&short());
-    let told = radio.all(|message| match message {
-        MavMessage::MISSION_ACK(ack) => Some((ack.mavtype, ack.mission_type, ack.target_system)),
-        _ => None,
-    });
+    let told = heard!(radio, MISSION_ACK, |ack| (
+        ack.mavtype,
+        ack.mission_type,
+        ack.target_system
+    ));
     let (invalid_sequence, unsupported) = (13, 3);
     let expected = [
         (10, (invalid_sequence, 1, 255)),
@@ -214,15 +214,9 @@ fn a_map_shows_where_the_log_says() {
     let mut radio = Radio::new(&CONFIG);
     radio.at(10, &command(512, 242.0, 0.0));
     let log = radio.fly(&short());
-    let homes = radio.all(|message| match message {
-        MavMessage::HOME_POSITION(home) => Some(home.clone()),
-        _ => None,
-    });
+    let homes = heard!(radio, HOME_POSITION, |home| home.clone());
     let (_, home) = &homes[0];
-    let places = radio.all(|message| match message {
-        MavMessage::GLOBAL_POSITION_INT(place) => Some(place.clone()),
-        _ => None,
-    });
+    let places = heard!(radio, GLOBAL_POSITION_INT, |place| place.clone());
     assert_eq!(places.len(), 10);
     for (tick, place) in places {
         let row = tick as usize;
@@ -247,30 +241,18 @@ fn a_flight_goes_where_home_is_headed() {
         ..CONFIG
     });
     let log = radio.fly(&short());
-    let local = radio.all(|message| match message {
-        MavMessage::LOCAL_POSITION_NED(at) => Some((at.x, at.y, at.vx, at.vy)),
-        _ => None,
-    });
+    let local = heard!(radio, LOCAL_POSITION_NED, |at| (at.x, at.y, at.vx, at.vy));
     let (tick, (north, east, to_north, to_east)) = local[19];
     assert!((f64::from(east) - log.ticks.est_x[tick as usize]).abs() < 1e-4);
     assert!(north.abs() < 1e-4 && to_north.abs() < 1e-4 && to_east > 10.0);
-    let global = radio.all(|message| match message {
-        MavMessage::GLOBAL_POSITION_INT(at) => Some(at.clone()),
-        _ => None,
-    });
+    let global = heard!(radio, GLOBAL_POSITION_INT, |at| at.clone());
     let (tick, at) = &global[9];
     assert_eq!((at.lat, at.hdg), (-339_000_000, 9000));
     assert!(at.lon > 1_512_000_000);
     let height = log.ticks.est_z[*tick as usize];
     assert!((f64::from(at.alt) / 1e3 - 20.0 - height).abs() < 1e-3);
-    let yaw = radio.all(|message| match message {
-        MavMessage::ATTITUDE(attitude) => Some(attitude.yaw),
-        _ => None,
-    });
+    let yaw = heard!(radio, ATTITUDE, |attitude| attitude.yaw);
     assert_eq!(yaw[5].1, std::f32::consts::FRAC_PI_2);
-    let shown = radio.all(|message| match message {
-        MavMessage::VFR_HUD(hud) => Some((hud.heading, hud.alt)),
-        _ => None,
-    });
+    let shown = heard!(radio, VFR_HUD, |hud| (hud.heading, hud.alt));
     assert_eq!(shown[0].1, (90, 20.0 + log.ticks.est_z[0] as f32));
 }

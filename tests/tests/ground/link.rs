@@ -1,6 +1,6 @@
 //! Tests the link itself: bad, silent, signed, recorded.
 
-use super::radio::{CONFIG, Channel, HERE, Radio, command, heartbeat, scenario, write};
+use super::radio::{CONFIG, Channel, HERE, Radio, command, heard, heartbeat, scenario, write};
 use chacha20::ChaCha8Rng;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, Key, Sender, Signer, Verifier};
@@ -230,10 +230,7 @@ fn with_a_key_only_its_holder_commands() {
     assert_eq!(log.orders.len(), 1, "{:?}", log.orders);
     assert_eq!(radio.vehicle.refused_signatures(), 4);
     // Frames for another vehicle and frames that are no orders are not counted either.
-    let errors = radio.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.errors_count2),
-        _ => None,
-    });
+    let errors = heard!(radio, SYS_STATUS, |status| status.errors_count2);
     assert_eq!(errors.last().unwrap().1, 4);
 }
 

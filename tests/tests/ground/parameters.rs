@@ -1,6 +1,6 @@
 //! Tests the parameters that a station reads and writes.
 
-use super::radio::{CONFIG, Radio, command, scenario, write};
+use super::radio::{CONFIG, Radio, command, heard, scenario, write};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::{ConfigureVerdict, ParameterVerdict};
 use mpp_core::settings::Settings;
@@ -26,12 +26,11 @@ fn the_list_is_every_parameter_of_the_preset_as_it_is_flown() {
             .map(|(name, value)| (name.to_owned(), value as f32))
             .collect();
         assert_eq!(radio.values(), expected);
-        let places = radio.all(|message| match message {
-            MavMessage::PARAM_VALUE(value) => {
-                Some((value.param_index, value.param_count, value.param_type))
-            }
-            _ => None,
-        });
+        let places = heard!(radio, PARAM_VALUE, |value| (
+            value.param_index,
+            value.param_count,
+            value.param_type
+        ));
         for (place, (_, told)) in places.into_iter().enumerate() {
             assert_eq!(told, (place as u16, expected.len() as u16, 9));
         }

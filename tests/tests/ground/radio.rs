@@ -37,6 +37,14 @@ pub(crate) fn scenario() -> Scenario {
     }
 }
 
+/// Its first three seconds.
+pub(crate) fn short() -> Scenario {
+    Scenario {
+        ticks: 300,
+        ..scenario()
+    }
+}
+
 /// The change that a link makes to the datagrams of one direction.
 pub(crate) type Channel = Box<dyn FnMut(Vec<Vec<u8>>) -> Vec<Vec<u8>>>;
 
@@ -56,6 +64,17 @@ pub(crate) struct Radio {
     pub(crate) notes: Vec<String>,
     held: u32,
 }
+
+/// Every message of a kind that a radio heard: its time, and what is picked of it.
+macro_rules! heard {
+    ($radio:expr, $kind:ident, |$message:ident| $picked:expr) => {
+        $radio.all(|message| match message {
+            hil_protocol::mavlink::messages::MavMessage::$kind($message) => Some($picked),
+            _ => None,
+        })
+    };
+}
+pub(crate) use heard;
 
 impl Radio {
     pub(crate) fn new(config: &VehicleConfig) -> Self {
@@ -125,34 +144,30 @@ impl Radio {
 
     /// Command and result of every acknowledgement.
     pub(crate) fn acks(&self) -> Vec<(u16, u8)> {
-        let ack = |message: &MavMessage| match message {
-            MavMessage::COMMAND_ACK(ack) => Some((ack.command, ack.result)),
-            _ => None,
-        };
-        self.all(ack).into_iter().map(|(_, ack)| ack).collect()
+        heard!(self, COMMAND_ACK, |ack| (ack.command, ack.result))
+            .into_iter()
+            .map(|(_, ack)| ack)
+            .collect()
     }
 
     /// Every text.
     pub(crate) fn texts(&self) -> Vec<(u32, String)> {
-        self.all(|message| match message {
-            MavMessage::STATUSTEXT(status) => Some(status.text.to_str().unwrap().to_owned()),
-            _ => None,
-        })
+        heard!(self, STATUSTEXT, |status| status
+            .text
+            .to_str()
+            .unwrap()
+            .to_owned())
     }
 
     /// Name and value of every parameter that was sent.
     pub(crate) fn values(&self) -> Vec<(String, f32)> {
-        let value = |message: &MavMessage| match message {
-            MavMessage::PARAM_VALUE(value) => Some((
-                value.param_id.to_str().unwrap().to_owned(),
-                value.param_value,
-            )),
-            _ => None,
-        };
-        self.all(value)
-            .into_iter()
-            .map(|(_, value)| value)
-            .collect()
+        heard!(self, PARAM_VALUE, |value| (
+            value.param_id.to_str().unwrap().to_owned(),
+            value.param_value,
+        ))
+        .into_iter()
+        .map(|(_, value)| value)
+        .collect()
     }
 
     fn speak(&mut self, tick: i64) {

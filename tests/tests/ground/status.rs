@@ -1,9 +1,9 @@
 //! Tests what a station asks of a healthy vehicle, and what it gets where there is nothing to get.
 
-use super::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, heard, short};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{MessageData, Sender, text};
-use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::scenario::ScenarioFile;
 
 const GEOFENCE: u32 = 0x10_0000;
 const PREARM: u32 = 0x1000_0000;
@@ -13,13 +13,6 @@ const ACCEPTED: u8 = 0;
 const DENIED: u8 = 2;
 const FAILED: u8 = 4;
 
-fn short() -> Scenario {
-    Scenario {
-        ticks: 300,
-        ..scenario()
-    }
-}
-
 fn request(message: u32, first: f32) -> COMMAND_LONG_DATA {
     command(512, message as f32, first)
 }
@@ -28,21 +21,13 @@ fn request(message: u32, first: f32) -> COMMAND_LONG_DATA {
 fn a_flying_vehicle_is_in_the_air_healthy_and_has_a_fix() {
     let mut radio = Radio::new(&CONFIG);
     let log = radio.fly(&short());
-    let landed = radio.all(|message| match message {
-        MavMessage::EXTENDED_SYS_STATE(state) => Some(state.landed_state),
-        _ => None,
-    });
+    let landed = heard!(radio, EXTENDED_SYS_STATE, |state| state.landed_state);
     assert_eq!(landed[1..], [(100, 2), (200, 2)]);
-    let health = radio.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health),
-        _ => None,
-    });
+    let health = heard!(radio, SYS_STATUS, |status| status
+        .onboard_control_sensors_health);
     let bits = GYRO_ACCEL_MAG | PREARM | GEOFENCE;
     assert!(health.iter().all(|(_, health)| health & bits == bits));
-    let fixes = radio.all(|message| match message {
-        MavMessage::GPS_RAW_INT(fix) => Some(fix.vel),
-        _ => None,
-    });
+    let fixes = heard!(radio, GPS_RAW_INT, |fix| fix.vel);
     let (tick, speed) = fixes[2];
     let estimate = log.ticks.est_airspeed[tick as usize];
     assert!((f64::from(speed) / 100.0 - estimate).abs() < 2.0);
@@ -70,10 +55,9 @@ fn faults_of_the_actuators_are_told() {
     assert!(told(&stopped, "Motor works again"));
     assert!(!told(&stopped, "Sensor airspeed failed"));
     for radio in [stuck, stopped] {
-        let motors = radio.all(|message| match message {
-            MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & MOTORS),
-            _ => None,
-        });
+        let motors = heard!(radio, SYS_STATUS, |status| status
+            .onboard_control_sensors_health
+            & MOTORS);
         assert!(motors[..8].iter().all(|(_, bit)| *bit == MOTORS));
         assert!(motors.iter().any(|(_, bit)| *bit == 0));
     }
@@ -91,10 +75,9 @@ fn a_sensor_that_blinks_is_told() {
         .iter()
         .find(|(_, text)| text == "Sensor airspeed is doubtful");
     assert!(doubtful.is_some_and(|(tick, _)| *tick < 1000), "{texts:?}");
-    let airspeed = radio.all(|message| match message {
-        MavMessage::SYS_STATUS(status) => Some(status.onboard_control_sensors_health & 0x10),
-        _ => None,
-    });
+    let airspeed = heard!(radio, SYS_STATUS, |status| status
+        .onboard_control_sensors_health
+        & 0x10);
     assert!(airspeed[..3].iter().all(|(_, bit)| *bit == 0x10));
     assert!(airspeed.iter().any(|(_, bit)| *bit == 0));
 }
@@ -106,20 +89,14 @@ fn the_wind_is_told_and_is_in_the_speed_over_ground() {
     windy.faults.gusts.intensity = 2.0;
     let mut radio = Radio::new(&CONFIG);
     let log = radio.fly(&windy);
-    let winds = radio.all(|message| match message {
-        MavMessage::WIND_COV(wind) => Some((wind.wind_x, wind.wind_z)),
-        _ => None,
-    });
+    let winds = heard!(radio, WIND_COV, |wind| (wind.wind_x, wind.wind_z));
     for (tick, (ahead, down)) in &winds[1..] {
         let tick = *tick as usize;
         let wind = [log.ticks.est_wind_x[tick], log.ticks.est_wind_z[tick]];
         assert_eq!([*ahead, -down], wind.map(|wind| wind as f32));
     }
     assert!(winds.iter().any(|(_, (ahead, _))| ahead.abs() > 0.2));
-    let speeds = radio.all(|message| match message {
-        MavMessage::LOCAL_POSITION_NED(at) => Some(at.vx),
-        _ => None,
-    });
+    let speeds = heard!(radio, LOCAL_POSITION_NED, |at| at.vx);
     let (tick, forward) = speeds[20];
     let tick = tick as usize;
     let forward_in_air = log.ticks.est_airspeed[tick] * libm::cos(log.ticks.est_flight_path[tick]);
@@ -143,10 +120,7 @@ fn there_are_no_logs() {
         },
     );
     radio.fly(&short());
-    let logs = radio.all(|message| match message {
-        MavMessage::LOG_ENTRY(entry) => Some(entry.num_logs),
-        _ => None,
-    });
+    let logs = heard!(radio, LOG_ENTRY, |entry| entry.num_logs);
     assert_eq!(logs, [(50, 0)]);
 }
 
@@ -172,12 +146,10 @@ fn what_a_parameter_lacks_is_told_by_its_name() {
         .at(30, &write("MPP_PATHS", 99.0))
         .at(40, &write("MPP_CRUISE_MS", 15.0));
     radio.fly(&short());
-    let errors = radio.all(|message| match message {
-        MavMessage::PARAM_ERROR(error) => {
-            Some((error.param_id.to_str().unwrap().to_owned(), error.error))
-        }
-        _ => None,
-    });
+    let errors = heard!(radio, PARAM_ERROR, |error| (
+        error.param_id.to_str().unwrap().to_owned(),
+        error.error
+    ));
     let errors: Vec<_> = errors.into_iter().map(|(_, error)| error).collect();
     let named = |name: &str, error| (name.to_owned(), error);
     assert_eq!(
@@ -212,21 +184,15 @@ fn modes_and_the_last_of_each_event_are_sent_on_request() {
     radio.fly(&short());
     let results: Vec<_> = radio.acks().into_iter().map(|(_, result)| result).collect();
     assert_eq!(results, asked.map(|(_, _, result)| result));
-    let modes = radio.all(|message| match message {
-        MavMessage::AVAILABLE_MODES(mode) => Some((
-            mode.mode_index,
-            mode.custom_mode,
-            mode.mode_name.to_str().unwrap().to_owned(),
-        )),
-        _ => None,
-    });
+    let modes = heard!(radio, AVAILABLE_MODES, |mode| (
+        mode.mode_index,
+        mode.custom_mode,
+        mode.mode_name.to_str().unwrap().to_owned(),
+    ));
     let modes: Vec<_> = modes.into_iter().map(|(_, mode)| mode).collect();
     let [auto, cruise] = [(1, 10, "AUTO".to_owned()), (2, 7, "CRUISE".to_owned())];
     assert_eq!(modes, [auto, cruise.clone(), cruise]);
-    let plans = radio.all(|message| match message {
-        MavMessage::MPP_PLAN_STATUS(plan) => Some(plan.scan_tick),
-        _ => None,
-    });
+    let plans = heard!(radio, MPP_PLAN_STATUS, |plan| plan.scan_tick);
     // It is the last one, and it did not come before.
     assert_eq!(plans, [(220, 200)]);
 }
@@ -292,10 +258,10 @@ fn the_mode_is_told_to_those_who_ask() {
     let interval = command(511, CURRENT_MODE_DATA::ID as f32, 1e6);
     radio.at(90, &interval).at(150, &command(176, 1.0, 7.0));
     radio.fly(&short());
-    let modes = radio.all(|message| match message {
-        MavMessage::CURRENT_MODE(mode) => Some((mode.custom_mode, mode.standard_mode)),
-        _ => None,
-    });
+    let modes = heard!(radio, CURRENT_MODE, |mode| (
+        mode.custom_mode,
+        mode.standard_mode
+    ));
     let (auto, cruise) = ((10, 0), (7, 3));
     assert_eq!(modes, [(100, auto), (200, cruise)]);
 }

@@ -1,6 +1,6 @@
 //! Tests that a station sees what the log holds.
 
-use super::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, heard, scenario};
 use hil_protocol::LidarScan;
 use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;
@@ -70,10 +70,7 @@ fn scans_and_plans_are_those_of_the_flight() {
         },
         log,
     ) = recorded(&scenario());
-    let told = radio.all(|message| match message {
-        MavMessage::MPP_LIDAR_SCAN(scan) => Some(scan.clone()),
-        _ => None,
-    });
+    let told = heard!(radio, MPP_LIDAR_SCAN, |scan| scan.clone());
     assert_eq!(told.len(), scans.len());
     for ((_, told), scan) in told.iter().zip(&scans) {
         assert_eq!(
@@ -90,10 +87,7 @@ fn scans_and_plans_are_those_of_the_flight() {
             assert_eq!(*told, expected);
         }
     }
-    let plans = radio.all(|message| match message {
-        MavMessage::MPP_PLAN_STATUS(plan) => Some(plan.clone()),
-        _ => None,
-    });
+    let plans = heard!(radio, MPP_PLAN_STATUS, |plan| plan.clone());
     assert_eq!(plans.len(), log.plans.len());
     for ((_, told), plan) in plans.iter().zip(&log.plans) {
         assert_eq!(u64::from(told.scan_tick), plan.tick);
@@ -104,10 +98,7 @@ fn scans_and_plans_are_those_of_the_flight() {
         let names = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold"];
         assert_eq!(names[usize::from(told.outcome)], plan.outcome);
     }
-    let trajectories = radio.all(|message| match message {
-        MavMessage::MPP_TRAJECTORY(trajectory) => Some(trajectory.clone()),
-        _ => None,
-    });
+    let trajectories = heard!(radio, MPP_TRAJECTORY, |trajectory| trajectory.clone());
     assert_eq!(trajectories.len(), knots.len());
     for ((_, told), (scan_tick, knots)) in trajectories.iter().zip(&knots) {
         assert_eq!(
@@ -136,10 +127,7 @@ fn scans_and_plans_are_those_of_the_flight() {
 #[test]
 fn motion_is_that_of_the_log() {
     let (RecordingRadio { radio, .. }, log) = recorded(&scenario());
-    let positions = radio.all(|message| match message {
-        MavMessage::LOCAL_POSITION_NED(position) => Some(position.clone()),
-        _ => None,
-    });
+    let positions = heard!(radio, LOCAL_POSITION_NED, |position| position.clone());
     assert_eq!(positions.len(), 120);
     for (tick, told) in positions {
         let row = tick as usize;
@@ -158,10 +146,7 @@ fn motion_is_that_of_the_log() {
         assert!((f64::from(told.vx) - over_ground.0).abs() < 1e-4);
         assert!((f64::from(-told.vz) - over_ground.1).abs() < 1e-4);
     }
-    let attitudes = radio.all(|message| match message {
-        MavMessage::ATTITUDE(attitude) => Some(attitude.pitch),
-        _ => None,
-    });
+    let attitudes = heard!(radio, ATTITUDE, |attitude| attitude.pitch);
     for (tick, pitch) in attitudes {
         assert_eq!(pitch, log.ticks.est_pitch[tick as usize] as f32);
     }
@@ -208,10 +193,7 @@ fn every_cycle_without_a_feasible_plan_is_told() {
 #[test]
 fn the_distance_is_the_nearest_return() {
     let (RecordingRadio { radio, scans, .. }, _) = recorded(&scenario());
-    let told = radio.all(|message| match message {
-        MavMessage::DISTANCE_SENSOR(distance) => Some(distance.current_distance),
-        _ => None,
-    });
+    let told = heard!(radio, DISTANCE_SENSOR, |distance| distance.current_distance);
     assert_eq!(told.len(), scans.len());
     for ((_, told), scan) in told.into_iter().zip(&scans) {
         let nearest = scan

@@ -1,19 +1,12 @@
 //! Tests what comes unasked: place, accuracy, motion and throttle.
 
-use super::radio::{CONFIG, Radio, command, scenario};
+use super::radio::{CONFIG, Radio, command, heard, short};
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Framer, MessageData};
 use mpp_node::parameters::Tuning;
 use mpp_sim::navigation::NavigationConfig;
-use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::scenario::ScenarioFile;
 use sil_harness::ground::vehicle::{Vehicle, VehicleConfig};
-
-fn short() -> Scenario {
-    Scenario {
-        ticks: 300,
-        ..scenario()
-    }
-}
 
 /// What a vehicle sent of one kind.
 fn sent<M: MessageData, T>(vehicle: &mut Vehicle, pick: impl Fn(M) -> T) -> Vec<T> {
@@ -82,10 +75,7 @@ fn what_stations_wait_for_is_sent() {
         (homes[0], homes[1], homes[2], homes.len()),
         (0, 150, 160, 16)
     );
-    let odometry = radio.all(|message| match message {
-        MavMessage::ODOMETRY(odometry) => Some(odometry.clone()),
-        _ => None,
-    });
+    let odometry = heard!(radio, ODOMETRY, |odometry| odometry.clone());
     let (tick, told) = &odometry[1];
     let row = *tick as usize;
     let pitch = log.ticks.est_pitch[row];
@@ -109,10 +99,7 @@ fn full_throttle_is_the_aircrafts_greatest_thrust() {
         let file = ScenarioFile::parse("throttle", &text).unwrap();
         let mut radio = Radio::new(&CONFIG);
         let log = radio.fly(&file.build().unwrap());
-        let told = radio.all(|message| match message {
-            MavMessage::VFR_HUD(hud) => Some(hud.throttle),
-            _ => None,
-        });
+        let told = heard!(radio, VFR_HUD, |hud| hud.throttle);
         for (tick, throttle) in &told[1..] {
             let share = 100.0 * log.ticks.thrust[*tick as usize] / full;
             let off = f64::from(*throttle) - share.clamp(0.0, 100.0);

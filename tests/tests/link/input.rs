@@ -13,7 +13,6 @@ use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::Scenario;
 
-#[expect(clippy::unwrap_used, reason = "spoilt input must not stop a flight")]
 fn fly_spoilt(spoil: impl FnMut(&mut PipeLink, &Message) -> bool) -> FlightLog {
     let mut link = Spoilt {
         pipe: PipeLink::new(),

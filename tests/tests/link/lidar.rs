@@ -10,6 +10,21 @@ use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Preset, Scenario};
 
+/// A link to a core in this process, whose scans are changed on the way.
+fn changed_scans(mut change: impl FnMut(&mut LidarScan)) -> impl Link {
+    Spoilt {
+        pipe: PipeLink::new(),
+        spoil: move |pipe: &mut PipeLink, message: &Message| {
+            let Message::LidarScan(scan) = message else {
+                return false;
+            };
+            let mut scan = scan.clone();
+            change(&mut scan);
+            pipe.send(&Message::LidarScan(scan)).is_ok()
+        },
+    }
+}
+
 /// A lidar that freezes or goes blind is told, is excluded, and comes back.
 #[test]
 fn a_lidar_that_freezes_or_goes_blind_is_told() {
@@ -19,23 +34,10 @@ fn a_lidar_that_freezes_or_goes_blind_is_told() {
     ];
     for (fault, cause) in fault.into_iter().zip(["ScanRepeated", "ScanBlind"]) {
         let mut last: Option<LidarScan> = None;
-        let mut link = Spoilt {
-            pipe: PipeLink::new(),
-            spoil: |pipe: &mut PipeLink, message: &Message| {
-                let Message::LidarScan(scan) = message else {
-                    return false;
-                };
-                let mut scan = scan.clone();
-                if let Some(last) = &last
-                    && (400..600).contains(&scan.tick)
-                {
-                    fault(&mut scan, last);
-                } else {
-                    last = Some(scan.clone());
-                }
-                pipe.send(&Message::LidarScan(scan)).is_ok()
-            },
-        };
+        let mut link = changed_scans(|scan| match &last {
+            Some(last) if (400..600).contains(&scan.tick) => fault(scan, last),
+            _ => last = Some(scan.clone()),
+        });
         let mut scenario = short(2);
         scenario.obstacles = 60;
         scenario.replan_ticks = 25;
@@ -62,7 +64,6 @@ fn a_lidar_that_freezes_or_goes_blind_is_told() {
 }
 
 /// A flight at 4 Hz past 20 obstacles whose lidar sends nothing from 4 to 7 s.
-#[expect(clippy::unwrap_used, reason = "the core is in this process")]
 fn silent(preset: Preset, latency_ticks: u32) -> FlightLog {
     let mut scenario = Scenario {
         obstacles: 20,
@@ -173,23 +174,9 @@ fn without_a_first_scan_there_is_no_plan() {
 
 /// Flies past 40 obstacles at 4 Hz with scans that a driver has changed. Gives how many of the flights with these seeds
 /// survived, and the last log.
-#[expect(
-    clippy::unwrap_used,
-    reason = "a flight in this process has no lost link"
-)]
 fn survived(change: impl Fn(&mut LidarScan) + Copy) -> (usize, FlightLog) {
     let logs = (900..906).map(|seed| {
-        let mut link = Spoilt {
-            pipe: PipeLink::new(),
-            spoil: |pipe: &mut PipeLink, message: &Message| {
-                let Message::LidarScan(scan) = message else {
-                    return false;
-                };
-                let mut scan = scan.clone();
-                change(&mut scan);
-                pipe.send(&Message::LidarScan(scan)).is_ok()
-            },
-        };
+        let mut link = changed_scans(change);
         let mut scenario = short(20);
         scenario.seed = seed;
         scenario.obstacles = 40;

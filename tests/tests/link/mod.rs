@@ -6,6 +6,7 @@ mod lidar;
 mod restarts;
 mod time;
 
+use crc::Crc;
 use hil_protocol::{ConfigureVerdict, DecodeError, Hello, MAX_FRAME, Message, Role, encode};
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::link::{Link, LinkError};
@@ -57,7 +58,6 @@ fn causes(log: &FlightLog) -> Vec<&str> {
         .collect()
 }
 
-#[expect(clippy::unwrap_used, reason = "loopback")]
 fn local_listener() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap().to_string();
@@ -210,11 +210,15 @@ fn a_core_of_another_version_is_refused_by_name() {
     let (listener, address) = local_listener();
     let core = thread::spawn(move || {
         let (mut stream, _) = listener.accept().unwrap();
-        // This is a frame of protocol version 9: header, CRC-32 and COBS made by hand.
+        // This is a frame of protocol version 9: header, CRC-32 and COBS.
         let plain = [0x4D, 0x50, 9, 1];
         let mut frame = vec![0x09];
         frame.extend(plain);
-        frame.extend(crc32(&plain).to_le_bytes());
+        frame.extend(
+            Crc::<u32>::new(&crc::CRC_32_ISO_HDLC)
+                .checksum(&plain)
+                .to_le_bytes(),
+        );
         frame.push(0);
         assert!(!frame[1..9].contains(&0));
         stream.write_all(&frame).unwrap();
@@ -228,51 +232,20 @@ fn a_core_of_another_version_is_refused_by_name() {
     assert!(error.to_string().contains("protocol 9"), "{error}");
 }
 
-/// CRC-32 bit by bit, as its definition reads.
-fn crc32(bytes: &[u8]) -> u32 {
-    let mut crc = !0_u32;
-    for byte in bytes {
-        crc ^= u32::from(*byte);
-        for _ in 0..8 {
-            crc = if crc & 1 == 1 {
-                crc >> 1 ^ 0xEDB8_8320
-            } else {
-                crc >> 1
-            };
-        }
-    }
-    !crc
-}
-
 #[test]
 fn a_configuration_that_makes_no_sense_is_refused() {
+    let with = |change: fn(&mut Scenario)| {
+        let mut scenario = short(1);
+        change(&mut scenario);
+        scenario
+    };
+    let too_many = ConfigureVerdict::TooManyPaths { max: 50 };
     let wrong = [
+        (with(|it| it.paths = 51), too_many),
+        (with(|it| it.latency_ticks = 0), ConfigureVerdict::Latency),
+        (with(|it| it.latency_ticks = 101), ConfigureVerdict::Latency),
         (
-            Scenario {
-                paths: 51,
-                ..short(1)
-            },
-            ConfigureVerdict::TooManyPaths { max: 50 },
-        ),
-        (
-            Scenario {
-                latency_ticks: 0,
-                ..short(1)
-            },
-            ConfigureVerdict::Latency,
-        ),
-        (
-            Scenario {
-                latency_ticks: 101,
-                ..short(1)
-            },
-            ConfigureVerdict::Latency,
-        ),
-        (
-            Scenario {
-                slices_per_tick: 0,
-                ..short(1)
-            },
+            with(|it| it.slices_per_tick = 0),
             ConfigureVerdict::SlicesPerTick,
         ),
     ];

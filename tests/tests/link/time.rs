@@ -76,10 +76,6 @@ fn a_flight_is_the_same_wherever_its_ticks_start() {
 }
 
 /// The answers to one message.
-#[expect(
-    clippy::unwrap_used,
-    reason = "a pipe in this process takes every message"
-)]
 fn answers(pipe: &mut PipeLink, message: &Message) -> Vec<Message> {
     pipe.send(message).unwrap();
     std::iter::from_fn(|| pipe.receive("anything").ok()).collect()

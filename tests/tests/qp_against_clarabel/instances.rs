@@ -3,11 +3,10 @@
 
 use chacha20::ChaCha8Rng;
 use mpp_core::corridor::Corridor;
-use mpp_core::paper::PaperSettings;
-use mpp_core::paper::StageModel;
 use mpp_core::paper::config::{GRID_ROWS, TREE_SAMPLES};
-use mpp_core::paper::{Extension, Path, Search, resample};
-use mpp_core::paper::{GridPoint, OccupancyGrid};
+use mpp_core::paper::{
+    Extension, GridPoint, OccupancyGrid, PaperSettings, Path, Search, StageModel, resample,
+};
 use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageState, Weights};
 use mpp_core::settings::{AttitudeLimits, Settings};
 use mpp_core::vehicle::{AirState, Trim, linearize};

@@ -2,13 +2,12 @@
 
 mod traps;
 
-use crate::contents;
 use crate::firmware::{self, Image};
 use crate::flight::{Harness, Outcome, PATIENCE};
 use crate::folders::work;
-use crate::limits;
 use crate::qemu::{Emulator, Report, Run};
 use crate::talk::{CONFIGURE, HELLO, await_message, send};
+use crate::{contents, limits};
 use anyhow::{Result, ensure};
 use hil_protocol::{Message, RejectionCause, Role};
 use std::io::Write;
