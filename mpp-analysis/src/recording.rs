@@ -3,8 +3,7 @@
 use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::VehicleState;
+use mpp_core::vehicle::{Conditions, VehicleState};
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::inspector::core_scan;

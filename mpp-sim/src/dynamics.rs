@@ -107,7 +107,7 @@ impl Dynamics {
         let (airframe, more) = (self.airframe, self.more);
         let rate = |at: &VehicleState| vehicle_rate(&more.at(&airframe, &at.air), at, control);
         self.advance(control, |state| {
-            (0..SUBSTEPS).fold(*state, |state, _| runge_kutta(rate, &state, substep))
+            (0..SUBSTEPS).fold(*state, |state, _| runge_kutta(rate, moved, &state, substep))
         })
     }
 
@@ -142,11 +142,12 @@ impl Dynamics {
 }
 
 /// One step of the classic fourth-order Runge-Kutta method over `h` \[s\].
-fn runge_kutta(
-    rate: impl Fn(&VehicleState) -> VehicleState,
-    state: &VehicleState,
+pub(crate) fn runge_kutta<S>(
+    rate: impl Fn(&S) -> S,
+    moved: impl Fn(&S, &S, f64) -> S,
+    state: &S,
     h: f64,
-) -> VehicleState {
+) -> S {
     let k1 = rate(state);
     let k2 = rate(&moved(state, &k1, 0.5 * h));
     let k3 = rate(&moved(state, &k2, 0.5 * h));

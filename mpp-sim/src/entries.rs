@@ -4,8 +4,7 @@
 //! holds `null`.
 
 use crate::sensors::Measurement;
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{Control, VehicleState};
+use mpp_core::vehicle::{Conditions, Control, VehicleState};
 use serde::{Deserialize, Serialize};
 
 /// The logged values of one tick. Every value except the reference must be finite.

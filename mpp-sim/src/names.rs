@@ -26,3 +26,23 @@ pub(crate) fn find<T: Copy>(
         known: all.iter().copied().map(name).collect(),
     })
 }
+
+/// Writes and reads a type by the names of its elements, `ALL` and `name`.
+macro_rules! by_name {
+    ($type:ident, $kind:literal) => {
+        impl core::fmt::Display for $type {
+            fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl core::str::FromStr for $type {
+            type Err = $crate::names::UnknownName;
+
+            fn from_str(text: &str) -> Result<Self, Self::Err> {
+                $crate::names::find($kind, &Self::ALL, Self::name, text)
+            }
+        }
+    };
+}
+pub(crate) use by_name;

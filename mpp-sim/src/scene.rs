@@ -7,10 +7,8 @@
 //! more than 30 m before the aircraft reaches it. Heights are relative to the flight's altitude.
 
 use crate::field::Obstacle;
-use crate::names::{self, UnknownName};
+use crate::names::by_name;
 use crate::random::{self, Stream};
-use core::fmt;
-use core::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 /// Radius of the circles that walls are made of \[m\].
@@ -77,19 +75,7 @@ impl Scene {
     }
 }
 
-impl fmt::Display for Scene {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Scene {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        names::find("scene", &Self::ALL, Self::name, text)
-    }
-}
+by_name!(Scene, "scene");
 
 /// Half a circle about the origin that opens towards the aircraft.
 fn bowl(radius: f64) -> Vec<(f64, f64)> {

@@ -4,6 +4,7 @@
 
 mod again;
 mod bank;
+mod common;
 mod faults;
 mod orders;
 mod own_world;

@@ -1,21 +1,17 @@
 //! The lateral regulator of the core on the plant in six degrees of freedom.
 
+use crate::common::models;
 use mpp_core::control::{LateralMotion, LateralRegulator};
 use mpp_core::vehicle::LateralControl;
-use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::plant::Plant;
 use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::{CourseHold, SpaceAircraft, SpaceState, WindConfig, regulator};
 
 fn scenarios(seed: u64) -> impl Iterator<Item = Scenario> {
-    let known = AircraftFile::KNOWN.into_iter();
-    let files = known.map(|(name, _)| AircraftFile::known(name).unwrap());
-    files
-        .filter(|file| file.lateral.is_some())
-        .map(move |file| Scenario {
-            aircraft: AircraftModel::new(file).unwrap(),
-            ..Scenario::new(Preset::Flight, seed)
-        })
+    models().map(move |aircraft| Scenario {
+        aircraft,
+        ..Scenario::new(Preset::Flight, seed)
+    })
 }
 
 /// An aileron of zagi turns the nose away more than the wing turns it back: level flight holds, turns slip by 20 deg.

@@ -1,54 +1,24 @@
 //! Flights of the plant in six degrees of freedom: turns, wind, and whole flights in the vertical plane.
 
+use crate::common::models;
 use mpp_core::vehicle::{Control, GRAVITY, LateralControl, VehicleState};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
-use mpp_sim::dynamics::Aerodynamics;
 use mpp_sim::flight::{fly, fly_in};
 use mpp_sim::orders::Ground;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::plant::{Plant, PlantError};
 use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::{
-    LateralState, Quaternion, SpaceAircraft, SpaceDynamics, SpaceState, WindConfig,
-};
+use mpp_sim::space::{Quaternion, SpaceAircraft, SpaceDynamics, SpaceState, WindConfig};
 use mpp_sim::world::World;
 use nalgebra::{SMatrix, SVector};
 
 type Guess = SVector<f64, 7>;
 
-/// The aircraft with a lateral table.
-fn models() -> impl Iterator<Item = AircraftModel> {
-    let known = AircraftFile::KNOWN.into_iter();
-    let files = known.map(|(name, _)| AircraftFile::known(name).unwrap());
-    files
-        .filter(|file| file.lateral.is_some())
-        .map(|file| AircraftModel::new(file).unwrap())
-}
-
-/// The rigid aircraft in level flight.
-fn body(model: &AircraftModel) -> SpaceDynamics {
-    let plane = VehicleState {
-        x: 0.0,
-        z: 50.0,
-        air: model.trim.state,
-    };
-    SpaceDynamics {
-        airframe: model.known.airframe,
-        lateral: model.file.lateral.as_ref().unwrap().airframe(),
-        more: Aerodynamics::of(&model.file),
-        gust_roll: 0.0,
-        state: SpaceState {
-            plane,
-            lateral: LateralState::NONE,
-        },
-    }
-}
-
 #[test]
 fn a_positive_command_turns_to_the_right() {
     for model in models() {
         let name = &model.file.name;
-        let mut body = body(&model);
+        let mut body = SpaceDynamics::level(&model).unwrap();
         let level = body.state;
         for _ in 0..50 {
             let surfaces = LateralControl {
@@ -211,7 +181,7 @@ fn steady_turns_have_their_radius() {
                 continue;
             }
             let turn = Turn {
-                body: body(&model),
+                body: SpaceDynamics::level(&model).unwrap(),
                 model: &model,
                 bank,
             };

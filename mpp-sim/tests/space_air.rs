@@ -2,7 +2,6 @@
 
 use mpp_core::vehicle::LateralControl;
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
-use mpp_sim::dynamics::Aerodynamics;
 use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::{Servo, SpaceAircraft, SpaceDynamics, SpaceWind, WindConfig};
 
@@ -20,11 +19,8 @@ fn servos_stand_between_command_and_motion() {
     let table = scenario.aircraft.file.lateral.as_ref().unwrap();
     let mut aircraft = SpaceAircraft::new(&scenario, WindConfig::default()).unwrap();
     let mut alone = SpaceDynamics {
-        airframe: scenario.aircraft.known.airframe,
-        lateral: table.airframe(),
-        more: Aerodynamics::of(&scenario.aircraft.file),
-        gust_roll: 0.0,
         state: *aircraft.state(),
+        ..SpaceDynamics::level(&scenario.aircraft).unwrap()
     };
     let mut aileron = Servo::new(&table.aileron);
     let mut rudder = Servo::new(&table.rudder.unwrap());

@@ -2,10 +2,8 @@
 
 use super::report::{Comparison, worst_difference};
 use mpp_core::corridor::DIRECTION_VECTORS;
-use mpp_core::paper::Rules;
-use mpp_core::paper::authors_ray;
 use mpp_core::paper::config::{GRID_COLS, GRID_ROWS, SEARCH_ROW};
-use mpp_core::paper::{GridPoint, OccupancyGrid};
+use mpp_core::paper::{GridPoint, OccupancyGrid, Rules, authors_ray};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::{AirState, VehicleState};
 use mpp_sim::field::{Obstacle, ObstacleField};

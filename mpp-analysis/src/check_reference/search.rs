@@ -2,9 +2,8 @@
 
 use super::perception::grid_with;
 use super::report::{Comparison, worst_difference};
-use mpp_core::paper::Rules;
 use mpp_core::paper::config::SEARCH_ROW;
-use mpp_core::paper::{Extension, Path, Search};
+use mpp_core::paper::{Extension, Path, Rules, Search};
 use serde::Deserialize;
 
 #[derive(Deserialize)]

@@ -1,12 +1,11 @@
 //! Pictures of flights through the challenge scenes (paper, Figure 1).
 
 use super::error::FigureError;
-use super::field;
 use super::mark::Outline;
-use super::marks;
 use super::page::{COLUMN, Sample, document, legend, legend_height, to_scale};
 use super::palette::{BAD, FLOWN, OBSTACLE};
 use super::panel::{Axis, BELOW_SAVED, Curve, Panel};
+use super::{field, marks};
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::ALTITUDE_BAND;
 use mpp_sim::scenario::ALTITUDE;

@@ -3,9 +3,8 @@
 use super::error::FigureError;
 use crate::recording::{Inputs, planner, record, settings};
 use mpp_core::config::STAGE_PERIOD;
-use mpp_core::paper::CollocationPoints;
 use mpp_core::paper::config::{ORIGIN_COL, ORIGIN_ROW};
-use mpp_core::paper::{GridPoint, OccupancyGrid};
+use mpp_core::paper::{CollocationPoints, GridPoint, OccupancyGrid};
 use mpp_core::qp::{Condensed, Problem, Solution, Solver, Status};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::VehicleState;

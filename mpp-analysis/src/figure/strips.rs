@@ -1,11 +1,10 @@
 //! A flight among the obstacles, true to scale: in one panel, or in strips one below the other.
 
-use super::field;
-use super::marks;
 use super::page::to_scale;
 use super::palette::{FLOWN, REFERENCE};
 use super::panel::{self, Axis, Curve, Panel};
 use super::range::{bounds, widened};
+use super::{field, marks};
 use crate::closest::Closest;
 use mpp_sim::field::Shape;
 use mpp_sim::log::FlightLog;

@@ -38,80 +38,81 @@ fn derivatives_are_converted() {
     assert!((airframe.lift_elevator + 0.36 / 57.295_779_513).abs() < 1e-9);
 }
 
+/// The rows of a table: what stands in the example, what stands there instead, and what follows.
+fn rows(table: &str) -> impl Iterator<Item = [&str; 3]> {
+    let rows = table.lines().filter(|row| row.contains('|'));
+    rows.map(|row| {
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        cells.try_into().unwrap()
+    })
+}
+
+/// Changes of the example, and the key that is refused.
+const NONSENSE: &str = r"
+mass = 2.0 | mass = -2.0 | aircraft.mass
+mass = 2.0 | mass = nan | aircraft.mass
+cruise = 15.0 | cruise = 0.0 | aircraft.cruise
+alpha = -0.9 | alpha = 0.1 | aircraft.moment.alpha
+moment = -1.0 | moment = 0.0 | aircraft.elevator.moment
+max = 20.0 | max = -5.0 | aircraft.elevator.max
+max = 10.0 | max = 0.5 | aircraft.thrust.max
+stall = 0.24 | stall = 0.01 | aircraft.lift.stall
+pitch_rate = -10.0 | pitch_rate = 10.0 | aircraft.moment.pitch_rate
+body_radius = 0.15 | body_radius = -1.0 | aircraft.body_radius
+lag = 0.1 | lag = inf | aircraft.thrust.lag
+# Wider than the planner's clearance field.
+body_radius = 0.15 | body_radius = 30.0 | aircraft.body_radius
+span = 1.5 | span = 0.0 | aircraft.lateral.span
+product_inertia = 0.01 | product_inertia = 0.2 | aircraft.lateral.product_inertia
+aileron = 0.17 | aileron = -0.17 | aircraft.lateral.roll.aileron
+rudder = 0.08 | rudder = -0.08 | aircraft.lateral.yaw.rudder
+roll_rate = -0.45 | roll_rate = 0.1 | aircraft.lateral.roll.roll_rate
+yaw_rate = -0.12 | yaw_rate = inf | aircraft.lateral.yaw.yaw_rate
+damping = 1.0 | damping = 0.0 | aircraft.lateral.aileron.damping
+# So fast that a regulator of 100 Hz does not hold it.
+pitch_inertia = 0.08 | pitch_inertia = 0.00002 | aircraft";
+
+/// The same with more than a line.
+const WITHOUT: [[&str; 3]; 3] = [
+    [
+        "[lateral.rudder]\nrange = 25.0\nrate = 300.0\nbandwidth = 30.0",
+        "",
+        "aircraft.lateral.side.rudder",
+    ],
+    ["\nrudder = -0.2", "", "aircraft.lateral.side.rudder"],
+    ["\nrudder = 0.08", "", "aircraft.lateral.yaw.rudder"],
+];
+
+/// Changes that make the example no aircraft file, and what is told.
+const UNREADABLE: &str = r#"
+mass = 2.0 | | my.toml: missing field `mass`
+yaw_rate = -0.12 | | my.toml: table [lateral.yaw]: missing field `yaw_rate`
+yaw_inertia = 0.17 | | my.toml: table [lateral]: missing field `yaw_inertia`
+mass = 2.0 | mas = 2.0 | unknown field `mas`
+unit = "deg" | unit = "degrees" | unknown variant `degrees`"#;
+
+/// Changes of the example, and key and range that are told.
+const OUT_OF_RANGE: &str = r"
+mass = 2.0 | mass = 2e6 | mass: give 0.01 to 1000000 kg
+wing_area = 0.3 | wing_area = 3e4 | wing_area: give 0.001 to 1000 m^2
+chord = 0.2 | chord = 200.0 | chord: give 0.001 to 100 m
+zero = 0.2 | zero = 9.0 | lift.zero: give -5 to 5
+alpha_rate = 1.5 | alpha_rate = 1e3 | lift.alpha_rate: give -0.4 to 0.4 1/rad, times 4 mass
+alpha_rate = -3.0 | alpha_rate = 3.0 | moment.alpha_rate: give -100 to 0
+alpha_rate = -3.0 | alpha_rate_time = 3.0 | moment.alpha_rate_time: give -100 to 0 s/rad
+lift = 0.35 | lift = 1e4 | elevator.lift: give -100 to 100 per unit
+min = -25.0 | min = nan | elevator.min: give 0.001 to 10000 units below
+max = 20.0 | max = inf | elevator.max: give 0.001 to 10000 units above
+rate = 300.0 | rate = 0.0 | elevator.rate: give 0.001 to 1000000 units/s
+stall = 0.24 | stall = 2.0 | lift.stall: give 0.001 to 1.5 rad above
+lag = 0.1 | lag = 0.0001 | thrust.lag: give 0.001 to 60 s
+# Plans may not turn the wing by so much.
+alpha = 4.8 | alpha = 0.1 | lift.alpha: it gives the planner";
+
 #[test]
 fn nonsense_is_refused_by_the_name_of_its_key() {
     let usual = include_str!("../../../aircraft/example.toml");
-    for (from, to, key) in [
-        ("mass = 2.0 ", "mass = -2.0 ", "aircraft.mass"),
-        ("mass = 2.0 ", "mass = nan ", "aircraft.mass"),
-        ("cruise = 15.0", "cruise = 0.0", "aircraft.cruise"),
-        ("alpha = -0.9", "alpha = 0.1", "aircraft.moment.alpha"),
-        ("moment = -1.0", "moment = 0.0", "aircraft.elevator.moment"),
-        ("max = 20.0", "max = -5.0", "aircraft.elevator.max"),
-        ("max = 10.0", "max = 0.5", "aircraft.thrust.max"),
-        ("stall = 0.24", "stall = 0.01", "aircraft.lift.stall"),
-        (
-            "pitch_rate = -10.0",
-            "pitch_rate = 10.0",
-            "aircraft.moment.pitch_rate",
-        ),
-        (
-            "body_radius = 0.15",
-            "body_radius = -1.0",
-            "aircraft.body_radius",
-        ),
-        ("lag = 0.1", "lag = inf", "aircraft.thrust.lag"),
-        // Wider than the planner's clearance field.
-        (
-            "body_radius = 0.15",
-            "body_radius = 30.0",
-            "aircraft.body_radius",
-        ),
-        ("span = 1.5 ", "span = 0.0 ", "aircraft.lateral.span"),
-        (
-            "product_inertia = 0.01",
-            "product_inertia = 0.2",
-            "aircraft.lateral.product_inertia",
-        ),
-        (
-            "aileron = 0.17",
-            "aileron = -0.17",
-            "aircraft.lateral.roll.aileron",
-        ),
-        (
-            "rudder = 0.08",
-            "rudder = -0.08",
-            "aircraft.lateral.yaw.rudder",
-        ),
-        (
-            "roll_rate = -0.45",
-            "roll_rate = 0.1",
-            "aircraft.lateral.roll.roll_rate",
-        ),
-        (
-            "[lateral.rudder]\nrange = 25.0\nrate = 300.0\nbandwidth = 30.0",
-            "",
-            "aircraft.lateral.side.rudder",
-        ),
-        (
-            "yaw_rate = -0.12",
-            "yaw_rate = inf",
-            "aircraft.lateral.yaw.yaw_rate",
-        ),
-        (
-            "damping = 1.0",
-            "damping = 0.0",
-            "aircraft.lateral.aileron.damping",
-        ),
-        ("\nrudder = -0.2", "", "aircraft.lateral.side.rudder"),
-        ("\nrudder = 0.08", "", "aircraft.lateral.yaw.rudder"),
-        // So fast that a regulator of 100 Hz does not hold it.
-        (
-            "pitch_inertia = 0.08",
-            "pitch_inertia = 0.00002",
-            "aircraft",
-        ),
-    ] {
+    for [from, to, key] in rows(NONSENSE).chain(WITHOUT) {
         let text = usual.replacen(from, to, 1);
         assert_ne!(text, usual, "{from}");
         let error = AircraftModel::new(AircraftFile::parse("a", &text).unwrap()).unwrap_err();
@@ -120,25 +121,7 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
             "{error}"
         );
     }
-    for (from, to, named) in [
-        ("mass = 2.0 ", "", "my.toml: missing field `mass`"),
-        (
-            "yaw_rate = -0.12",
-            "",
-            "my.toml: table [lateral.yaw]: missing field `yaw_rate`",
-        ),
-        (
-            "yaw_inertia = 0.17",
-            "",
-            "my.toml: table [lateral]: missing field `yaw_inertia`",
-        ),
-        ("mass = 2.0 ", "mas = 2.0 ", "unknown field `mas`"),
-        (
-            "unit = \"deg\"",
-            "unit = \"degrees\"",
-            "unknown variant `degrees`",
-        ),
-    ] {
+    for [from, to, named] in rows(UNREADABLE) {
         let error = AircraftFile::parse("my.toml", &usual.replacen(from, to, 1)).unwrap_err();
         let text = error.to_string();
         assert!(text.contains("my.toml") && text.contains(named), "{text}");
@@ -151,75 +134,7 @@ fn nonsense_is_refused_by_the_name_of_its_key() {
 #[test]
 fn a_number_out_of_range_is_refused_with_the_range() {
     let usual = include_str!("../../../aircraft/example.toml");
-    for (from, to, told) in [
-        (
-            "mass = 2.0 ",
-            "mass = 2e6 ",
-            "mass: give 0.01 to 1000000 kg",
-        ),
-        (
-            "wing_area = 0.3 ",
-            "wing_area = 3e4 ",
-            "wing_area: give 0.001 to 1000 m^2",
-        ),
-        (
-            "chord = 0.2 ",
-            "chord = 200.0 ",
-            "chord: give 0.001 to 100 m",
-        ),
-        ("zero = 0.2 ", "zero = 9.0 ", "lift.zero: give -5 to 5"),
-        (
-            "alpha_rate = 1.5",
-            "alpha_rate = 1e3",
-            "lift.alpha_rate: give -0.4 to 0.4 1/rad, times 4 mass",
-        ),
-        (
-            "alpha_rate = -3.0",
-            "alpha_rate = 3.0",
-            "moment.alpha_rate: give -100 to 0 ",
-        ),
-        (
-            "alpha_rate = -3.0",
-            "alpha_rate_time = 3.0",
-            "moment.alpha_rate_time: give -100 to 0 s/rad",
-        ),
-        (
-            "lift = 0.35",
-            "lift = 1e4",
-            "elevator.lift: give -100 to 100 per unit",
-        ),
-        (
-            "min = -25.0",
-            "min = nan",
-            "elevator.min: give 0.001 to 10000 units below",
-        ),
-        (
-            "max = 20.0",
-            "max = inf",
-            "elevator.max: give 0.001 to 10000 units above",
-        ),
-        (
-            "rate = 300.0",
-            "rate = 0.0",
-            "elevator.rate: give 0.001 to 1000000 units/s",
-        ),
-        (
-            "stall = 0.24",
-            "stall = 2.0",
-            "lift.stall: give 0.001 to 1.5 rad above",
-        ),
-        (
-            "lag = 0.1",
-            "lag = 0.0001",
-            "thrust.lag: give 0.001 to 60 s",
-        ),
-        // Plans may not turn the wing by so much.
-        (
-            "alpha = 4.8",
-            "alpha = 0.1",
-            "lift.alpha: it gives the planner",
-        ),
-    ] {
+    for [from, to, told] in rows(OUT_OF_RANGE) {
         let text = usual.replacen(from, to, 1);
         assert_ne!(text, usual, "{from}");
         let error = AircraftModel::new(AircraftFile::parse("a", &text).unwrap()).unwrap_err();

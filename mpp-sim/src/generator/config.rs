@@ -1,9 +1,7 @@
 //! Names and parameters of generators.
 
 use crate::field::Point;
-use crate::names::{self, UnknownName};
-use core::fmt;
-use core::str::FromStr;
+use crate::names::by_name;
 use serde::{Deserialize, Serialize};
 
 /// The named generators.
@@ -78,19 +76,7 @@ impl GeneratorName {
     }
 }
 
-impl fmt::Display for GeneratorName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for GeneratorName {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        names::find("generator", &Self::ALL, Self::name, text)
-    }
-}
+by_name!(GeneratorName, "generator");
 
 /// A generator and its parameters. Those that it does not take have no effect.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

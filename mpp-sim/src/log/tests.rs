@@ -7,8 +7,7 @@ use crate::field::Obstacle;
 use crate::lidar::LidarConfig;
 use crate::outcome::{Class, Outcome};
 use crate::sensors::{AirDataNoise, Measurement};
-use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::{AirState, Control, VehicleState, Wind};
+use mpp_core::vehicle::{AirState, Conditions, Control, VehicleState, Wind};
 
 fn tick(t: f64, reference: Option<VehicleState>) -> Tick {
     let air = AirState {

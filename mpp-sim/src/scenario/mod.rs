@@ -9,13 +9,11 @@ use crate::faults::Faults;
 use crate::field::{Obstacle, ObstacleField};
 use crate::generator::Generator;
 use crate::lidar::LidarConfig;
-use crate::names::{self, UnknownName};
+use crate::names::by_name;
 use crate::navigation::NavigationConfig;
 use crate::outcome::ALTITUDE_BAND;
 use crate::scene::Scene;
 use crate::sensors::AirDataNoise;
-use core::fmt;
-use core::str::FromStr;
 use hil_protocol::Configure;
 use mpp_core::config::{MAX_PATHS, TICK_PERIOD};
 use mpp_core::planner::plane::MAX_CANDIDATES;
@@ -106,19 +104,7 @@ impl Preset {
     }
 }
 
-impl fmt::Display for Preset {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Preset {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        names::find("preset", &Self::ALL, Self::name, text)
-    }
-}
+by_name!(Preset, "preset");
 
 /// One flight, in full.
 #[derive(Clone, Debug, PartialEq)]

@@ -19,7 +19,8 @@
 //! Aircraft", 2012, section 4.2). Axes: x ahead, y to the right, z down.
 
 use super::quaternion::Quaternion;
-use crate::dynamics::{Aerodynamics, SUBSTEPS, moved as moved_plane};
+use crate::aircraft_file::AircraftModel;
+use crate::dynamics::{Aerodynamics, SUBSTEPS, moved as moved_plane, runge_kutta};
 use crate::plant::PlantError;
 use core::f64::consts::PI;
 use mpp_core::control::LateralMotion;
@@ -156,6 +157,24 @@ pub struct SpaceDynamics {
 }
 
 impl SpaceDynamics {
+    /// An aircraft in level flight at a height of 50 m; none without a lateral table.
+    #[must_use]
+    pub fn level(model: &AircraftModel) -> Option<Self> {
+        let plane = VehicleState {
+            x: 0.0,
+            z: 50.0,
+            air: model.trim.state,
+        };
+        let lateral = LateralState::NONE;
+        Some(Self {
+            airframe: model.known.airframe,
+            lateral: model.file.lateral.as_ref()?.airframe(),
+            more: Aerodynamics::of(&model.file),
+            gust_roll: 0.0,
+            state: SpaceState { plane, lateral },
+        })
+    }
+
     /// Flies `dt` \[s\] with constant controls, as [`Dynamics::step`](crate::dynamics::Dynamics::step) does.
     ///
     /// # Errors
@@ -180,7 +199,7 @@ impl SpaceDynamics {
         let mut state = self.state;
         state.check_departure()?;
         for _ in 0..SUBSTEPS {
-            state = runge_kutta(rate, &state, substep);
+            state = runge_kutta(rate, moved, &state, substep);
             state.lateral.attitude = state.lateral.attitude.normalised();
             if !state.is_finite() {
                 return Err(PlantError::NonFiniteState);
@@ -294,16 +313,6 @@ impl SpaceDynamics {
             q * spin[0] - p * spin[1],
         ]
     }
-}
-
-/// One step of the classic fourth-order Runge-Kutta method over `h` \[s\].
-fn runge_kutta(rate: impl Fn(&SpaceState) -> SpaceState, state: &SpaceState, h: f64) -> SpaceState {
-    let k1 = rate(state);
-    let k2 = rate(&moved(state, &k1, 0.5 * h));
-    let k3 = rate(&moved(state, &k2, 0.5 * h));
-    let k4 = rate(&moved(state, &k3, h));
-    let ends = moved(&moved(state, &k1, h / 6.0), &k4, h / 6.0);
-    moved(&moved(&ends, &k2, h / 3.0), &k3, h / 3.0)
 }
 
 /// `state + h rate`.

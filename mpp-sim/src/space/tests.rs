@@ -13,25 +13,6 @@ fn models() -> impl Iterator<Item = AircraftModel> {
         .map(|file| AircraftModel::new(file).unwrap())
 }
 
-/// The rigid aircraft in level flight.
-fn body(model: &AircraftModel) -> SpaceDynamics {
-    let plane = VehicleState {
-        x: 0.0,
-        z: 50.0,
-        air: model.trim.state,
-    };
-    SpaceDynamics {
-        airframe: model.known.airframe,
-        lateral: model.file.lateral.as_ref().unwrap().airframe(),
-        more: Aerodynamics::of(&model.file),
-        gust_roll: 0.0,
-        state: SpaceState {
-            plane,
-            lateral: LateralState::NONE,
-        },
-    }
-}
-
 fn within(draws: &mut Draws, most: f64) -> f64 {
     most * (2.0 * uniform(draws) - 1.0)
 }
@@ -100,7 +81,7 @@ fn bits(state: &VehicleState) -> [u64; 6] {
 fn without_lateral_state_and_command_it_is_the_vertical_plane_to_the_last_bit() {
     let mut draws = generator(1, Stream::Field);
     for model in models() {
-        let mut space = body(&model);
+        let mut space = SpaceDynamics::level(&model).unwrap();
         for _ in 0..5000 {
             space.state.plane = random_plane(&mut draws, model.known.cruise);
             let control = random_control(&mut draws, &model);
@@ -142,7 +123,7 @@ fn mirrored(state: &SpaceState) -> SpaceState {
 fn a_left_turn_is_the_mirror_of_a_right_turn_to_the_last_bit() {
     let mut draws = generator(2, Stream::Field);
     for model in models() {
-        let mut right = body(&model);
+        let mut right = SpaceDynamics::level(&model).unwrap();
         let mut left = right;
         for tick in 0..2000 {
             if tick % 50 == 0 {
@@ -183,7 +164,7 @@ fn energy(state: &SpaceState) -> f64 {
 fn without_air_energy_and_momentum_stay() {
     let mut draws = generator(3, Stream::Field);
     for model in models() {
-        let mut body = body(&model);
+        let mut body = SpaceDynamics::level(&model).unwrap();
         body.airframe.air_density = 0.0;
         body.state.plane = random_plane(&mut draws, model.known.cruise);
         body.state.lateral = random_lateral(&mut draws);
@@ -235,7 +216,7 @@ fn without_air_energy_and_momentum_stay() {
 #[test]
 fn a_rolling_glide_pays_for_its_drag() {
     for model in models() {
-        let mut body = body(&model);
+        let mut body = SpaceDynamics::level(&model).unwrap();
         let glide = Control {
             thrust: 0.0,
             ..model.trim.control
@@ -294,7 +275,7 @@ fn random_flights_stay_finite_or_depart() {
     let mut draws = generator(4, Stream::Field);
     for model in models() {
         let name = &model.file.name;
-        let level = body(&model);
+        let level = SpaceDynamics::level(&model).unwrap();
         let mut whole = [0; 2];
         for _ in 0..20 {
             whole[0] += u32::from(random_flight(&mut draws, &model, level, 0.3));
@@ -319,7 +300,7 @@ fn random_flights_stay_finite_or_depart() {
 #[test]
 fn sideways_and_without_airspeed_no_step_is_flown() {
     for model in models() {
-        let level = body(&model);
+        let level = SpaceDynamics::level(&model).unwrap();
         for (sideslip, airspeed) in [(1.4, 12.0), (-3.0, 12.0), (0.0, -1.0)] {
             let mut body = level;
             body.state.lateral.sideslip = sideslip;
@@ -337,7 +318,7 @@ fn sideways_and_without_airspeed_no_step_is_flown() {
 fn a_rolling_gust_rolls_the_aircraft_with_it() {
     for model in models() {
         let rolled = |gust_roll: f64, roll_rate: f64| {
-            let mut body = body(&model);
+            let mut body = SpaceDynamics::level(&model).unwrap();
             body.gust_roll = gust_roll;
             body.state.lateral.roll_rate = roll_rate;
             let surfaces = LateralControl::default();
@@ -357,7 +338,7 @@ fn a_rolling_gust_rolls_the_aircraft_with_it() {
 fn the_cores_linear_model_is_that_of_the_plant() {
     const H: f64 = 1e-6;
     for model in models() {
-        let body = body(&model);
+        let body = SpaceDynamics::level(&model).unwrap();
         let linear = linearize_lateral(&body.airframe, &body.lateral, &model.trim);
         let pitch = model.trim.state.pitch;
         let rate = |column: usize, h: f64| {

@@ -17,89 +17,39 @@ fn a_file_without_an_obstacle_is_refused() {
     }
 }
 
+/// Files in one line each, the key that is refused, and what is told.
+const REFUSED: &str = "
+[[circle]]; x = 1.0; z = 2.0 | `radius` | missing field
+[[circle]]; x = nan; z = 2.0; radius = 1.0 | circle 1, x and z | give
+[[circle]]; x = 1.0; z = 2.0; radius = -1.0 | circle 1, radius | give more than 0
+[[circle]]; x = 1.0; z = 2.0; radius = inf | circle 1, radius | give more than 0
+[[circle]]; x = 1.0; z = 2.0; radius = 1.0; velocity = [nan, 0.0] | circle 1, velocity | give at most
+[[circle]]; x = 1.0; z = 2.0; radius = 1.0; colour = 1 | `colour` | unknown field
+[[sphere]]; x = 1.0 | `sphere` | unknown field
+[[capsule]]; from = [0.0, inf]; to = [1.0, 1.0]; radius = 1.0 | capsule 1, from and to | give numbers
+[[capsule]]; from = [0.0, 1.0]; to = [1.0, 1.0]; radius = 0.0 | capsule 1, radius | give more than 0
+[[polygon]]; points = [[0.0, 0.0], [1.0, 0.0]] | polygon 1, points | give 3 to
+[[polygon]]; points = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]] | polygon 1, points | does not cut itself
+[[polygon]]; points = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]] | polygon 1, points | does not cut itself
+[[polygon]]; points = [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]] | polygon 1, points | leave one out
+[[polyline]]; points = [[0.0, 0.0]]; thickness = 1.0 | polyline 1, points | at least 2
+[[ground]]; points = [] | ground 1, points | at least 1
+[[ground]]; points = [[1.0, 0.0], [1.0, 2.0]] | ground 1, points | farther downrange
+[[ceiling]]; points = [[1.0, nan]] | ceiling 1, points | give numbers";
+
 #[test]
 fn a_bad_file_is_refused_by_file_and_key() {
     let many = format!(
         "[[polyline]]\nthickness = 1.0\npoints = [{}]",
         "[0.0, 0.0], ".repeat(MAX_VERTICES + 1)
     );
-    for (text, key, hint) in [
-        ("[[circle]]\nx = 1.0\nz = 2.0", "`radius`", "missing field"),
-        (
-            "[[circle]]\nx = nan\nz = 2.0\nradius = 1.0",
-            "circle 1, x and z",
-            "give",
-        ),
-        (
-            "[[circle]]\nx = 1.0\nz = 2.0\nradius = -1.0",
-            "circle 1, radius",
-            "give more than 0",
-        ),
-        (
-            "[[circle]]\nx = 1.0\nz = 2.0\nradius = inf",
-            "circle 1, radius",
-            "give more than 0",
-        ),
-        (
-            "[[circle]]\nx = 1.0\nz = 2.0\nradius = 1.0\nvelocity = [nan, 0.0]",
-            "circle 1, velocity",
-            "give at most",
-        ),
-        (
-            "[[circle]]\nx = 1.0\nz = 2.0\nradius = 1.0\ncolour = 1",
-            "`colour`",
-            "unknown field",
-        ),
-        ("[[sphere]]\nx = 1.0", "`sphere`", "unknown field"),
-        (
-            "[[capsule]]\nfrom = [0.0, inf]\nto = [1.0, 1.0]\nradius = 1.0",
-            "capsule 1, from and to",
-            "give numbers",
-        ),
-        (
-            "[[capsule]]\nfrom = [0.0, 1.0]\nto = [1.0, 1.0]\nradius = 0.0",
-            "capsule 1, radius",
-            "give more than 0",
-        ),
-        (
-            "[[polygon]]\npoints = [[0.0, 0.0], [1.0, 0.0]]",
-            "polygon 1, points",
-            "give 3 to",
-        ),
-        (
-            "[[polygon]]\npoints = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]",
-            "polygon 1, points",
-            "does not cut itself",
-        ),
-        (
-            "[[polygon]]\npoints = [[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]",
-            "polygon 1, points",
-            "does not cut itself",
-        ),
-        (
-            "[[polygon]]\npoints = [[0.0, 0.0], [0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]",
-            "polygon 1, points",
-            "leave one out",
-        ),
-        (
-            "[[polyline]]\npoints = [[0.0, 0.0]]\nthickness = 1.0",
-            "polyline 1, points",
-            "at least 2",
-        ),
-        ("[[ground]]\npoints = []", "ground 1, points", "at least 1"),
-        (
-            "[[ground]]\npoints = [[1.0, 0.0], [1.0, 2.0]]",
-            "ground 1, points",
-            "farther downrange",
-        ),
-        (
-            "[[ceiling]]\npoints = [[1.0, nan]]",
-            "ceiling 1, points",
-            "give numbers",
-        ),
-        (&many, "all, points", "give at most 10000"),
-    ] {
-        let error = refused(text);
+    let rows = REFUSED.lines().filter(|row| !row.is_empty()).map(|row| {
+        let cells: Vec<_> = row.split(" | ").collect();
+        let [file, key, hint] = cells.try_into().unwrap();
+        (file.replace("; ", "\n"), key, hint)
+    });
+    for (text, key, hint) in rows.chain([(many, "all, points", "give at most 10000")]) {
+        let error = refused(&text);
         assert!(error.starts_with("field bad.toml"), "{error}");
         assert!(error.contains(key) && error.contains(hint), "{error}");
     }

@@ -1,11 +1,9 @@
 //! The keys of the navigation source.
 
 use crate::file_error::{ScenarioError, ensure};
-use crate::names::{self, UnknownName};
+use crate::names::by_name;
 use crate::navigation::NavigationConfig;
 use crate::scenario::{TICK_MS, TICKS_PER_SECOND};
-use core::fmt;
-use core::str::FromStr;
 use mpp_core::estimate::MOST_AGE;
 use serde::{Deserialize, Serialize};
 
@@ -50,19 +48,7 @@ impl NavigationSource {
     }
 }
 
-impl fmt::Display for NavigationSource {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for NavigationSource {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        names::find("navigation source", &Self::ALL, Self::name, text)
-    }
-}
+by_name!(NavigationSource, "navigation source");
 
 /// The navigation source's keys. An absent key takes the value of the named source.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
