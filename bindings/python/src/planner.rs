@@ -7,7 +7,7 @@ use crate::{look, scenario};
 use mpp_analysis::recording;
 use mpp_core::planner::Verdict;
 use mpp_core::sense::LidarScan;
-use mpp_core::vehicle::{Conditions, AirState, VehicleState, Wind};
+use mpp_core::vehicle::{AirState, Conditions, VehicleState, Wind};
 use mpp_sim::inspector::core_scan;
 use mpp_sim::lidar::LidarConfig;
 use mpp_sim::scenario::ALTITUDE;
