@@ -8,7 +8,6 @@ use super::answer::Failure;
 /// A failure without any font, or without the cargo feature.
 #[cfg(feature = "formats")]
 pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Failure> {
-    use super::answer::FAILURE;
     use svg2pdf::usvg::{Options, Tree, fontdb::Database};
     const WANTED: &str = "DejaVu Sans";
 
@@ -39,5 +38,5 @@ pub(super) fn pdf(svg: &str) -> Result<Vec<u8>, Failure> {
 #[cfg(not(feature = "formats"))]
 pub(super) fn pdf(_: &str) -> Result<Vec<u8>, Failure> {
     let why = "this program was built without PDF: build it with `--features formats`, or leave out `--pdf`";
-    Err(Failure::new(super::answer::USAGE, why))
+    Err(Failure::usage(why))
 }

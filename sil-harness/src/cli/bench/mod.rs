@@ -2,7 +2,7 @@
 
 mod authors;
 
-use super::answer::{Failure, USAGE, print, talk};
+use super::answer::{Failure, print, talk};
 use super::scenario::{ScenarioArgs, replace};
 use super::values::{preset, seed};
 use crate::files::{read_instances, write_instances};
@@ -136,22 +136,22 @@ fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
         ));
         return Ok(0);
     }
-    compare(&instances, args.json)
-}
-
-#[cfg(feature = "clarabel")]
-fn compare(instances: &[Instance], json: bool) -> Result<u8, Failure> {
-    let progress = ProgressBar::new(instances.len() as u64);
-    let report = mpp_analysis::bench::run_qp(instances, || progress.inc(1));
-    progress.finish_and_clear();
-    print(&report.map_err(Failure::failed)?, json)?;
+    compare(&instances, args.json)?;
     Ok(0)
 }
 
+#[cfg(feature = "clarabel")]
+fn compare(instances: &[Instance], json: bool) -> Result<(), Failure> {
+    let progress = ProgressBar::new(instances.len() as u64);
+    let report = mpp_analysis::bench::run_qp(instances, || progress.inc(1));
+    progress.finish_and_clear();
+    print(&report.map_err(Failure::failed)?, json)
+}
+
 #[cfg(not(feature = "clarabel"))]
-fn compare(_: &[Instance], _: bool) -> Result<u8, Failure> {
+fn compare(_: &[Instance], _: bool) -> Result<(), Failure> {
     // Refused above, before the programs are made.
-    Ok(USAGE)
+    Ok(())
 }
 
 fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {
