@@ -48,10 +48,12 @@ pub enum Stream {
     Motion = 18,
     /// Sideways and rolling motion of the air.
     LateralGusts = 19,
-    /// Errors of the estimate in space.
-    SpaceEstimate = 20,
-    /// Noise of a lidar in space.
+    /// Bodies of a world in space.
+    Bodies = 20,
+    /// Directions, noise and faults of a lidar in space.
     SpaceLidar = 21,
+    /// Errors of the estimate in space.
+    SpaceEstimate = 22,
 }
 
 /// The generator of one subsystem: ChaCha with 8 rounds. It has the bits of `rand_chacha`, which is slower to build.
@@ -99,7 +101,7 @@ pub fn gaussian(generator: &mut Draws) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 19] = [
+    const ALL: [Stream; 22] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -119,6 +121,9 @@ mod tests {
         Stream::Generator,
         Stream::Motion,
         Stream::LateralGusts,
+        Stream::Bodies,
+        Stream::SpaceLidar,
+        Stream::SpaceEstimate,
     ];
 
     #[test]
@@ -146,6 +151,9 @@ mod tests {
                 15_784_797_038_420_267_861,
                 13_531_319_370_983_182_927,
                 5_256_132_873_963_308_690,
+                12_220_099_047_758_517_520,
+                627_886_748_865_932_386,
+                13_253_704_345_110_291_491,
             ]
         );
     }

@@ -4,6 +4,7 @@
 //! are rows of programs.
 
 use crate::tuning::voxels::{HIT, MISS, MOST, PASS, PASS_SHARE, PASS_SHORT};
+use crate::vehicle::between;
 
 /// Number of voxels along x, y and z. A column along z is one word of bits.
 pub const CELLS: [usize; 3] = [128, 128, 32];
@@ -183,7 +184,7 @@ impl Default for VoxelGrid {
 /// Number of the voxel that holds a coordinate \[m\]. Coordinates that make no sense are far away.
 pub(crate) fn voxel(coordinate: f64) -> i64 {
     const FARTHEST: f64 = 1e12;
-    libm::floor(coordinate / CELL).max(-FARTHEST).min(FARTHEST) as i64
+    between(libm::floor(coordinate / CELL), [-FARTHEST, FARTHEST]) as i64
 }
 
 /// Row of the window that holds a y \[m\], unbounded.

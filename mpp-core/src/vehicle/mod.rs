@@ -23,6 +23,7 @@ pub use mpp_data::{
 };
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
+pub(crate) use space_path::between;
 pub use space_path::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath, path_axes};
 pub use stall::{StallGuard, stall_sides};
 pub use thrust_lag::ThrustLag;

@@ -218,6 +218,15 @@ impl SpacePath {
     }
 }
 
+/// The nearest value of a range; its lower end for what is no number. Unlike `clamp` it has no panic.
+pub(crate) fn between(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if value > low {
+        if value < high { value } else { high }
+    } else {
+        low
+    }
+}
+
 /// The axes of [`SpacePath::axes`] for a flight path and a course \[rad\].
 #[must_use]
 pub fn path_axes(flight_path: f64, course: f64) -> [[f64; 3]; 3] {

@@ -4,16 +4,19 @@
 mod course;
 mod errors;
 mod flight;
+mod hull;
 mod motion;
 mod quaternion;
 mod servo;
 #[cfg(test)]
 mod tests;
 mod wind;
+pub mod world;
 
 pub use course::CourseHold;
 pub use errors::{EstimateErrors, SpaceEstimator, true_path};
 pub use flight::{SpaceConfig, SpaceFlight};
+pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use quaternion::Quaternion;
 pub use servo::Servo;

@@ -1,7 +1,7 @@
 //! Trajectories in space: as the pursuit of a path flies them, and as the controls of a program do.
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath};
+use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath, between};
 
 /// Distance ahead at which the pursuit aims, in seconds of cruise [s]. Less swings, more cuts corners. Source: S of
 /// [`crate::tuning::voxels`].
@@ -116,7 +116,7 @@ pub(super) fn limited(
     let [low, high] = model.angle_of_attack;
     let rate = within(wanted.angle_of_attack_rate, model.angle_of_attack_rate);
     let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
-    let reached = aimed.max(low - BEYOND_ATTACK).min(high + BEYOND_ATTACK);
+    let reached = between(aimed, [low - BEYOND_ATTACK, high + BEYOND_ATTACK]);
     SpaceControl {
         bank_rate: (bank - state.bank) / STAGE_PERIOD,
         angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
@@ -125,7 +125,7 @@ pub(super) fn limited(
 }
 
 fn within(value: f64, limit: f64) -> f64 {
-    value.max(-limit).min(limit)
+    between(value, [-limit, limit])
 }
 
 /// Flies along points that lie ahead of each other.
@@ -148,7 +148,7 @@ impl<'a> Pursuit<'a> {
         let square = dot(&way, &way).max(LEAST_AIM);
         let velocity = state.ground_velocity(&model.wind);
         let speed_squared = dot(&velocity, &velocity).max(1.0);
-        let climb = (velocity[2] / libm::sqrt(speed_squared)).max(-1.0).min(1.0);
+        let climb = between(velocity[2] / libm::sqrt(speed_squared), [-1.0, 1.0]);
         let course = libm::atan2(velocity[1], velocity[0]);
         let [_, up, right] = crate::vehicle::path_axes(libm::asin(climb), course);
         let turn = 2.0 * speed_squared / square;
@@ -173,9 +173,7 @@ impl<'a> Pursuit<'a> {
             .copied()
             .unwrap_or([x, 0.0, 0.0]);
         let to = self.points.get(self.segment + 1).copied().unwrap_or(from);
-        let share = ((x - from[0]) / (to[0] - from[0]).max(1e-3))
-            .max(0.0)
-            .min(1.0);
+        let share = between((x - from[0]) / (to[0] - from[0]).max(1e-3), [0.0, 1.0]);
         [
             x.max(from[0]),
             from[1] + share * (to[1] - from[1]),

@@ -6,6 +6,7 @@ use crate::config::STAGES;
 use crate::map::VoxelField;
 use crate::qp::space::Faces;
 use crate::tuning::space_program::{BEHIND, FACES, REACH};
+use crate::vehicle::between;
 
 /// Distance of a voxel from a segment below which the normal is not told by it \[m\].
 const TOUCHES: f64 = 0.05;
@@ -66,7 +67,7 @@ fn separate_segment(
         field.surface(&low, &high, |centre| {
             let behind = |(normal, level): &([f64; 3], f64)| dot(normal, &centre) >= level - BEHIND;
             let way: [f64; 3] = core::array::from_fn(|axis| centre[axis] - from[axis]);
-            let share = (dot(&way, &along) / length_squared).max(0.0).min(1.0);
+            let share = between(dot(&way, &along) / length_squared, [0.0, 1.0]);
             let off: [f64; 3] = core::array::from_fn(|axis| way[axis] - share * along[axis]);
             let square = dot(&off, &off);
             if square < nearest.0 && !planes.iter().any(behind) {

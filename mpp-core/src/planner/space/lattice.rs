@@ -7,7 +7,7 @@
 use crate::map::VoxelField;
 use crate::tuning::space_judgement::{AHEAD, UNKNOWN};
 use crate::tuning::space_lattice::{BEND, CLIMB, HEIGHT, LACK, PULL, SIDE, SLOPE};
-use crate::vehicle::SpaceModel;
+use crate::vehicle::{SpaceModel, between};
 
 /// Stations, that of the aircraft included.
 pub(super) const STATIONS: usize = 14;
@@ -83,7 +83,7 @@ impl Lattice {
     pub(super) fn set_up(&mut self, model: &SpaceModel) {
         let curvature = TIGHTER * model.curvature();
         let step = libm::sqrt(2.0 * ACROSS / curvature);
-        self.step = step.max(LEAST_STEP).min(MOST_STEP);
+        self.step = between(step, [LEAST_STEP, MOST_STEP]);
     }
 
     /// Begins at a position with the velocity over ground.

@@ -170,7 +170,7 @@ impl SpacePlanner {
 
     /// Chooses the number of candidates, from 1 to [`SPACE_CANDIDATES`], and whether a program improves each.
     pub fn choose(&mut self, candidates: usize, programs: bool) {
-        self.wanted = candidates.max(1).min(SPACE_CANDIDATES);
+        self.wanted = candidates.clamp(1, SPACE_CANDIDATES);
         self.programs = programs;
     }
 
