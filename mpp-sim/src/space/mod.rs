@@ -4,6 +4,7 @@
 mod course;
 mod errors;
 mod flight;
+mod forest;
 mod hull;
 mod motion;
 mod quaternion;
@@ -16,6 +17,7 @@ pub mod world;
 pub use course::CourseHold;
 pub use errors::{EstimateErrors, SpaceEstimator, true_path};
 pub use flight::{SpaceConfig, SpaceFlight};
+pub use forest::{SpaceEnd, SpaceOutcome, fly_through};
 pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use quaternion::Quaternion;

@@ -69,6 +69,14 @@ Elevator and thrust stay those of level flight, so a turn loses height. With --f
 course is held.
 Exit codes: 0 flown, 2 usage, 4 extreme state: the aircraft departed, 1 anything else";
 
+pub(super) const FOREST: &str = "\
+Examples:
+  sil-harness forest --airspeed 13 --flights 40
+  sil-harness forest --airspeed 13 --density 0.0625 --sphere 0.4 --each
+
+A flight arrives if neither wing nor fuselage touches anything on its way and it stays in the band.
+Exit codes: 0 flown, 2 usage, 1 anything else";
+
 pub(super) const FIGURES: &str = "\
 Examples:
   sil-harness figures --out out/figures --rows rows.jsonl";

@@ -17,6 +17,7 @@ mod fault_campaign;
 mod figures;
 mod file_name;
 mod fly;
+mod forest;
 mod ground;
 mod help;
 mod loudness;
@@ -57,6 +58,8 @@ enum Command {
     Aircraft(aircraft::AircraftArgs),
     /// Hold a bank for 20 s in six degrees of freedom, by the lateral regulator, in wind and gusts
     Space(space::SpaceArgs),
+    /// Let the planner in space fly through worlds in six degrees of freedom
+    Forest(forest::ForestArgs),
     /// Draw counterparts of the paper's figures
     Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
@@ -89,6 +92,7 @@ pub fn run() -> ExitCode {
         Some(Command::Ceiling(args)) => ceiling::run(&args),
         Some(Command::Aircraft(args)) => aircraft::run(&args),
         Some(Command::Space(args)) => space::run(&args),
+        Some(Command::Forest(args)) => forest::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
