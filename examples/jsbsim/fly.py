@@ -32,7 +32,8 @@ RANGE_SIGMA = 0.01  # share of the range
 ORACLE_REPLAN_HZ = 10  # plans in a second of the reference aircraft, as mpp-sim/src/scenario/mod.rs has it
 PITCH_LIMIT, PATH_LIMIT = math.radians(60), math.radians(45)
 PLAN_REPORT, STEP_REPORT, REJECTION = 8, 7, 9
-OUTCOMES = ("adopted", "least violating", "kept previous", "trim hold")
+OUTCOMES = ("adopted", "least violating", "kept previous", "trim hold", "pursuit", "reserve",
+            "latest")
 STRUCTS["StepReport"] = [("tick", "v")] + [(name, "d") for name in """airspeed pitch pitch_rate path x z wind_x wind_z
     lift x_wanted z_wanted airspeed_wanted pitch_wanted pitch_rate_wanted path_wanted""".split()]
 STRUCTS["PlanReport"] = [("scan", "v"), ("used_from", "v"), ("outcome", "B")]

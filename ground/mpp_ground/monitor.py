@@ -6,7 +6,7 @@ import time
 from .link import downrange, mavlink
 
 MODES = {10: "AUTO", 7: "CRUISE"}
-OUTCOMES = ["adopted", "least violating", "kept previous", "trim hold"]
+OUTCOMES = ["adopted", "least violating", "kept previous", "trim hold", "pursuit", "reserve", "latest"]
 
 
 def monitor(vehicle, out, seconds=None, once=False):

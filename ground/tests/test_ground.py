@@ -73,7 +73,7 @@ def test_what_is_heard_is_what_is_logged(simulate):
     vehicle.close()
     _, out, _ = simulation.result()
     log = json.loads(open(json.loads(out)["log"]).read())
-    outcomes = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold"]
+    outcomes = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold", "Pursuit", "Reserve", "Latest"]
     told = [(p.scan_tick, p.used_from_tick, p.candidates, p.feasible, outcomes[p.outcome]) for p in plans]
     names = ("tick", "used_from_tick", "candidates", "feasible", "outcome")
     assert told == [tuple(plan[name] for name in names) for plan in log["plans"]]

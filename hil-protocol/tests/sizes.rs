@@ -117,7 +117,7 @@ fn of_the_reports() {
     let plan = PlanReport {
         scan_tick: u32::MAX,
         used_from_tick: u32::MAX,
-        outcome: PlanOutcome::TrimHold,
+        outcome: PlanOutcome::Latest,
         candidates: u16::MAX,
         feasible: u16::MAX,
         tree_runs: u16::MAX,

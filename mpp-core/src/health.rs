@@ -45,12 +45,20 @@ pub struct Health {
     /// Cycles that the planner ended early, because its phase and its workspace did not belong together. More than 0 is a
     /// defect of the planner.
     pub planner_inconsistent: u32,
+    /// Cycles whose plan with the lowest price the gate refused.
+    pub plans_refused: u32,
+    /// Cycles after which the vehicle flew a path of the lattice by pursuit, because no plan passed the gate.
+    pub plans_pursuit: u32,
+    /// Cycles after which the vehicle flew a reserve, because no plan and no path passed the gate.
+    pub plans_reserve: u32,
+    /// Cycles in which nothing passed the gate. The vehicle flew what strikes latest.
+    pub plans_latest: u32,
 }
 
 impl Health {
     /// The counters, in the order of the fields.
     #[must_use]
-    pub const fn counters(&self) -> [u32; 20] {
+    pub const fn counters(&self) -> [u32; 24] {
         [
             self.measurements_not_finite,
             self.measurements_frozen,
@@ -72,6 +80,10 @@ impl Health {
             self.plans_least_violating,
             self.plans_trim_hold,
             self.planner_inconsistent,
+            self.plans_refused,
+            self.plans_pursuit,
+            self.plans_reserve,
+            self.plans_latest,
         ]
     }
 

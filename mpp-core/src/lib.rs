@@ -87,6 +87,7 @@ pub mod control;
 pub mod corridor;
 pub mod estimate;
 pub mod flight;
+pub mod gate;
 pub mod health;
 mod inverse;
 pub mod lattice;

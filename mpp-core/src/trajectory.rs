@@ -110,6 +110,36 @@ impl Trajectory {
         self.between = Between::Lines;
     }
 
+    /// A sum over everything on which [`Self::sample`] depends. It changes with each single bit that flips.
+    // Not inlined: planner and step need the same one.
+    #[inline(never)]
+    #[must_use]
+    pub fn seal(&self) -> u64 {
+        let mut seal = 0_u64;
+        let mut take = |number: f64| seal = seal.rotate_left(7) ^ number.to_bits();
+        take(self.start);
+        take(self.stage_period);
+        for Reference { state, feedforward } in &self.knots {
+            let air = &state.air;
+            take(state.x);
+            take(state.z);
+            take(air.airspeed);
+            take(air.pitch);
+            take(air.pitch_rate);
+            take(air.flight_path);
+            take(feedforward.thrust);
+            take(feedforward.elevator);
+        }
+        if let Between::Flown(medium) = &self.between {
+            medium.airframe.numbers().into_iter().for_each(&mut take);
+            take(medium.wind.x);
+            take(medium.wind.z);
+            medium.lag.numbers().into_iter().for_each(&mut take);
+            medium.thrusts.into_iter().for_each(&mut take);
+        }
+        seal
+    }
+
     /// Moves the whole trajectory by `(x, z)` \[m\].
     pub fn shift(&mut self, (x, z): (f64, f64)) {
         for knot in &mut self.knots {

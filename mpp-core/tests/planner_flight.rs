@@ -158,7 +158,7 @@ fn starving_gives_the_best_so_far_and_the_next_cycle_is_sound() {
         let summary = *starved.summary();
         assert_eq!(summary.complete, budget == slices);
         assert_eq!(verdict == Verdict::Nothing, summary.cost == f64::INFINITY);
-        if verdict != Verdict::Nothing {
+        if matches!(verdict, Verdict::Feasible | Verdict::LeastViolating) {
             offered += 1;
             follows_the_point_mass(starved.best(), &state);
             // The price is the square of the violation, so the worst violation may grow a little.
@@ -169,6 +169,7 @@ fn starving_gives_the_best_so_far_and_the_next_cycle_is_sound() {
             last = rank(&summary);
         } else {
             assert!(offered == 0, "what was offered stays");
+            follows_the_point_mass(starved.best(), &state);
         }
     }
     assert!(

@@ -78,4 +78,6 @@ pub struct Plan {
     pub summary: PlanSummary,
     /// The best trajectory, if there is one.
     pub trajectory: Trajectory,
+    /// The seal of the trajectory that the gate let through. The step drops another one.
+    pub seal: u64,
 }

@@ -142,6 +142,7 @@ impl PlanTask {
                 verdict: self.planner.finish(),
                 summary: *self.planner.summary(),
                 trajectory: self.planner.best().clone(),
+                seal: self.planner.seal(),
             }),
         })
     }

@@ -30,7 +30,7 @@
 #define MPP_KNOTS 19
 
 // Counters of events.
-#define MPP_COUNTERS 20
+#define MPP_COUNTERS 24
 
 // The result of a call. Every result but `Ok` leaves the core as it was; only a refused `mpp_set_up` leaves it
 // without a configuration.
@@ -129,6 +129,14 @@ typedef enum mpp_counter {
   MPP_COUNTER_PLANS_TRIM_HOLD = 18,
   // Cycles that the planner ended early because of a defect of the planner. Report one that is not 0.
   MPP_COUNTER_PLANNER_INCONSISTENT = 19,
+  // Cycles whose best plan the gate refused.
+  MPP_COUNTER_PLANS_REFUSED = 20,
+  // Cycles after which a path of the lattice was flown, because no plan passed the gate.
+  MPP_COUNTER_PLANS_PURSUIT = 21,
+  // Cycles after which a reserve was flown, because no plan and no path passed the gate.
+  MPP_COUNTER_PLANS_RESERVE = 22,
+  // Cycles in which nothing passed the gate.
+  MPP_COUNTER_PLANS_LATEST = 23,
 } mpp_counter;
 
 // A core. Its content is private.
@@ -337,7 +345,7 @@ typedef struct mpp_scan {
 // What a planning cycle came to.
 typedef struct mpp_plan {
   // 0: a feasible plan is flown. 1: the least violating plan is flown. 2: the last plan is kept. 3: straight
-  // and level.
+  // and level. No plan passes the gate, and there is flown 4: a path of the lattice, 5: a reserve, 6: what strikes latest.
   uint8_t outcome;
   // Whether the cycle did all its work.
   bool complete;

@@ -41,8 +41,8 @@ impl Planner {
 
     /// One cycle at a time [s] on the ranges of a scan [m], 0 where nothing came back, from a state: position
     /// [m], airspeed [m/s] and angles [rad], by default those of level flight; in a wind [m/s]. `pitch` must
-    /// be that at which the scan was taken. Gives the verdict, "feasible", "least-violating" or "nothing", and the
-    /// totals of the cycle.
+    /// be that at which the scan was taken. Gives the verdict, "feasible", "least-violating" or "nothing", or what is
+    /// flown because the gate refuses the plan, "kept", "pursuit", "reserve" or "latest"; and the totals of the cycle.
     #[pyo3(signature = (
         ranges, *, time = 0.0, x = 0.0, z = ALTITUDE, airspeed = None, pitch = None, pitch_rate = 0.0,
         flight_path = 0.0, wind = (0.0, 0.0)
@@ -163,5 +163,9 @@ fn name(verdict: Verdict) -> &'static str {
         Verdict::Feasible => "feasible",
         Verdict::LeastViolating => "least-violating",
         Verdict::Nothing => "nothing",
+        Verdict::Kept => "kept",
+        Verdict::Pursuit => "pursuit",
+        Verdict::Reserve => "reserve",
+        Verdict::Latest => "latest",
     }
 }

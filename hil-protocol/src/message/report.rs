@@ -45,10 +45,24 @@ pub enum PlanOutcome {
     Adopted = 0,
     /// The vehicle flies the best trajectory of the cycle, which is not feasible.
     LeastViolating = 1,
-    /// The cycle gave no trajectory. The vehicle flies the rest of the previous plan.
+    /// The cycle gave no trajectory, or the gate refused it. The vehicle flies the rest of the previous plan.
     KeptPrevious = 2,
     /// There is no trajectory and no previous plan. The vehicle flies straight and level.
     TrimHold = 3,
+    /// No plan passes the gate. The vehicle flies a path of the lattice, by pursuit.
+    Pursuit = 4,
+    /// No plan and no path passes the gate. The vehicle flies a reserve: level, slow, or a climb.
+    Reserve = 5,
+    /// Nothing passes the gate. The vehicle flies what strikes latest.
+    Latest = 6,
+}
+
+impl PlanOutcome {
+    /// Whether the vehicle flies a trajectory of this cycle.
+    #[must_use]
+    pub fn is_new(self) -> bool {
+        !matches!(self, Self::KeptPrevious | Self::TrimHold)
+    }
 }
 
 /// Core to harness: the trajectory that a planning cycle chose, after its [`PlanReport`].
@@ -263,7 +277,7 @@ pub struct HealthReport {
 
 impl HealthReport {
     /// The name of each counter. The order goes over the wire: append only.
-    pub const NAMES: [&str; 20] = [
+    pub const NAMES: [&str; 24] = [
         "measurements_not_finite",
         "measurements_frozen",
         "measurements_late",
@@ -284,6 +298,10 @@ impl HealthReport {
         "plans_least_violating",
         "plans_trim_hold",
         "planner_inconsistent",
+        "plans_refused",
+        "plans_pursuit",
+        "plans_reserve",
+        "plans_latest",
     ];
 
     /// Size of the longest payload \[bytes\].

@@ -62,6 +62,18 @@ fn plan_report_and_every_outcome() {
             plan(PlanOutcome::TrimHold, false),
             "104d500208c801fa01031903ac02a01f010101010c8031409a9999999999b93f0552ae70cb00",
         ),
+        (
+            plan(PlanOutcome::Pursuit, true),
+            "104d500208c801fa01041903ac02a01f01010101118031409a9999999999b93f01b3a96f8d00",
+        ),
+        (
+            plan(PlanOutcome::Reserve, true),
+            "104d500208c801fa01051903ac02a01f01010101118031409a9999999999b93f0194cc4a0c00",
+        ),
+        (
+            plan(PlanOutcome::Latest, true),
+            "104d500208c801fa01061903ac02a01f01010101118031409a9999999999b93f01bc65545400",
+        ),
     ]);
 }
 
@@ -228,6 +240,6 @@ fn health_report() {
     };
     check(&[(
         Message::HealthReport(report),
-        "074d50020def0903ac02010101010101010101010101010101020705928148fc00",
+        "074d50020def0903ac0201010101010101010101010101010102070101010105befc515a00",
     )]);
 }

@@ -191,7 +191,7 @@ fn part(phase: Phase) -> usize {
             plane::Phase::Lattice => 1,
             plane::Phase::Faces => 2,
             plane::Phase::Linearise | plane::Phase::Improve => 3,
-            plane::Phase::Idle | plane::Phase::Done => 4,
+            plane::Phase::Gate | plane::Phase::Idle | plane::Phase::Done => 4,
         },
         Phase::Paper(phase) => match phase {
             paper::Phase::Map => 0,

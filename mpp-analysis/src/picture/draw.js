@@ -3,7 +3,7 @@
 // (columns, whose first row is the tick `first`), `plans`, `details` (a map from the tick of a scan), `orders`, and
 // at its end `summary` and `closest`.
 const OUTCOMES = { Adopted: "feasible", LeastViolating: "least violating", KeptPrevious: "last plan kept",
-  TrimHold: "straight and level" };
+  TrimHold: "straight and level", Pursuit: "pursuit", Reserve: "reserve", Latest: "strikes latest" };
 // What the occupancy layer is.
 const MEMORY = "what the planner took for occupied: its map with memory of all scans so far, cells of 0.5 m, " +
   "hidden parts of obstacles completed.";

@@ -34,6 +34,12 @@ pub enum Adoption {
     Kept,
     /// The flight loop holds level trim.
     TrimHold,
+    /// The flight loop flies a path of the lattice from now on, because no plan passes the gate.
+    Pursuit,
+    /// The flight loop flies a reserve from now on, because no plan and no path passes the gate.
+    Reserve,
+    /// The flight loop flies what strikes latest from now on, because nothing passes the gate.
+    Latest,
 }
 
 /// The outcome of one step.
@@ -185,35 +191,36 @@ impl FlightLoop {
             .trajectory
             .as_ref()
             .is_some_and(|last| last.sample(time).is_some());
-        match (verdict, valid) {
-            (Verdict::Feasible, _) => {
-                self.trajectory = Some(offered.clone());
-                Health::count(&mut self.health.plans_feasible);
-                Adoption::Feasible
-            }
+        let health = &mut self.health;
+        let (adoption, counter) = match verdict {
+            Verdict::Feasible => (Adoption::Feasible, &mut health.plans_feasible),
             // The planner made the last trajectory for an older map, without the obstacles that are in the
             // way now. The least-violating trajectory takes these obstacles into account.
-            (Verdict::LeastViolating, _) => {
-                self.trajectory = Some(offered.clone());
-                Health::count(&mut self.health.plans_least_violating);
-                Adoption::LeastViolating
+            Verdict::LeastViolating => {
+                (Adoption::LeastViolating, &mut health.plans_least_violating)
             }
-            (Verdict::Nothing, true) => {
-                Health::count(&mut self.health.plans_kept);
-                Adoption::Kept
-            }
-            (Verdict::Nothing, false) => {
-                self.trajectory = None;
-                Health::count(&mut self.health.plans_trim_hold);
-                Adoption::TrimHold
-            }
+            Verdict::Pursuit => (Adoption::Pursuit, &mut health.plans_pursuit),
+            Verdict::Reserve => (Adoption::Reserve, &mut health.plans_reserve),
+            Verdict::Latest => (Adoption::Latest, &mut health.plans_latest),
+            Verdict::Nothing | Verdict::Kept if valid => (Adoption::Kept, &mut health.plans_kept),
+            Verdict::Nothing | Verdict::Kept => (Adoption::TrimHold, &mut health.plans_trim_hold),
+        };
+        Health::count(counter);
+        match adoption {
+            Adoption::Kept => {}
+            Adoption::TrimHold => self.trajectory = None,
+            _ => self.trajectory = Some(offered.clone()),
         }
+        adoption
     }
 
-    /// Counts a cycle that the planner ended early because of a defect. Call it when a cycle has ended, with its summary.
+    /// Counts a cycle that the planner ended early because of a defect, and one whose plan the gate refused. Call it when a cycle has ended, with its summary.
     pub fn count_cycle(&mut self, summary: &PlanSummary) {
         if summary.inconsistent {
             Health::count(&mut self.health.planner_inconsistent);
+        }
+        if summary.refused.is_some() {
+            Health::count(&mut self.health.plans_refused);
         }
     }
 

@@ -318,6 +318,15 @@ impl RollingGrid {
         inside.then_some((row as usize, slot(col)))
     }
 
+    /// Log-odds of the cell that holds a place `(x, z)` \[m\]; 0 if no beam has seen it, or outside of the window.
+    #[must_use]
+    pub fn log_odds(&self, place: (f64, f64)) -> i8 {
+        let found = self.slot_at(self.locate(place));
+        found.map_or(0, |(row, slot)| {
+            self.log_odds.get(row).map_or(0, |cells| cells[slot])
+        })
+    }
+
     /// Downrange position of the window's near edge \[m\].
     #[must_use]
     pub fn first_x(&self) -> f64 {

@@ -225,6 +225,13 @@ impl Planner {
         of_chosen!(self, best())
     }
 
+    /// The [seal](Trajectory::seal) of [`Self::best`] when the gate let it through. The paper's method has no gate: it is
+    /// that of the trajectory as it is.
+    #[must_use]
+    pub fn seal(&self) -> u64 {
+        (self.plane()).map_or_else(|| self.best().seal(), PlanePlanner::seal)
+    }
+
     /// The results of the cycle so far.
     #[must_use]
     pub fn summary(&self) -> &PlanSummary {

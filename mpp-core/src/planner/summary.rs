@@ -1,5 +1,7 @@
 //! The result of a planning cycle: its summary and its verdict.
 
+use crate::gate::Cause;
+
 /// Greatest violation [m or rad] of a feasible trajectory.
 pub(crate) const FEASIBLE: f64 = 1e-6;
 
@@ -26,6 +28,8 @@ pub struct PlanSummary {
     /// Whether the planner ended the cycle early, because its phase and its workspace did not belong together. This is a
     /// defect of the planner; [`FlightLoop::count_cycle`](crate::flight::FlightLoop::count_cycle) counts it.
     pub inconsistent: bool,
+    /// Why the gate refused the plan with the lowest price, if it did.
+    pub refused: Option<Cause>,
     /// Cost of the best trajectory. It is infinite if there is no trajectory.
     pub cost: f64,
     /// Worst violation of the best trajectory [m or rad]. It is infinite if there is no trajectory.
@@ -43,6 +47,7 @@ impl PlanSummary {
         complete: false,
         blind: false,
         inconsistent: false,
+        refused: None,
         cost: f64::INFINITY,
         violation: f64::INFINITY,
     };
@@ -70,4 +75,12 @@ pub enum Verdict {
     LeastViolating,
     /// No candidate gave any trajectory.
     Nothing,
+    /// The gate refused what the cycle planned, or there was nothing, and the trajectory of the last cycle still passes.
+    Kept,
+    /// No plan passes the gate, but a path of the lattice, flown out by pursuit.
+    Pursuit,
+    /// No plan and no path passes the gate, but a reserve: level, slow, or a climb.
+    Reserve,
+    /// Nothing passes the gate. This is what strikes latest, or what leaves the band latest.
+    Latest,
 }

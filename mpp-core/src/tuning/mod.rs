@@ -214,6 +214,53 @@ pub mod judgement {
     pub const FAR_SHARE: f64 = 0.5;
 }
 
+/// The gate before adoption, in the planner's own units. With these spares no plan of 300 clean flights past 160 obstacles was
+/// refused as no motion of the aircraft, and a knot half a metre off is (test `gate.rs`).
+pub mod gate {
+    /// Distance within which no centre of an occupied cell may be, beside the body's radius \[m\]: half the diagonal of a
+    /// cell, so that no point lies in an occupied one. The margin of plans is the planner's matter. Source: derived.
+    pub const REACH: f64 = 0.36;
+    /// Time from the beginning of a trajectory within which no command moves the aircraft by more than [`REACH`] \[s\]: at 1.4 g
+    /// beyond level flight it moves 0.36 m in 0.23 s. What is struck before is struck by every trajectory. Source: derived.
+    pub const REACTION: f64 = 0.25;
+    /// Greatest distance between two points that are looked up \[m\]: half a cell. Source: derived.
+    pub const STEP: f64 = 0.25;
+    /// Most points looked up within an eighth of a second [-]; they bound the work. 16 reach 4 m, or 32 m/s. Source: derived.
+    pub const MOST_POINTS: u16 = 16;
+    /// Most cells to either side of a point that are looked up [-]; they bound the work. Source: derived.
+    pub const MOST_CELLS: i32 = 4;
+    /// Greatest distance of a trajectory's beginning from where the aircraft will be \[m\]. A previous plan is off by the
+    /// error of tracking. Source: chosen.
+    pub const START: f64 = 3.0;
+    /// Distance that a trajectory may leave the band by \[m\]: rows of the band are soft. Source: chosen.
+    pub const BAND_SPARE: f64 = 2.0;
+    /// Time within which a reserve stays in cells that beams have seen free \[s\]: the way to the next two scans of a
+    /// lidar at 1 Hz. Source: derived.
+    pub const KNOWN_TIME: f64 = 2.0;
+    /// Rest that a previous plan must have to be flown on \[s\]: two periods of a planner at 1 Hz. Source: derived.
+    pub const REST: f64 = 2.0;
+    /// Distance downrange of the place on a path at which a pursuit aims \[m\]. Nearer it weaves, farther it cuts corners.
+    /// Source: chosen.
+    pub const LOOK_AHEAD: f64 = 4.0;
+    /// Thrust for a lack of airspeed in a pursuit [N s/m]. Source: chosen.
+    pub const SPEED_GAIN: f64 = 4.0;
+    /// Load beyond that of level flight at cruise that an angle of attack may stand for [g]. Roll-outs reach 1.4.
+    /// Source: derived.
+    pub const MOST_LOAD: f64 = 2.0;
+    /// Least airspeed, as a share of cruise [-]. Source: chosen.
+    pub const LEAST_SPEED: f64 = 0.4;
+    /// Greatest airspeed, as a multiple of cruise [-]. Source: chosen.
+    pub const MOST_SPEED: f64 = 2.5;
+    /// Greatest angle of the path \[rad\]: twice that of programs. Source: chosen.
+    pub const MOST_PATH: f64 = 1.2;
+    /// Thrust beyond the motor's that is rounding \[N\]. Source: chosen.
+    pub const THRUST_SPARE: f64 = 0.01;
+    /// Greatest error of a place against the mean of its speeds \[m\]. Source: chosen.
+    pub const PLACE: f64 = 0.15;
+    /// Greatest error of the balance of forces [g]. Source: chosen.
+    pub const LOAD_SPARE: f64 = 0.3;
+}
+
 /// The estimate of position and wind.
 pub mod navigation {
     /// Greatest accepted innovation of a position, in standard deviations [-]. A healthy source exceeds it

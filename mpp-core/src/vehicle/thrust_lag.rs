@@ -26,6 +26,11 @@ impl ThrustLag {
         in_mean: 0.0,
     };
 
+    /// Its numbers, in the order of the fields.
+    pub(crate) fn numbers(&self) -> [f64; 3] {
+        [self.stage, self.at_end, self.in_mean]
+    }
+
     /// The lag of these actuators over stages of the length `period`, in the unit of time of the actuators.
     #[must_use]
     pub fn new(actuators: &ActuatorLimits, period: f64) -> Self {

@@ -191,6 +191,9 @@ pub(crate) fn outcome(adoption: Adoption) -> PlanOutcome {
         Adoption::LeastViolating => PlanOutcome::LeastViolating,
         Adoption::Kept => PlanOutcome::KeptPrevious,
         Adoption::TrimHold => PlanOutcome::TrimHold,
+        Adoption::Pursuit => PlanOutcome::Pursuit,
+        Adoption::Reserve => PlanOutcome::Reserve,
+        Adoption::Latest => PlanOutcome::Latest,
     }
 }
 

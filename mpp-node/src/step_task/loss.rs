@@ -49,6 +49,7 @@ impl StepTask {
                 verdict: Verdict::Nothing,
                 summary: PlanSummary::NOTHING,
                 trajectory: Trajectory::new(),
+                seal: Trajectory::new().seal(),
             });
         }
         if let Some(frame) = self.held.take() {

@@ -20,7 +20,9 @@ use hil_protocol::{
 use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
+use mpp_core::gate::Cause;
 use mpp_core::health::Health;
+use mpp_core::planner::Verdict;
 use mpp_core::sense::LidarScan;
 
 /// The behaviour at the tick at which a plan is due but the planner has not replied.
@@ -226,7 +228,11 @@ impl StepTask {
     pub fn take_reply(&mut self, reply: PlanReply, mut send: impl FnMut(&[u8])) {
         let send = &mut send;
         match reply {
-            PlanReply::Plan(plan) => {
+            PlanReply::Plan(mut plan) => {
+                if plan.seal != plan.trajectory.seal() {
+                    plan.verdict = Verdict::Nothing;
+                    plan.summary.refused = Some(Cause::Altered);
+                }
                 // The step drops a plan that does not belong to the present cycle, for example one from a
                 // session that has ended.
                 let cycle = self.session.as_ref().and_then(|session| session.cycle);

@@ -63,10 +63,51 @@ fn a_cycle_that_ended_by_a_defect_of_the_planner_is_counted() {
                 ..PlanSummary::NOTHING
             },
             trajectory: Trajectory::new(),
+            seal: Trajectory::new().seal(),
         };
         task.take_reply(PlanReply::Plan(plan), |_| {});
         tick(&mut task, begun);
         let counted = task.health().map(|health| health.planner_inconsistent);
         assert_eq!(counted, Some(count));
+    }
+}
+
+#[test]
+fn a_plan_of_which_a_bit_flipped_on_its_way_is_not_flown() {
+    for altered in [false, true] {
+        let mut task = StepTask::new(Pace::RealTime);
+        tell(&mut task, &CONFIGURE);
+        task.set_up_done(Ok(()), &mut |_| {});
+        tick(&mut task, 0);
+        if let Some(session) = &mut task.session {
+            session.cycle = Some(Cycle {
+                begun: 0,
+                scan: 0,
+                due: 1,
+                without_scan: false,
+            });
+        }
+        let mut trajectory = Trajectory::new();
+        let seal = trajectory.seal();
+        if altered {
+            let height = &mut trajectory.knots[7].state.z;
+            *height = f64::from_bits(height.to_bits() ^ 1 << 40);
+        }
+        let plan = Plan {
+            tick: 0,
+            verdict: Verdict::Feasible,
+            summary: PlanSummary::NOTHING,
+            trajectory,
+            seal,
+        };
+        task.take_reply(PlanReply::Plan(plan), |_| {});
+        tick(&mut task, 1);
+        let health = task.health().copied().unwrap_or_default();
+        let told = [
+            health.plans_feasible,
+            health.plans_refused,
+            health.plans_trim_hold,
+        ];
+        assert_eq!(told, if altered { [0, 1, 1] } else { [1, 0, 0] });
     }
 }

@@ -108,10 +108,7 @@ impl StepTask {
         let Some(report) = session.untold.take() else {
             return;
         };
-        let is_new = matches!(
-            report.outcome,
-            PlanOutcome::Adopted | PlanOutcome::LeastViolating
-        );
+        let is_new = report.outcome.is_new();
         let new = session.control.trajectory().filter(|_| is_new);
         let told = new.map(|trajectory| convert::trajectory(report.scan_tick, trajectory));
         session.unsteered = told.as_ref().map(|trajectory| trajectory.scan_tick);

@@ -100,6 +100,9 @@ impl Vehicle {
             }
             PlanOutcome::KeptPrevious => Some(format!("None of {count} feasible: last plan kept")),
             PlanOutcome::TrimHold => Some(format!("None of {count} feasible: straight and level")),
+            PlanOutcome::Pursuit => Some(format!("None of {count} passes the gate: pursuit")),
+            PlanOutcome::Reserve => Some(format!("None of {count} passes the gate: reserve")),
+            PlanOutcome::Latest => Some("Nothing passes the gate: what strikes latest".to_owned()),
         };
         if let Some(line) = line {
             self.say(Severity::Warning, &line);

@@ -95,7 +95,15 @@ fn scans_and_plans_are_those_of_the_flight() {
         assert_eq!(u32::from(told.candidates), plan.candidates);
         assert_eq!(u32::from(told.feasible), plan.feasible);
         assert_eq!(Some(told.cost), plan.cost.map(|cost| cost as f32));
-        let names = ["Adopted", "LeastViolating", "KeptPrevious", "TrimHold"];
+        let names = [
+            "Adopted",
+            "LeastViolating",
+            "KeptPrevious",
+            "TrimHold",
+            "Pursuit",
+            "Reserve",
+            "Latest",
+        ];
         assert_eq!(names[usize::from(told.outcome)], plan.outcome);
     }
     let trajectories = heard!(radio, MPP_TRAJECTORY, |trajectory| trajectory.clone());

@@ -44,6 +44,14 @@ pub enum MppCounter {
     PlansTrimHold = 18,
     /// Cycles that the planner ended early because of a defect of the planner. Report one that is not 0.
     PlannerInconsistent = 19,
+    /// Cycles whose best plan the gate refused.
+    PlansRefused = 20,
+    /// Cycles after which a path of the lattice was flown, because no plan passed the gate.
+    PlansPursuit = 21,
+    /// Cycles after which a reserve was flown, because no plan and no path passed the gate.
+    PlansReserve = 22,
+    /// Cycles in which nothing passed the gate.
+    PlansLatest = 23,
 }
 
 #[cfg(test)]
@@ -76,6 +84,10 @@ mod tests {
             C::PlansLeastViolating,
             C::PlansTrimHold,
             C::PlannerInconsistent,
+            C::PlansRefused,
+            C::PlansPursuit,
+            C::PlansReserve,
+            C::PlansLatest,
         ];
         assert_eq!(all.map(name), hil_protocol::HealthReport::NAMES);
         assert!(

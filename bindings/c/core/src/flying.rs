@@ -210,12 +210,15 @@ impl MppCore {
             Adoption::LeastViolating => 1,
             Adoption::Kept => 2,
             Adoption::TrimHold => 3,
+            Adoption::Pursuit => 4,
+            Adoption::Reserve => 5,
+            Adoption::Latest => 6,
         };
         let summary = self.planner.summary();
         flight.control.count_cycle(summary);
         let mut knots = [MppState::default(); MPP_KNOTS];
         let (mut thrust, mut elevator) = ([0.0; MPP_KNOTS], [0.0; MPP_KNOTS]);
-        if outcome < 2 {
+        if outcome < 2 || outcome > 3 {
             let places = knots.iter_mut().zip(&mut thrust).zip(&mut elevator);
             for (((knot, thrust), elevator), reference) in places.zip(&best.knots) {
                 *knot = MppState::from(reference);

@@ -11,7 +11,7 @@ pub const MPP_BEAMS: usize = 128;
 /// Places of a plan.
 pub const MPP_KNOTS: usize = 19;
 /// Counters of events.
-pub const MPP_COUNTERS: usize = 20;
+pub const MPP_COUNTERS: usize = 24;
 
 /// What a flight needs to know before it begins.
 #[repr(C)]
@@ -143,7 +143,7 @@ pub struct MppOutput {
 #[derive(Clone, Copy, Debug)]
 pub struct MppPlan {
     /// 0: a feasible plan is flown. 1: the least violating plan is flown. 2: the last plan is kept. 3: straight
-    /// and level.
+    /// and level. No plan passes the gate, and there is flown 4: a path of the lattice, 5: a reserve, 6: what strikes latest.
     pub outcome: u8,
     /// Whether the cycle did all its work.
     pub complete: bool,

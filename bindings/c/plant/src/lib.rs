@@ -74,12 +74,8 @@ impl Callback {
     fn answer(&mut self, tick: u32, answer: &MppAnswer) {
         if answer.has_plan {
             let report = plan_report(tick, answer);
-            let flown = matches!(
-                report.outcome,
-                PlanOutcome::Adopted | PlanOutcome::LeastViolating
-            );
             self.answers.push_back(Message::PlanReport(report));
-            if flown {
+            if report.outcome.is_new() {
                 let trajectory = trajectory(answer);
                 self.answers.push_back(Message::PlanTrajectory(trajectory));
                 let controls = controls(answer);
@@ -200,7 +196,10 @@ fn plan_report(tick: u32, answer: &MppAnswer) -> PlanReport {
             0 => PlanOutcome::Adopted,
             1 => PlanOutcome::LeastViolating,
             2 => PlanOutcome::KeptPrevious,
-            _ => PlanOutcome::TrimHold,
+            3 => PlanOutcome::TrimHold,
+            4 => PlanOutcome::Pursuit,
+            5 => PlanOutcome::Reserve,
+            _ => PlanOutcome::Latest,
         },
         candidates: plan.candidates as u16,
         feasible: plan.feasible as u16,

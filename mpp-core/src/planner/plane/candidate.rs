@@ -25,6 +25,18 @@ impl Candidate {
     /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
     /// attack and the thrust.
     pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
+        self.steer(frame, limits, &mut |stage, _| solution.controls[stage]);
+    }
+
+    /// Integrates the motion under the rate of the angle of attack and the thrust beyond trim that `by` gives for each stage.
+    // One copy for all who steer.
+    #[inline(never)]
+    pub(super) fn steer(
+        &mut self,
+        frame: &Frame,
+        limits: &Limits,
+        by: &mut dyn FnMut(usize, &PathState) -> [f64; 2],
+    ) {
         let [down, up] = limits.rolled_out;
         let trim = &frame.trim;
         let level = trim.state.angle_of_attack();
@@ -34,8 +46,8 @@ impl Candidate {
             thrust,
         } = &mut self.flown;
         let (mut state, mut given) = (*first, *thrust);
-        let stages = controls.iter_mut().zip(later).zip(&solution.controls);
-        for ((control, knot), [rate, thrust]) in stages {
+        for (stage, (control, knot)) in controls.iter_mut().zip(later).enumerate() {
+            let [rate, thrust] = by(stage, &state);
             let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
             let allowed = aimed.max(level - down).min(level + up);
             let turn = limits.turn_rate * STAGE_PERIOD;

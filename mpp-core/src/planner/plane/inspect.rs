@@ -72,6 +72,12 @@ impl PlanePlanner {
         Some(candidate.price)
     }
 
+    /// The [seal](Trajectory::seal) of the trajectory that the cycle offers, as the gate let it through.
+    #[must_use]
+    pub fn seal(&self) -> u64 {
+        self.ladder.seal
+    }
+
     /// Index of the candidate that the planner improved last or improves now.
     #[must_use]
     pub fn at_hand(&self) -> usize {

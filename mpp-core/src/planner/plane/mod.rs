@@ -21,21 +21,27 @@
 //! | `refine` | Faces, Linearise, Improve |
 //! | `candidate` | roll-out and linearisation of a candidate |
 //! | `judge` | the price of a roll-out |
+//! | `ladder`, `rungs` | what the gate lets through, rung by rung |
+//! | `pursuit` | roll-outs without a program |
 //! | `inspect` | access to map, candidates and programs of a cycle |
 //! | `workspace` | the memory that the phases use one after the other |
 
 mod candidate;
 mod inspect;
 mod judge;
+mod ladder;
 mod limits;
 mod perceive;
 mod propose;
+mod pursuit;
 mod refine;
+mod rungs;
 mod setup;
 mod workspace;
 
 use super::shared::{NO_TRIM, STILL};
-use super::summary::{PlanSummary, Verdict};
+use super::summary::PlanSummary;
+use crate::gate::Gate;
 use crate::lattice::{CLIMB, CostToGo, MAX_LATTICE_PATHS};
 use crate::map::{DistanceField, RollingGrid};
 use crate::qp::{Solver, Weights};
@@ -50,6 +56,7 @@ use crate::vehicle::{
 use candidate::{Candidate, Frame};
 pub use judge::PriceParts;
 use limits::Limits;
+use rungs::Ladder;
 use workspace::{Intake, Workspace};
 
 /// Greatest number of candidates in a cycle: the previous plan and the paths of the lattice.
@@ -73,6 +80,8 @@ pub enum Phase {
     Linearise,
     /// Solves the program, and at the end computes and judges its roll-out.
     Improve,
+    /// Offers a trajectory to the gate.
+    Gate,
     /// The slice does nothing, because the cycle has ended.
     Done,
 }
@@ -132,8 +141,11 @@ pub struct PlanePlanner {
     at_hand: usize,
     solver: Solver,
 
-    // Results of the cycle. The best trajectory outlives the cycle.
+    // Results of the cycle. The best trajectory outlives the cycle; then it is the previous one.
     best: Trajectory,
+    previous: Trajectory,
+    gate: Gate,
+    ladder: Ladder,
     best_price: f64,
     summary: PlanSummary,
 }
@@ -183,6 +195,9 @@ impl PlanePlanner {
             at_hand: 0,
             solver: Solver::new(),
             best: Trajectory::new(),
+            previous: Trajectory::new(),
+            gate: Gate::new(),
+            ladder: Ladder::NEW,
             best_price: f64::INFINITY,
             summary: PlanSummary::NOTHING,
         }
@@ -218,6 +233,10 @@ impl PlanePlanner {
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.bound_thrust();
+        let latency = self.settings.latency * self.units.time;
+        (self.gate).begin(self.time, latency, state, conditions, self.altitude);
+        self.previous.clone_from(&self.best);
+        self.ladder = Ladder::NEW;
         self.candidates.clear();
         self.improvements = 0;
         self.best_price = f64::INFINITY;
@@ -305,7 +324,7 @@ impl PlanePlanner {
     // The phases that need much stack are never inlined. Otherwise this function would need the sum of
     // their stacks.
     pub fn advance(&mut self) -> bool {
-        if self.is_working() {
+        if self.is_working() && self.phase != Phase::Gate {
             self.summary.slices += 1;
         }
         match self.phase {
@@ -315,6 +334,7 @@ impl PlanePlanner {
             Phase::Faces => self.separate(),
             Phase::Linearise => self.linearise(),
             Phase::Improve => self.improve(),
+            Phase::Gate => self.offer_next(),
         }
         self.is_working()
     }
@@ -326,17 +346,10 @@ impl PlanePlanner {
         self.best.clear();
     }
 
-    /// Ends the cycle and returns its verdict.
-    pub fn finish(&mut self) -> Verdict {
-        self.summary.complete = self.phase == Phase::Done && !self.summary.inconsistent;
-        self.phase = Phase::Idle;
-        self.summary.verdict()
-    }
-
     /// Ends a cycle whose phase and workspace do not belong together. The best trajectory so far stays.
     fn end_inconsistent(&mut self) {
         self.summary.inconsistent = true;
-        self.phase = Phase::Done;
+        self.climb_down();
     }
 
     /// The best trajectory of the cycle.

@@ -68,9 +68,7 @@ impl PlanePlanner {
     /// comes. The aircraft then leaves later what the map knows.
     fn slow_down(&mut self) {
         let [down, up] = self.limits.angle_of_attack;
-        let alpha = self.trim.state.angle_of_attack() + up;
-        let slow = Trim::at_angle_of_attack(&self.airframe, alpha).ok();
-        let Some(trim) = slow.filter(|it| it.control.thrust < self.limits.thrust_max) else {
+        let Some(trim) = self.slowest() else {
             return;
         };
         self.trim = trim;
@@ -79,6 +77,14 @@ impl PlanePlanner {
         self.limits.angle_of_attack = [down + up, 0.0];
         let [down, most] = self.limits.rolled_out;
         self.limits.rolled_out = [down + up, (most - up).max(0.0)];
+    }
+
+    /// Trim of the slowest flight of plans, if the motor carries it.
+    pub(super) fn slowest(&self) -> Option<Trim> {
+        let [_, up] = self.limits.angle_of_attack;
+        let alpha = self.trim.state.angle_of_attack() + up;
+        let slow = Trim::at_angle_of_attack(&self.airframe, alpha).ok();
+        slow.filter(|it| it.control.thrust < self.limits.thrust_max)
     }
 
     /// Searches one station of the lattice. After the last one it proposes its paths.

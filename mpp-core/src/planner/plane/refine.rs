@@ -22,8 +22,7 @@ impl PlanePlanner {
         let next = self.turn();
         let Some((index, candidate)) = next.and_then(|it| Some((it, self.candidates.get(it)?)))
         else {
-            self.phase = Phase::Done;
-            return;
+            return self.climb_down();
         };
         let own = &self.settings;
         let keep = Keep {
@@ -145,7 +144,7 @@ impl PlanePlanner {
 }
 
 /// Indices of the candidates from the lowest to the highest price.
-fn order(candidates: &[Candidate]) -> [usize; MAX_CANDIDATES] {
+pub(super) fn order(candidates: &[Candidate]) -> [usize; MAX_CANDIDATES] {
     let mut order = [0; MAX_CANDIDATES];
     for (index, candidate) in candidates.iter().enumerate() {
         let before = |(other, price): (usize, f64)| {

@@ -1,6 +1,7 @@
 //! The set-up of the plane planner and the checks of its settings.
 
 use super::super::error::{SetupError, check, check_planner};
+use super::rungs::Ladder;
 use super::workspace::Workspace;
 use super::{Phase, PlanePlanner};
 use crate::config::{STAGE_PERIOD, STAGES};
@@ -34,6 +35,8 @@ impl PlanePlanner {
         self.actuators = self.units.own_actuators(&settings.actuators);
         self.lag = ThrustLag::new(&self.actuators, STAGE_PERIOD);
         self.weights = planner.weights;
+        let level = trim.state.angle_of_attack();
+        self.gate.set_up(settings, own, level, trim.state.airspeed);
         self.adopt(planner, own);
         self.try_program()?;
         // A flight computer hands over zeroed memory, so the code must not rely on the values of `new`.
@@ -42,6 +45,7 @@ impl PlanePlanner {
         self.map.clear();
         self.lidar_distrusted = false;
         self.best.clear();
+        self.ladder = Ladder::NEW;
         Ok(())
     }
 

@@ -80,8 +80,9 @@ mod tests {
             let one = planner.cruising();
             planner.propose(one);
             (planner.phase, planner.workspace) = (phase, workspace);
-            assert!(!planner.advance());
-            assert_eq!(planner.finish(), Verdict::Nothing);
+            while planner.advance() {}
+            // The gate still offers the straight path, or the one before.
+            assert!(matches!(planner.finish(), Verdict::Pursuit | Verdict::Kept));
             let summary = planner.summary();
             assert!(summary.inconsistent && !summary.complete, "{phase:?}");
         }
