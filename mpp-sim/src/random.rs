@@ -48,12 +48,14 @@ pub enum Stream {
     Motion = 18,
     /// Sideways and rolling motion of the air.
     LateralGusts = 19,
-    /// Bodies of a world in space.
-    Bodies = 20,
+    /// Pairs of faults of a campaign.
+    FaultPairs = 20,
     /// Directions, noise and faults of a lidar in space.
     SpaceLidar = 21,
     /// Errors of the estimate in space.
     SpaceEstimate = 22,
+    /// Bodies of a world in space.
+    Bodies = 23,
 }
 
 /// The generator of one subsystem: ChaCha with 8 rounds. It has the bits of `rand_chacha`, which is slower to build.
@@ -101,7 +103,7 @@ pub fn gaussian(generator: &mut Draws) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 22] = [
+    const ALL: [Stream; 23] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -121,9 +123,10 @@ mod tests {
         Stream::Generator,
         Stream::Motion,
         Stream::LateralGusts,
-        Stream::Bodies,
+        Stream::FaultPairs,
         Stream::SpaceLidar,
         Stream::SpaceEstimate,
+        Stream::Bodies,
     ];
 
     #[test]
@@ -154,6 +157,7 @@ mod tests {
                 12_220_099_047_758_517_520,
                 627_886_748_865_932_386,
                 13_253_704_345_110_291_491,
+                8_756_309_045_004_367_201,
             ]
         );
     }

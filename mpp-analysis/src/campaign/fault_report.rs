@@ -14,6 +14,8 @@ use std::fmt;
 pub struct Flown {
     /// Whether the flight is a success by the strict rule.
     pub strict: bool,
+    /// Whether the aircraft survived, in the band or out of it.
+    pub survived: bool,
     /// Whether it collided with an obstacle that it had known.
     pub known_collision: bool,
     /// Time from the onset of the fault until the core said so \[s\].
@@ -264,6 +266,7 @@ mod tests {
         let campaign = campaign.unwrap();
         let end = Flown {
             strict: true,
+            survived: true,
             known_collision: false,
             flagged: None,
             told: BTreeSet::new(),

@@ -164,20 +164,7 @@ impl FaultCampaign {
         seed: Option<u64>,
         faults: &[NamedFault],
     ) -> Result<Self, ScenarioError> {
-        let given = says_what_is_flown(scenario, lists);
-        let clean = Campaign::new(scenario.clone(), lists.clone(), trials, seed)?;
-        let mut cells = clean.cells();
-        cells.retain(|cell| !cell.oracle);
-        if !given {
-            let paired = |cell: &Cell| {
-                DEFAULT_PAIRS.map(|(obstacles, replan_hz)| Cell {
-                    obstacles,
-                    replan_hz,
-                    ..cell.clone()
-                })
-            };
-            cells = cells.iter().flat_map(paired).collect();
-        }
+        let (clean, cells) = cells_of(scenario, lists, trials, seed)?;
         let variant = |fault: &NamedFault| -> Result<Variant, ScenarioError> {
             let name = format!("docs/scenarios/faults/{}.toml", fault.name);
             let own = ScenarioFile::parse(&name, fault.text)?;
@@ -264,6 +251,30 @@ impl FaultCampaign {
         let variant = job.fault.and_then(|number| self.faults.get(number));
         variant.map(|variant| variant.fault.name)
     }
+}
+
+/// The campaign without a fault, and the cells of lists and scenario, or 20 obstacles at 1 Hz and 40 at 4 Hz.
+pub(super) fn cells_of(
+    scenario: &ScenarioFile,
+    lists: &Lists,
+    trials: u32,
+    seed: Option<u64>,
+) -> Result<(Campaign, Vec<Cell>), ScenarioError> {
+    let given = says_what_is_flown(scenario, lists);
+    let clean = Campaign::new(scenario.clone(), lists.clone(), trials, seed)?;
+    let mut cells = clean.cells();
+    cells.retain(|cell| !cell.oracle);
+    if !given {
+        let paired = |cell: &Cell| {
+            DEFAULT_PAIRS.map(|(obstacles, replan_hz)| Cell {
+                obstacles,
+                replan_hz,
+                ..cell.clone()
+            })
+        };
+        cells = cells.iter().flat_map(paired).collect();
+    }
+    Ok((clean, cells))
 }
 
 /// Whether lists or scenario name what is flown through, or how often it is planned.

@@ -5,6 +5,7 @@
 //! with the same log hash.
 
 mod causes;
+mod drawn;
 mod fault_report;
 mod faults;
 mod grid;
@@ -17,6 +18,7 @@ mod table;
 mod taxonomy;
 
 pub use causes::CauseReport;
+pub use drawn::{FaultPair, FaultPairs, PairReport, PairRow};
 pub use fault_report::{FaultReport, FaultRow, Flown, Told};
 pub use faults::{FaultCampaign, FaultJob, NamedFault};
 pub use grid::{Campaign, Cell, Lists, NamedField, NoShard, Shard};

@@ -2,7 +2,9 @@
 
 use super::error::CampaignError;
 use hil_protocol::Message;
-use mpp_analysis::campaign::{Campaign, Cell, FaultCampaign, FaultJob, Flown, Row, Shard};
+use mpp_analysis::campaign::{
+    Campaign, Cell, FaultCampaign, FaultJob, FaultPair, FaultPairs, Flown, Row, Shard,
+};
 use mpp_analysis::ceiling::{Feasibility, decide};
 use mpp_analysis::rows::Header;
 use mpp_core::vehicle::{VehicleState, Wind};
@@ -10,6 +12,7 @@ use mpp_sim::flight::{FlyError, fly};
 use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::Scenario;
 use rayon::prelude::*;
@@ -68,16 +71,42 @@ pub fn run_faults(
             CampaignError::Faulty(fault, Box::new(job.cell.clone()), job.seed, error)
         })?;
         done()?;
-        let flown = Flown {
-            strict: log.summary.strict,
-            known_collision: observer.known_collision(&log),
-            flagged: observer.flagged(),
-            told: observer.told().clone(),
-        };
-        Ok((job, flown))
+        Ok((job, kept(&log, &observer)))
     };
     let jobs = campaign.jobs();
     pool(threads, jobs.len())?.install(|| jobs.into_par_iter().map(fly_one).collect())
+}
+
+/// What a campaign of faults keeps of a flight.
+fn kept(log: &FlightLog, observer: &FlightObserver) -> Flown {
+    Flown {
+        strict: log.summary.strict,
+        survived: log.summary.outcome == Outcome::Survived,
+        known_collision: observer.known_collision(log),
+        flagged: observer.flagged(),
+        told: observer.told().clone(),
+    }
+}
+
+/// Flies the flights of a campaign of pairs of faults. `done` is called after each flight. The result is in the order
+/// of the flights.
+///
+/// # Errors
+/// [`CampaignError`] of the first flight that fails, or the error of `done`.
+pub fn run_pairs(
+    campaign: &FaultPairs,
+    threads: usize,
+    done: impl Fn() -> Result<(), CampaignError> + Sync,
+) -> Result<Vec<(FaultPair, Flown)>, CampaignError> {
+    let fly_one = |pair: FaultPair| {
+        let scenario = campaign.scenario(&pair).map_err(CampaignError::Scenario)?;
+        let (log, observer, _) = observed(&scenario)
+            .map_err(|error| CampaignError::Pair(pair.faults.join(" and "), pair.seed, error))?;
+        done()?;
+        Ok((pair, kept(&log, &observer)))
+    };
+    let pairs = campaign.pairs();
+    pool(threads, pairs.len())?.install(|| pairs.into_par_iter().map(fly_one).collect())
 }
 
 /// Decides about the fields of a cell. `done` is called after each. The result is in the order of the seeds.

@@ -21,6 +21,9 @@ pub enum CampaignError {
     /// A flight of a campaign of faults has no outcome. Holds its fault, its cell, its seed and the reason.
     #[error("{3}; this flight failed: {0}, --seed {2} {1}")]
     Faulty(&'static str, Box<Cell>, u64, #[source] FlyError),
+    /// A flight with two faults has no outcome. Holds its faults, its seed and the reason.
+    #[error("{2}; this flight failed: {0}, --seed {1}")]
+    Pair(String, u64, #[source] FlyError),
     /// Whoever started a command that keeps nothing ended it.
     #[error("interrupted: this command keeps nothing of a part")]
     Stopped,

@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// The flags that say what is flown, and how it is kept; the first two are all flags of their groups. Row files say it
 /// themselves.
-const FLOWN: [&str; 12] = [
+const FLOWN: [&str; 13] = [
     "ScenarioArgs",
     "FieldArgs",
     "paths",
@@ -31,6 +31,7 @@ const FLOWN: [&str; 12] = [
     "timing",
     "out",
     "faults",
+    "pairs",
 ];
 
 #[derive(Clone, Debug, clap::Args)]
@@ -69,6 +70,10 @@ pub(super) struct CampaignArgs {
         conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
+    /// With --faults: fly pairs of these faults, each with a start of its own, drawn by the seed; --trials is the number of
+    /// flights. Two faults of one table of the scenario make no pair
+    #[arg(long, help_heading = RUN, requires = "faults", conflicts_with = "oracle")]
+    pub(super) pairs: bool,
     /// Number of flights in each cell
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) trials: u32,
@@ -131,6 +136,7 @@ pub(super) fn failure(error: &CampaignError) -> Failure {
     let code = match error {
         CampaignError::Flight(..)
         | CampaignError::Faulty(..)
+        | CampaignError::Pair(..)
         | CampaignError::Stopped
         | CampaignError::Log(..)
         | CampaignError::Full(..)

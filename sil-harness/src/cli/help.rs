@@ -40,6 +40,7 @@ Examples:
   sil-harness campaign --shard 2/8 --out part2.jsonl --trials 300
   sil-harness campaign --report part1.jsonl part2.jsonl --json
   sil-harness campaign --faults all --trials 60
+  sil-harness campaign --faults all --pairs --trials 2000
 
 A success neither collides nor reaches an extreme state; a strict one also stays in the altitude band of +-11 m.
 Intervals are Wilson's, 95 %.";

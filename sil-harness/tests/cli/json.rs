@@ -80,10 +80,13 @@ fn every_name_that_json_prints_is_documented_and_no_other() {
     let ends = "--field wall.toml --generator walls --obstacles 1 --duration 3";
     let campaign = format!("campaign {ends} --trials 1 --oracle --ceiling --timing");
     let faults = format!("campaign --faults pitch-bias {ends} --trials 1");
-    let tables: [(&str, &[&str]); 5] = [
+    let pairs = format!("campaign --faults pitch-bias,thrust-lost-3s --pairs {ends} --trials 1");
+    let pairs = pairs.replace("--duration 3", "--duration 13");
+    let tables: [(&str, &[&str]); 6] = [
         ("fly --json", &[&format!("fly {ends}")]),
         ("campaign --json", &[&campaign]),
         ("campaign --faults --json", &[&faults]),
+        ("campaign --faults --pairs --json", &[&pairs]),
         ("ceiling --json", &[&format!("ceiling {ends} --fields 1")]),
         (
             "aircraft --json",
