@@ -1,5 +1,7 @@
 //! Tests the gate before adoption, and the ladder beneath it.
 
+#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
+
 mod common {
     pub(crate) mod planning;
     pub(crate) mod world;

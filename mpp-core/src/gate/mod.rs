@@ -150,8 +150,8 @@ impl Gate {
         };
         let mut last = self.units.own_state(&first.state);
         let off = libm::hypot(last.x - self.start.0, last.z - self.start.1);
-        // A comparison that is false for what is not a number.
-        if !(off < numbers::START) {
+        let begins = off < numbers::START;
+        if !begins {
             return GateVerdict::Refused(Cause::Start, 0.0);
         }
         let half = 0.5 * STAGE_PERIOD;

@@ -6,8 +6,9 @@
 //! process that may die. `scans` plans on adversarial scans from states beyond flight.
 #![expect(
     clippy::unwrap_used,
+    clippy::disallowed_methods,
     unsafe_code,
-    reason = "a command, which turns over bits of a value"
+    reason = "a command, which turns over bits of a value; its sines need not be those of another machine"
 )]
 
 use mpp_core::map::RollingGrid;

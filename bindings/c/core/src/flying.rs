@@ -218,7 +218,7 @@ impl MppCore {
         flight.control.count_cycle(summary);
         let mut knots = [MppState::default(); MPP_KNOTS];
         let (mut thrust, mut elevator) = ([0.0; MPP_KNOTS], [0.0; MPP_KNOTS]);
-        if outcome < 2 || outcome > 3 {
+        if !(2..=3).contains(&outcome) {
             let places = knots.iter_mut().zip(&mut thrust).zip(&mut elevator);
             for (((knot, thrust), elevator), reference) in places.zip(&best.knots) {
                 *knot = MppState::from(reference);

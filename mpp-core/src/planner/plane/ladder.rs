@@ -57,7 +57,7 @@ impl PlanePlanner {
             Rung::Other(place) => self.priced(place),
             Rung::Pursuit(index) => (self.candidates.get(index).copied())
                 .filter(|it| it.price.is_infinite())
-                .map(|path| self.pursue(&Course::Path(path.flown.knots))),
+                .map(|path| self.pursue(&Course::Path(&path.flown.knots))),
             Rung::Reserve(kind) => Reserve::ALL.get(kind).map(|kind| self.manoeuvre(*kind)),
         };
         let Some(candidate) = candidate else {

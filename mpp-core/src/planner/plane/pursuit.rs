@@ -8,9 +8,9 @@ use crate::vehicle::{PathState, Trim};
 use mpp_data::GRAVITY;
 
 /// Where a roll-out without a program is to go.
-pub(super) enum Course {
+pub(super) enum Course<'a> {
     /// Along the places of these knots.
-    Path([PathState; KNOTS]),
+    Path(&'a [PathState; KNOTS]),
     /// Level over ground, with the airspeed of this trim.
     Level(Trim),
     /// Up with this angle of the path \[rad\] and all thrust.
@@ -20,7 +20,7 @@ pub(super) enum Course {
 impl PlanePlanner {
     /// Flies a course out from where the aircraft takes the plan over.
     #[inline(never)]
-    pub(super) fn pursue(&self, course: &Course) -> Candidate {
+    pub(super) fn pursue(&self, course: &Course<'_>) -> Candidate {
         let mut candidate = self.cruising();
         candidate.steer(&self.frame(), &self.limits, &mut |_, state| {
             self.steered(course, state)
@@ -29,7 +29,7 @@ impl PlanePlanner {
     }
 
     /// Rate of the angle of attack and thrust beyond trim that lead from a state to a course.
-    fn steered(&self, course: &Course, state: &PathState) -> [f64; 2] {
+    fn steered(&self, course: &Course<'_>, state: &PathState) -> [f64; 2] {
         let (path, airspeed) = match course {
             Course::Path(knots) => (aim(knots, state), self.trim.state.airspeed),
             Course::Level(trim) => (0.0, trim.state.airspeed),
