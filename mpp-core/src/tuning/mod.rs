@@ -244,7 +244,7 @@ pub mod gate {
     pub const LOOK_AHEAD: f64 = 4.0;
     /// Thrust for a lack of airspeed in a pursuit [N s/m]. Source: chosen.
     pub const SPEED_GAIN: f64 = 4.0;
-    /// Load beyond that of level flight at cruise that an angle of attack may stand for [g]. Roll-outs reach 1.4.
+    /// Load beyond that of level flight at cruise that an angle of attack may stand for \[g\]. Roll-outs reach 1.4.
     /// Source: derived.
     pub const MOST_LOAD: f64 = 2.0;
     /// Least airspeed, as a share of cruise [-]. Source: chosen.
@@ -257,7 +257,7 @@ pub mod gate {
     pub const THRUST_SPARE: f64 = 0.01;
     /// Greatest error of a place against the mean of its speeds \[m\]. Source: chosen.
     pub const PLACE: f64 = 0.15;
-    /// Greatest error of the balance of forces [g]. Source: chosen.
+    /// Greatest error of the balance of forces \[g\]. Source: chosen.
     pub const LOAD_SPARE: f64 = 0.3;
 }
 
