@@ -1,8 +1,8 @@
 //! The collision check: the wing is a segment, the fuselage a capsule.
 
 use super::motion::SpaceState;
-use super::quaternion::Quaternion;
-use super::world::{Vector, World, WorldError};
+use super::pose::Pose;
+use super::world::{World, WorldError};
 
 /// Distance at which something counts as touched \[m\]. Between two checked attitudes no point of the hull moves by more than
 /// twice this, so that it passes through no wire, however thin.
@@ -19,9 +19,6 @@ pub struct Hull {
     pub radius: f64,
 }
 
-/// Place and attitude of a hull.
-type Pose = (Vector, Quaternion);
-
 impl Hull {
     /// A wing of this span \[m\] without a fuselage.
     #[must_use]
@@ -36,18 +33,13 @@ impl Hull {
     /// Distance from the nearest body or the ground \[m\], at most `most`; 0 or less where the hull touches.
     #[must_use]
     pub fn clearance(&self, world: &World, state: &SpaceState, most: f64) -> f64 {
-        self.clear(world, pose(state), most)
+        self.clear(world, &Pose::of(state), most)
     }
 
-    fn clear(&self, world: &World, (at, attitude): Pose, most: f64) -> f64 {
-        let ends = |axis: Vector| {
-            [-1.0, 1.0].map(|side| {
-                let [x, y, down] = attitude.in_world(axis.map(|part| side * part));
-                [at[0] + x, at[1] + y, at[2] - down]
-            })
-        };
-        let [left, right] = ends([0.0, self.half_span, 0.0]);
-        let [tail, nose] = ends([self.half_length, 0.0, 0.0]);
+    fn clear(&self, world: &World, pose: &Pose, most: f64) -> f64 {
+        let ends = |[x, y, z]: [f64; 3]| (pose.place([-x, -y, -z]), pose.place([x, y, z]));
+        let (left, right) = ends([0.0, self.half_span, 0.0]);
+        let (tail, nose) = ends([self.half_length, 0.0, 0.0]);
         let wing = world.clearance_of_segment(left, right, most);
         let fuselage = world.clearance_of_segment(tail, nose, most + self.radius) - self.radius;
         wing.min(fuselage)
@@ -56,26 +48,16 @@ impl Hull {
     /// The share of the way between two states of one tick at which the hull first touches something.
     #[must_use]
     pub fn first_contact(&self, world: &World, from: &SpaceState, to: &SpaceState) -> Option<f64> {
-        let ((a, turn_a), (b, turn_b)) = (pose(from), pose(to));
-        let change = [0, 1, 2].map(|axis| b[axis] - a[axis]);
-        let moved = libm::hypot(libm::hypot(change[0], change[1]), change[2]);
-        let (one, other) = (turn_a.0, turn_b.0);
-        let cosine: f64 = one.iter().zip(other).map(|(a, b)| a * b).sum();
-        let turned = 2.0 * libm::acos(cosine.abs().min(1.0));
+        let (from, to) = (Pose::of(from), Pose::of(to));
+        let (moved, turned) = from.change(&to);
         let most = moved + turned * self.half_span.max(self.half_length + self.radius);
-        if self.clear(world, (a, turn_a), most + TOUCH) >= most + TOUCH {
+        let far = most + TOUCH;
+        if self.clear(world, &from, far) >= far {
             return None;
         }
         let count = (most / (2.0 * TOUCH)).ceil().max(1.0);
-        // Quaternions of opposite sign are the same attitude.
-        let sign = if cosine < 0.0 { -1.0 } else { 1.0 };
         let mut shares = (0..=count as u32).map(|piece| f64::from(piece) / count);
-        shares.find(|share| {
-            let at = [0, 1, 2].map(|axis| a[axis] + share * change[axis]);
-            let turn =
-                [0, 1, 2, 3].map(|part| (1.0 - share) * one[part] + share * sign * other[part]);
-            self.clear(world, (at, Quaternion(turn).normalised()), 1.0) <= TOUCH
-        })
+        shares.find(|share| self.clear(world, &from.towards(&to, *share), 1.0) <= TOUCH)
     }
 
     /// Refuses a start at which the hull touches something.
@@ -91,16 +73,11 @@ impl Hull {
     }
 }
 
-fn pose(state: &SpaceState) -> Pose {
-    let (plane, lateral) = (&state.plane, &state.lateral);
-    ([plane.x, lateral.y, plane.z], state.attitude())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::LateralState;
-    use crate::space::world::{Body, Extent};
+    use crate::space::world::{Body, Extent, Vector};
+    use crate::space::{LateralState, Quaternion};
     use mpp_core::vehicle::{AirState, VehicleState};
 
     const SPAN: f64 = 2.0;

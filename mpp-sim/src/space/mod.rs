@@ -6,7 +6,9 @@ mod errors;
 mod flight;
 mod forest;
 mod hull;
+pub mod lidar;
 mod motion;
+mod pose;
 mod quaternion;
 mod servo;
 #[cfg(test)]
@@ -20,6 +22,7 @@ pub use flight::{SpaceConfig, SpaceFlight};
 pub use forest::{SpaceEnd, SpaceOutcome, fly_through};
 pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
+pub use pose::Pose;
 pub use quaternion::Quaternion;
 pub use servo::Servo;
 pub use wind::{SpaceWind, WindConfig};
