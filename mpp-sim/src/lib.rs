@@ -24,7 +24,7 @@
 //! faults                     faults and disturbances
 //! scenario                   the parameters of a flight, also as TOML
 //! aircraft, world            plant, field and lidar of one flight, as a scenario describes them
-//! space                      an aircraft that turns: six degrees of freedom, wind on three axes
+//! space                      an aircraft that turns: six degrees of freedom, wind on three axes, worlds and lidars
 //! outcome                    the success rule of the paper, and a strict one
 //! entries, tick_record       the entries of the log, and the data of one tick
 //! inspector                  map, candidates and corridor of each planning cycle, for pictures

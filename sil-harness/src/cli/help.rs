@@ -64,6 +64,7 @@ pub(super) const SPACE: &str = "\
 Examples:
   sil-harness space --aircraft ultrastick
   sil-harness space --aircraft x8 --bank -20 --wind 0,4,0 --gusts light --out turn.csv
+  sil-harness space --aircraft ultrastick --world forest --density 0.02 --seed 7
   sil-harness space --aircraft rascal --flights 100 --gusts light
 
 Elevator and thrust stay those of level flight, so a turn loses height. With --flights the planner commands them, and the

@@ -29,6 +29,7 @@ mod scenario;
 mod signals;
 mod space;
 mod values;
+mod worlds;
 
 use answer::complain;
 use clap::{CommandFactory, Parser, Subcommand};

@@ -1,8 +1,9 @@
-//! `space`: the lateral regulator holds a bank in six degrees of freedom.
+//! `space`: the lateral regulator holds a bank in six degrees of freedom, perhaps in a world.
 
 use super::answer::{Failure, print};
 use super::courses::courses;
 use super::values::{bank, seed, wind};
+use super::worlds::{Flown, WorldArgs};
 use crate::files::{read_aircraft, write_whole};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::GRAVITY;
@@ -19,21 +20,23 @@ pub(super) struct SpaceArgs {
     /// Name of an aircraft that comes with the project, or a file, with a lateral table
     #[arg(long, value_name = "NAME|FILE")]
     aircraft: String,
-    /// Bank to take at once and to hold, to the right positive, -60 to 60 \[deg\]
-    #[arg(long, default_value_t = 30.0, value_name = "DEG", value_parser = bank, allow_negative_numbers = true)]
-    bank: f64,
+    /// Bank to take at once and to hold, to the right positive, -60 to 60 \[deg\] [default: 30, and 0 in a world]
+    #[arg(long, value_name = "DEG", value_parser = bank, allow_negative_numbers = true)]
+    bank: Option<f64>,
     /// Steady wind ahead, to the right and up [m/s]
     #[arg(long, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
     wind: Option<[f64; 3]>,
     /// Turbulence of MIL-F-8785C at low altitude
     #[arg(long)]
     gusts: Option<Turbulence>,
-    /// Seed of the gusts
+    /// Seed of the gusts and of the world
     #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Let the planner fly this number of flights in its vertical plane, with the course held, past 20 and 40 scaled obstacles
-    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "json", "out"])]
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "json", "out"])]
     flights: u32,
+    #[command(flatten)]
+    world: WorldArgs,
     /// Print one JSON object
     #[arg(long)]
     json: bool,
@@ -63,6 +66,8 @@ impl Turbulence {
     }
 }
 
+/// Bank without a world \[deg\].
+const USUAL_BANK: f64 = 30.0;
 /// Duration of the flight, and of its end over which the turn is measured \[ticks\].
 const TICKS: usize = 2000;
 const MEASURED: usize = 1000;
@@ -84,6 +89,9 @@ struct Turned {
     radius: Option<f64>,
     /// `v^2 / (g tan bank)` with the mean airspeed and the wanted bank.
     radius_level: Option<f64>,
+    /// Only in a world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    world: Option<Flown>,
 }
 
 impl fmt::Display for Turned {
@@ -103,7 +111,7 @@ impl fmt::Display for Turned {
                 "\nradius of the turn  {flown:8.1} m, v^2 / (g tan bank) is {level:.1} m"
             )?;
         }
-        Ok(())
+        self.world.iter().try_for_each(|it| write!(f, "\n{it}"))
     }
 }
 
@@ -112,8 +120,13 @@ pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
         let intensity = args.gusts.map_or(0.0, Turbulence::intensity);
         return courses(&args.aircraft, args.flights, args.seed, intensity);
     }
-    let states = fly(args)?;
-    let turned = Turned::of(args, &states);
+    let world = args.world.build(args.seed)?;
+    let (states, span) = fly(args)?;
+    let flown = world.map(|world| Flown::of(&world, span, &states));
+    let turned = Turned {
+        world: flown.transpose()?,
+        ..Turned::of(args, &states)
+    };
     if let Some(out) = &args.out {
         write_whole(out, table(&states).as_bytes()).map_err(Failure::failed)?;
     }
@@ -121,8 +134,8 @@ pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// The states of the flight after each tick. Elevator and thrust stay those of level flight.
-fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
+/// The states of the flight after each tick, and the span. Elevator and thrust stay those of level flight.
+fn fly(args: &SpaceArgs) -> Result<(Vec<SpaceState>, f64), Failure> {
     let file = read_aircraft(&args.aircraft).map_err(Failure::usage)?;
     let aircraft = AircraftModel::new(file).map_err(Failure::usage)?;
     let mut scenario = Scenario {
@@ -139,7 +152,7 @@ fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
     let mut plant = SpaceAircraft::new(&scenario, wind).map_err(Failure::usage)?;
     let model = &scenario.aircraft;
     let mut regulator = regulator(&scenario).map_err(Failure::usage)?;
-    let bank = args.bank.to_radians();
+    let bank = args.bank().to_radians();
     let mut states = Vec::with_capacity(TICKS);
     for tick in 0..TICKS {
         let command = regulator.step(&plant.state().lateral_motion(), bank);
@@ -149,7 +162,19 @@ fn fly(args: &SpaceArgs) -> Result<Vec<SpaceState>, Failure> {
         })?;
         states.push(*plant.state());
     }
-    Ok(states)
+    let span = model.file.lateral.as_ref().map_or(0.0, |it| it.span);
+    Ok((states, span))
+}
+
+impl SpaceArgs {
+    fn bank(&self) -> f64 {
+        let usual = if self.world.is_given() {
+            0.0
+        } else {
+            USUAL_BANK
+        };
+        self.bank.unwrap_or(usual)
+    }
 }
 
 impl Turned {
@@ -158,7 +183,7 @@ impl Turned {
         let mean = |of: &dyn Fn(&SpaceState) -> f64| {
             measured.iter().map(of).sum::<f64>() / measured.len() as f64
         };
-        let bank = args.bank.to_radians();
+        let bank = args.bank().to_radians();
         let slips = states.iter().map(|it| it.lateral.sideslip.abs());
         let altitude = |state: Option<&SpaceState>| state.map_or(0.0, |it| it.plane.z);
         // Courses wrap at 180 deg, steps between ticks do not.
@@ -168,15 +193,16 @@ impl Turned {
         });
         let turn_rate = turns.sum::<f64>().abs() / ((measured.len() - 1) as f64 * TICK_PERIOD);
         let speed = mean(&|it| it.plane.air.airspeed);
-        let turning = args.bank != 0.0;
+        let turning = args.bank() != 0.0;
         Self {
             aircraft: args.aircraft.clone(),
-            bank_deg: args.bank,
+            bank_deg: args.bank(),
             bank_rms_deg: mean(&|it| (it.bank() - bank).powi(2)).sqrt().to_degrees(),
             most_sideslip_deg: slips.fold(0.0, f64::max).to_degrees(),
             altitude_change: altitude(states.last()) - altitude(states.first()),
             radius: turning.then_some(speed / turn_rate),
             radius_level: turning.then_some(speed * speed / (GRAVITY * libm::tan(bank).abs())),
+            world: None,
         }
     }
 }

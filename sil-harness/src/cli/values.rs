@@ -5,6 +5,7 @@ use clap::{Arg, Command};
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
+use mpp_sim::space::world::WorldName;
 use std::error::Error;
 use std::ffi::OsStr;
 use std::str::FromStr;
@@ -162,6 +163,19 @@ pub(super) fn generator() -> impl TypedValueParser<Value = GeneratorName> {
         GeneratorName::Wires => "Thin circles, or thin bars",
     };
     named(GeneratorName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
+}
+
+/// Reads a generator of a world in space.
+pub(super) fn world() -> impl TypedValueParser<Value = WorldName> {
+    let help = |name| match name {
+        WorldName::Forest => "Trunks at places that know nothing of each other",
+        WorldName::Grid => "Trunks in a grid, each moved by at most half of the spacing",
+        WorldName::Disc => "Trunks with a least distance from each other",
+        WorldName::Spheres => "Spheres of 1 m radius",
+        WorldName::Walls => "Walls across the way, each with one window of 5 m by 5 m",
+        WorldName::Slalom => "Rows of trunks from both sides in turn",
+    };
+    named(WorldName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }
 
 /// Reads a challenge scene.

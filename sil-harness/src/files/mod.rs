@@ -6,6 +6,7 @@ use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
+use mpp_sim::space::world::{Body, StemError, stems};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -30,6 +31,9 @@ pub enum FileError {
     /// The file is no field; the error names the file.
     #[error("{0}")]
     Field(#[source] FieldError),
+    /// The file is no stem map; the error names the file.
+    #[error("{0}")]
+    Stems(#[source] StemError),
     /// The file has rows of a campaign, where a flight's log is wanted.
     #[error("{path} is a row file: give a flight's log, which fly writes", path = .0.display())]
     Rows(PathBuf),
@@ -147,6 +151,15 @@ pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
 pub fn read_lidar(path: &Path) -> Result<LidarTable, FileError> {
     LidarTable::parse(&path.display().to_string(), &read(path, MOST_WRITTEN)?)
         .map_err(FileError::Scenario)
+}
+
+/// Reads a stem map.
+///
+/// # Errors
+/// [`FileError::Read`] or [`FileError::Stems`].
+pub fn read_stems(path: &Path) -> Result<Vec<Body>, FileError> {
+    let name = path.display().to_string();
+    stems(&name, &read(path, MOST_FIELD)?).map_err(FileError::Stems)
 }
 
 /// Reads a field.

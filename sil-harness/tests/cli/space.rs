@@ -66,6 +66,43 @@ fn gusts_follow_the_seed_and_ticks_are_written() {
     std::fs::remove_file(out).unwrap();
 }
 
+/// A straight flight meets the first trunk of a row on its way.
+#[test]
+fn a_world_is_measured_and_the_first_hit_is_told() {
+    let forest = told("--aircraft ultrastick --world forest --seed 7");
+    assert_eq!(forest["bank_deg"], 0.0);
+    let world = &forest["world"];
+    assert!(world["bodies"].as_u64().unwrap() > 800, "{world}");
+    let path = world["mean_free_path"].as_f64().unwrap();
+    // 1 / (2 w density), where w is half of the span and the mean radius.
+    assert!(
+        (path * 2.0 * (0.635 + 0.275) * 0.04 - 1.0).abs() < 0.2,
+        "{world}"
+    );
+    assert!(world["first_hit"]["x"].as_f64().unwrap() > 14.0, "{world}");
+    let map = scratch("stems.csv");
+    let row = "id,x,y,diameter\n1,200,0,0.4\n2,90,0.5,0.3\n3,60,1.5,0.3\n4,40,-5,0.3\n";
+    std::fs::write(&map, row).unwrap();
+    let flags = format!("--aircraft ultrastick --stems {}", map.display());
+    let hit = &told(&flags)["world"]["first_hit"];
+    assert!((hit["x"].as_f64().unwrap() - 89.85).abs() < 0.02, "{hit}");
+    std::fs::write(&map, "x,y,diameter\n40,5,0.3\n").unwrap();
+    let output = space(&flags);
+    let talk = String::from_utf8_lossy(&output.stdout);
+    assert!(talk.contains("first hit                  -"), "{talk}");
+    for (row, hint) in [
+        ("40,5,nan", "line 2, diameter `nan`: give a number"),
+        ("0,0.3,0.4", "touches a body or the ground at its start"),
+    ] {
+        std::fs::write(&map, format!("x,y,diameter\n{row}\n")).unwrap();
+        let output = space(&flags);
+        let talk = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{talk}");
+        assert!(output.stdout.is_empty() && talk.contains(hint), "{talk}");
+    }
+    std::fs::remove_file(map).unwrap();
+}
+
 #[test]
 fn what_cannot_be_flown_is_refused_in_one_sentence() {
     for (flags, hint) in [
@@ -76,6 +113,12 @@ fn what_cannot_be_flown_is_refused_in_one_sentence() {
         ("--aircraft nosuch", "no aircraft `nosuch`"),
         ("--aircraft x8 --bank 70", "give -60 to 60 deg"),
         ("--aircraft x8 --wind 1,2", "give X,Y,Z"),
+        (
+            "--aircraft x8 --world forest --density 5",
+            "density: give more than 0 and at most 1 (trunks/m^2)",
+        ),
+        ("--aircraft x8 --density 0.1", "--world"),
+        ("--aircraft x8 --stems nosuch.csv", "cannot read nosuch.csv"),
     ] {
         let output = space(flags);
         let talk = String::from_utf8_lossy(&output.stderr);
