@@ -25,7 +25,7 @@ use grid::Grid;
 pub const FARTHEST: f64 = 1e5;
 
 /// Distance within which the nearest body is looked for first \[m\]; then within twice as much, and so on. More looks at bodies
-/// in vain, less looks more often. Source: `how_fast_are_rays`.
+/// in vain, less looks more often. Source: chosen, half of a cell.
 const FIRST_REACH: f64 = 2.0;
 
 /// Where an aircraft is to fly. Nothing solid stands at these limits.
