@@ -108,11 +108,8 @@ fn one_hit_on_what_was_free_long_is_believed() {
     for _ in 0..100 {
         map.insert(&beam(35.0), 45.0, &pose(100.2, 50.2, 0.0));
     }
-    let hits = (1..10).find(|_| {
-        map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
-        field(&map).is_occupied(120.3, 50.2)
-    });
-    assert!(hits.is_some_and(|hits| hits <= 3), "{hits:?}");
+    map.insert(&beam(20.1), 45.0, &pose(100.2, 50.2, 0.0));
+    assert!(field(&map).is_occupied(120.3, 50.2));
 }
 
 #[test]

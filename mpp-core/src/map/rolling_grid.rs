@@ -7,8 +7,8 @@
 use super::cell::{FixedPoint, at_least, bit, rounded_down, zeros};
 use crate::sense::LidarScan;
 use crate::tuning::grid::{
-    BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, HIT, HIT_DOUBT, ISOLATED_CELLS, LIMIT,
-    OCCUPIED, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
+    BEHIND, BLIND_CELLS, BLIND_SHARE, CELL, FIRST_STEP, FREE, HIT, HIT_DOUBT, ISOLATED_CELLS,
+    LIMIT, OCCUPIED, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, STEP, UNANSWERED_SHARE,
 };
 use crate::vehicle::Pose;
 use core::ops::Range;
@@ -141,7 +141,7 @@ impl RollingGrid {
             for col in 0..COLS as i32 {
                 let col = first.saturating_add(col);
                 let x = CELL * (f64::from(col) + 0.5);
-                log_odds[slot(col)] = if occupied(x, z) { LIMIT } else { -LIMIT };
+                log_odds[slot(col)] = if occupied(x, z) { LIMIT } else { -FREE };
             }
         }
     }
@@ -369,7 +369,7 @@ impl Default for RollingGrid {
 /// The log-odds of a cell after a beam, within the limits. It is never 0, because 0 means that no beam has seen
 /// the cell.
 fn updated(log_odds: i8, change: i8) -> i8 {
-    match log_odds.saturating_add(change).clamp(-LIMIT, LIMIT) {
+    match log_odds.saturating_add(change).clamp(-FREE, LIMIT) {
         0 => -1,
         sum => sum,
     }

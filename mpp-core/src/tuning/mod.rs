@@ -54,7 +54,7 @@ pub const UNKNOWN_AHEAD: f64 = 26.0;
 /// limited actuators past 160 obstacles succeeded. Source: D38.
 pub const UNKNOWN_STRETCH: f64 = 1.75;
 
-/// The rolling occupancy grid. The log-odds of a cell are a whole number from `-LIMIT` to `LIMIT`, and 0 where no beam
+/// The rolling occupancy grid. The log-odds of a cell are a whole number from `-FREE` to `LIMIT`, and 0 where no beam
 /// has been.
 pub mod grid {
     /// Edge of a cell \[m\]. Smaller cells show gaps better and cost time by their square; 0.25 m gave no
@@ -63,8 +63,7 @@ pub mod grid {
     /// Number of columns of the window that stay behind the aircraft \[cells\]. They are 8 m, which is more
     /// than an obstacle's radius and the reach of a face together. Source: derived.
     pub const BEHIND: i32 = 16;
-    /// Log-odds that one hit adds. One hit makes an unknown cell occupied, because it is above
-    /// [`OCCUPIED`]; two passing beams make the cell free again. Source: D8.
+    /// Log-odds that one hit adds. One hit makes any cell occupied; two passing beams make the cell free again. Source: D8.
     pub const HIT: i8 = 60;
     /// Least log-odds at which a cell counts as occupied. Source: chosen.
     pub const OCCUPIED: i8 = 25;
@@ -77,9 +76,11 @@ pub mod grid {
     /// of the scan do not clear isolated hits. With a greater number beams leave cells beside the rims of
     /// obstacles that are not occupied. Source: D15.
     pub const ISOLATED_CELLS: u32 = 2;
-    /// Greatest log-odds for and against an obstacle. Three or four beams can reverse the state of a cell.
-    /// Source: chosen.
+    /// Greatest log-odds for an obstacle. Three passing beams make such a cell free. Source: chosen.
     pub const LIMIT: i8 = 100;
+    /// Greatest log-odds against an obstacle. However many beams have passed a cell, one hit makes it occupied. With a
+    /// greater one the map does not take in a plate edge-on or a wire, past which more beams pass than hit it. Source: D15.
+    pub const FREE: i8 = HIT - OCCUPIED;
     /// Distance between the points along a beam at which the map visits cells \[m\]. It is less than a
     /// cell's edge divided by the square root of two, so that the points skip no cell. Source: derived.
     pub const STEP: f64 = 0.35;
