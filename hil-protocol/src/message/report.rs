@@ -190,8 +190,10 @@ pub enum RejectionCause {
     /// A scan has the same ranges as the one before, to the last bit. The lidar is frozen.
     #[error("the scan repeats the one before to the last bit: the lidar is frozen, check it")]
     ScanRepeated,
-    /// A scan has no return, although the map knows obstacles in its fan. The lidar is blind.
-    #[error("no beam returns although the map knows obstacles ahead: the lidar is blind, check it")]
+    /// A scan, or a sector of it, has no return, although obstacles are known there, or its beams come in reverse order.
+    #[error(
+        "the scan does not show known obstacles: the lidar is blind, check it and the order of its beams"
+    )]
     ScanBlind,
     /// A task of the core trapped or hung. The core restarted the planner, or itself if the step was the task.
     #[error(

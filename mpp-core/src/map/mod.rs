@@ -3,12 +3,14 @@
 //! | type | content |
 //! |---|---|
 //! | [`RollingGrid`] | the rolling occupancy grid: log-odds of earlier scans |
+//! | [`ScanMonitor`] | whether a scan agrees with the one before it |
 //! | [`VoxelGrid`], [`VoxelField`] | the same in space |
 //! | [`DistanceField`] | the truncated distance field \(ESDF\): from a point to the nearest centre of an occupied cell of the grid |
 
 pub(crate) mod cell;
 mod distance_field;
 mod rolling_grid;
+mod scan_monitor;
 pub(crate) mod voxel_field;
 pub(crate) mod voxels;
 
@@ -16,6 +18,7 @@ pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
 pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
+pub use scan_monitor::{ScanMonitor, ScanVerdict};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
 pub use voxels::{CELL, CELLS, SpaceBeam, VoxelGrid};
 

@@ -383,7 +383,7 @@ pub(crate) fn has_return(scan: &LidarScan, sight: f64) -> bool {
 
 /// Whether a range \[m\] is that of an obstacle. Some lidars give 0 where nothing came back, others their full
 /// range.
-fn is_return(range: f64, sight: f64) -> bool {
+pub(super) fn is_return(range: f64, sight: f64) -> bool {
     range > 0.0 && range < sight
 }
 

@@ -43,7 +43,7 @@ use super::shared::{NO_TRIM, STILL};
 use super::summary::PlanSummary;
 use crate::gate::Gate;
 use crate::lattice::{CLIMB, CostToGo, MAX_LATTICE_PATHS};
-use crate::map::{DistanceField, RollingGrid};
+use crate::map::{DistanceField, RollingGrid, ScanMonitor};
 use crate::qp::{Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::PlaneSettings;
@@ -128,6 +128,7 @@ pub struct PlanePlanner {
     map: RollingGrid,
     /// Whether a scan without a return has contradicted the map, and no beam has returned since.
     lidar_distrusted: bool,
+    monitor: ScanMonitor,
     field: DistanceField,
     cost_to_go: CostToGo,
 
@@ -187,6 +188,7 @@ impl PlanePlanner {
             workspace: Workspace::NEW,
             map: RollingGrid::new(),
             lidar_distrusted: false,
+            monitor: ScanMonitor::new(),
             field: DistanceField::new(),
             cost_to_go: CostToGo::new(),
             candidates: heapless::Vec::new(),
@@ -343,6 +345,7 @@ impl PlanePlanner {
     pub fn forget(&mut self) {
         self.map.clear();
         self.lidar_distrusted = false;
+        self.monitor.clear();
         self.best.clear();
     }
 

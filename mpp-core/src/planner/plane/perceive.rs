@@ -3,7 +3,7 @@
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
 use crate::lattice::{Lattice, LatticeTask};
-use crate::map::has_return;
+use crate::map::{ScanVerdict, has_return};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
 use crate::vehicle::Trim;
 
@@ -26,8 +26,13 @@ impl PlanePlanner {
             // A lidar that was distrusted once stays so until a beam returns.
             self.lidar_distrusted = !has_return(scan, sight)
                 && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
+            let verdict = self.monitor.check(scan, sight, &pose);
+            if verdict == ScanVerdict::ReversedBefore {
+                self.map.clear();
+                self.map.roll(pose.x, self.altitude);
+            }
+            self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
             if self.lidar_distrusted {
-                self.summary.blind = true;
                 scan.ranges.clear();
             }
             self.map.write_isolated_hits(scan, sight, &pose, isolated);

@@ -44,6 +44,7 @@ impl PlanePlanner {
         self.ready = true;
         self.map.clear();
         self.lidar_distrusted = false;
+        self.monitor.clear();
         self.best.clear();
         self.ladder = Ladder::NEW;
         Ok(())

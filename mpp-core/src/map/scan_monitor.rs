@@ -1,0 +1,247 @@
+//! Whether a scan agrees with the one before it: what the lidar showed has to be there again.
+//!
+//! The monitor predicts where beams meet again what they met in the last scan. It uses only returns that an adjacent beam
+//! confirms, so a wire that falls between two beams predicts nothing. What comes nearer than predicted hides the rest and
+//! says nothing; what comes from farther, or not at all, is a *miss*.
+
+use super::rolling_grid::{has_return, is_return};
+use crate::sense::LidarScan;
+use crate::tuning::scan_match::{
+    ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, OFF, OFF_SHARE,
+    SECTORS, SIGHT_SHARE,
+};
+use crate::vehicle::Pose;
+
+/// What the monitor makes of a scan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ScanVerdict {
+    /// Nothing speaks against the scan.
+    Agrees,
+    /// Sectors of the fan are silent where returns were predicted. Their beams without a return are marked as bad.
+    Silent,
+    /// The beams come in reverse order, from this scan on. The scan is empty now.
+    Reversed,
+    /// The beams come in reverse order, and came so before: the map is wrong too. The scan is empty now.
+    ReversedBefore,
+}
+
+/// The monitor of the scans, with the last scan that had a return.
+#[derive(Clone, Debug)]
+pub struct ScanMonitor {
+    last: LidarScan,
+    pose: Pose,
+    /// Sectors that went silent, and from which no beam has returned since.
+    silent: [bool; SECTORS],
+    /// Whether the beams came in reverse order, and nothing has spoken against it since.
+    reversed: bool,
+}
+
+/// How well a scan fits the last one.
+#[derive(Clone, Copy, Default)]
+struct Fit {
+    /// Numbers of predicted returns that came and that did not.
+    hits: u32,
+    misses: u32,
+    /// Missed returns of each sector, each counted once for every adjacent beam that confirmed it.
+    missed: [u32; SECTORS],
+}
+
+/// The order in which the beams of the last scan and of this one are taken: as sent, or reversed.
+type Orders = [bool; 2];
+
+impl ScanMonitor {
+    /// A monitor that has seen no scan.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            last: LidarScan::new(),
+            pose: Pose {
+                x: 0.0,
+                z: 0.0,
+                pitch: 0.0,
+            },
+            silent: [false; SECTORS],
+            reversed: false,
+        }
+    }
+
+    /// Forgets the last scan and what was held against the lidar.
+    pub fn clear(&mut self) {
+        self.last.ranges.clear();
+        self.silent = [false; SECTORS];
+        self.reversed = false;
+    }
+
+    /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
+    /// to be believed. A scan without a return says nothing here; [`super::RollingGrid::contradicts`] judges it.
+    pub fn check(&mut self, scan: &mut LidarScan, sight: f64, pose: &Pose) -> ScanVerdict {
+        let mut before = false;
+        if has_return(scan, sight) {
+            let as_sent = self.fit(scan, sight, pose, [false, false]);
+            before = self.note_order(scan, sight, pose, &as_sent);
+            if self.reversed {
+                self.silent = [false; SECTORS];
+            } else {
+                self.note_silence(scan, sight, &as_sent);
+            }
+            self.last.clone_from(scan);
+            self.pose = *pose;
+        }
+        if self.reversed {
+            scan.ranges.clear();
+            return if before {
+                ScanVerdict::ReversedBefore
+            } else {
+                ScanVerdict::Reversed
+            };
+        }
+        self.mute(scan, sight);
+        if self.silent.contains(&true) {
+            ScanVerdict::Silent
+        } else {
+            ScanVerdict::Agrees
+        }
+    }
+
+    /// Notes whether the reverse order fits better than the one as sent. Returns true if this is new and the last scan was
+    /// reversed too.
+    fn note_order(&mut self, scan: &LidarScan, sight: f64, pose: &Pose, as_sent: &Fit) -> bool {
+        if !self.reversed && as_sent.misses < LEAST_MISSES {
+            return false;
+        }
+        let both = self.fit(scan, sight, pose, [true, true]).hits;
+        let now = self.fit(scan, sight, pose, [false, true]).hits;
+        let reversed = both.max(now);
+        if self.reversed {
+            self.reversed = as_sent.hits < reversed + LEAST_GAIN;
+            return false;
+        }
+        self.reversed = reversed >= as_sent.hits + LEAST_GAIN;
+        self.reversed && both >= now
+    }
+
+    /// Notes the sectors in which predicted returns are missing and no beam returns. A sector stays silent until one does.
+    fn note_silence(&mut self, scan: &LidarScan, sight: f64, fit: &Fit) {
+        let beams = scan.ranges.len();
+        let mut answers = [false; SECTORS];
+        for (beam, range) in scan.ranges.iter().enumerate() {
+            if is_return(f64::from(*range), sight) {
+                answers[sector(beam, beams)] = true;
+            }
+        }
+        let missed = |at: usize| {
+            if answers[at % SECTORS] {
+                0
+            } else {
+                fit.missed[at % SECTORS]
+            }
+        };
+        let told = (0..SECTORS).map(missed).sum::<u32>() >= LEAST_SILENT;
+        for (at, silent) in self.silent.iter_mut().enumerate() {
+            *silent = !answers[at % SECTORS] && (*silent || told && missed(at) > 0);
+        }
+    }
+
+    /// Marks the beams of silent sectors as bad, so that they show no free space.
+    fn mute(&self, scan: &mut LidarScan, sight: f64) {
+        let beams = scan.ranges.len();
+        for (beam, range) in scan.ranges.iter_mut().enumerate() {
+            if self.silent[sector(beam, beams)] && !is_return(f64::from(*range), sight) {
+                *range = -1.0;
+            }
+        }
+    }
+
+    /// How well a scan fits the last one, if the beams of both are taken in these orders.
+    fn fit(&self, scan: &LidarScan, sight: f64, pose: &Pose, [before, now]: Orders) -> Fit {
+        let mut fit = Fit::default();
+        let step = self.last.angle_increment;
+        let beams = scan.ranges.len();
+        let last = self.last.ranges.len();
+        for beam in 0..last {
+            let range = self
+                .last
+                .ranges
+                .get(beam)
+                .map_or(0.0, |range| f64::from(*range));
+            let confirmed = self.confirmed(beam, range, sight);
+            if confirmed == 0 {
+                continue;
+            }
+            let sent = if before { last - 1 - beam } else { beam };
+            let angle = self.pose.pitch + self.last.angle_min + step * sent as f64;
+            let (up, ahead) = libm::sincos(angle);
+            let (ahead, up) = (
+                self.pose.x + range * ahead - pose.x,
+                self.pose.z + range * up - pose.z,
+            );
+            let expected = libm::hypot(ahead, up);
+            let place =
+                (libm::atan2(up, ahead) - pose.pitch - scan.angle_min) / scan.angle_increment;
+            let inside = (EDGE_BEAMS..=beams as f64 - 1.0 - EDGE_BEAMS).contains(&place);
+            if !inside || !(NEAR..=SIGHT_SHARE * sight).contains(&expected) {
+                continue;
+            }
+            let first = place as usize;
+            match met(scan, sight, first, expected, now) {
+                Some(true) => fit.hits += 1,
+                Some(false) => {
+                    fit.misses += 1;
+                    fit.missed[sector(first, beams)] += confirmed;
+                }
+                None => {}
+            }
+        }
+        fit
+    }
+
+    /// Number of adjacent beams of the last scan that met the same surface as a beam with this range \[m\].
+    fn confirmed(&self, beam: usize, range: f64, sight: f64) -> u32 {
+        if !is_return(range, sight) {
+            return 0;
+        }
+        let alike = |beam: usize| {
+            let other = self
+                .last
+                .ranges
+                .get(beam)
+                .map_or(0.0, |range| f64::from(*range));
+            is_return(other, sight) && libm::fabs(other - range) < ALIKE + ALIKE_SHARE * range
+        };
+        u32::from(alike(beam.wrapping_sub(1))) + u32::from(alike(beam + 1))
+    }
+}
+
+/// Whether a beam from `first - 1` to `first + 2` returns from an expected range \[m\]. It is `None` if none does and something
+/// nearer hides what was expected, or a beam is bad.
+fn met(scan: &LidarScan, sight: f64, first: usize, expected: f64, reversed: bool) -> Option<bool> {
+    let off = OFF + OFF_SHARE * expected;
+    let mut hidden = false;
+    for beam in first.saturating_sub(1)..first + 3 {
+        let sent = if reversed {
+            scan.ranges.len().wrapping_sub(beam + 1)
+        } else {
+            beam
+        };
+        let range = scan.ranges.get(sent).map_or(0.0, |range| f64::from(*range));
+        if is_return(range, sight) {
+            if libm::fabs(range - expected) < off {
+                return Some(true);
+            }
+            hidden |= range < expected;
+        }
+        hidden |= range < 0.0;
+    }
+    (!hidden).then_some(false)
+}
+
+/// The sector of a beam among so many.
+fn sector(beam: usize, beams: usize) -> usize {
+    (beam * SECTORS / beams.max(1)) % SECTORS
+}
+
+impl Default for ScanMonitor {
+    fn default() -> Self {
+        Self::new()
+    }
+}

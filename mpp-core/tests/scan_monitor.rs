@@ -1,0 +1,139 @@
+//! Tests what the monitor of the scans holds against a lidar, and what not.
+
+use mpp_core::map::{ScanMonitor, ScanVerdict};
+use mpp_core::sense::LidarScan;
+use mpp_core::vehicle::Pose;
+
+const SIGHT: f64 = 45.0;
+const BEAMS: usize = 100;
+/// Circles of 1 m radius ahead, above and below the way.
+const FIELD: [(f64, f64, f64); 4] = [
+    (22.0, 45.0, 1.0),
+    (28.0, 53.0, 1.0),
+    (31.0, 48.0, 1.0),
+    (36.0, 56.0, 1.0),
+];
+
+fn pose(x: f64) -> Pose {
+    Pose {
+        x,
+        z: 50.0,
+        pitch: 0.156,
+    }
+}
+
+/// What a lidar of 100 beams over 100 deg sees of circles.
+fn seen(circles: &[(f64, f64, f64)], pose: &Pose) -> LidarScan {
+    let mut scan = LidarScan::new();
+    scan.angle_min = -50_f64.to_radians();
+    scan.angle_increment = 100_f64.to_radians() / (BEAMS - 1) as f64;
+    for beam in 0..BEAMS {
+        let (up, ahead) = libm::sincos(pose.pitch + scan.beam_angle(beam));
+        let ranges = circles.iter().filter_map(|(x, z, radius)| {
+            let (dx, dz) = (x - pose.x, z - pose.z);
+            let (along, aside) = (dx * ahead + dz * up, dz * ahead - dx * up);
+            let chord = radius * radius - aside * aside;
+            (along > 0.0 && chord >= 0.0).then(|| along - chord.sqrt())
+        });
+        let range = ranges.fold(f64::INFINITY, f64::min);
+        let range = if range < SIGHT { range as f32 } else { 0.0 };
+        assert!(scan.ranges.push(range).is_ok());
+    }
+    scan
+}
+
+fn check(
+    monitor: &mut ScanMonitor,
+    x: f64,
+    spoil: impl Fn(&mut LidarScan),
+) -> (ScanVerdict, LidarScan) {
+    let mut scan = seen(&FIELD, &pose(x));
+    spoil(&mut scan);
+    let verdict = monitor.check(&mut scan, SIGHT, &pose(x));
+    (verdict, scan)
+}
+
+fn reverse(scan: &mut LidarScan) {
+    scan.ranges.reverse();
+}
+
+fn darken(scan: &mut LidarScan) {
+    scan.ranges
+        .iter_mut()
+        .take(BEAMS / 2)
+        .for_each(|it| *it = 0.0);
+}
+
+#[test]
+fn a_lidar_that_works_is_believed() {
+    for step in [3.0, 6.0, 12.0] {
+        let mut monitor = ScanMonitor::new();
+        for number in 0..(40.0 / step) as i32 {
+            let x = step * f64::from(number);
+            let (verdict, scan) = check(&mut monitor, x, |_| {});
+            assert_eq!(verdict, ScanVerdict::Agrees, "{x}");
+            assert_eq!(scan.ranges, seen(&FIELD, &pose(x)).ranges);
+        }
+    }
+}
+
+#[test]
+fn a_silent_half_is_found_at_once_and_shows_nothing_until_it_returns() {
+    let mut monitor = ScanMonitor::new();
+    check(&mut monitor, 0.0, |_| {});
+    for x in [3.0, 6.0] {
+        let (verdict, scan) = check(&mut monitor, x, darken);
+        assert_eq!(verdict, ScanVerdict::Silent);
+        let bad = scan.bad_beams();
+        assert!((10..=BEAMS / 2).contains(&bad), "{bad}");
+        assert!(
+            scan.ranges
+                .iter()
+                .skip(BEAMS / 2)
+                .all(|range| *range >= 0.0)
+        );
+    }
+    let (verdict, scan) = check(&mut monitor, 9.0, |_| {});
+    assert_eq!((verdict, scan.bad_beams()), (ScanVerdict::Agrees, 0));
+}
+
+#[test]
+fn beams_in_reverse_order_are_refused_until_they_come_as_sent() {
+    let mut monitor = ScanMonitor::new();
+    check(&mut monitor, 0.0, |_| {});
+    for x in [3.0, 6.0] {
+        let (verdict, scan) = check(&mut monitor, x, reverse);
+        assert_eq!(verdict, ScanVerdict::Reversed, "{x}");
+        assert!(scan.ranges.is_empty());
+    }
+    check(&mut monitor, 9.0, |_| {});
+    let (verdict, scan) = check(&mut monitor, 12.0, |_| {});
+    assert_eq!((verdict, scan.ranges.len()), (ScanVerdict::Agrees, BEAMS));
+}
+
+#[test]
+fn beams_in_reverse_order_from_the_start_are_found_by_the_second_scan() {
+    let mut monitor = ScanMonitor::new();
+    check(&mut monitor, 0.0, reverse);
+    let (verdict, _) = check(&mut monitor, 12.0, reverse);
+    assert_eq!(verdict, ScanVerdict::ReversedBefore);
+}
+
+/// The next scan may look past a wire that one beam has met.
+#[test]
+fn a_wire_that_is_not_met_again_is_no_sign() {
+    let wires = [0, 1, 2, 3].map(|number| (20.0 + 3.0 * f64::from(number), 48.0, 0.02));
+    let mut monitor = ScanMonitor::new();
+    for (x, shown) in [(0.0, &wires[..]), (3.0, &[]), (6.0, &wires[..]), (9.0, &[])] {
+        let verdict = monitor.check(&mut seen(shown, &pose(x)), SIGHT, &pose(x));
+        assert_eq!(verdict, ScanVerdict::Agrees, "{x}");
+    }
+}
+
+#[test]
+fn a_monitor_that_forgets_holds_nothing_against_the_lidar() {
+    let mut monitor = ScanMonitor::new();
+    check(&mut monitor, 0.0, |_| {});
+    monitor.clear();
+    assert_eq!(check(&mut monitor, 3.0, reverse).0, ScanVerdict::Agrees);
+}
