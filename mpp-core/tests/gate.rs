@@ -1,14 +1,7 @@
 //! Tests the gate before adoption, and the ladder beneath it.
 
-#![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
-
-mod common {
-    pub(crate) mod planning;
-    pub(crate) mod world;
-}
-
-use common::planning::{level, plan, planner};
-use common::world::{Disc, scan};
+use crate::common::planning::{level, plan, planner};
+use crate::common::world::{Disc, scan};
 use mpp_core::gate::{Cause, Gate, GateVerdict, Space};
 use mpp_core::map::RollingGrid;
 use mpp_core::planner::{Planner, Verdict};

@@ -6,7 +6,7 @@ use crate::vehicle::{
 };
 
 /// Acceleration per metre of position error [1/s^2] and per m/s of velocity error [1/s]. More follows more closely and shakes
-/// more with the errors of the estimate. Source: the trial of a prototype that decision 45 names.
+/// more with the errors of the estimate. Source: the trial of a prototype that decision 46 names.
 const BY_POSITION: f64 = 2.0;
 const BY_VELOCITY: f64 = 2.4;
 /// Thrust per m/s of airspeed that is missing, in masses [1/s]. Source: as above.

@@ -1,5 +1,5 @@
 //! The tuning of the planner in space. All numbers are in SI units, of aircraft that cruise at 12 to 16 m/s. The source S is the
-//! trial of a prototype that decision 45 names.
+//! trial of a prototype that decision 46 names.
 
 /// The map in space. The log-odds of a voxel are a whole number from `-MOST` to `MOST`, and 0 where no beam has been.
 pub mod voxels {

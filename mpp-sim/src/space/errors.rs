@@ -35,7 +35,7 @@ impl EstimateErrors {
         position: 0.0,
     };
 
-    /// An autopilot with a satellite receiver that corrects the carrier phase. Source: chosen, as decision 45 says.
+    /// An autopilot with a satellite receiver that corrects the carrier phase. Source: chosen, as decision 46 says.
     pub const RTK: Self = Self {
         attitude: 0.5 * core::f64::consts::PI / 180.0,
         velocity: 0.1,

@@ -1,10 +1,10 @@
 //! Whole flights through worlds: the lidar sees the world, and the flight ends where it ends.
 
 use super::flight::{SpaceConfig, SpaceFlight};
+use super::lidar::{Beam, LidarName, SpaceLidar};
 use super::world::World;
-use super::{Hull, Quaternion, SpaceState};
+use super::{Hull, Pose, Quaternion, SpaceState};
 use crate::file_error::ScenarioError;
-use crate::random::{Draws, Stream, gaussian, generator};
 use crate::scenario::Scenario;
 use core::fmt;
 use mpp_core::config::TICK_PERIOD;
@@ -59,56 +59,21 @@ const STRAY: f64 = 0.5;
 /// Clearance beyond which nobody asks \[m\].
 const MOST: f64 = 5.0;
 
-/// A lidar of 90 x 16 beams over 90 x 30 deg, with 45 m of reach and 0.5 % of noise. Its rings are moved from sweep to sweep.
-struct Fan {
-    draws: Draws,
-    sweeps: u32,
-}
-
-impl Fan {
-    const COLUMNS: u32 = 90;
-    const RINGS: u32 = 16;
-    const REACH: f64 = 45.0;
-    const NOISE: f64 = 0.005;
-
-    /// The beams as an estimate with these errors of bank, pitch and heading \[rad\] places them.
-    fn sweep(&mut self, world: &World, state: &SpaceState, errors: [f64; 3]) -> Vec<SpaceBeam> {
-        let place = [state.plane.x, state.lateral.y, state.plane.z];
-        let [bank, pitch, heading] = errors;
-        let truth = state.attitude();
-        let told = truth
-            .times(Quaternion::roll(bank))
-            .times(Quaternion::pitch(pitch));
-        let (sin, cos) = libm::sincos(heading);
-        let mut beams = Vec::with_capacity((Self::COLUMNS * Self::RINGS) as usize);
-        for ring in 0..Self::RINGS {
-            let up = ((f64::from(ring) + 0.5) / f64::from(Self::RINGS) - 0.5) * 30.0;
-            let offset = f64::from((ring * 7 + self.sweeps * 3) % 16) / 16.0;
-            for column in 0..Self::COLUMNS {
-                let side = ((f64::from(column) + offset) / f64::from(Self::COLUMNS) - 0.5) * 90.0;
-                let (sin_up, cos_up) = libm::sincos(up.to_radians());
-                let (sin_side, cos_side) = libm::sincos(side.to_radians());
-                let body = [cos_up * cos_side, cos_up * sin_side, -sin_up];
-                let range = world.ray(place, upright(truth, body), Self::REACH);
-                let range = range.map(|range| {
-                    (range * (1.0 + Self::NOISE * gaussian(&mut self.draws))).max(0.1)
-                });
-                let [x, y, z] = upright(told, body);
-                beams.push(SpaceBeam {
-                    direction: [cos * x - sin * y, sin * x + cos * y, z],
-                    range,
-                });
-            }
+/// The beams of a sweep as an estimate with these errors of bank, pitch and heading \[rad\] places them.
+fn seen(beams: &[Beam], state: &SpaceState, [bank, pitch, heading]: [f64; 3]) -> Vec<SpaceBeam> {
+    let told = Pose {
+        attitude: (state.attitude().times(Quaternion::roll(bank))).times(Quaternion::pitch(pitch)),
+        ..Pose::of(state)
+    };
+    let (sin, cos) = libm::sincos(heading);
+    let placed = beams.iter().map(|beam| {
+        let [x, y, z] = told.direction(beam.direction);
+        SpaceBeam {
+            direction: [cos * x - sin * y, sin * x + cos * y, z],
+            range: beam.range,
         }
-        self.sweeps += 1;
-        beams
-    }
-}
-
-/// A direction of the body in the world's axes, z up.
-fn upright(attitude: Quaternion, body: [f64; 3]) -> [f64; 3] {
-    let [x, y, down] = attitude.in_world(body);
-    [x, y, -down]
+    });
+    placed.collect()
 }
 
 /// Flies through a world to its end.
@@ -118,22 +83,23 @@ fn upright(attitude: Quaternion, body: [f64; 3]) -> [f64; 3] {
 pub fn fly_through(
     world: &World,
     hull: &Hull,
+    lidar: LidarName,
     scenario: &Scenario,
     config: SpaceConfig,
 ) -> Result<SpaceOutcome, ScenarioError> {
     let mut flight = SpaceFlight::new(scenario, config)?;
     hull.check_start(world, flight.state())
         .map_err(|error| ScenarioError::Value("world", error.to_string()))?;
-    let mut fan = Fan {
-        draws: generator(scenario.seed, Stream::SpaceLidar),
-        sweeps: 0,
-    };
+    let mut lidar = SpaceLidar::new(scenario.seed, lidar.config());
     let extent = *world.extent();
     let (mut clearance, mut off, mut ticks) = (MOST, 0.0, 0);
     let mut end = SpaceEnd::Time;
     while ticks < MOST_TICKS {
         let before = *flight.state();
-        let stepped = flight.step(|state, errors| fan.sweep(world, state, errors));
+        let stepped = flight.step(|state, errors| {
+            let beams = lidar.sweep_at(world, &Pose::of(state));
+            seen(&beams, state, errors)
+        });
         ticks += 1;
         if stepped.is_err() {
             end = SpaceEnd::Extreme;

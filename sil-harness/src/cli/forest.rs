@@ -5,8 +5,10 @@ use super::values::seed;
 use crate::files::read_aircraft;
 use mpp_analysis::campaign::wilson;
 use mpp_core::planner::space::{Keep, SPACE_CANDIDATES};
+use mpp_core::tuning::voxels::SIGHT;
 use mpp_sim::aircraft_file::AircraftModel;
 use mpp_sim::scenario::{Preset, Scenario};
+use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::{WorldConfig, WorldName};
 use mpp_sim::space::{
     EstimateErrors, Hull, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
@@ -31,10 +33,13 @@ pub(super) struct ForestArgs {
     /// Radius of a sphere that stands for the aircraft \[m\], instead of its wing and fuselage
     #[arg(long, value_name = "M")]
     sphere: Option<f64>,
-    /// Least distance of the body from the centres of occupied voxels \[m\]; by default 0.45 and the radius of the sphere, or 0.5
+    /// Least distance of the body from the centres of occupied voxels \[m\]; by default 0.45 and the radius of the sphere, or 0.6
     /// with a wing, whose half span counts besides
     #[arg(long, value_name = "M")]
     margin: Option<f64>,
+    /// Lidar: grid-90x16, mid-360, avia, os1-32, puck-hi-res, depth or pushbroom; each cycle takes one whole sweep
+    #[arg(long, default_value = "grid-90x16", value_name = "NAME")]
+    lidar: LidarName,
     /// Rate of the cycles \[Hz\], 1 to 10
     #[arg(long, default_value_t = 4, value_name = "HZ", value_parser = clap::value_parser!(u32).range(1..=10))]
     replan_hz: u32,
@@ -58,23 +63,21 @@ pub(super) struct ForestArgs {
     each: bool,
 }
 
-/// Greatest bank of plans, and its rate [deg, deg/s]. Source: decision 45.
+/// Greatest bank of plans, and its rate [deg, deg/s]. Source: decision 46.
 const BANK: [f64; 2] = [60.0, 90.0];
-/// Time by which plans are followed ahead \[s\]. Source: decision 45.
+/// Time by which plans are followed ahead \[s\]. Source: decision 46.
 const AHEAD: f64 = 0.12;
 /// Ticks from the start of a cycle until its plan is flown.
 const LATENCY: u32 = 10;
 /// Half the diagonal of a voxel \[m\], which every margin includes.
 const HALF_DIAGONAL: f64 = 0.45;
-const WING_MARGIN: f64 = 0.5;
+const WING_MARGIN: f64 = 0.6;
 /// Part of a fuselage that reaches below its wing, and room to ceiling and sides \[m\].
 const BELOW: f64 = 0.5;
 const ROOM: f64 = 0.3;
 const SIDE_ROOM: f64 = 0.5;
 /// Altitude of the start and of plans, as a share of the ceiling [-].
 const ALTITUDE: f64 = 0.5;
-/// Share of the lidar's reach that a beam without return has passed \[m\].
-const SIGHT: f64 = 40.0;
 /// Fuselage \[m\]: half its length as a share of the span, and its radius.
 const HALF_LENGTH: f64 = 0.4;
 const FUSELAGE: f64 = 0.08;
@@ -144,7 +147,7 @@ fn fly(args: &ForestArgs) -> Result<u8, Failure> {
             latency_ticks: LATENCY,
             candidates: usize::from(args.candidates),
             programs: !args.no_programs,
-            sight: SIGHT,
+            sight: SIGHT * args.lidar.config().range[1],
             ahead: AHEAD,
             errors: if args.exact {
                 EstimateErrors::NONE
@@ -153,7 +156,7 @@ fn fly(args: &ForestArgs) -> Result<u8, Failure> {
             },
             wind: WindConfig::default(),
         };
-        let outcome = fly_through(&world, &hull, &scenario, config).map_err(usage)?;
+        let outcome = fly_through(&world, &hull, args.lidar, &scenario, config).map_err(usage)?;
         if args.each {
             data(told(seed, &outcome))?;
         }

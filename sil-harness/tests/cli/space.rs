@@ -1,6 +1,6 @@
 //! Turns in six degrees of freedom.
 
-use crate::common::{harness, place};
+use crate::common::{harness, place, scratch};
 use serde_json::Value;
 use std::process::Output;
 
