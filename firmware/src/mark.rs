@@ -51,7 +51,9 @@ impl Region {
             Phase::Plane(Flight::Lattice) => Self::Lattice,
             Phase::Plane(Flight::Faces) => Self::Corridor,
             Phase::Plane(Flight::Linearise) => Self::Linearise,
-            Phase::Plane(Flight::Improve | Flight::Idle | Flight::Done) => Self::Improve,
+            Phase::Plane(Flight::Improve | Flight::Gate | Flight::Idle | Flight::Done) => {
+                Self::Improve
+            }
             #[cfg(feature = "paper")]
             Phase::Paper(Paper::Map) => Self::Map,
             #[cfg(feature = "paper")]

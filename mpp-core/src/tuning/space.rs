@@ -16,7 +16,7 @@ pub mod voxels {
     /// Length before a return that a beam does not clear: a part of its range [-] and a length \[m\]. An error of the attitude of
     /// 0.5 deg moves a hit by 0.4 m at 45 m. Source: derived.
     pub const PASS_SHARE: f64 = 0.03;
-    /// See [`PASS_SHARE`].
+    /// See [`PASS_SHARE`]. Source: S.
     pub const PASS_SHORT: f64 = 1.0;
     /// Share of the lidar's reach that a beam without return has passed [-]: dark bark returns later. Source: S.
     pub const SIGHT: f64 = 8.0 / 9.0;
@@ -30,15 +30,15 @@ pub mod space_lattice {
     pub const MORE_MARGIN: f64 = 0.25;
     /// Cost of a square metre off the altitude, and off the middle of the band [1/m^2]. Source: S.
     pub const HEIGHT: f64 = 0.01;
-    /// See [`HEIGHT`].
+    /// See [`HEIGHT`]. Source: S.
     pub const SIDE: f64 = 0.0005;
     /// Cost of a squared step to the side, of a change of it, of a climb, and of a change of it [-]. Source: S.
     pub const SLOPE: f64 = 0.1;
-    /// See [`SLOPE`].
+    /// See [`SLOPE`]. Source: S.
     pub const BEND: f64 = 0.5;
-    /// See [`SLOPE`].
+    /// See [`SLOPE`]. Source: S.
     pub const CLIMB: f64 = 0.3;
-    /// See [`SLOPE`].
+    /// See [`SLOPE`]. Source: S.
     pub const PULL: f64 = 0.5;
 }
 
@@ -49,7 +49,7 @@ pub mod space_judgement {
     /// Clearance beyond the margin that a plan should have where there is room \[m\], and the cost of a square metre less [1/m^2].
     /// Source: S.
     pub const ROOM: f64 = 0.6;
-    /// See [`ROOM`].
+    /// See [`ROOM`]. Source: S.
     pub const ROOM_WEIGHT: f64 = 0.8;
     /// Cost of a point of which the map knows nothing, at the aircraft [-]; it falls to zero at [`AHEAD`]. Source: S.
     pub const UNKNOWN: f64 = 5.0;
@@ -63,17 +63,13 @@ pub mod space_judgement {
 
 /// Programs in space.
 pub mod space_program {
-    use crate::qp::Penalty;
-
     /// Weights of the squares of rate of the bank, rate of the angle of attack [s^2/rad^2] and thrust [1/N^2]. Source: S.
     pub const CONTROL: [f64; 3] = [0.3, 1.0, 0.02];
     /// Weights of the squared misses of the last state: x, y, z, airspeed, angle of attack, bank, flight path, course. Source: S.
     pub const TERMINAL: [f64; 8] = [0.0, 0.05, 0.5, 1.0, 5.0, 10.0, 20.0, 10.0];
-    /// Price of a metre beyond a face, and of a radian beyond a limit. Source: S.
-    pub const PENALTY: Penalty = Penalty {
-        linear: 1000.0,
-        quadratic: 1000.0,
-    };
+    /// Price of a metre beyond a face and of a radian beyond a limit [1/m, 1/rad], linear, and quadratic the same a square. Source:
+    /// S.
+    pub const PRICE: f64 = 1000.0;
     /// Cost at which the solver gives a program up [-]; its controls are flown out all the same. Source: S.
     pub const COST_LIMIT: f64 = 600.0;
     /// Greatest distance of a voxel that gives a face \[m\]. Source: S.

@@ -80,7 +80,7 @@ fn a_world_is_measured_and_the_first_hit_is_told() {
         "{world}"
     );
     assert!(world["first_hit"]["x"].as_f64().unwrap() > 14.0, "{world}");
-    let map = scratch("stems.csv");
+    let map = scratch("stems").join("stems.csv");
     let row = "id,x,y,diameter\n1,200,0,0.4\n2,90,0.5,0.3\n3,60,1.5,0.3\n4,40,-5,0.3\n";
     std::fs::write(&map, row).unwrap();
     let flags = format!("--aircraft ultrastick --stems {}", map.display());

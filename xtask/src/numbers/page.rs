@@ -16,7 +16,7 @@ const HEAD: &str = "|name|value|unit|what it is|\n|---|---|---|---|\n";
 const CORE: &str = "mpp-core/src";
 
 /// Every constant of these files has a row, and its comment has a source.
-const TUNED: [&str; 2] = ["tuning/mod.rs", "tuning/watches.rs"];
+const TUNED: [&str; 3] = ["tuning/mod.rs", "tuning/watches.rs", "tuning/space.rs"];
 
 /// The sizes and rates that shape a flight, by file.
 const SIZES: [(&str, &str); 11] = [

@@ -25,7 +25,9 @@ impl Candidate {
     /// Integrates the motion from the first knot on under the controls of a program. It limits the angle of
     /// attack and the thrust.
     pub(super) fn roll_out(&mut self, solution: &Solution, frame: &Frame, limits: &Limits) {
-        self.steer(frame, limits, &mut |stage, _| solution.controls[stage]);
+        self.steer(frame, limits, |stage, _| {
+            solution.controls.get(stage).copied().unwrap_or_default()
+        });
     }
 
     /// Integrates the motion under the rate of the angle of attack and the thrust beyond trim that `by` gives for each stage.
@@ -35,7 +37,7 @@ impl Candidate {
         &mut self,
         frame: &Frame,
         limits: &Limits,
-        by: &mut dyn FnMut(usize, &PathState) -> [f64; 2],
+        mut by: impl FnMut(usize, &PathState) -> [f64; 2],
     ) {
         let [down, up] = limits.rolled_out;
         let trim = &frame.trim;

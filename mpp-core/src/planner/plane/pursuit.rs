@@ -22,7 +22,7 @@ impl PlanePlanner {
     #[inline(never)]
     pub(super) fn pursue(&self, course: &Course<'_>) -> Candidate {
         let mut candidate = self.cruising();
-        candidate.steer(&self.frame(), &self.limits, &mut |_, state| {
+        candidate.steer(&self.frame(), &self.limits, |_, state| {
             self.steered(course, state)
         });
         candidate

@@ -1,7 +1,7 @@
 //! The corridor of a candidate: planes between its segments and the voxels around them.
 
-use super::Keep;
 use super::candidate::{SpacePlan, dot};
+use super::keep::Keep;
 use crate::config::STAGES;
 use crate::map::VoxelField;
 use crate::qp::space::Faces;

@@ -1,7 +1,7 @@
 //! What a trajectory in space is worth.
 
-use super::Keep;
 use super::candidate::SpacePlan;
+use super::keep::Keep;
 use super::lattice::Lattice;
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelField;

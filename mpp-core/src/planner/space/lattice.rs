@@ -4,40 +4,31 @@
 //! cost-to-go. A path goes through each local minimum of the sum at the via station, so paths differ by the side on which they
 //! pass. Costs are whole numbers of 1/32.
 
+use super::edges::{
+    CLIMBS, LAYERS, Layers, NONE, ROWS, SLOPES, UNIT, across, backward, forward, units,
+};
 use crate::map::VoxelField;
 use crate::tuning::space_judgement::{AHEAD, UNKNOWN};
-use crate::tuning::space_lattice::{BEND, CLIMB, HEIGHT, LACK, PULL, SIDE, SLOPE};
+use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::vehicle::{SpaceModel, between};
 
 /// Stations, that of the aircraft included.
 pub(super) const STATIONS: usize = 14;
 /// The via station.
 pub(super) const VIA: usize = 5;
-/// Places across: to the sides and in height.
-const ROWS: usize = 49;
-const LAYERS: usize = 15;
-/// Slopes to the sides, in places a station, and climbs.
-const SLOPES: usize = 7;
-const CLIMBS: usize = 3;
 /// Distance of places across \[m\]: to the sides and in height.
-const ACROSS: f64 = 0.5;
-const UP: f64 = 1.0;
+pub(super) const ACROSS: f64 = 0.5;
+pub(super) const UP: f64 = 1.0;
 /// Least and greatest distance of stations \[m\]. Near stations need small steps, far ones time.
 const LEAST_STEP: f64 = 2.8;
 const MOST_STEP: f64 = 6.0;
 /// How much more tightly paths bend than level turns: roll-outs follow them under all limits [-].
 const TIGHTER: f64 = 1.15;
-/// Whole numbers a unit of cost.
-const UNIT: f64 = 32.0;
-/// A place that no path reaches.
-const NONE: u16 = u16::MAX;
 /// Greatest cost-to-go that counts [-].
 const MOST_TO_GO: f64 = 500.0;
 
-/// Costs in height.
-type Layers = [u16; LAYERS];
 /// Costs of all states at a station.
-type Station = [[[Layers; CLIMBS]; SLOPES]; ROWS];
+pub(super) type Station = [[[Layers; CLIMBS]; SLOPES]; ROWS];
 
 /// A path through the lattice: a point at each station \[m\].
 pub(super) type Path = [[f64; 3]; STATIONS];
@@ -57,14 +48,14 @@ pub(super) struct Rules {
 
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
-    forward: [Station; VIA + 1],
-    backward: [Station; STATIONS - VIA],
+    pub(super) forward: [Station; VIA + 1],
+    pub(super) backward: [Station; STATIONS - VIA],
     /// Costs of the places at the next station, by the station before it.
-    nodes: [[Layers; ROWS]; STATIONS - 1],
+    pub(super) nodes: [[Layers; ROWS]; STATIONS - 1],
     /// Costs halfway between two stations: by twice the mean row, then at and between layers.
-    halfway: [[[Layers; 2]; 2 * ROWS - 1]; STATIONS - 1],
-    origin: [f64; 3],
-    step: f64,
+    pub(super) halfway: [[[Layers; 2]; 2 * ROWS - 1]; STATIONS - 1],
+    pub(super) origin: [f64; 3],
+    pub(super) step: f64,
 }
 
 impl Lattice {
@@ -203,147 +194,6 @@ impl Lattice {
         }
     }
 
-    /// Paths through the local minima at the via station, at least `apart` places from each other, cheapest first.
-    pub(super) fn paths<const N: usize>(&self, apart: usize, paths: &mut heapless::Vec<Path, N>) {
-        paths.clear();
-        let mut totals = [[(NONE, 0, 0); LAYERS]; ROWS];
-        let (forward, backward) = (&self.forward[VIA], &self.backward[0]);
-        for (row, (totals, (ahead, back))) in totals
-            .iter_mut()
-            .zip(forward.iter().zip(backward))
-            .enumerate()
-        {
-            let _ = row;
-            for (slope, (ahead, back)) in ahead.iter().zip(back).enumerate() {
-                for (climb, (ahead, back)) in ahead.iter().zip(back).enumerate() {
-                    for (total, (ahead, back)) in totals.iter_mut().zip(ahead.iter().zip(back)) {
-                        let sum = ahead.saturating_add(*back);
-                        if sum < total.0 {
-                            *total = (sum, slope, climb);
-                        }
-                    }
-                }
-            }
-        }
-        let mut minima: heapless::Vec<(u16, State), N> = heapless::Vec::new();
-        for (row, layers) in totals.iter().enumerate() {
-            for (layer, (cost, slope, climb)) in layers.iter().enumerate() {
-                if *cost < NONE && is_minimum(&totals, row, layer, apart) {
-                    let state = State {
-                        row,
-                        slope: *slope,
-                        climb: *climb,
-                        layer,
-                    };
-                    insert(&mut minima, *cost, state);
-                }
-            }
-        }
-        for (_, state) in &minima {
-            let _ = paths.push(self.trace(*state));
-        }
-    }
-
-    fn point(&self, station: usize, state: &State) -> [f64; 3] {
-        let [x, y, z] = self.origin;
-        [
-            x + station as f64 * self.step,
-            y + (state.row as f64 - (ROWS / 2) as f64) * ACROSS,
-            z + (state.layer as f64 - (LAYERS / 2) as f64) * UP,
-        ]
-    }
-
-    /// The cheapest path through a state at the via station.
-    fn trace(&self, via: State) -> Path {
-        let mut path = [self.point(VIA, &via); STATIONS];
-        let mut state = via;
-        for station in (0..VIA).rev() {
-            state = self.before(station, &state);
-            if let Some(point) = path.get_mut(station) {
-                *point = self.point(station, &state);
-            }
-        }
-        state = via;
-        for station in VIA..STATIONS - 1 {
-            state = self.after(station, &state);
-            if let Some(point) = path.get_mut(station + 1) {
-                *point = self.point(station + 1, &state);
-            }
-        }
-        path
-    }
-
-    /// The cheapest state at a station from which a path leads to a state at the next one.
-    fn before(&self, station: usize, to: &State) -> State {
-        let mut best = (u32::MAX, *to);
-        for slope in to.slope.saturating_sub(1)..(to.slope + 2).min(SLOPES) {
-            for climb in to.climb.saturating_sub(1)..(to.climb + 2).min(CLIMBS) {
-                let row = (to.row + 6).checked_sub(slope + to.slope);
-                let layer = (to.layer + 1).checked_sub(to.climb);
-                let (Some(row), Some(layer)) = (row, layer) else {
-                    continue;
-                };
-                let from = State {
-                    row,
-                    slope,
-                    climb,
-                    layer,
-                };
-                let cost =
-                    cost_at(self.forward.get(station), &from) + self.edge(station, &from, to);
-                if cost < best.0 {
-                    best = (cost, from);
-                }
-            }
-        }
-        best.1
-    }
-
-    /// The cheapest state at the next station.
-    fn after(&self, station: usize, from: &State) -> State {
-        let mut best = (u32::MAX, *from);
-        for slope in from.slope.saturating_sub(1)..(from.slope + 2).min(SLOPES) {
-            for climb in from.climb.saturating_sub(1)..(from.climb + 2).min(CLIMBS) {
-                let row = (from.row + from.slope + slope).checked_sub(6);
-                let layer = (from.layer + climb).checked_sub(1);
-                let (Some(row), Some(layer)) = (row, layer) else {
-                    continue;
-                };
-                let to = State {
-                    row,
-                    slope,
-                    climb,
-                    layer,
-                };
-                let next = self.backward.get(station + 1 - VIA);
-                let cost = cost_at(next, &to) + self.edge(station, from, &to);
-                if cost < best.0 {
-                    best = (cost, to);
-                }
-            }
-        }
-        best.1
-    }
-
-    /// Cost of an edge from a station to the next one.
-    fn edge(&self, station: usize, from: &State, to: &State) -> u32 {
-        let node = self.nodes.get(station).and_then(|rows| rows.get(to.row));
-        let half = self
-            .halfway
-            .get(station)
-            .and_then(|rows| rows.get(from.row + to.row));
-        let layers = from.layer + to.layer;
-        let node = node.and_then(|layers| layers.get(to.layer));
-        let half = half.and_then(|parts| parts[layers % 2].get(layers / 2));
-        match (node, half) {
-            (Some(node), Some(half)) => {
-                let own = across(from.slope, to.slope) + up(from.climb, to.climb);
-                u32::from(*node) + u32::from(*half) + u32::from(own)
-            }
-            _ => u32::from(NONE),
-        }
-    }
-
     /// Cost-to-go of a point at the via station with a velocity over ground.
     pub(super) fn cost_to_go(&self, [_, y, z]: &[f64; 3], velocity: &[f64; 3]) -> f64 {
         let ahead = velocity[0].max(2.0);
@@ -377,11 +227,11 @@ impl Lattice {
 
 /// A state at a station.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct State {
-    row: usize,
-    slope: usize,
-    climb: usize,
-    layer: usize,
+pub(super) struct State {
+    pub(super) row: usize,
+    pub(super) slope: usize,
+    pub(super) climb: usize,
+    pub(super) layer: usize,
 }
 
 fn clear(station: &mut Station) {
@@ -390,7 +240,7 @@ fn clear(station: &mut Station) {
         .fill(NONE);
 }
 
-fn cost_at(station: Option<&Station>, state: &State) -> u32 {
+pub(super) fn cost_at(station: Option<&Station>, state: &State) -> u32 {
     let states = station.and_then(|rows| rows.get(state.row));
     let layers = states.and_then(|slopes| slopes.get(state.slope)?.get(state.climb));
     u32::from(
@@ -406,106 +256,6 @@ fn place(value: f64, count: usize) -> usize {
     libm::round(value).max(0.0).min(count as f64 - 1.0) as usize
 }
 
-fn units(cost: f64) -> u16 {
-    (cost * UNIT).min(f64::from(NONE - 1)) as u16
-}
-
-/// Cost of a step to the side and of the change of slope before it.
-const fn across(slope: usize, next: usize) -> u16 {
-    let places = next as f64 - 3.0;
-    let bend = if slope == next { 0.0 } else { BEND };
-    ((bend + SLOPE * places * places) * UNIT) as u16
-}
-
-/// Cost of a climb and of the change before it.
-const fn up(climb: usize, next: usize) -> u16 {
-    let steady = if next == 1 { 0.0 } else { CLIMB };
-    let change = if climb == next { 0.0 } else { PULL };
-    ((steady + change) * UNIT) as u16
-}
-
-fn least(costs: [u16; 2]) -> u16 {
-    let [one, other] = costs;
-    one.min(other)
-}
-
-/// Lowers the costs `to` by paths that come from the costs `from`.
-fn forward(
-    from: &[Layers; CLIMBS],
-    to: &mut [Layers; CLIMBS],
-    node: &Layers,
-    half: &[Layers; 2],
-    own: u16,
-) {
-    let ([low, level, high], [at, between]) = (from, half);
-    let [down, straight, rise] = to;
-    let turn = const { up(0, 1) };
-    for i in 0..LAYERS {
-        let best = least([low[i], high[i]]).saturating_add(turn).min(level[i]);
-        let cost = best
-            .saturating_add(at[i])
-            .saturating_add(node[i])
-            .saturating_add(own);
-        straight[i] = straight[i].min(cost);
-    }
-    let (steady, change) = const { (up(0, 0), up(1, 0)) };
-    for i in 1..LAYERS {
-        let best = low[i]
-            .saturating_add(steady)
-            .min(level[i].saturating_add(change));
-        let cost = best
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i - 1])
-            .saturating_add(own);
-        down[i - 1] = down[i - 1].min(cost);
-        let best = high[i - 1]
-            .saturating_add(steady)
-            .min(level[i - 1].saturating_add(change));
-        let cost = best
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i])
-            .saturating_add(own);
-        rise[i] = rise[i].min(cost);
-    }
-}
-
-/// Lowers the costs-to-go `to` by edges to states with the costs-to-go `from`.
-fn backward(
-    from: &[Layers; CLIMBS],
-    to: &mut [Layers; CLIMBS],
-    node: &Layers,
-    half: &[Layers; 2],
-    own: u16,
-) {
-    let ([down, straight, rise], [at, between]) = (from, half);
-    let (turn, steady, change) = const { (up(0, 1), up(0, 0), up(1, 0)) };
-    let (mut ahead, mut below, mut above) = ([NONE; LAYERS], [NONE; LAYERS], [NONE; LAYERS]);
-    for i in 0..LAYERS {
-        ahead[i] = straight[i]
-            .saturating_add(at[i])
-            .saturating_add(node[i])
-            .saturating_add(own);
-    }
-    for i in 1..LAYERS {
-        below[i] = down[i - 1]
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i - 1])
-            .saturating_add(own);
-        above[i - 1] = rise[i]
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i])
-            .saturating_add(own);
-    }
-    let [low, level, high] = to;
-    for i in 0..LAYERS {
-        let turned = ahead[i].saturating_add(turn);
-        low[i] = low[i].min(below[i].saturating_add(steady)).min(turned);
-        high[i] = high[i].min(above[i].saturating_add(steady)).min(turned);
-        let away = least([below[i], above[i]]).saturating_add(change);
-        level[i] = level[i].min(ahead[i]).min(away);
-    }
-}
-
 /// Cost of a place [-], without that of its distance from the middle.
 fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -> f64 {
     let [low, high] = rules.heights;
@@ -519,40 +269,4 @@ fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -
         0.0
     };
     LACK * lack * lack + unknown
-}
-
-type Totals = [[(u16, usize, usize); LAYERS]; ROWS];
-
-/// Whether no place within `apart` rows and one layer is cheaper. Of equal ones the first counts.
-fn is_minimum(totals: &Totals, row: usize, layer: usize, apart: usize) -> bool {
-    let own = totals
-        .get(row)
-        .and_then(|layers| layers.get(layer))
-        .map_or(NONE, |it| it.0);
-    let rows = row.saturating_sub(apart)..(row + apart + 1).min(ROWS);
-    rows.clone().all(|other_row| {
-        let layers = layer.saturating_sub(1)..(layer + 2).min(LAYERS);
-        layers.clone().all(|other_layer| {
-            let other = totals
-                .get(other_row)
-                .and_then(|layers| layers.get(other_layer));
-            let first = (other_row, other_layer) < (row, layer);
-            other.is_none_or(|other| other.0 > own || (other.0 == own && !first))
-        })
-    })
-}
-
-/// Inserts a minimum before those that cost more. The dearest one leaves a full list.
-fn insert<const N: usize>(minima: &mut heapless::Vec<(u16, State), N>, cost: u16, state: State) {
-    let place = minima
-        .iter()
-        .position(|other| cost < other.0)
-        .unwrap_or(minima.len());
-    if minima.is_full() {
-        if place == minima.len() {
-            return;
-        }
-        minima.pop();
-    }
-    let _ = minima.insert(place, (cost, state));
 }

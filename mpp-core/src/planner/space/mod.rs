@@ -13,21 +13,25 @@
 //! World: x ahead, y to the right, z up \[m\].
 
 mod candidate;
+mod edges;
 mod faces;
 mod judge;
+mod keep;
 mod lattice;
+mod paths;
 mod program;
 
 pub use candidate::SpacePlan;
 pub use judge::SpaceJudgement;
+pub use keep::Keep;
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::map::{MOST_CLEARANCE, VoxelField, VoxelGrid};
+use crate::map::{VoxelField, VoxelGrid};
 use crate::qp::Status;
 use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
-use candidate::{Pursuit, dot, limited, towards};
+use candidate::{Pursuit, limited, towards};
 use judge::judge;
 use lattice::{Lattice, Path, Rules, STATIONS, VIA};
 use program::{Frame, WEIGHTS};
@@ -45,56 +49,6 @@ pub const MOST_SPACE_SLICES: usize =
     1 + STATIONS + SPACE_CANDIDATES + 2 + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1);
 /// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of [`crate::tuning::voxels`].
 const LEVEL_SPAN: f64 = 0.75;
-/// Step for the direction to the nearest obstacle \[m\].
-const GRADIENT: f64 = 0.25;
-
-/// Distances and heights that a plan keeps.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Keep {
-    /// Least distance of the body from the centres of occupied voxels \[m\]: its radius, half a voxel's diagonal, and errors.
-    pub margin: f64,
-    /// Half the span of a wing that banks \[m\]; 0 for a sphere.
-    pub half_span: f64,
-    /// Least and greatest height of the body \[m\].
-    pub heights: [f64; 2],
-    /// Half the width of the band \[m\].
-    pub half_width: f64,
-    /// Wanted height \[m\].
-    pub altitude: f64,
-}
-
-impl Keep {
-    /// Distance that the body keeps from an obstacle in the direction of a normal, with its wing along a unit vector \[m\].
-    fn distance(&self, normal: &[f64; 3], wing: &[f64; 3]) -> f64 {
-        self.margin + self.half_span * libm::fabs(dot(normal, wing))
-    }
-
-    /// The same at a point of a field with a clearance \[m\] there.
-    fn margin(&self, field: &VoxelField, point: &[f64; 3], clearance: f64, wing: &[f64; 3]) -> f64 {
-        if self.half_span <= 0.0 || clearance >= MOST_CLEARANCE {
-            return self.margin;
-        }
-        let slope: [f64; 3] = core::array::from_fn(|axis| {
-            let mut ahead = *point;
-            ahead[axis] += GRADIENT;
-            let mut back = *point;
-            back[axis] -= GRADIENT;
-            field.clearance(&ahead) - field.clearance(&back)
-        });
-        let steep = libm::sqrt(dot(&slope, &slope));
-        if steep < 1e-6 {
-            return self.margin + self.half_span;
-        }
-        self.distance(&slope.map(|it| it / steep), wing)
-    }
-
-    /// Distance beyond the band \[m\].
-    fn outside(&self, [_, y, z]: &[f64; 3]) -> f64 {
-        let [low, high] = self.heights;
-        (low - z).max(z - high).max(0.0) + (libm::fabs(*y) - self.half_width).max(0.0)
-    }
-}
-
 /// What a cycle is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {

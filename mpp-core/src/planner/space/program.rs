@@ -1,12 +1,13 @@
 //! The program of a candidate in space: its linearisation and its rows.
 
-use super::Keep;
 use super::candidate::SpacePlan;
+use super::keep::Keep;
 use crate::config::{STAGE_PERIOD, STAGES};
+use crate::qp::Penalty;
 use crate::qp::space::{
     Dynamics, Faces, INPUTS, MOTION, POSITION, Problem, STATES, Solution, StageState, Weights,
 };
-use crate::tuning::space_program::{CONTROL, COST_LIMIT, PENALTY, TERMINAL};
+use crate::tuning::space_program::{CONTROL, COST_LIMIT, PRICE, TERMINAL};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 use nalgebra::SVector;
 
@@ -119,7 +120,10 @@ impl Frame<'_> {
             0.0,
             0.0,
         ];
-        problem.penalty = Some(PENALTY);
+        problem.penalty = Some(Penalty {
+            linear: PRICE,
+            quadratic: PRICE,
+        });
         problem.cost_limit = COST_LIMIT;
     }
 

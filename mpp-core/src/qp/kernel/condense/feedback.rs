@@ -102,7 +102,10 @@ pub(super) fn feedforward(
 ) -> ControlVector {
     let mut controls = [0.0; CONTROLS];
     let mut slope = -SVector::from(*target).component_mul(&SVector::from(weights.of_misses()));
-    let places = controls.as_chunks_mut::<INPUTS>().0.iter_mut().take(STAGES);
+    // The stages run backwards over arrays of one length: an iterator that is cut short would have a panic path.
+    let Some(places) = (controls.as_chunks_mut::<INPUTS>().0).first_chunk_mut::<STAGES>() else {
+        return controls;
+    };
     let stages = dynamics.iter().zip(feedback).zip(places);
     for ((stage, feedback), control) in stages.rev() {
         let Feedback {

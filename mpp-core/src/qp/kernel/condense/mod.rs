@@ -4,15 +4,15 @@
 mod feedback;
 
 use super::super::{
-    INPUTS, NO_NORMALS, Normals, OUTPUTS, ROWS, StageControl, StageState, input_outputs, pattern,
-    respond, state_outputs, write_prices,
+    INPUTS, NO_NORMALS, Normals, OUTPUTS, ROWS, STATES, StageControl, StageState, input_outputs,
+    pattern, respond, state_outputs, write_prices,
 };
 use super::controls::{ControlVector, add_scaled, dot};
 use super::{Dynamics, Response, RowPattern, Solution, Weights};
 use crate::config::{KNOTS, STAGES};
 use crate::qp::CondenseError;
 use feedback::Feedback;
-use nalgebra::SVector;
+use nalgebra::{RowSVector, SMatrix, SVector};
 
 /// The part of the program that all candidates of a model share.
 #[derive(Clone, Debug)]
@@ -86,7 +86,9 @@ impl Condensed {
             let inputs = input_outputs(stage);
             let rows = self.response.rows_mut(inputs.map(|(output, _)| output));
             let mut rows = rows.map(|row| row.as_chunks_mut::<INPUTS>().0.iter_mut());
-            let gains = inputs.map(|(_, input)| feedback.gain.row(input).into_owned());
+            let gains = inputs.map(|(_, input)| {
+                RowSVector::<f64, STATES>::from_fn(|_, state| at(&feedback.gain, input, state))
+            });
             for columns in columns.iter_mut().take(stage) {
                 for (row, gain) in rows.iter_mut().zip(&gains) {
                     if let Some(entries) = row.next() {
@@ -99,7 +101,7 @@ impl Condensed {
             }
             for (row, (_, input)) in rows.iter_mut().zip(inputs) {
                 if let Some(entries) = row.next() {
-                    *entries = feedback.scale.row(input).into_owned().into();
+                    *entries = core::array::from_fn(|column| at(&feedback.scale, input, column));
                 }
             }
             let own = dynamics.b * feedback.scale;
@@ -114,7 +116,7 @@ impl Condensed {
             for columns in columns.iter().take(stage + 1) {
                 for (row, (_, state)) in rows.iter_mut().zip(states) {
                     if let Some(entries) = row.next() {
-                        *entries = columns.each_ref().map(|column| column[state]);
+                        *entries = columns.each_ref().map(|column| at(column, state, 0));
                     }
                 }
             }
@@ -209,6 +211,15 @@ impl Condensed {
         let miss = self.weights.miss(&solution.states[KNOTS - 1], target);
         0.5 * (efforts.sum::<f64>() + miss)
     }
+}
+
+/// An entry of a matrix; 0 outside of it. An index would have a panic path.
+fn at<const R: usize, const C: usize>(
+    matrix: &SMatrix<f64, R, C>,
+    row: usize,
+    column: usize,
+) -> f64 {
+    matrix.get((row, column)).copied().unwrap_or(0.0)
 }
 
 impl Default for Condensed {
