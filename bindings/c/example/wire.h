@@ -23,6 +23,6 @@ typedef struct wire_answer {
 } wire_answer;
 
 _Static_assert(sizeof(wire_tick) == 632, "the same layout on both sides");
-_Static_assert(sizeof(wire_answer) == 1520, "the same layout on both sides");
+_Static_assert(sizeof(wire_answer) == 1536, "the same layout on both sides");
 
 #endif
