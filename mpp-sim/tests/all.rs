@@ -6,6 +6,7 @@ mod again;
 mod bank;
 mod common;
 mod faults;
+mod forest;
 mod orders;
 mod own_world;
 mod space;

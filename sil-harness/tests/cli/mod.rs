@@ -4,6 +4,7 @@ mod aircraft;
 mod brought;
 mod ceiling;
 mod export;
+mod forest;
 mod json;
 mod pages;
 mod peers;
