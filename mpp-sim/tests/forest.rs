@@ -29,7 +29,7 @@ fn config() -> SpaceConfig {
         latency_ticks: 10,
         candidates: 3,
         programs: true,
-        sight: 40.0,
+        sight: 45.0,
         ahead: 0.12,
         errors: EstimateErrors::RTK,
         wind: WindConfig::default(),

@@ -6,7 +6,7 @@ use crate::tuning::lateral::{BANDWIDTH, INTEGRAL_SHARE, INTEGRAL_TIME, RUDDER, S
 use crate::units::Units;
 use crate::vehicle::{
     Airframe, GRAVITY, LateralAirframe, LateralControl, LateralLinearization, Trim,
-    linearize_lateral,
+    linearize_lateral, within,
 };
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 
@@ -159,11 +159,6 @@ impl LateralRegulator {
             rudder: command.y,
         })
     }
-}
-
-/// The nearest deflection within a limit. Unlike `clamp` it has no panic.
-fn within(deflection: f64, limit: f64) -> f64 {
-    deflection.min(limit).max(-limit)
 }
 
 /// Deflections per steady roll and yaw rate that leave no moment without sideslip. Without a rudder they leave no rolling

@@ -2,7 +2,7 @@
 
 use super::{LateralMotion, LateralRegulator};
 use crate::vehicle::{
-    Airframe, Control, GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath,
+    Airframe, Control, GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath, within,
 };
 
 /// Acceleration per metre of position error [1/s^2] and per m/s of velocity error [1/s]. More follows more closely and shakes
@@ -79,8 +79,7 @@ impl SpaceRegulator {
         let [_, up, right] = path.axes();
         let along = |axis: [f64; 3]| wanted.iter().zip(&axis).map(|(a, b)| a * b).sum::<f64>();
         let (up, right) = (along(up), along(right));
-        let bank = libm::atan2(right, up.max(LEAST_UP));
-        let bank = bank.max(-model.bank).min(model.bank);
+        let bank = within(libm::atan2(right, up.max(LEAST_UP)), model.bank);
         let pull = (up / libm::cos(bank).max(0.3)).max(0.0);
         let pull = pull.min(libm::hypot(up, right));
         let [low, high] = model.angle_of_attack;

@@ -20,7 +20,7 @@ pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
 pub use scan_monitor::{ScanMonitor, ScanVerdict};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
-pub use voxels::{CELL, CELLS, SpaceBeam, VoxelGrid};
+pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
 
 #[cfg(test)]
 mod tests {

@@ -368,7 +368,7 @@ impl Default for RollingGrid {
 
 /// The log-odds of a cell after a beam, within the limits. It is never 0, because 0 means that no beam has seen
 /// the cell.
-fn updated(log_odds: i8, change: i8) -> i8 {
+pub(super) fn updated(log_odds: i8, change: i8) -> i8 {
     match log_odds.saturating_add(change).clamp(-FREE, LIMIT) {
         0 => -1,
         sum => sum,

@@ -1,7 +1,7 @@
 //! The truncated distance field in space, in a window of the map around the aircraft.
 
-use super::voxels::{CELL, CELLS, VoxelGrid, row_centre, row_of, voxel};
-use crate::tuning::voxels::OCCUPIED;
+use super::voxels::{CELLS, VoxelGrid, row_centre, row_of, voxel};
+use crate::tuning::grid::{CELL, OCCUPIED};
 
 /// Length of the window along x, and its width along y, in voxels. The height is that of the map.
 const LENGTH: usize = 104;

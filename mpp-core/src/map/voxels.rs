@@ -3,13 +3,14 @@
 //! The window is `CELLS[0]` voxels long in x and covers a fixed band in y and z. The ground is no part of it: floor and ceiling
 //! are rows of programs.
 
-use crate::tuning::voxels::{HIT, MISS, MOST, PASS, PASS_SHARE, PASS_SHORT};
+use super::rolling_grid::updated;
+use crate::tuning::grid::{
+    CELL, HIT, HIT_DOUBT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
+};
 use crate::vehicle::between;
 
 /// Number of voxels along x, y and z. A column along z is one word of bits.
 pub const CELLS: [usize; 3] = [128, 128, 32];
-/// Edge of a voxel \[m\].
-pub const CELL: f64 = 0.5;
 /// Voxels behind the aircraft that the window keeps.
 const BEHIND: i64 = 16;
 /// Row of y = 0.
@@ -62,7 +63,7 @@ impl VoxelGrid {
         self.first
     }
 
-    /// Takes up a scan from a position \[m\]. A beam without return has passed all voxels up to `sight` \[m\].
+    /// Takes up a scan from a position \[m\], by a lidar with the range `sight` \[m\].
     pub fn insert(&mut self, position: &[f64; 3], beams: &[SpaceBeam], sight: f64) {
         self.roll(position[0]);
         for slice in &mut self.hit {
@@ -78,8 +79,8 @@ impl VoxelGrid {
         for beam in beams {
             let (end, miss) = match beam.range {
                 // The last voxels before a hit may hold the obstacle: the attitude is not exact.
-                Some(range) => (range * (1.0 - PASS_SHARE) - PASS_SHORT, PASS),
-                None => (sight, MISS),
+                Some(range) => (range * (1.0 - RANGE_DOUBT) - HIT_DOUBT, PASSED),
+                None => (UNANSWERED_SHARE * sight, PASSED_UNANSWERED),
             };
             self.pass(position, &beam.direction, end, miss);
         }
@@ -122,7 +123,7 @@ impl VoxelGrid {
             cell(&mut self.evidence, x, y, z),
             column(&mut self.hit, x, y),
         ) {
-            *evidence = evidence.saturating_add(HIT).min(MOST);
+            *evidence = updated(*evidence, HIT);
             *hit |= 1 << z;
         }
     }
@@ -148,9 +149,7 @@ impl VoxelGrid {
             };
             let hit = column(&mut self.hit, x, y).is_some_and(|hit| *hit >> z & 1 == 1);
             if let Some(evidence) = cell(&mut self.evidence, x, y, z).filter(|_| !hit) {
-                let lower = evidence.saturating_sub(miss).max(-MOST);
-                // Zero is kept for what nobody has seen.
-                *evidence = if lower == 0 { -1 } else { lower };
+                *evidence = updated(*evidence, -miss);
             }
             let axis = if next[0] < next[1] {
                 if next[0] < next[2] { 0 } else { 2 }

@@ -10,7 +10,7 @@
 mod space;
 mod watches;
 
-pub use space::{space_judgement, space_lattice, space_program, voxels};
+pub use space::{space_judgement, space_lattice, space_limits, space_program};
 pub use watches::{airspeed_bias, elevator, motor, pitch_bias, pitch_monitor, sensors};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of

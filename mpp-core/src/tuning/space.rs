@@ -1,26 +1,5 @@
 //! The tuning of the planner in space. All numbers are in SI units, of aircraft that cruise at 12 to 16 m/s. The source S is the
-//! trial of a prototype that decision 46 names.
-
-/// The map in space. The log-odds of a voxel are a whole number from `-MOST` to `MOST`, and 0 where no beam has been.
-pub mod voxels {
-    /// Change by a hit [-]. One hit makes a voxel occupied. Source: S.
-    pub const HIT: i8 = 60;
-    /// Greatest log-odds [-]: more takes longer to forget. Source: S.
-    pub const MOST: i8 = 100;
-    /// Log-odds from which a voxel is occupied [-]. Source: S.
-    pub const OCCUPIED: i8 = 25;
-    /// Change by a beam that passes and returns from beyond [-]. Two such beams take back a hit. Source: S.
-    pub const PASS: i8 = 30;
-    /// Change by a beam that does not return [-]: it may have been lost. Source: S.
-    pub const MISS: i8 = 10;
-    /// Length before a return that a beam does not clear: a part of its range [-] and a length \[m\]. An error of the attitude of
-    /// 0.5 deg moves a hit by 0.4 m at 45 m. Source: derived.
-    pub const PASS_SHARE: f64 = 0.03;
-    /// See [`PASS_SHARE`]. Source: S.
-    pub const PASS_SHORT: f64 = 1.0;
-    /// Share of the lidar's reach that a beam without return has passed [-]: dark bark returns later. Source: S.
-    pub const SIGHT: f64 = 8.0 / 9.0;
-}
+//! trial of a prototype that decision 46 names. The map and the price of the unknown have the numbers of the plane.
 
 /// The lattice in space.
 pub mod space_lattice {
@@ -51,10 +30,8 @@ pub mod space_judgement {
     pub const ROOM: f64 = 0.6;
     /// See [`ROOM`]. Source: S.
     pub const ROOM_WEIGHT: f64 = 0.8;
-    /// Cost of a point of which the map knows nothing, at the aircraft [-]; it falls to zero at [`AHEAD`]. Source: S.
-    pub const UNKNOWN: f64 = 5.0;
-    /// Distance at which an unknown point costs nothing \[m\]: two seconds of flight. Source: as in the plane.
-    pub const AHEAD: f64 = 26.0;
+    /// Weight of the squared distance of a plan's end from the wanted height [1/m^2]. Source: S.
+    pub const END_HEIGHT: f64 = 0.2;
     /// Cost of a plan that does not reach the line from which the cost-to-go counts [-]. Source: S.
     pub const SHORT: f64 = 100.0;
     /// Weight of a point beyond that line [-]: it will be planned again. Source: S.
@@ -78,4 +55,13 @@ pub mod space_program {
     pub const FACES: usize = 8;
     /// Depth in which a voxel counts as behind a face \[m\]. Source: S.
     pub const BEHIND: f64 = 0.35;
+}
+
+/// Shares of the limits of an aircraft.
+pub mod space_limits {
+    /// Share of the greatest bank and of its rate that pursuit and programs use [-]; the rest is for what goes beyond soft rows.
+    /// Source: S.
+    pub const BANK: f64 = 0.92;
+    /// See [`BANK`]. Source: S.
+    pub const RATE: f64 = 0.9;
 }

@@ -23,8 +23,8 @@ pub use mpp_data::{
 };
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
-pub(crate) use space_path::between;
 pub use space_path::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath, path_axes};
+pub(crate) use space_path::{between, within};
 pub use stall::{StallGuard, stall_sides};
 pub use thrust_lag::ThrustLag;
 pub use trim::{Trim, TrimError};

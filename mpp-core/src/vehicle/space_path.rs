@@ -227,6 +227,11 @@ pub(crate) fn between(value: f64, [low, high]: [f64; 2]) -> f64 {
     }
 }
 
+/// The nearest value within a limit to either side.
+pub(crate) fn within(value: f64, limit: f64) -> f64 {
+    between(value, [-limit, limit])
+}
+
 /// The axes of [`SpacePath::axes`] for a flight path and a course \[rad\].
 #[must_use]
 pub fn path_axes(flight_path: f64, course: f64) -> [[f64; 3]; 3] {

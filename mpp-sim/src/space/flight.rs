@@ -159,10 +159,9 @@ impl SpaceFlight {
             }
         };
         // The last plan of the planner is the next one to be flown; it may have begun later than the flown one.
-        let shift = match (&self.plan, &self.next) {
-            (_, Some((_, first))) => (self.tick - first) as f64 * TICK_PERIOD + latency,
-            _ => shift,
-        };
+        let shift = self.next.as_ref().map_or(shift, |(_, first)| {
+            (self.tick - first) as f64 * TICK_PERIOD + latency
+        });
         self.planner.begin(&start, shift);
         while !self.planner.advance(&self.map) {}
         if let Some((plan, _)) = self.planner.best() {

@@ -5,7 +5,6 @@ use super::values::seed;
 use crate::files::read_aircraft;
 use mpp_analysis::campaign::wilson;
 use mpp_core::planner::space::{Keep, SPACE_CANDIDATES};
-use mpp_core::tuning::voxels::SIGHT;
 use mpp_sim::aircraft_file::AircraftModel;
 use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::lidar::LidarName;
@@ -147,7 +146,7 @@ fn fly(args: &ForestArgs) -> Result<u8, Failure> {
             latency_ticks: LATENCY,
             candidates: usize::from(args.candidates),
             programs: !args.no_programs,
-            sight: SIGHT * args.lidar.config().range[1],
+            sight: args.lidar.config().range[1],
             ahead: AHEAD,
             errors: if args.exact {
                 EstimateErrors::NONE

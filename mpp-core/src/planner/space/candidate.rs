@@ -1,18 +1,16 @@
 //! Trajectories in space: as the pursuit of a path flies them, and as the controls of a program do.
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath, between};
+use crate::tuning::space_limits;
+use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath, between, within};
 
 /// Distance ahead at which the pursuit aims, in seconds of cruise [s]. Less swings, more cuts corners. Source: S of
-/// [`crate::tuning::voxels`].
+/// `tuning/space.rs`.
 const AIM: f64 = 0.75;
 /// Least squared distance of the aim \[m^2\].
 const LEAST_AIM: f64 = 9.0;
 /// Least upward pull that the pursuit asks for [m/s^2]: the direction of the lift needs it.
 const LEAST_UP: f64 = 0.5;
-/// Share of the bank's limit and of its rate that the pursuit uses; the rest is for the program [-].
-const BANK_USED: f64 = 0.92;
-const RATE_USED: f64 = 0.9;
 /// How far beyond the limits of a plan a roll-out may go: angle of attack \[rad\], bank and its rate [-]. Programs break soft rows
 /// by a little.
 const BEYOND_ATTACK: f64 = 0.03;
@@ -124,10 +122,6 @@ pub(super) fn limited(
     }
 }
 
-fn within(value: f64, limit: f64) -> f64 {
-    between(value, [-limit, limit])
-}
-
 /// Flies along points that lie ahead of each other.
 pub(super) struct Pursuit<'a> {
     points: &'a [[f64; 3]],
@@ -190,7 +184,7 @@ pub(super) fn towards(
     [up, right]: [f64; 2],
     dt: f64,
 ) -> SpaceControl {
-    let most_bank = BANK_USED * model.bank;
+    let most_bank = space_limits::BANK * model.bank;
     let [low, high] = model.angle_of_attack;
     let most = model.pull(state.airspeed, high, model.trim.control.thrust);
     let (mut upwards, mut sideways) = (up, right);
@@ -204,7 +198,10 @@ pub(super) fn towards(
     let pull = (up / libm::cos(bank).max(0.4)).max(0.0).min(most);
     let attack = model.angle_for(state.airspeed, pull).max(low).min(high);
     SpaceControl {
-        bank_rate: within((bank - state.bank) / dt, RATE_USED * model.bank_rate),
+        bank_rate: within(
+            (bank - state.bank) / dt,
+            space_limits::RATE * model.bank_rate,
+        ),
         angle_of_attack_rate: within(
             (attack - state.angle_of_attack) / dt,
             model.angle_of_attack_rate,

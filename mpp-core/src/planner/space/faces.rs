@@ -33,8 +33,7 @@ pub(super) fn separate(field: &VoxelField, plan: &SpacePlan, keep: &Keep, faces:
                 },
             );
         }
-        let [x, y, z] = to.position;
-        let _ = x;
+        let [_, y, z] = to.position;
         let [low, high] = keep.heights;
         if z - low < NEAR_BAND {
             faces.push(stage + 1, [0.0, 0.0, -1.0], -low);

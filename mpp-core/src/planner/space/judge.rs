@@ -5,8 +5,9 @@ use super::keep::Keep;
 use super::lattice::Lattice;
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelField;
-use crate::tuning::space_judgement::{AHEAD, LACK, LATER, ROOM, ROOM_WEIGHT, SHORT, UNKNOWN};
+use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, SHORT};
 use crate::tuning::space_program::CONTROL;
+use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use crate::vehicle::{SpaceModel, SpacePath};
 
 /// Points at which a stage is judged.
@@ -49,8 +50,8 @@ pub(super) fn judge(
             price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
             missing = missing.max(lack * later);
             if field.is_unknown(&point) {
-                let near = 1.0 - (point[0] - first.position[0]) / AHEAD;
-                price += UNKNOWN * later * near.max(0.0);
+                let near = 1.0 - (point[0] - first.position[0]) / UNKNOWN_AHEAD;
+                price += UNKNOWN_COST * later * near.max(0.0);
             }
         }
     }
@@ -67,7 +68,7 @@ pub(super) fn judge(
     let fast = last.airspeed - model.trim.state.airspeed;
     let turned =
         last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
-    price += 0.5 * (0.2 * off * off + fast * fast + turned) + to_go.unwrap_or(SHORT);
+    price += 0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go.unwrap_or(SHORT);
     let price = if price.is_finite() {
         price
     } else {

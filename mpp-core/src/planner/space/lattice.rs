@@ -8,8 +8,8 @@ use super::edges::{
     CLIMBS, LAYERS, Layers, NONE, ROWS, SLOPES, UNIT, across, backward, forward, units,
 };
 use crate::map::VoxelField;
-use crate::tuning::space_judgement::{AHEAD, UNKNOWN};
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
+use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use crate::vehicle::{SpaceModel, between};
 
 /// Stations, that of the aircraft included.
@@ -262,9 +262,9 @@ fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -
     let beyond = (low - point[2]).max(point[2] - high).max(0.0);
     let outside = (libm::fabs(point[1]) - rules.half_width).max(0.0);
     let lack = (rules.margin - field.nearest(point)).max(0.0) + beyond + outside;
-    let near = 1.0 - ahead / AHEAD;
+    let near = 1.0 - ahead / UNKNOWN_AHEAD;
     let unknown = if near > 0.0 && field.is_unknown(point) {
-        UNKNOWN * near
+        UNKNOWN_COST * near
     } else {
         0.0
     };

@@ -25,7 +25,7 @@ pub use candidate::SpacePlan;
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
 
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::{KNOTS, STAGE_PERIOD};
 use crate::map::{VoxelField, VoxelGrid};
 use crate::qp::Status;
 use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
@@ -47,7 +47,7 @@ const MOST_STEPS: usize = 120;
 /// their solves.
 pub const MOST_SPACE_SLICES: usize =
     1 + STATIONS + SPACE_CANDIDATES + 2 + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1);
-/// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of [`crate::tuning::voxels`].
+/// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of `tuning/space.rs`.
 const LEVEL_SPAN: f64 = 0.75;
 /// What a cycle is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -345,5 +345,3 @@ impl SpacePlanner {
         Phase::Pose(index + 1)
     }
 }
-
-const _: () = assert!(STAGES + 1 == KNOTS);

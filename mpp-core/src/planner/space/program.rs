@@ -7,15 +7,13 @@ use crate::qp::Penalty;
 use crate::qp::space::{
     Dynamics, Faces, INPUTS, MOTION, POSITION, Problem, STATES, Solution, StageState, Weights,
 };
+use crate::tuning::space_limits;
 use crate::tuning::space_program::{CONTROL, COST_LIMIT, PRICE, TERMINAL};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 use nalgebra::SVector;
 
 /// Change of a state or control for the derivatives.
 const SMALL: f64 = 1e-5;
-/// Share of the limits of bank and rate that programs use; roll-outs may go a little further [-].
-const BANK_USED: f64 = 0.92;
-const RATE_USED: f64 = 0.9;
 /// Greatest flight path angle and course of a plan \[rad\]: the lattice goes ahead.
 const MOST_PATH: f64 = 0.5;
 const MOST_COURSE: f64 = 1.0;
@@ -96,12 +94,15 @@ impl Frame<'_> {
         problem.bounds.set_faces(faces, &[sx, sy, sz]);
         let level = model.trim.state.angle_of_attack();
         let [low, high] = model.angle_of_attack.map(|it| it - level);
-        let bank = BANK_USED * model.bank;
+        let bank = space_limits::BANK * model.bank;
         problem.bounds.set_attitudes(
             [high, bank, MOST_PATH, MOST_COURSE],
             [low, -bank, -MOST_PATH, -MOST_COURSE],
         );
-        let (rate, attack) = (RATE_USED * model.bank_rate, model.angle_of_attack_rate);
+        let (rate, attack) = (
+            space_limits::RATE * model.bank_rate,
+            model.angle_of_attack_rate,
+        );
         let thrust = model.trim.control.thrust;
         problem.bounds.set_inputs(
             [rate, attack, model.thrust_max - thrust],

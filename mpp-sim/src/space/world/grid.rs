@@ -5,7 +5,7 @@
 use std::ops::Range;
 
 /// Side of a cell \[m\]. A ray of 40 m among 2,000 trunks takes as long in cells of 3 to 6 m, and longer in others
-/// (`how_fast_are_rays`); clearances take least time with 4 m.
+/// (example `rays`); clearances take least time with 4 m.
 const CELL: f64 = 4.0;
 /// Most cells of a grid. A world of 100 km gets larger ones, and slower rays.
 const MOST_CELLS: f64 = 1e6;
