@@ -68,6 +68,17 @@ class TwoSided:
     upper: Array
 
 
+@dataclass(frozen=True)
+class Stages:
+    """Rows of the full form as a solver for stages wants them: lower <= rows v <= upper, dynamics before the others of a stage."""
+
+    rows: sparse.csc_matrix
+    lower: Array
+    upper: Array
+    counts: list[int]
+    """Number of inequality rows of each knot."""
+
+
 class Program:
     """One program."""
 
@@ -111,6 +122,22 @@ class Program:
             sparse.csc_matrix(np.diag(diagonal)), linear, sparse.csc_matrix(dynamics), right,
             sparse.csc_matrix(inequalities), self.bounds,
         )
+
+    @cached_property
+    def stages(self) -> Stages:
+        """The rows of the full form by stage, without those of the first state."""
+        form = self.full
+        A, G = form.A.tocsr(), form.G.tocsr()
+        knots = np.array([G[row].indices.min() // (STATES + CONTROLS) for row in range(len(form.h))])
+        rows, lower, upper = [], [], []
+        for knot in range(KNOTS):
+            dynamics = slice((knot + 1) * STATES, (knot + 2) * STATES)
+            own = np.flatnonzero(knots == knot)
+            rows += [A[dynamics], G[own]]
+            lower += [form.b[dynamics], np.full(len(own), -np.inf)]
+            upper += [form.b[dynamics], form.h[own]]
+        counts = [int(np.sum(knots == knot)) for knot in range(KNOTS)]
+        return Stages(sparse.vstack(rows, "csc"), np.concatenate(lower), np.concatenate(upper), counts)
 
     @cached_property
     def condensed(self) -> Condensed:

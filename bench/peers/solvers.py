@@ -4,9 +4,11 @@ Packages are imported where they are used, so that a missing package only costs 
 """
 
 import ctypes
+import os
 import subprocess
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -16,7 +18,7 @@ from typing import Any
 import numpy as np
 from scipy import sparse
 
-from programs import Array, Full, Program, TwoSided
+from programs import CONTROLS, STAGES, STATES, Array, Full, Program, TwoSided
 
 
 @dataclass(frozen=True)
@@ -277,6 +279,69 @@ def quadprog(program: Program) -> Answer:
     return answer((perf_counter_ns() - begin) * 1e-9, solved, not solved, u)
 
 
+def qpoases(program: Program) -> Answer:
+    """qpOASES out of CasADi's wheel, from no active row."""
+    form = program.condensed  # CasADi refuses two-sided rows whose sides cross
+    options = {"printLevel": "none"}
+    u, stats = _conic("qpoases", options, _entries(form.H), form.f, _entries(form.G), {"uba": form.h})
+    infeasible = "infeasib" in stats["return_status"].lower()
+    return answer(stats["t_wall_solver"], stats["success"], infeasible, u)
+
+
+def hpipm(program: Program) -> Answer:
+    """HPIPM out of CasADi's wheel. It has no verdict for infeasible programs; its relative modes reach no tolerance."""
+    form, stages = program.full, program.stages
+    options = {
+        "N": STAGES, "nx": [STATES] * (STAGES + 1), "nu": [CONTROLS] * STAGES + [0], "ng": stages.counts,
+        "hpipm": {"mode": "speed_abs", "iter_max": 100},
+    }  # fmt: skip
+    start = np.full(len(form.q), np.inf)
+    start[:STATES] = 0.0
+    # The first state has bounds in place of rows.
+    first = np.concatenate([program.initial, np.zeros(len(form.q) - STATES)])
+    sides = {"lba": stages.lower, "uba": stages.upper, "lbx": first - start, "ubx": first + start}
+    v, stats = _conic("hpipm", options, _entries(form.P), form.q, _entries(stages.rows), sides)
+    return answer(stats["t_wall_solver"], stats["success"], False, Full.controls(v))
+
+
+def _conic(plugin: str, options: dict[str, Any], h: Any, g: Array, a: Any, sides: dict[str, Array]) -> tuple[Array, Any]:
+    """Solves a program by a plugin of CasADi: solution and statistics."""
+    import casadi
+
+    shape = {"h": h.sparsity(), "a": a.sparsity()}
+    # A failure is an answer, and only with `record_time` does CasADi time the solver.
+    usual = {"error_on_fail": False, "record_time": True}
+    with _silence():
+        # A solver that has solved before would start from there.
+        solver = casadi.conic("solver", plugin, shape, {**usual, **options})
+        result = solver(h=h, g=g, a=a, **sides)
+    return np.array(result["x"]).ravel(), solver.stats()
+
+
+@contextmanager
+def _silence() -> Iterator[None]:
+    """Drops what C code prints: qpOASES prints its licence each time."""
+    kept, nothing = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    try:
+        os.dup2(nothing, 1)
+        yield
+    finally:
+        os.dup2(kept, 1)
+        os.close(kept)
+        os.close(nothing)
+
+
+def _entries(matrix: Any) -> Any:
+    """A matrix for CasADi."""
+    import casadi
+
+    if isinstance(matrix, np.ndarray):
+        return casadi.DM(matrix)
+    matrix.sort_indices()
+    places = casadi.Sparsity(*matrix.shape, matrix.indptr.tolist(), matrix.indices.tolist())
+    return casadi.DM(places, matrix.data)
+
+
 TIGHT = {"abstol": 1e-8, "reltol": 1e-9, "feastol": 1e-8}
 
 PEERS = [
@@ -293,6 +358,7 @@ PEERS = [
         DaqpModel(True),
     ),
     Peer("daqp-native", "daqp", "two-sided dense", "native", "update, solve", 50, DAQP_NATIVE),
+    Peer("hpipm", "casadi", "full by stage", "native", "solve", 10, hpipm),
     Peer("osqp", "osqp", "full sparse", "native", "solve", 3, partial(osqp, False)),
     Peer("osqp-condensed", "osqp", "condensed dense", "native", "solve", 3, partial(osqp, True)),
     Peer("piqp", "piqp", "full sparse", "native", "solve", 10, partial(piqp, "sparse_ldlt")),
@@ -310,4 +376,5 @@ PEERS = [
     ),
     Peer("proxqp", "proxsuite", "condensed dense", "native", "solve", 3, proxqp),
     Peer("quadprog", "quadprog", "condensed dense", "python", "solve", 50, quadprog),
+    Peer("qpoases", "casadi", "condensed dense", "native", "set-up, solve", 10, qpoases),
 ]

@@ -1,5 +1,5 @@
 //! Everything that is not plain cargo: the ARM images (build, fly, measure, check), the simulation
-//! for browsers, the golden flights, the page of numbers, and the figures of docs/validation.
+//! for browsers, the golden flights, the tables of ranges, and the figures of docs/validation.
 //!
 //! The commands use rustup's targets if they are installed. Otherwise they use Debian's compiler
 //! and library sources, which they install as root.
@@ -75,7 +75,7 @@ enum Command {
     Golden(golden::GoldenArgs),
     /// Say how old the figures of docs/validation are; --page runs the commands that print them again
     Validation(validation::ValidationArgs),
-    /// Print docs/planner-numbers.md with the numbers and comments of the code; --save writes it
+    /// Print docs/aircraft.md with the ranges of the code; --save writes it
     Numbers(numbers::NumbersArgs),
 }
 

@@ -1,7 +1,5 @@
-//! `numbers`: makes the tables of docs/planner-numbers.md from the comments of the code, and the ranges of
-//! docs/aircraft.md from its lists.
+//! `numbers`: makes the ranges of docs/aircraft.md from the lists of the code.
 
-mod page;
 mod ranges;
 
 use crate::folders::root;
@@ -9,23 +7,18 @@ use anyhow::Result;
 
 #[derive(Debug, clap::Args)]
 pub(crate) struct NumbersArgs {
-    /// Write the pages instead of printing them
+    /// Write the page instead of printing it
     #[arg(long)]
     save: bool,
 }
 
 pub(crate) fn run(args: &NumbersArgs) -> Result<()> {
     let root = root();
-    let pages = [
-        (page::PAGE, page::text(&root)?),
-        (ranges::PAGE, ranges::text(&root)?),
-    ];
-    for (page, text) in pages {
-        if args.save {
-            std::fs::write(root.join(page), text)?;
-        } else {
-            print!("{text}");
-        }
+    let text = ranges::text(&root)?;
+    if args.save {
+        std::fs::write(root.join(ranges::PAGE), text)?;
+    } else {
+        print!("{text}");
     }
     Ok(())
 }
