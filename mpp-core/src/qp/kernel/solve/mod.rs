@@ -194,6 +194,21 @@ impl Solver {
     /// Starts on the problem that is here already.
     pub(crate) fn begin(&mut self, shared: &Condensed) {
         self.active.clear();
+        self.iterations = 0;
+        self.certificate.clear();
+        self.normalised = [0.0; CONTROLS];
+        self.stale = false;
+        self.rolled = false;
+        // Most programs of dense fields end here, so this comes before all that costs something.
+        self.status = self.check_opposite_faces();
+        if self.status.is_some() {
+            return;
+        }
+        self.entering = None;
+        self.factor.clear();
+        self.list.clear();
+        self.drift = 0;
+        self.feedforward = shared.feedforward(&self.problem.target);
         let problem = &self.problem;
         let rows = problem.bounds.0.iter().zip(&shared.prices);
         let mut numbers = true;
@@ -206,17 +221,8 @@ impl Solver {
             };
         }
         self.attitude_rows = problem.bounds.has_attitude();
-        self.entering = None;
-        self.factor.clear();
-        self.iterations = 0;
-        self.certificate.clear();
-        self.feedforward = shared.feedforward(&self.problem.target);
-        self.normalised = [0.0; CONTROLS];
         self.follow(shared);
-        self.stale = false;
-        self.drift = 0;
         self.rolled = true;
-        self.list.clear();
         self.dual = shared.cost(&self.trajectory, &self.problem.target);
         self.free = self.outputs;
         self.free_cost = self.dual;
@@ -230,7 +236,6 @@ impl Solver {
         };
         self.status = if self.dual.is_finite() && numbers {
             self.check_constant_rows(shared)
-                .or_else(|| self.check_opposite_faces())
                 .or_else(|| (self.dual > self.problem.cost_limit).then_some(Status::Dominated))
         } else {
             Some(Status::NumericalFailure)
@@ -311,8 +316,14 @@ impl Solver {
             } else {
                 self.normalised
             };
-            let initial = &self.problem.initial;
-            shared.roll_out(initial, &self.feedforward, &normalised, solution);
+            let (initial, target) = (&self.problem.initial, &self.problem.target);
+            let feedforward = if self.iterations == 0 {
+                // Faces that cross ended this program before it had one.
+                shared.feedforward(target)
+            } else {
+                self.feedforward
+            };
+            shared.roll_out(initial, &feedforward, &normalised, solution);
         } else {
             solution.clone_from(&self.trajectory);
         }
