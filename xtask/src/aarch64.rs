@@ -25,7 +25,13 @@ pub(crate) struct Aarch64Args {
 pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     if !args.no_tests {
         // This is not --release: to link each test with the whole of it optimised takes an hour.
-        succeed(cargo(&toolchain()?, "test")?.args(["-p", "mpp-core", "-p", "hil-protocol"]))?;
+        succeed(cargo(&toolchain()?, "test")?.args([
+            "--locked",
+            "-p",
+            "mpp-core",
+            "-p",
+            "hil-protocol",
+        ]))?;
     }
     let folder = work("aarch64")?;
     let target = harness(&folder)?;
@@ -45,14 +51,31 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
 
 /// Builds a harness that runs in the emulator. Its logs go to a folder.
 pub(crate) fn harness(folder: &Path) -> Result<Harness> {
-    let mut build = cargo(&toolchain()?, "build")?;
-    build.args(["--release", "-p", "sil-harness"]);
-    // Optimisation over all crates at once takes minutes here, and changes no bit.
-    succeed(build.env("CARGO_PROFILE_RELEASE_LTO", "off"))?;
-    let program = work("")?.join(TARGET).join("release/sil-harness");
+    let program = program()?;
     let wrapper = folder.join("sil-harness");
     write_wrapper(&wrapper, &program)?;
     Ok(Harness::with_program(wrapper, &folder.join("emulated")))
+}
+
+/// Builds the harness.
+pub(crate) fn program() -> Result<PathBuf> {
+    let mut build = cargo(&toolchain()?, "build")?;
+    build.args(["--locked", "--release", "-p", "sil-harness"]);
+    // Optimisation over all crates at once takes minutes here, and changes no bit.
+    succeed(build.env("CARGO_PROFILE_RELEASE_LTO", "off"))?;
+    Ok(work("")?.join(TARGET).join("release/sil-harness"))
+}
+
+/// Builds the C library, whose workspace has no locked versions of its own.
+pub(crate) fn library() -> Result<PathBuf> {
+    let mut build = cargo(&toolchain()?, "build")?;
+    build.args([
+        "--release",
+        "--manifest-path",
+        "bindings/c/embed/Cargo.toml",
+    ]);
+    succeed(&mut build)?;
+    Ok(work("")?.join(TARGET).join("release/libmpp.a"))
 }
 
 /// The compiler and the emulator.
@@ -83,7 +106,6 @@ fn write_wrapper(path: &Path, program: &Path) -> Result<()> {
 fn cargo(toolchain: &Toolchain, subcommand: &str) -> Result<Command> {
     let mut command = toolchain.cargo(subcommand, "")?;
     command
-        .arg("--locked")
         .env(
             "CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_LINKER",
             "aarch64-linux-gnu-gcc",

@@ -3,12 +3,12 @@
 use crate::flight::{Harness, await_end};
 use crate::folders::{root, work};
 use crate::qemu::{Emulator, Run};
-use crate::toolchain::{Toolchain, install, output, succeed};
+use crate::release::{cortex_m, lay_out, try_out};
+use crate::toolchain::{install, output, succeed};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-const THUMB: &str = "thumbv7em-none-eabihf";
 const WARNINGS: [&str; 4] = ["-std=c11", "-Wall", "-Wextra", "-Werror"];
 
 #[derive(Clone, Debug, clap::Args)]
@@ -24,14 +24,21 @@ pub(crate) struct CArgs {
 pub(crate) fn run(args: &CArgs) -> Result<()> {
     let folder = work("c")?;
     let host = Harness::build(&folder)?;
+    let plant = plant(&host)?;
     let example = Example {
-        program: example(&host, &folder)?,
+        program: example(&plant, &folder)?,
+        plant,
         host,
     };
     for seed in 1..=args.flights {
         let mut fly = example.command(seed);
         println!("this machine: {}", example.check(seed, &output(&mut fly)?)?);
     }
+    let prefix = folder.join("prefix");
+    lay_out(&prefix, &example.plant)?;
+    let mut installed = Command::new(try_out(&prefix, &folder)?);
+    let said = output(installed.args(["1", "20"]))?;
+    println!("find_package(mpp): {}", example.check(1, &said)?);
     let image = flight_computer(&folder)?;
     for seed in 1..=args.emulated {
         emulated(&example, seed, &image, &folder)?;
@@ -42,6 +49,8 @@ pub(crate) fn run(args: &CArgs) -> Result<()> {
 /// The host's example, and the harness that knows the right hashes.
 struct Example {
     program: PathBuf,
+    /// The archive of core and simulated aircraft.
+    plant: PathBuf,
     host: Harness,
 }
 
@@ -64,8 +73,8 @@ impl Example {
     }
 }
 
-/// Builds the example under the sanitizers of addresses and undefined behaviour.
-fn example(host: &Harness, folder: &Path) -> Result<PathBuf> {
+/// Builds the archive of core and simulated aircraft.
+fn plant(host: &Harness) -> Result<PathBuf> {
     let mut cargo = Command::new("cargo");
     cargo.current_dir(root());
     succeed(cargo.args(["build", "--quiet", "--locked", "-p", "mpp-c-plant"]))?;
@@ -75,6 +84,11 @@ fn example(host: &Harness, folder: &Path) -> Result<PathBuf> {
         .ancestors()
         .nth(2)
         .context("no target folder")?;
+    Ok(built.join("debug/libmpp_c_plant.a"))
+}
+
+/// Builds the example under the sanitizers of addresses and undefined behaviour.
+fn example(plant: &Path, folder: &Path) -> Result<PathBuf> {
     install(&[("/usr/bin/cc", "gcc")])?;
     let program = folder.join("fly");
     let mut cc = Command::new("cc");
@@ -83,7 +97,7 @@ fn example(host: &Harness, folder: &Path) -> Result<PathBuf> {
         .args(["-O1", "-g"])
         .args(["-fsanitize=address,undefined", "-fno-sanitize-recover=all"])
         .args(["-I", "include", "example/fly.c", "example/autopilot.c"])
-        .arg(built.join("debug/libmpp_c_plant.a"))
+        .arg(plant)
         .args(["-lm", "-lpthread", "-ldl", "-o"])
         .arg(&program);
     succeed(&mut cc)?;
@@ -92,20 +106,7 @@ fn example(host: &Harness, folder: &Path) -> Result<PathBuf> {
 
 /// Builds the example for a Cortex-M7. It uses every call of the library, and does not link if one of them can panic.
 fn flight_computer(folder: &Path) -> Result<PathBuf> {
-    let embed = "bindings/c/embed";
-    // The workspace's versions are used. This is not --locked: cargo drops the packages that are not used here.
-    std::fs::copy(
-        root().join("Cargo.lock"),
-        root().join(embed).join("Cargo.lock"),
-    )?;
-    let toolchain = Toolchain::find(THUMB)?;
-    let mut cargo = toolchain.cargo("build", embed)?;
-    cargo.env(
-        "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_RUSTFLAGS",
-        "-Ctarget-cpu=cortex-m7",
-    );
-    succeed(cargo.arg("--release"))?;
-    let library = work("")?.join(THUMB).join("release/libmpp_c_embed.a");
+    let library = cortex_m("cortex-m7")?;
     install(&[("/usr/bin/arm-none-eabi-gcc", "gcc-arm-none-eabi")])?;
     let image = folder.join("flight-computer.elf");
     let mut gcc = Command::new("arm-none-eabi-gcc");

@@ -5,13 +5,12 @@ use crate::toolchain::{install, output, succeed};
 use anyhow::{Context, Result};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub(crate) fn run() -> Result<()> {
-    install(&[("/usr/bin/dpkg-deb", "dpkg")])?;
     let mut cargo = Command::new("cargo");
     cargo.current_dir(root());
     let features = ["-p", "sil-harness", "--features", "formats,clarabel"];
@@ -20,16 +19,23 @@ pub(crate) fn run() -> Result<()> {
             .args(["build", "--release", "--locked"])
             .args(features),
     )?;
+    let program = root().join("target/release/sil-harness");
+    println!("{}", package(&program)?.display());
+    Ok(())
+}
+
+/// Makes the package of a harness, and returns it.
+pub(crate) fn package(program: &Path) -> Result<PathBuf> {
+    install(&[("/usr/bin/dpkg-deb", "dpkg")])?;
     let target = root().canonicalize()?.join("target");
-    let program = target.join("release/sil-harness");
     let tree = target.join("deb/tree");
     if tree.exists() {
         fs::remove_dir_all(&tree)?;
     }
-    copy(&program, &tree.join("usr/bin/sil-harness"), 0o755)?;
-    completions(&program, &tree)?;
+    copy(program, &tree.join("usr/bin/sil-harness"), 0o755)?;
+    completions(program, &tree)?;
     let manual = tree.join("usr/share/man/man1");
-    succeed(Command::new(&program).arg("man").arg("--out").arg(&manual))?;
+    succeed(Command::new(program).arg("man").arg("--out").arg(&manual))?;
     let shared = tree.join("usr/share/sil-harness");
     for folder in ["aircraft", "docs/scenarios", "docs/fields", "docs/lidars"] {
         copy_folder(&root().join(folder), &shared.join(folder))?;
@@ -54,8 +60,7 @@ pub(crate) fn run() -> Result<()> {
             .arg(&tree)
             .arg(&package),
     )?;
-    println!("{}", package.display());
-    Ok(())
+    Ok(package)
 }
 
 /// The package's description. It needs the C library alone.
@@ -90,7 +95,7 @@ fn write(place: &Path, bytes: &[u8]) -> Result<()> {
     fs::write(place, bytes).with_context(|| place.display().to_string())
 }
 
-fn copy(from: &Path, to: &Path, mode: u32) -> Result<()> {
+pub(crate) fn copy(from: &Path, to: &Path, mode: u32) -> Result<()> {
     write(
         to,
         &fs::read(from).with_context(|| from.display().to_string())?,
@@ -99,7 +104,7 @@ fn copy(from: &Path, to: &Path, mode: u32) -> Result<()> {
 }
 
 /// Copies a folder of at most one level of folders.
-fn copy_folder(from: &Path, to: &Path) -> Result<()> {
+pub(crate) fn copy_folder(from: &Path, to: &Path) -> Result<()> {
     for entry in fs::read_dir(from)? {
         let path = entry?.path();
         let place = to.join(path.file_name().unwrap_or_default());

@@ -23,6 +23,7 @@ mod nucleo;
 mod numbers;
 mod pil;
 mod qemu;
+mod release;
 mod reproduce;
 mod stack;
 mod talk;
@@ -69,6 +70,8 @@ enum Command {
     Reproduce,
     /// Make the Debian package of the harness, in target/deb
     Deb,
+    /// Make what a release holds, in target/release-VERSION, and try each part in a clean folder
+    Release(release::ReleaseArgs),
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
     Fuzz(fuzz::FuzzArgs),
     /// Fly the golden flights on the host and print their table; --save makes it the expected one
@@ -87,12 +90,13 @@ fn main() -> ExitCode {
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
         Command::Wasm => wasm::build().map(|path| println!("{}", path.display())),
-        Command::Web => wasm::page(),
+        Command::Web => wasm::page().map(|_| ()),
         Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),
         Command::Nucleo => nucleo::run(),
         Command::Reproduce => reproduce::run(),
         Command::Deb => deb::run(),
+        Command::Release(args) => release::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Validation(args) => validation::run(&args),

@@ -48,8 +48,8 @@ pub(crate) fn build() -> Result<PathBuf> {
     Ok(work("")?.join(TARGET).join("release/mpp_web.wasm"))
 }
 
-/// Builds the page. It holds all that it needs.
-pub(crate) fn page() -> Result<()> {
+/// Builds the page. It holds all that it needs. Returns its file.
+pub(crate) fn page() -> Result<PathBuf> {
     let module = gzip(&std::fs::read(build()?)?)?;
     let mut page = String::new();
     for part in PARTS {
@@ -73,7 +73,7 @@ pub(crate) fn page() -> Result<()> {
         sent < PAGE_MAX,
         "the page is larger than {PAGE_MAX} bytes as it is sent: make it smaller"
     );
-    Ok(())
+    Ok(path)
 }
 
 /// Flies scenarios in Node, one a line as JSON. Returns the hash of each log.

@@ -17,6 +17,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#define MPP_VERSION "0.2.0"
+
 // Alignment that the storage needs [bytes].
 #define MPP_ALIGNMENT 16
 
@@ -379,6 +381,9 @@ typedef struct mpp_plan {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+// The library's version, as `MPP_VERSION` is that of the header: "0.2.0".
+const char *mpp_version(void);
 
 // Bytes that the storage of a core needs.
 size_t mpp_storage_size(void);

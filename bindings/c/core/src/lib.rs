@@ -37,6 +37,12 @@ pub const MPP_ALIGNMENT: usize = 16;
 
 const _: () = assert!(align_of::<MppCore>() <= MPP_ALIGNMENT);
 
+/// The library's version, as `MPP_VERSION` is that of the header: "0.2.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn mpp_version() -> *const core::ffi::c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
 /// Bytes that the storage of a core needs.
 #[unsafe(no_mangle)]
 pub extern "C" fn mpp_storage_size() -> usize {

@@ -5,7 +5,12 @@ use std::path::Path;
 #[test]
 fn the_header_is_made_from_the_code() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let config = cbindgen::Config::from_file(folder.join("../cbindgen.toml")).expect("it is read");
+    let mut config =
+        cbindgen::Config::from_file(folder.join("../cbindgen.toml")).expect("it is read");
+    config.after_includes = Some(format!(
+        "\n#define MPP_VERSION \"{}\"",
+        env!("CARGO_PKG_VERSION")
+    ));
     let mut made = Vec::new();
     cbindgen::Builder::new()
         .with_config(config)

@@ -1,9 +1,13 @@
-//! The library `libmpp_c_embed.a` for flight computers. Its panic handler calls a function that does not exist: a program
-//! with a path to a panic does not link.
+//! The library `libmpp`. On a flight computer its panic handler calls a function that does not exist: a program with a path
+//! to a panic does not link. A host has the standard library's handler.
 #![no_std]
+
+#[cfg(not(target_os = "none"))]
+extern crate std;
 
 pub use mpp_c::*;
 
+#[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {
     unsafe extern "C" {
