@@ -50,6 +50,8 @@ fn of_the_session() {
             elevator_below: Some(1.0),
             elevator_above: Some(1.0),
             elevator_rate: Some(1.0),
+            elevator_delay: Some(0.1),
+            thrust_delay: Some(0.1),
         },
     };
     assert_eq!(payload(&configure), Configure::MAX_SIZE);

@@ -85,6 +85,8 @@ impl Units {
             thrust_max: limits.thrust_max.map(|most| most / self.force()),
             thrust_lag: limits.thrust_lag.map(|lag| lag / self.time),
             elevator_rate: limits.elevator_rate.map(|rate| rate * self.time),
+            elevator_delay: limits.elevator_delay.map(|delay| delay / self.time),
+            thrust_delay: limits.thrust_delay.map(|delay| delay / self.time),
             ..*limits
         }
     }

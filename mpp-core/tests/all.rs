@@ -6,6 +6,7 @@ mod clock;
 mod closed_loop;
 mod common;
 mod corridor_segments;
+mod dead_time;
 mod distance_field;
 mod disturbances;
 mod elevator_effect;

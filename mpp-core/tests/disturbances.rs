@@ -28,6 +28,7 @@ fn some_limits() -> impl Strategy<Value = ActuatorLimits> {
             elevator_below: elevator_range,
             elevator_above: elevator_range,
             elevator_rate,
+            ..ActuatorLimits::NONE
         },
     )
 }
@@ -224,6 +225,7 @@ fn the_loop_clamps_counts_and_predicts_by_what_is_given() {
         elevator_below: Some(1.0),
         elevator_above: Some(1.0),
         elevator_rate: Some(20.0),
+        ..ActuatorLimits::NONE
     };
     let mut flight = FlightLoop::new(&with_actuators(limits)).unwrap();
     let level = flight.state();

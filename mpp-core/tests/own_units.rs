@@ -34,6 +34,8 @@ fn flight_of(scale: f64) -> Settings {
         elevator_below: Some(6.0),
         elevator_above: Some(4.0),
         elevator_rate: Some(40.0 / time),
+        elevator_delay: Some(0.05 * time),
+        thrust_delay: Some(0.03 * time),
     };
     Settings::flight_of(&aircraft, &actuators)
 }

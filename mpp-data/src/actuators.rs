@@ -1,7 +1,10 @@
 //! The commands to motor and elevator, and their limits.
 
 use crate::Airframe;
-use serde::{Deserialize, Serialize};
+use core::fmt;
+use serde::de::{SeqAccess, Visitor};
+use serde::ser::SerializeTuple;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The command to the actuators.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,7 +16,7 @@ pub struct Control {
 }
 
 /// Limits of the actuators. `None` means no limit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ActuatorLimits {
     /// Greatest thrust \[N\]. The least thrust is always 0.
     pub thrust_max: Option<f64>,
@@ -25,6 +28,10 @@ pub struct ActuatorLimits {
     pub elevator_above: Option<f64>,
     /// Greatest rate of the elevator [1/s].
     pub elevator_rate: Option<f64>,
+    /// Dead time from a command of the elevator to its effect \[s\].
+    pub elevator_delay: Option<f64>,
+    /// Dead time from a command of the thrust to its effect \[s\]; the lag follows it.
+    pub thrust_delay: Option<f64>,
 }
 
 impl ActuatorLimits {
@@ -35,6 +42,8 @@ impl ActuatorLimits {
         elevator_below: None,
         elevator_above: None,
         elevator_rate: None,
+        elevator_delay: None,
+        thrust_delay: None,
     };
 
     /// Whether every limit is a positive, finite number.
@@ -46,6 +55,8 @@ impl ActuatorLimits {
             self.elevator_below,
             self.elevator_above,
             self.elevator_rate,
+            self.elevator_delay,
+            self.thrust_delay,
         ];
         limits
             .iter()
@@ -104,6 +115,77 @@ impl ActuatorLimits {
     pub fn angle_of_attack_rate(&self, airframe: &Airframe) -> f64 {
         let rate = self.elevator_rate;
         rate.map_or(f64::INFINITY, |rate| rate * per_unit(airframe))
+    }
+}
+
+/// Number of limits that each peer of the link sends.
+const ALWAYS: usize = 5;
+
+/// On the link the dead times are a tail of up to two plain numbers, without which a peer may end: 0 is none.
+impl Serialize for ActuatorLimits {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let tail = [self.elevator_delay, self.thrust_delay];
+        let told = tail.iter().rposition(Option::is_some);
+        let told = told.map_or(0, |last| last + 1);
+        let mut fields = serializer.serialize_tuple(ALWAYS + told)?;
+        for limit in [
+            self.thrust_max,
+            self.thrust_lag,
+            self.elevator_below,
+            self.elevator_above,
+            self.elevator_rate,
+        ] {
+            fields.serialize_element(&limit)?;
+        }
+        for delay in tail.iter().take(told) {
+            fields.serialize_element(&delay.unwrap_or(0.0))?;
+        }
+        fields.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for ActuatorLimits {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_tuple(ALWAYS + 2, Fields)
+    }
+}
+
+/// Reads the limits field by field.
+struct Fields;
+
+impl<'de> Visitor<'de> for Fields {
+    type Value = ActuatorLimits;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("five limits of actuators and up to two dead times")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut fields: A) -> Result<Self::Value, A::Error> {
+        let mut limits = [None; ALWAYS];
+        for limit in &mut limits {
+            *limit = fields.next_element()?.flatten();
+        }
+        // What ends within a number leaves bytes behind, which the frame's reader refuses.
+        let mut delay = || {
+            let told = fields.next_element::<f64>();
+            told.ok().flatten().filter(|delay| *delay != 0.0)
+        };
+        let [
+            thrust_max,
+            thrust_lag,
+            elevator_below,
+            elevator_above,
+            elevator_rate,
+        ] = limits;
+        Ok(ActuatorLimits {
+            thrust_max,
+            thrust_lag,
+            elevator_below,
+            elevator_above,
+            elevator_rate,
+            elevator_delay: delay(),
+            thrust_delay: delay(),
+        })
     }
 }
 

@@ -119,6 +119,9 @@ settings! {
     Margin, "margin", "m", [1e-3, 1e3];
     Band, "band", "m", [0.01, 1e4];
     PlanThrust, "thrust_max", "N", [0.01, 1e7];
+    // The core remembers the commands of 30 ticks. A shorter dead time than half a tick is none.
+    ElevatorDelay, "actuators.elevator_delay", "s", [1e-3, 0.3];
+    ThrustDelay, "actuators.thrust_delay", "s", [1e-3, 0.3];
 }
 
 impl Setting {

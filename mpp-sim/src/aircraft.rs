@@ -33,7 +33,11 @@ impl Actuation {
         let trim = scenario.trim()?.control;
         Ok(Self {
             seed,
-            actuators: Actuators::new(scenario.limits(), trim),
+            actuators: Actuators::new(
+                scenario.limits(),
+                faults.actuators.untold_delay.unwrap_or(0.0),
+                trim,
+            ),
             elevator: Signal::new(seed, Stream::ElevatorFault, faults.elevator),
             thrust: Signal::new(seed, Stream::ThrustFault, faults.thrust),
             trim,

@@ -148,6 +148,7 @@ fn everything_at_once_is_flown_through_by_most() {
             thrust_lag: Some(0.2),
             elevator_range: Some(2.0),
             elevator_rate: Some(20.0),
+            ..ActuatorLimits::default()
         },
         gusts: GustConfig { intensity: 1.0 },
         model_error: ModelError {

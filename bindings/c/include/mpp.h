@@ -214,6 +214,10 @@ typedef struct mpp_aircraft {
   double elevator_above;
   // Greatest rate of the elevator [unit of elevator per s].
   double elevator_rate;
+  // Dead time from a command of the elevator to its effect, at most 0.3 [s]; 0 for none.
+  double elevator_delay;
+  // Dead time of the thrust, at most 0.3 [s]; 0 for none.
+  double thrust_delay;
 } mpp_aircraft;
 
 // What a flight needs to know before it begins.

@@ -18,4 +18,4 @@ pub(crate) const F64: usize = 8;
 /// Size of an `Aircraft`: airframe, cruise, body and stall.
 pub(crate) const AIRCRAFT: usize = (Airframe::COUNT + 2) * F64 + (BYTE + F64);
 /// Size of `ActuatorLimits`.
-pub(crate) const ACTUATOR_LIMITS: usize = 5 * (BYTE + F64);
+pub(crate) const ACTUATOR_LIMITS: usize = 5 * (BYTE + F64) + 2 * F64;

@@ -76,6 +76,8 @@ fn configure(preset: Preset, aircraft: Aircraft) -> Message {
             elevator_below: Some(2.0),
             elevator_above: None,
             elevator_rate: None,
+            elevator_delay: None,
+            thrust_delay: None,
         },
     })
 }
@@ -102,6 +104,56 @@ fn configure_and_every_preset() {
             "164d500202029a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb16400101010101010101010101010101010101010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e4002010101010101010240010533dc76e300",
         ),
     ]);
+}
+
+/// The dead times are a tail, without which all frames above end.
+#[test]
+fn configure_with_dead_times() {
+    let told = |elevator_delay, thrust_delay| {
+        let Message::Configure(known) = configure(Preset::Flight, Aircraft::REFERENCE) else {
+            unreachable!("it is a configuration");
+        };
+        Message::Configure(Configure {
+            actuators: ActuatorLimits {
+                elevator_delay,
+                thrust_delay,
+                ..known.actuators
+            },
+            ..known
+        })
+    };
+    check(&[
+        (
+            told(Some(0.1), None),
+            "164d500202029a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb16400101010101010101010101010101010101010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e4002010101010101010240010d9a9999999999b93fb43d882300",
+        ),
+        (
+            told(None, Some(0.05)),
+            "164d500202029a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb16400101010101010101010101010101010101010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e40020101010101010102400101010101010101010d9a9999999999a93fadf2386900",
+        ),
+        (
+            told(Some(0.1), Some(0.05)),
+            "164d500202029a99999999990940a6e2ecc367d8c53f010101010103d03f01010101010bf03f9a9999999999f33f01010101010be03f9301837b16eb16400101010101010101010101010101010101010101010101119a9999999999b93f9a9999999999a93f010101010113e03fb41a4223f60a20c0743f6a56df55ddbf01010101010101099a9999999999c93f01010101010328400101010101010101121932ac02f0a204ef9bafcdf8acd1910164010c48429a9999999999b9bf010101010101032e400201010101010101024001159a9999999999b93f9a9999999999a93f379eee5300",
+        ),
+    ]);
+}
+
+/// A tail that ends within a number is refused, at each of its bytes.
+#[test]
+fn a_broken_tail_of_dead_times_is_refused() {
+    let Message::Configure(mut known) = configure(Preset::Flight, Aircraft::REFERENCE) else {
+        unreachable!("it is a configuration");
+    };
+    let mut buffer = [0; MAX_PAYLOAD];
+    let without = postcard::to_slice(&known, &mut buffer).unwrap().len();
+    known.actuators.elevator_delay = Some(0.1);
+    known.actuators.thrust_delay = Some(0.2);
+    let payload = postcard::to_slice(&known, &mut buffer).unwrap();
+    for end in without..=payload.len() {
+        let read = postcard::take_from_bytes::<Configure>(&payload[..end]);
+        let whole = read.is_ok_and(|(_, rest)| rest.is_empty());
+        assert_eq!(whole, (end - without) % 8 == 0, "{end}");
+    }
 }
 
 fn reply(verdict: ConfigureVerdict) -> Message {
@@ -168,7 +220,7 @@ fn every_setting_out_of_range() {
         PlanTerminalWeight, Latency, PenaltyQuadratic, SqpIterations, RefinedCandidates, PaddingNear, PaddingFar,
         ElevatorAbove, LiftElevator, MomentPitchRate, BodyRadius, Stall, LengthUnit, TimeUnit, MassUnit,
         LiftAlphaRate, LiftPitchRate, CruiseAirspeed, WindChange, Altitude, Sight, PenaltyLinear,
-        AngleOfAttackLimit, FlightPathLimit, Margin, Band, PlanThrust,
+        AngleOfAttackLimit, FlightPathLimit, Margin, Band, PlanThrust, ElevatorDelay, ThrustDelay,
     ];
     assert_eq!(places, Setting::ALL);
     for (place, setting) in places.into_iter().enumerate() {

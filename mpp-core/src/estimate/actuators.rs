@@ -1,6 +1,6 @@
 //! The controls that the actuators give, and their effect on the aircraft.
 
-use super::{ElevatorEffect, MotorWatch, Progress};
+use super::{CommandLine, ElevatorEffect, MotorWatch, Progress};
 use crate::settings::Settings;
 use crate::vehicle::{ActuatorLimits, AirState, Control, Trim};
 
@@ -11,8 +11,11 @@ pub struct Actuators {
     /// The controls that the actuators gave up to the last step, by the model of the actuators.
     given: Control,
     elevator: ElevatorEffect,
-    /// Elevator command of the plan since the last step.
+    /// Elevator command of the plan since the last step, and the one that the aircraft has felt since then.
     planned: f64,
+    felt: f64,
+    /// The commands that have not acted yet.
+    line: CommandLine,
     motor: MotorWatch,
 }
 
@@ -25,6 +28,8 @@ impl Actuators {
             given: trim.control,
             elevator: ElevatorEffect::new(&settings.airframe, trim),
             planned: trim.control.elevator,
+            felt: trim.control.elevator,
+            line: CommandLine::new(&settings.actuators, trim.control),
             motor: MotorWatch::new(
                 settings.airframe.mass,
                 trim.control.thrust,
@@ -39,6 +44,12 @@ impl Actuators {
         &self.limits
     }
 
+    /// The commands that have not acted yet.
+    #[must_use]
+    pub fn line(&self) -> &CommandLine {
+        &self.line
+    }
+
     /// The controls that the actuators gave up to the last step.
     #[must_use]
     pub fn given(&self) -> Control {
@@ -48,7 +59,13 @@ impl Actuators {
     /// The controls of the known aircraft that do what these actuators do.
     #[must_use]
     pub fn effective(&self) -> Control {
-        let effective = self.elevator.effective(self.given);
+        self.effect_of(self.given)
+    }
+
+    /// The controls of the known aircraft that do what the actuators do when they give these.
+    #[must_use]
+    pub fn effect_of(&self, given: Control) -> Control {
+        let effective = self.elevator.effective(given);
         if self.motor.lost() {
             return Control {
                 thrust: 0.0,
@@ -81,15 +98,17 @@ impl Actuators {
         self.planned = planned;
     }
 
-    /// Moves the actuators on towards a command by `period` \[s\].
+    /// Moves the actuators on by `period` \[s\], towards the command that acts after its dead time when this one is sent.
     pub fn follow(&mut self, command: Control, period: f64) {
-        self.given = self.limits.given(command, self.given, period);
+        let (acts, felt) = self.line.send(command, self.planned);
+        self.felt = felt;
+        self.given = self.limits.given(acts, self.given, period);
     }
 
     /// Compares the measured pitch \[rad\] and altitude \[m\] with the commands; see [`ElevatorEffect::update`].
     pub fn see_turn(&mut self, seen: (f64, f64), air: &AirState, lift_offset: f64, period: f64) {
         let effective = self.effective();
-        (self.elevator).update(seen, air, lift_offset, effective, self.planned, period);
+        (self.elevator).update(seen, air, lift_offset, effective, self.felt, period);
     }
 
     /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have

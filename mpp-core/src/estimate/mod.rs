@@ -6,7 +6,7 @@
 //! | [`Ekf`], [`LaggedEkf`] | motion through the air from airspeed and pitch, and the same from late ones |
 //! | [`Navigation`], [`WindFilter`] | position and wind |
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
-//! | [`Actuators`] | the model of motor and elevator, with [`MotorWatch`] and [`ElevatorEffect`] |
+//! | [`Actuators`] | the model of motor and elevator, with [`CommandLine`], [`MotorWatch`] and [`ElevatorEffect`] |
 //! | [`BiasMonitor`] | the watches for slow errors: [`AirspeedBias`], [`PitchBias`] |
 //! | [`PitchMonitor`] | a pitch sensor that the altitude contradicts |
 //! | [`SensorMonitor`] | the trust in a sensor |
@@ -15,6 +15,7 @@
 mod actuators;
 mod airspeed_bias;
 mod bias_monitor;
+mod command_line;
 mod ekf;
 mod elevator_effect;
 mod estimator;
@@ -33,9 +34,10 @@ mod wind_filter;
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias_monitor::BiasMonitor;
+pub use command_line::CommandLine;
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;
-pub use estimator::Estimator;
+pub use estimator::{Ahead, Estimator};
 pub use history::{History, MOST_AGE, MOST_SCAN_AGE};
 pub use lagged::{LaggedEkf, Taken};
 pub use lift::LiftEstimator;

@@ -2,7 +2,7 @@
 
 use crate::config::TICK_PERIOD;
 use crate::control::{Lqr, holds};
-use crate::estimate::{Estimator, Innovation, PositionVerdict, Sensors};
+use crate::estimate::{Ahead, Estimator, Innovation, PositionVerdict, Sensors};
 use crate::health::Health;
 use crate::planner::{PlanSummary, SetupError, Verdict, check};
 use crate::sense::SensorFrame;
@@ -64,6 +64,8 @@ pub struct StepOutput {
 #[derive(Clone, Debug)]
 pub struct FlightLoop {
     estimator: Estimator,
+    /// The aircraft when the command of the last step acts. With a dead time, references and plans are for then.
+    ahead: Ahead,
     lqr: Lqr,
     trim: Trim,
     cross_track: f64,
@@ -102,8 +104,10 @@ impl FlightLoop {
     #[must_use]
     pub fn regulated(settings: &Settings, regulated: &Regulated) -> Self {
         let Regulated { trim, lqr } = *regulated;
+        let estimator = Estimator::new(settings, &trim);
         Self {
-            estimator: Estimator::new(settings, &trim),
+            ahead: estimator.ahead(),
+            estimator,
             lqr,
             trim,
             cross_track: settings.cross_track,
@@ -150,6 +154,7 @@ impl FlightLoop {
         if let (Some(by), Some(trajectory)) = (turned, &mut self.trajectory) {
             trajectory.turn(by);
         }
+        self.ahead = self.estimator.ahead();
 
         let tracked = self
             .trajectory
@@ -160,11 +165,11 @@ impl FlightLoop {
             None => (Mode::TrimHold, self.level_reference()),
         };
         let mut wanted = self.lqr.track(
-            self.estimator.air(),
+            &self.ahead.state.air,
             &self.turned_back(&reference.state),
             reference.feedforward,
         );
-        let slower = reference.state.air.airspeed - self.estimator.air().airspeed;
+        let slower = reference.state.air.airspeed - self.ahead.state.air.airspeed;
         wanted.thrust += self.airspeed_hold * slower;
         let control = self.limit(wanted);
         self.last = Some((time, control));
@@ -230,10 +235,17 @@ impl FlightLoop {
         self.estimator.air()
     }
 
-    /// The first state of a plan: the estimated position and motion.
+    /// The estimated position and motion.
     #[must_use]
     pub fn state(&self) -> VehicleState {
         self.estimator.state()
+    }
+
+    /// The first state of a plan: position and motion when the command of the last step acts. Without a dead time it is
+    /// [`Self::state`].
+    #[must_use]
+    pub fn planned_from(&self) -> VehicleState {
+        self.ahead.state
     }
 
     /// The pose at the tick that was `age` ticks ago; see [`Estimator::pose_at`].
@@ -277,14 +289,14 @@ impl FlightLoop {
         let trim = self.trim.control;
         let sound = wanted.thrust.is_finite() && wanted.elevator.is_finite();
         let asked = if sound {
-            let air = self.estimator.air();
+            let air = &self.ahead.state.air;
             let safe = (self.guard).map_or(wanted, |guard| guard.within(wanted, air));
             self.estimator.actuators().command_for(safe)
         } else {
             trim
         };
         let actuators = self.estimator.actuators();
-        let control = (actuators.limits()).within(asked, trim, actuators.given(), TICK_PERIOD);
+        let control = (actuators.limits()).within(asked, trim, self.ahead.given, TICK_PERIOD);
         if !sound {
             Health::count(&mut self.health.commands_not_finite);
             return control;
@@ -326,7 +338,7 @@ impl FlightLoop {
 
     /// The motion of the reference, turned towards the path of the reference.
     fn turned_back(&self, reference: &VehicleState) -> AirState {
-        let VehicleState { x, z, .. } = self.estimator.state();
+        let VehicleState { x, z, .. } = self.ahead.state;
         let (ahead, up) = self.conditions().wind.ground_velocity(&reference.air);
         let ahead = ahead.max(LEAST_ADVANCE);
         let speed = libm::sqrt(ahead * ahead + up * up);
@@ -340,7 +352,7 @@ impl FlightLoop {
     }
 
     fn level_reference(&self) -> Reference {
-        let VehicleState { x, z, .. } = self.estimator.state();
+        let VehicleState { x, z, .. } = self.ahead.state;
         Reference {
             state: VehicleState {
                 x,

@@ -68,6 +68,8 @@ impl Settings {
             (Setting::ElevatorBelow, limits.elevator_below),
             (Setting::ElevatorAbove, limits.elevator_above),
             (Setting::ElevatorRate, limits.elevator_rate),
+            (Setting::ElevatorDelay, limits.elevator_delay),
+            (Setting::ThrustDelay, limits.thrust_delay),
             (Setting::DesignThrust, self.design_thrust),
             (Setting::SpeedNoise, Some(speed_noise)),
             (Setting::PitchNoise, Some(pitch_noise)),

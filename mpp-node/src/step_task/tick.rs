@@ -241,7 +241,7 @@ impl StepTask {
             time: session.time(tick),
             forget: session.forget,
             pose: *pose,
-            state: session.control.state(),
+            state: session.control.planned_from(),
             conditions: session.control.conditions(),
             scan: (!without_scan).then(|| self.scan.clone()),
             planner: session.tuning.settings.planner,

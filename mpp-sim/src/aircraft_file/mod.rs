@@ -144,6 +144,9 @@ pub struct Elevator {
     /// Greatest rate [unit/s]; by default there is no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
+    /// Dead time from a command to its effect \[s\]; by default there is none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub delay: Option<f64>,
 }
 
 /// Unit of the elevator's command.
@@ -168,6 +171,9 @@ pub struct Thrust {
     /// Time constant of the thrust \[s\]; by default it follows at once.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lag: Option<f64>,
+    /// Dead time from a command to its effect \[s\]; by default there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub delay: Option<f64>,
 }
 
 impl AircraftFile {

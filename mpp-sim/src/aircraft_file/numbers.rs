@@ -76,6 +76,8 @@ impl AircraftModel {
                 most - trim
             })?,
             elevator_rate: file.elevator.rate,
+            elevator_delay: file.elevator.delay,
+            thrust_delay: file.thrust.delay,
         };
         let stalls = file.lift.stall.is_some_and(|stall| alpha >= stall);
         let advice = format!(

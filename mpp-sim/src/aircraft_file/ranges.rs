@@ -37,8 +37,10 @@ of_core! {
     ElevatorBelow, "elevator.min", "units below level flight";
     ElevatorAbove, "elevator.max", "units above level flight";
     ElevatorRate, "elevator.rate", "units/s";
+    ElevatorDelay, "elevator.delay", "s";
     MotorThrust, "thrust.max", "N";
     ThrustLag, "thrust.lag", "s";
+    ThrustDelay, "thrust.delay", "s";
 }
 
 impl AircraftFile {

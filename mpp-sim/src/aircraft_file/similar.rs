@@ -42,6 +42,9 @@ impl AircraftFile {
         other.elevator.rate = other.elevator.rate.map(|rate| rate / time);
         other.thrust.max = other.thrust.max.map(|thrust| thrust * cube);
         other.thrust.lag = other.thrust.lag.map(|lag| lag * time);
+        for delay in [&mut other.elevator.delay, &mut other.thrust.delay] {
+            *delay = delay.map(|delay| delay * time);
+        }
         if let Some(lateral) = &mut other.lateral {
             lateral.span *= scale;
             for inertia in [

@@ -1,7 +1,9 @@
 //! The actuators. The motor and the elevator's servo turn a command into the control that acts.
 
+use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{ActuatorLimits as Limits, Control};
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
 /// Limits of the actuators; each may be absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -19,6 +21,15 @@ pub struct ActuatorLimits {
     /// Greatest rate of the elevator [1/s].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub elevator_rate: Option<f64>,
+    /// Dead time of the elevator \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub elevator_delay: Option<f64>,
+    /// Dead time of the thrust \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub thrust_delay: Option<f64>,
+    /// Further dead time of both, of which the core is not told \[s\].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub untold_delay: Option<f64>,
 }
 
 impl ActuatorLimits {
@@ -31,25 +42,37 @@ impl ActuatorLimits {
             elevator_below: self.elevator_range,
             elevator_above: self.elevator_range,
             elevator_rate: self.elevator_rate,
+            elevator_delay: self.elevator_delay,
+            thrust_delay: self.thrust_delay,
         }
     }
 }
 
 /// The actuators of one flight.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Actuators {
     limits: Limits,
+    /// Commands of elevator and thrust that do not act yet, the oldest first.
+    waiting: [VecDeque<f64>; 2],
     trim: Control,
     /// The control that the actuators gave last.
     given: Control,
 }
 
 impl Actuators {
-    /// Actuators that rest at a trim.
+    /// Actuators that rest at a trim, with a dead time beyond that of their limits \[s\].
     #[must_use]
-    pub fn new(limits: Limits, trim: Control) -> Self {
+    pub fn new(limits: Limits, more: f64, trim: Control) -> Self {
+        let line = |delay: Option<f64>, rest: f64| {
+            let ticks = ((delay.unwrap_or(0.0) + more) / TICK_PERIOD).round();
+            VecDeque::from(vec![rest; ticks as usize])
+        };
         Self {
             limits,
+            waiting: [
+                line(limits.elevator_delay, trim.elevator),
+                line(limits.thrust_delay, trim.thrust),
+            ],
             trim,
             given: trim,
         }
@@ -59,7 +82,11 @@ impl Actuators {
     /// for the end of this time. The aircraft flies with this end value for the whole time.
     pub fn give(&mut self, command: Control, dt: f64) -> Control {
         let limits = &self.limits;
-        let mut given = command;
+        let [elevator, thrust] = &mut self.waiting;
+        let mut given = Control {
+            elevator: delayed(elevator, command.elevator),
+            thrust: delayed(thrust, command.thrust),
+        };
         if let Some(max) = limits.thrust_max {
             given.thrust = given.thrust.clamp(0.0, max);
         }
@@ -83,6 +110,12 @@ impl Actuators {
     }
 }
 
+/// The command that acts when this one comes.
+fn delayed(waiting: &mut VecDeque<f64>, command: f64) -> f64 {
+    waiting.push_back(command);
+    waiting.pop_front().unwrap_or(command)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,7 +131,7 @@ mod tests {
 
     #[test]
     fn without_limits_a_command_is_what_is_given() {
-        let mut actuators = Actuators::new(Limits::NONE, TRIM);
+        let mut actuators = Actuators::new(Limits::NONE, 0.0, TRIM);
         for command in [control(1e3, -1e3), control(0.1 + 0.2, 1.0 / 3.0)] {
             assert_eq!(actuators.give(command, 0.01), command);
         }
@@ -111,7 +144,7 @@ mod tests {
             thrust_lag: Some(0.2),
             ..ActuatorLimits::default()
         };
-        let mut actuators = Actuators::new(limits.limits(), TRIM);
+        let mut actuators = Actuators::new(limits.limits(), 0.0, TRIM);
         let step: Vec<f64> = (0..200)
             .map(|_| actuators.give(control(100.0, 3.8), 0.01).thrust)
             .collect();
@@ -134,7 +167,7 @@ mod tests {
             elevator_rate: Some(20.0),
             ..ActuatorLimits::default()
         };
-        let mut actuators = Actuators::new(limits.limits(), TRIM);
+        let mut actuators = Actuators::new(limits.limits(), 0.0, TRIM);
         let mut last = TRIM.elevator;
         for tick in 0..100 {
             let wanted = if tick < 50 { 100.0 } else { -100.0 };
@@ -149,5 +182,23 @@ mod tests {
             }
             last = given;
         }
+    }
+
+    #[test]
+    fn a_command_acts_after_its_dead_time_and_the_lag_follows() {
+        let limits = ActuatorLimits {
+            elevator_delay: Some(0.03),
+            thrust_delay: Some(0.01),
+            thrust_lag: Some(0.2),
+            ..ActuatorLimits::default()
+        };
+        let mut actuators = Actuators::new(limits.limits(), 0.02, TRIM);
+        let given: Vec<Control> = (0..8)
+            .map(|_| actuators.give(control(9.0, 2.0), 0.01))
+            .collect();
+        let moves = |of: fn(&Control) -> bool| given.iter().position(of);
+        assert_eq!(moves(|it| it.elevator < 3.0), Some(5));
+        assert_eq!(moves(|it| it.thrust > 4.0), Some(3));
+        assert!(given[3].thrust < 4.5);
     }
 }

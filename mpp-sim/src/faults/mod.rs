@@ -81,6 +81,7 @@ impl Faults {
         let positive =
             |value: Option<f64>| value.is_none_or(|value| value > 0.0 && value.is_finite());
         let share = |value: f64| (0.0..=1.0).contains(&value);
+        let delay = |value: Option<f64>| value.is_none_or(|value| (1e-3..=0.3).contains(&value));
         let error = |value: f64| value.abs() < 1.0;
         let (actuators, model) = (&self.actuators, &self.model_error);
         [
@@ -103,6 +104,21 @@ impl Faults {
                 positive(actuators.elevator_rate),
                 "faults.actuators.elevator_rate",
                 "give a rate above 0 per second",
+            ),
+            (
+                delay(actuators.elevator_delay),
+                "faults.actuators.elevator_delay",
+                "give 0.001 to 0.3 s",
+            ),
+            (
+                delay(actuators.thrust_delay),
+                "faults.actuators.thrust_delay",
+                "give 0.001 to 0.3 s",
+            ),
+            (
+                delay(actuators.untold_delay),
+                "faults.actuators.untold_delay",
+                "give 0.001 to 0.3 s",
             ),
             (
                 (0.0..=10.0).contains(&self.gusts.intensity),

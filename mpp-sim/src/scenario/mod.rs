@@ -246,6 +246,8 @@ impl Scenario {
             elevator_below: least(own.elevator_below, more.elevator_below),
             elevator_above: least(own.elevator_above, more.elevator_above),
             elevator_rate: least(own.elevator_rate, more.elevator_rate),
+            elevator_delay: more.elevator_delay.or(own.elevator_delay),
+            thrust_delay: more.thrust_delay.or(own.thrust_delay),
         }
     }
 

@@ -177,6 +177,8 @@ fn configure(draw: &mut Draw) -> Configure {
             elevator_below: limit(draw, 2.0),
             elevator_above: limit(draw, 2.0),
             elevator_rate: limit(draw, 20.0),
+            elevator_delay: limit(draw, 0.1),
+            thrust_delay: limit(draw, 0.1),
         },
     }
 }

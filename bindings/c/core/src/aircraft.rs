@@ -24,6 +24,10 @@ pub struct MppAircraft {
     pub elevator_above: f64,
     /// Greatest rate of the elevator [unit of elevator per s].
     pub elevator_rate: f64,
+    /// Dead time from a command of the elevator to its effect, at most 0.3 [s]; 0 for none.
+    pub elevator_delay: f64,
+    /// Dead time of the thrust, at most 0.3 [s]; 0 for none.
+    pub thrust_delay: f64,
 }
 
 impl MppAircraft {
@@ -37,6 +41,8 @@ impl MppAircraft {
         elevator_below: 0.0,
         elevator_above: 0.0,
         elevator_rate: 0.0,
+        elevator_delay: 0.0,
+        thrust_delay: 0.0,
     };
 
     pub(crate) fn told(&self) -> (Aircraft, ActuatorLimits) {
@@ -54,6 +60,8 @@ impl MppAircraft {
             elevator_below: unless_zero(self.elevator_below),
             elevator_above: unless_zero(self.elevator_above),
             elevator_rate: unless_zero(self.elevator_rate),
+            elevator_delay: unless_zero(self.elevator_delay),
+            thrust_delay: unless_zero(self.thrust_delay),
         };
         (aircraft, actuators)
     }

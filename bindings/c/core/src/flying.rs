@@ -69,7 +69,7 @@ impl Flight {
         if core::mem::take(&mut self.forget) {
             planner.forget();
         }
-        let (state, conditions) = (self.control.state(), self.control.conditions());
+        let (state, conditions) = (self.control.planned_from(), self.control.conditions());
         planner.begin_from(time, pose, &state, &conditions, scan);
         let latency = f64::from(self.tuning.configure.latency_ticks) * TICK_PERIOD;
         self.due = Some(time + latency);

@@ -1,6 +1,9 @@
 //! All estimates of the 100 Hz step: motion through the air, position, wind and lift.
 
+mod ahead;
 mod watching;
+
+pub use ahead::Ahead;
 
 use super::verdicts::{count_position, count_verdict};
 use super::{

@@ -34,7 +34,7 @@ fn the_documented_example_holds_every_key() {
     assert_eq!((keys(&json["generator"]), keys(&json["field"])), (5, 1));
     assert_eq!((keys(&json["lidar"]), keys(&json["air_data"])), (5, 2));
     assert_eq!(keys(&json["navigation"]), 8);
-    assert_eq!(keys(&json["faults"]["actuators"]), 4);
+    assert_eq!(keys(&json["faults"]["actuators"]), 7);
     let faults = &json["faults"];
     assert_eq!(keys(faults), 15);
     // A flag that is false is not written.
