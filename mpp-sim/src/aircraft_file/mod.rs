@@ -4,6 +4,7 @@
 mod choice;
 mod lateral;
 mod numbers;
+mod pitch_loop;
 mod ranges;
 mod similar;
 
@@ -195,9 +196,12 @@ impl AircraftFile {
     /// Reads an aircraft file from text. An error shows `name` as the name of the text.
     ///
     /// # Errors
-    /// [`ScenarioError::Toml`].
+    /// [`ScenarioError::Toml`], or [`ScenarioError::Value`] for a pitch loop that makes no sense.
     pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
-        toml::from_str(text).map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))
+        pitch_loop::parse(text).map_err(|fault| match fault {
+            pitch_loop::Fault::Text(error) => ScenarioError::Toml(name.to_owned(), Box::new(error)),
+            pitch_loop::Fault::Value(error) => error,
+        })
     }
 
     /// The airframe in the form that the core knows: derivatives per radian and per unit of the elevator's command,
