@@ -18,7 +18,7 @@ fn own(settings: &mut Settings) -> &mut PlaneSettings {
 type Change = fn(&mut Settings, f64);
 
 /// The numbers of all presets, beside those of the airframe.
-const SHARED: [(Setting, Change); 30] = {
+const SHARED: [(Setting, Change); 32] = {
     use Setting::*;
     [
         (LengthUnit, |s, n| s.units.length = n),
@@ -29,6 +29,8 @@ const SHARED: [(Setting, Change); 30] = {
         (ElevatorBelow, |s, n| s.actuators.elevator_below = Some(n)),
         (ElevatorAbove, |s, n| s.actuators.elevator_above = Some(n)),
         (ElevatorRate, |s, n| s.actuators.elevator_rate = Some(n)),
+        (ElevatorDelay, |s, n| s.actuators.elevator_delay = Some(n)),
+        (ThrustDelay, |s, n| s.actuators.thrust_delay = Some(n)),
         (CruiseAirspeed, |s, n| s.cruise = Cruise::Airspeed(n)),
         (DesignThrust, |s, n| s.design_thrust = Some(n)),
         (SpeedNoise, |s, n| s.estimator.process_noise[0] = n),

@@ -281,7 +281,7 @@ impl Run {
             .flight
             .pose_at(self.episode.tick.saturating_sub(scan.tick));
         let pose = pose.ok_or_else(|| FlightError::new_err("the scan is too old for the core"))?;
-        let (state, conditions) = (self.flight.state(), self.flight.conditions());
+        let (state, conditions) = (self.flight.planned_from(), self.flight.conditions());
         let planner = &mut self.planner;
         planner.begin_from(time, &pose, &state, &conditions, Some(&core_scan(scan)));
         while planner.advance() {}

@@ -8,7 +8,6 @@ mod pitch_loop;
 mod ranges;
 mod similar;
 
-use crate::file_error::ScenarioError;
 pub use lateral::{Coefficient, Lateral, Surface};
 use mpp_core::vehicle::Airframe;
 pub use numbers::AircraftModel;
@@ -192,17 +191,6 @@ impl AircraftFile {
         ("rascal", include_str!("../../aircraft/rascal.toml")),
         ("delta", include_str!("../../aircraft/delta.toml")),
     ];
-
-    /// Reads an aircraft file from text. An error shows `name` as the name of the text.
-    ///
-    /// # Errors
-    /// [`ScenarioError::Toml`], or [`ScenarioError::Value`] for a pitch loop that makes no sense.
-    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
-        pitch_loop::parse(text).map_err(|fault| match fault {
-            pitch_loop::Fault::Text(error) => ScenarioError::Toml(name.to_owned(), Box::new(error)),
-            pitch_loop::Fault::Value(error) => error,
-        })
-    }
 
     /// The airframe in the form that the core knows: derivatives per radian and per unit of the elevator's command,
     /// derivatives by rates per radian and second at cruise.

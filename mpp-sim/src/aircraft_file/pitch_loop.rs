@@ -78,42 +78,42 @@ impl PitchLoop {
     }
 }
 
-/// Reads an aircraft file whose table may have a pitch loop.
-pub(super) fn parse(text: &str) -> Result<AircraftFile, Fault> {
-    let whole = toml::from_str::<toml::Table>(text);
-    let Some((mut table, pitch_loop)) = whole.ok().and_then(|mut table| {
-        let pitch_loop = table.remove("pitch_loop")?;
-        Some((table, pitch_loop))
-    }) else {
-        return toml::from_str(text).map_err(Fault::Text);
-    };
-    let pitch_loop: PitchLoop = pitch_loop.try_into().map_err(Fault::Text)?;
-    pitch_loop.check().map_err(Fault::Value)?;
-    if DERIVED.iter().any(|key| table.contains_key(*key)) {
-        let advice = "leave out `pitch_inertia`, `moment` and `elevator`: they follow from it";
-        let fault = ScenarioError::Value("aircraft.pitch_loop", advice.to_owned());
-        return Err(Fault::Value(fault));
+impl AircraftFile {
+    /// Reads an aircraft file from text. An error shows `name` as the name of the text.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Toml`], or [`ScenarioError::Value`] for a pitch loop that makes no sense.
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+        let wrong = |error| ScenarioError::Toml(name.to_owned(), Box::new(error));
+        let looped = toml::from_str::<toml::Table>(text)
+            .ok()
+            .and_then(|mut table| {
+                let pitch_loop = table.remove("pitch_loop")?;
+                Some((table, pitch_loop))
+            });
+        // The text itself, not its table, so that an error shows the line.
+        let Some((mut table, pitch_loop)) = looped else {
+            return toml::from_str(text).map_err(wrong);
+        };
+        let pitch_loop: PitchLoop = pitch_loop.try_into().map_err(wrong)?;
+        pitch_loop.check()?;
+        ensure(
+            !DERIVED.iter().any(|key| table.contains_key(*key)),
+            "aircraft.pitch_loop",
+            "leave out `pitch_inertia`, `moment` and `elevator`: they follow from it",
+        )?;
+        // Stand for what follows until the other numbers are read.
+        table.extend(toml::toml! {
+            pitch_inertia = 1.0
+            [moment]
+            zero = 0.0
+            alpha = -1.0
+            [elevator]
+            unit = "rad"
+            moment = 1.0
+        });
+        let mut file: Self = table.try_into().map_err(wrong)?;
+        pitch_loop.close(&mut file);
+        Ok(file)
     }
-    table.insert("pitch_inertia".to_owned(), toml::Value::Float(1.0));
-    // Stand for the tables until the other numbers are read.
-    let none = toml::toml! {
-        [moment]
-        zero = 0.0
-        alpha = -1.0
-        [elevator]
-        unit = "rad"
-        moment = 1.0
-    };
-    table.extend(none);
-    let mut file: AircraftFile = table.try_into().map_err(Fault::Text)?;
-    pitch_loop.close(&mut file);
-    Ok(file)
-}
-
-/// Why a text is no aircraft.
-pub(super) enum Fault {
-    /// It is not what the parser wants.
-    Text(toml::de::Error),
-    /// A number makes no sense.
-    Value(ScenarioError),
 }

@@ -1,17 +1,8 @@
 //! The aircraft when the next command acts (Smith, "Closer control of loops with dead time", 1957).
 
-use super::Estimator;
+use super::{Ahead, Estimator};
 use crate::config::TICK_PERIOD;
-use crate::vehicle::{AirState, Control, VehicleState, air_rate};
-
-/// The aircraft after the dead time of the elevator, under the commands that have been sent.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Ahead {
-    /// Position and motion.
-    pub state: VehicleState,
-    /// The controls that the actuators will have given until then.
-    pub given: Control,
-}
+use crate::vehicle::{AirState, air_rate};
 
 impl Estimator {
     /// Flies from the present through the commands that have been sent and do not act yet (forward Euler). Without a dead time

@@ -3,8 +3,6 @@
 mod ahead;
 mod watching;
 
-pub use ahead::Ahead;
-
 use super::verdicts::{count_position, count_verdict};
 use super::{
     Actuators, BiasMonitor, Innovation, LaggedEkf, LiftEstimator, MOST_SCAN_AGE, MeasurementStatus,
@@ -19,6 +17,15 @@ use crate::tuning::sensors::{
     CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
 use crate::vehicle::{AirState, Airframe, Conditions, Control, GRAVITY, Pose, Trim, VehicleState};
+
+/// The aircraft after the dead time of the elevator, under the commands that have been sent.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Ahead {
+    /// Position and motion.
+    pub state: VehicleState,
+    /// The controls that the actuators will have given until then.
+    pub given: Control,
+}
 
 /// The estimators of a flight.
 #[derive(Clone, Debug)]
