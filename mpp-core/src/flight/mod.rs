@@ -104,10 +104,10 @@ impl FlightLoop {
     #[must_use]
     pub fn regulated(settings: &Settings, regulated: &Regulated) -> Self {
         let Regulated { trim, lqr } = *regulated;
-        let estimator = Estimator::new(settings, &trim);
         Self {
-            ahead: estimator.ahead(),
-            estimator,
+            // Not in a variable first: the estimator is larger than the stack should be.
+            estimator: Estimator::new(settings, &trim),
+            ahead: Ahead::level(settings.planner.altitude, &trim),
             lqr,
             trim,
             cross_track: settings.cross_track,

@@ -2,7 +2,23 @@
 
 use super::{Ahead, Estimator};
 use crate::config::TICK_PERIOD;
-use crate::vehicle::{AirState, air_rate};
+use crate::vehicle::{AirState, Trim, VehicleState, air_rate};
+
+impl Ahead {
+    /// Level flight at an altitude \[m\].
+    #[must_use]
+    pub fn level(altitude: f64, trim: &Trim) -> Self {
+        let state = VehicleState {
+            x: 0.0,
+            z: altitude,
+            air: trim.state,
+        };
+        Self {
+            state,
+            given: trim.control,
+        }
+    }
+}
 
 impl Estimator {
     /// Flies from the present through the commands that have been sent and do not act yet (forward Euler). Without a dead time
