@@ -21,6 +21,8 @@ pub struct Actuators {
 
 impl Actuators {
     /// Actuators at level trim, with their known effects.
+    // Inlined, so that it is written where the loop will be.
+    #[inline(always)]
     #[must_use]
     pub fn new(settings: &Settings, trim: &Trim) -> Self {
         Self {

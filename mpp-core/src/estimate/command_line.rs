@@ -25,6 +25,8 @@ pub struct CommandLine {
 
 impl CommandLine {
     /// A line with the dead times of these actuators, that was sent the command `trim` ever since.
+    // Inlined, so that it is written where the loop will be.
+    #[inline(always)]
     #[must_use]
     pub fn new(actuators: &ActuatorLimits, trim: Control) -> Self {
         let ticks = |delay: Option<f64>| {
