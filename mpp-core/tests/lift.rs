@@ -9,7 +9,7 @@ use mpp_core::flight::FlightLoop;
 use mpp_core::planner::Planner;
 use mpp_core::settings::Settings;
 use mpp_core::vehicle::{
-    ActuatorLimits, AirState, Airframe, Conditions, Control, Trim, VehicleState,
+    ActuatorLimits, AirState, Airframe, Conditions, Control, Trim, VehicleState, air_rate,
 };
 use proptest::prelude::*;
 
@@ -185,4 +185,47 @@ fn thrust_holds_the_airspeed_of_the_trajectory() {
 #[test]
 fn still_air_changes_no_airframe() {
     assert_eq!(Conditions::STILL.airframe(&KNOWN), KNOWN);
+}
+
+/// The STOL transport of Nelson's table B, whose turn damps the pitch as much as its stiffness does.
+const DAMPED: Airframe = Airframe {
+    mass: 18143.7,
+    pitch_inertia: 291_501.0,
+    wing_area: 87.7934,
+    moment_length: 3.07848,
+    air_density: 1.225,
+    lift_zero: 1.5,
+    lift_alpha: 5.24,
+    lift_alpha_rate: 0.043,
+    lift_pitch_rate: 0.2535,
+    lift_elevator: 0.0081,
+    drag_zero: 0.0891,
+    drag_induced: 0.0426,
+    moment_zero: 0.0,
+    moment_alpha: -0.78,
+    moment_alpha_rate: -0.196,
+    moment_pitch_rate: -1.152,
+    moment_elevator: -0.037,
+};
+
+/// The aircraft flies as it is known, up and down under its elevator.
+#[test]
+fn the_damping_of_a_turn_is_no_lack_of_lift() {
+    let trim = Trim::at_speed(&DAMPED, 47.5488, 0.0).unwrap();
+    let mut estimator = LiftEstimator::new(&DAMPED, 47.5488);
+    let mut air = trim.state;
+    let mut worst = 0.0_f64;
+    for tick in 0..800 {
+        let up = if tick / 200 % 2 == 0 { -3.0 } else { 3.0 };
+        let control = Control {
+            elevator: trim.control.elevator + up,
+            ..trim.control
+        };
+        let climb = air.airspeed * air.flight_path.sin();
+        estimator.update(TICK_PERIOD, climb, &air, control);
+        let rate = air_rate(&DAMPED, &air, control).to_vector();
+        air = AirState::from_vector(&(air.to_vector() + rate * TICK_PERIOD));
+        worst = worst.max(estimator.observed().abs());
+    }
+    assert!(worst < 0.05, "{worst} of a lift coefficient");
 }

@@ -27,7 +27,7 @@ pub struct ElevatorEffect {
     /// Elevator command of level trim, and the angle of attack \[rad\] there.
     trim: f64,
     trim_angle: f64,
-    /// Angle of attack that a unit of command balances \[rad\].
+    /// Angle of attack in the turn that a unit of command gives \[rad\].
     per_unit: f64,
     /// Time constant with which the angle of attack follows the command \[s\]. The damping of the pitch delays it.
     lag: f64,
@@ -52,11 +52,13 @@ impl ElevatorEffect {
     pub fn new(known: &Airframe, trim: &Trim) -> Self {
         let airframe = known.balanced();
         let damping = airframe.moment_alpha_rate + airframe.moment_pitch_rate;
+        // A turn damps the pitch, so a command turns less than it would balance.
+        let stiffness = known.turn_stiffness(trim.state.airspeed);
         Self {
             trim: trim.control.elevator,
             trim_angle: airframe.angle_of_attack_for(trim.control.elevator),
-            per_unit: -airframe.moment_elevator / airframe.moment_alpha,
-            lag: (damping / airframe.moment_alpha).max(0.0),
+            per_unit: -airframe.moment_elevator / stiffness,
+            lag: (damping / stiffness).max(0.0),
             lift_zero: airframe.lift_zero,
             lift_alpha: airframe.lift_alpha,
             per_lift: 0.5 * airframe.air_density * airframe.wing_area / airframe.mass,

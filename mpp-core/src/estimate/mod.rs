@@ -14,6 +14,7 @@
 
 mod actuators;
 mod airspeed_bias;
+mod answer;
 mod bias_monitor;
 mod command_line;
 mod ekf;

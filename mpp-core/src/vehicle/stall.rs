@@ -1,14 +1,17 @@
 //! The angles of attack that keep a margin to the stall.
 
 use super::{AirState, Airframe, Control, Trim};
-use crate::tuning::limits::{STALL_LEAD, STALL_SHARE};
+use crate::tuning::limits::{STALL_LEAD, STALL_LEAST_SHARE, STALL_ROOM, STALL_SHARE};
 
 /// Distances of the angle of attack below and above level flight that keep a margin to the stall \[rad\]. The wing stalls `stall`
 /// \[rad\] above level flight at an airspeed [m/s], and as far below the angle of no lift as that is above it.
 #[must_use]
 pub fn stall_sides(stall: f64, airframe: &Airframe, airspeed: f64) -> [f64; 2] {
     let below = stall + 2.0 * airframe.level_lift(airspeed) / airframe.lift_alpha;
-    [below, stall].map(|side| STALL_SHARE * side)
+    [below, stall].map(|side| {
+        let share = (STALL_SHARE * side).min(side - STALL_ROOM);
+        share.max(STALL_LEAST_SHARE * side)
+    })
 }
 
 /// The regulator's guard against the stall, because the elevator alone could balance the aircraft beyond the stall, and a wing
@@ -20,7 +23,7 @@ pub struct StallGuard {
     trim: [f64; 2],
     /// Least and greatest angle of attack \[rad\].
     limits: [f64; 2],
-    /// Angle of attack that a unit of the command balances \[rad\].
+    /// Angle of attack in the turn that a unit of the command gives \[rad\].
     per_unit: f64,
     /// Path rate of an angle of attack above level flight [1/s].
     path_rate: f64,
@@ -37,11 +40,13 @@ impl StallGuard {
         let a = airframe;
         let speed = trim.state.airspeed;
         let flow = 0.5 * a.air_density * a.wing_area * speed;
-        let stiffness = -flow * speed * a.moment_length * a.moment_alpha / a.pitch_inertia;
+        // A turn damps the pitch, so a command gives less angle than it would balance.
+        let moment = a.turn_stiffness(speed);
+        let stiffness = -flow * speed * a.moment_length * moment / a.pitch_inertia;
         Self {
             trim: [trim.control.elevator, level],
             limits: [level - below, level + above],
-            per_unit: -a.moment_elevator / a.moment_alpha,
+            per_unit: -a.moment_elevator / moment,
             path_rate: flow * a.lift_alpha / a.mass,
             lead: 1.0 / libm::sqrt(stiffness),
         }

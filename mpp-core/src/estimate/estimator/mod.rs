@@ -57,7 +57,7 @@ impl Estimator {
     #[must_use]
     pub fn new(settings: &Settings, trim: &Trim) -> Self {
         let airframe = settings.airframe;
-        let lift = LiftEstimator::new(&airframe.balanced(), trim.state.airspeed);
+        let lift = LiftEstimator::new(&airframe, trim.state.airspeed);
         Self {
             airframe,
             actuators: Actuators::new(settings, trim),
