@@ -46,7 +46,7 @@ impl Answer {
             given,
         );
         // More time than a tick has been flown without control.
-        let period = period.max(0.0).min(TICK_PERIOD);
+        let period = period.clamp(0.0, TICK_PERIOD);
         let alpha = alpha + period * (pitch_rate - rate.flight_path);
         let pitch_rate = pitch_rate + period * rate.pitch_rate;
         let finite = alpha.is_finite() && pitch_rate.is_finite();
