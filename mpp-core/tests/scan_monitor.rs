@@ -98,13 +98,13 @@ fn a_silent_half_is_found_at_once_and_shows_nothing_until_it_returns() {
 }
 
 #[test]
-fn beams_in_reverse_order_are_refused_until_they_come_as_sent() {
+fn beams_in_reverse_order_are_put_right_until_they_come_as_sent() {
     let mut monitor = ScanMonitor::new();
     check(&mut monitor, 0.0, |_| {});
     for x in [3.0, 6.0] {
         let (verdict, scan) = check(&mut monitor, x, reverse);
         assert_eq!(verdict, ScanVerdict::Reversed, "{x}");
-        assert!(scan.ranges.is_empty());
+        assert_eq!(scan.ranges, seen(&FIELD, &pose(x)).ranges);
     }
     check(&mut monitor, 9.0, |_| {});
     let (verdict, scan) = check(&mut monitor, 12.0, |_| {});
@@ -117,6 +117,27 @@ fn beams_in_reverse_order_from_the_start_are_found_by_the_second_scan() {
     check(&mut monitor, 0.0, reverse);
     let (verdict, _) = check(&mut monitor, 12.0, reverse);
     assert_eq!(verdict, ScanVerdict::ReversedBefore);
+}
+
+#[test]
+fn fog_shortens_the_sight_until_a_beam_returns_from_farther() {
+    let fog = |scan: &mut LidarScan| {
+        for range in scan.ranges.iter_mut().filter(|range| **range > 24.0) {
+            *range = 0.0;
+        }
+    };
+    let mut monitor = ScanMonitor::new();
+    check(&mut monitor, 0.0, |_| {});
+    assert_eq!(monitor.sight(SIGHT), SIGHT);
+    let (verdict, _) = check(&mut monitor, 3.0, fog);
+    assert_eq!(verdict, ScanVerdict::Short);
+    assert!(
+        (20.0..30.0).contains(&monitor.sight(SIGHT)),
+        "{}",
+        monitor.sight(SIGHT)
+    );
+    check(&mut monitor, 6.0, |_| {});
+    assert_eq!(monitor.sight(SIGHT), SIGHT);
 }
 
 /// The next scan may look past a wire that one beam has met.

@@ -48,7 +48,9 @@ pub struct LatticeTask {
     pub slope: f64,
     /// Height to which the paths return \[m\].
     pub altitude: f64,
-    /// Greatest distance of a path from `altitude` \[m\].
+    /// Middle of the altitude band \[m\].
+    pub middle: f64,
+    /// Greatest distance of a path from it \[m\].
     pub band: f64,
     /// Greatest curvature of a path [1/m].
     pub curvature: f64,
@@ -93,6 +95,7 @@ impl Lattice {
                 z: 0.0,
                 slope: 0.0,
                 altitude: 0.0,
+                middle: 0.0,
                 band: 0.0,
                 curvature: 0.0,
                 room: 0.0,
@@ -354,7 +357,7 @@ impl HeightTerms {
         let from_altitude = z - task.altitude;
         Self {
             height: field.height(z),
-            outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
+            outside: ((z - task.middle).abs() - task.band + BAND_MARGIN).max(0.0),
             altitude_cost: ALTITUDE_WEIGHT * from_altitude * from_altitude,
         }
     }

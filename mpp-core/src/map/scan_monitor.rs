@@ -1,6 +1,6 @@
 //! Whether a scan agrees with the one before it: what the lidar showed has to be there again.
 //!
-//! The monitor predicts where beams meet again what they met in the last scan. It uses only returns that an adjacent beam
+//! The monitor predicts where beams meet again what they met in the last scan, or in short sight in the last scan that saw farther. It uses only returns that an adjacent beam
 //! confirms, so a wire that falls between two beams predicts nothing. What comes nearer than predicted hides the rest and
 //! says nothing; what comes from farther, or not at all, is a *miss*.
 
@@ -19,9 +19,11 @@ pub enum ScanVerdict {
     Agrees,
     /// Sectors of the fan are silent where returns were predicted. Their beams without a return are marked as bad.
     Silent,
-    /// The beams come in reverse order, from this scan on. The scan is empty now.
+    /// Nothing returns from beyond a range although returns were predicted there, as in fog.
+    Short,
+    /// The beams come in reverse order, from this scan on. The scan has them in the right order now.
     Reversed,
-    /// The beams come in reverse order, and came so before: the map is wrong too. The scan is empty now.
+    /// The beams come in reverse order, and came so before: the map is wrong too. The scan has them in the right order now.
     ReversedBefore,
 }
 
@@ -34,6 +36,8 @@ pub struct ScanMonitor {
     silent: [bool; SECTORS],
     /// Whether the beams came in reverse order, and nothing has spoken against it since.
     reversed: bool,
+    /// Range beyond which returns that were predicted did not come \[m\].
+    sight: f64,
 }
 
 /// How well a scan fits the last one.
@@ -42,8 +46,12 @@ struct Fit {
     /// Numbers of predicted returns that came and that did not.
     hits: u32,
     misses: u32,
-    /// Missed returns of each sector, each counted once for every adjacent beam that confirmed it.
+    /// Missed returns of each sector that are no farther than the farthest return, each counted once for every adjacent beam
+    /// that confirmed it.
     missed: [u32; SECTORS],
+    /// The same sum for those that are farther, and the least range of these \[m\].
+    beyond: u32,
+    first_beyond: f64,
 }
 
 /// The order in which the beams of the last scan and of this one are taken: as sent, or reversed.
@@ -62,6 +70,7 @@ impl ScanMonitor {
             },
             silent: [false; SECTORS],
             reversed: false,
+            sight: f64::INFINITY,
         }
     }
 
@@ -70,6 +79,13 @@ impl ScanMonitor {
         self.last.ranges.clear();
         self.silent = [false; SECTORS];
         self.reversed = false;
+        self.sight = f64::INFINITY;
+    }
+
+    /// The sight that returns show, of a lidar with the range `sight` \[m\].
+    #[must_use]
+    pub fn sight(&self, sight: f64) -> f64 {
+        sight.min(self.sight)
     }
 
     /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
@@ -82,13 +98,17 @@ impl ScanMonitor {
             if self.reversed {
                 self.silent = [false; SECTORS];
             } else {
+                self.note_sight(scan, sight, &as_sent);
                 self.note_silence(scan, sight, &as_sent);
             }
-            self.last.clone_from(scan);
-            self.pose = *pose;
+            // In short sight the last scan that saw farther tells more, as long as something is predicted by it.
+            if self.sight >= sight || as_sent.hits + as_sent.misses == 0 {
+                self.last.clone_from(scan);
+                self.pose = *pose;
+            }
         }
         if self.reversed {
-            scan.ranges.clear();
+            scan.ranges.reverse();
             return if before {
                 ScanVerdict::ReversedBefore
             } else {
@@ -98,6 +118,8 @@ impl ScanMonitor {
         self.mute(scan, sight);
         if self.silent.contains(&true) {
             ScanVerdict::Silent
+        } else if self.sight < sight {
+            ScanVerdict::Short
         } else {
             ScanVerdict::Agrees
         }
@@ -118,6 +140,16 @@ impl ScanMonitor {
         }
         self.reversed = reversed >= as_sent.hits + LEAST_GAIN;
         self.reversed && both >= now
+    }
+
+    /// Notes the range beyond which predicted returns are missing, if nothing returns from there. It holds until something does.
+    fn note_sight(&mut self, scan: &LidarScan, sight: f64, fit: &Fit) {
+        if farthest(scan, sight) > self.sight {
+            self.sight = f64::INFINITY;
+        }
+        if fit.beyond >= LEAST_SILENT {
+            self.sight = self.sight.min(fit.first_beyond);
+        }
     }
 
     /// Notes the sectors in which predicted returns are missing and no beam returns. A sector stays silent until one does.
@@ -154,7 +186,11 @@ impl ScanMonitor {
 
     /// How well a scan fits the last one, if the beams of both are taken in these orders.
     fn fit(&self, scan: &LidarScan, sight: f64, pose: &Pose, [before, now]: Orders) -> Fit {
-        let mut fit = Fit::default();
+        let mut fit = Fit {
+            first_beyond: f64::INFINITY,
+            ..Fit::default()
+        };
+        let far = farthest(scan, sight);
         let step = self.last.angle_increment;
         let beams = scan.ranges.len();
         let last = self.last.ranges.len();
@@ -187,7 +223,12 @@ impl ScanMonitor {
                 Some(true) => fit.hits += 1,
                 Some(false) => {
                     fit.misses += 1;
-                    fit.missed[sector(first, beams)] += confirmed;
+                    if expected > far {
+                        fit.beyond += confirmed;
+                        fit.first_beyond = fit.first_beyond.min(expected);
+                    } else {
+                        fit.missed[sector(first, beams)] += confirmed;
+                    }
                 }
                 None => {}
             }
@@ -210,6 +251,14 @@ impl ScanMonitor {
         };
         u32::from(alike(beam.wrapping_sub(1))) + u32::from(alike(beam + 1))
     }
+}
+
+/// The farthest return of a scan \[m\]; 0 without one.
+fn farthest(scan: &LidarScan, sight: f64) -> f64 {
+    let ranges = scan.ranges.iter().map(|range| f64::from(*range));
+    ranges
+        .filter(|range| is_return(*range, sight))
+        .fold(0.0, f64::max)
 }
 
 /// Whether a beam from `first - 1` to `first + 2` returns from an expected range \[m\]. It is `None` if none does and something

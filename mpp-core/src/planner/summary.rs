@@ -22,8 +22,8 @@ pub struct PlanSummary {
     /// Whether the cycle finished all its work.
     pub complete: bool,
     /// Whether the cycle had no scan, or one without a return by a lidar that is not believed: obstacles of the map stood
-    /// in the fan of this scan, or of an earlier one since which no beam has returned. The map did not use it, and the
-    /// plans fly slowly.
+    /// in the fan of this scan, or of an earlier one since which no beam has returned. The map did not use it. Or
+    /// the scan disagrees with the one before it. Plans fly slowly.
     pub blind: bool,
     /// Whether the planner ended the cycle early, because its phase and its workspace did not belong together. This is a
     /// defect of the planner; [`FlightLoop::count_cycle`](crate::flight::FlightLoop::count_cycle) counts it.

@@ -2,9 +2,10 @@
 
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
-use crate::lattice::{Lattice, LatticeTask};
+use crate::lattice::{CLIMB, Lattice, LatticeTask};
 use crate::map::{ScanVerdict, has_return};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
+use crate::tuning::leave::{CEILING, DARK, HEIGHT};
 use crate::vehicle::Trim;
 
 impl PlanePlanner {
@@ -12,6 +13,9 @@ impl PlanePlanner {
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
+        if let Workspace::Scan(Intake { beams: 0, .. }) = self.workspace {
+            self.judge_scan();
+        }
         let Workspace::Scan(Intake {
             scan,
             beams,
@@ -20,27 +24,12 @@ impl PlanePlanner {
         else {
             return self.end_inconsistent();
         };
-        let (pose, sight) = (self.pose, self.settings.sight);
-        if *beams == 0 {
-            self.map.roll(pose.x, self.altitude);
-            // A lidar that was distrusted once stays so until a beam returns.
-            self.lidar_distrusted = !has_return(scan, sight)
-                && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
-            let verdict = self.monitor.check(scan, sight, &pose);
-            if verdict == ScanVerdict::ReversedBefore {
-                self.map.clear();
-                self.map.roll(pose.x, self.altitude);
-            }
-            self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
-            if self.lidar_distrusted {
-                scan.ranges.clear();
-            }
-            self.map.write_isolated_hits(scan, sight, &pose, isolated);
-        }
         if *beams < scan.ranges.len() {
             let next = *beams..*beams + BEAMS_PER_SLICE;
             *beams = next.end;
-            self.map.insert_beams(scan, next, sight, &pose, isolated);
+            let sight = self.monitor.sight(self.settings.sight);
+            self.map
+                .insert_beams(scan, next, sight, &self.pose, isolated);
             return;
         }
         if self.summary.blind {
@@ -51,12 +40,14 @@ impl PlanePlanner {
             .widen(self.settings.margin, self.field.openness());
         self.warm_start();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
+        let [middle, band] = self.band;
         let task = LatticeTask {
             x: self.state.x,
             z: self.state.z,
             slope: rise / run.max(1.0),
             altitude: self.altitude,
-            band: self.settings.band,
+            middle,
+            band,
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
             room_weight: self.limits.room_weight,
@@ -67,6 +58,52 @@ impl PlanePlanner {
             lattice.start(&task, &self.field);
         }
         self.phase = Phase::Lattice;
+    }
+
+    /// Decides what of the scan is believed, and moves the map along with the aircraft.
+    fn judge_scan(&mut self) {
+        let Workspace::Scan(Intake { scan, .. }) = &mut self.workspace else {
+            return;
+        };
+        let (pose, sight) = (self.pose, self.settings.sight);
+        // A lidar that was distrusted once stays so until a beam returns.
+        self.lidar_distrusted = !has_return(scan, sight)
+            && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
+        if self.lidar_distrusted {
+            scan.ranges.clear();
+        }
+        let verdict = self.monitor.check(scan, sight, &pose);
+        if verdict == ScanVerdict::ReversedBefore {
+            self.map.clear();
+        }
+        let dark = self.summary.blind || self.lidar_distrusted;
+        let unseen = (self.time - self.seen) / self.units.time;
+        self.leaves = match verdict {
+            ScanVerdict::Silent => true,
+            _ => dark && unseen > DARK,
+        };
+        if !dark {
+            self.seen = self.time;
+        }
+        self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
+        if self.leaves {
+            self.aim_above();
+        }
+        let [middle, _] = self.band;
+        self.map.roll(pose.x, middle);
+        if let Workspace::Scan(Intake { scan, isolated, .. }) = &mut self.workspace {
+            self.map.write_isolated_hits(scan, sight, &pose, isolated);
+        }
+    }
+
+    /// Raises the altitude of the cycle to a height above the band, and its ceiling with it.
+    fn aim_above(&mut self) {
+        let [middle, half] = self.band;
+        let height = self.destination + self.settings.band + HEIGHT;
+        let (floor, ceiling) = (middle - half, height.max(middle + half) + CEILING);
+        self.band = [0.5 * (ceiling + floor), 0.5 * (ceiling - floor)];
+        self.altitude = height.min(self.state.z + CLIMB);
+        self.solver.problem.target[1] = self.altitude - self.state.z;
     }
 
     /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what
