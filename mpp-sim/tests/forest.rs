@@ -6,7 +6,7 @@ use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::{Body, Extent, World, WorldConfig, WorldName};
 use mpp_sim::space::{
-    EstimateErrors, Hull, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
+    Deskew, Hull, SensorErrors, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
 };
 
 const SPHERE: Hull = Hull {
@@ -30,8 +30,10 @@ fn config() -> SpaceConfig {
         candidates: 3,
         programs: true,
         sight: 45.0,
+        sweep: 0.1,
+        deskew: Deskew::RIGHT,
         ahead: 0.12,
-        errors: EstimateErrors::RTK,
+        errors: Some(SensorErrors::RTK),
         wind: WindConfig::default(),
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! | type | content |
 //! |---|---|
-//! | [`Estimator`] | all estimators of a flight; the others are its parts |
+//! | [`Estimator`] | all estimators of a flight in the plane; the others are its parts |
+//! | [`SpaceEstimator`] | motion, wind and past poses of a flight in space |
 //! | [`Ekf`], [`LaggedEkf`] | motion through the air from airspeed and pitch, and the same from late ones |
 //! | [`Navigation`], [`WindFilter`] | position and wind |
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
@@ -28,6 +29,7 @@ mod navigation;
 mod pitch_bias;
 mod pitch_monitor;
 mod sensor_monitor;
+mod space;
 mod stuck_detector;
 mod verdicts;
 mod wind_filter;
@@ -47,6 +49,7 @@ pub use navigation::{Navigation, PositionVerdict};
 pub use pitch_bias::PitchBias;
 pub use pitch_monitor::{PitchMonitor, Turn};
 pub use sensor_monitor::{SensorMonitor, Sensors, Trust};
+pub use space::{InertialSample, SpaceEstimator, SpaceFix, SpacePose, SpaceRefused};
 pub use stuck_detector::{SteadyTurn, StuckDetector};
 pub use wind_filter::{Observation, WindFilter};
 

@@ -8,9 +8,11 @@
 //! changed.
 
 mod space;
+mod space_estimate;
 mod watches;
 
 pub use space::{space_judgement, space_lattice, space_limits, space_program};
+pub use space_estimate::{space_air, space_inertial};
 pub use watches::{airspeed_bias, elevator, motor, pitch_bias, pitch_monitor, sensors};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of

@@ -6,6 +6,7 @@ mod lateral;
 mod linearize;
 mod point_mass;
 mod pose;
+mod quaternion;
 mod space_path;
 mod stall;
 mod thrust_lag;
@@ -23,6 +24,7 @@ pub use mpp_data::{
 };
 pub use point_mass::{PathControl, PathState};
 pub use pose::Pose;
+pub use quaternion::Quaternion;
 pub use space_path::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath, path_axes};
 pub(crate) use space_path::{between, within};
 pub use stall::{StallGuard, stall_sides};

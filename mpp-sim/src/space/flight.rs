@@ -1,14 +1,17 @@
-//! A flight of the planner in space: plant in six degrees of freedom, lidar, estimate with errors, planner and regulator.
+//! A flight of the planner in space: plant in six degrees of freedom, sensors, estimator, lidar, planner and regulator.
 
-use super::errors::{EstimateErrors, SpaceEstimator, true_path};
-use super::{SpaceAircraft, SpaceState, WindConfig, regulator};
+use super::lidar::Beam;
+use super::navigator::{Deskew, Navigator};
+use super::sensors::{SensorErrors, true_path};
+use super::{Pose, SpaceAircraft, SpaceState, WindConfig, lateral, regulator};
 use crate::file_error::ScenarioError;
 use crate::scenario::Scenario;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::control::{SpaceMotion, SpaceRegulator};
-use mpp_core::map::{SpaceBeam, VoxelGrid};
+use mpp_core::estimate::SpaceEstimator;
+use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::{Keep, SpacePlan, SpacePlanner};
-use mpp_core::vehicle::{SpaceControl, SpaceModel, SpacePath};
+use mpp_core::vehicle::{Control, LateralControl, SpaceControl, SpaceModel, SpacePath};
 
 /// How a planner flies in space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,12 +28,16 @@ pub struct SpaceConfig {
     pub candidates: usize,
     /// See [`Self::candidates`].
     pub programs: bool,
-    /// Reach of the lidar \[m\].
+    /// Reach of the lidar \[m\], and duration of a sweep \[s\].
     pub sight: f64,
+    /// See [`Self::sight`].
+    pub sweep: f64,
+    /// How beams find their poses.
+    pub deskew: Deskew,
     /// Time by which bank and angle of attack follow their commands \[s\]: the plan is followed so much ahead.
     pub ahead: f64,
-    /// Errors of the estimate.
-    pub errors: EstimateErrors,
+    /// Errors of the sensors; without them the flight knows its true motion.
+    pub errors: Option<SensorErrors>,
     /// Motion of the air.
     pub wind: WindConfig,
 }
@@ -39,14 +46,35 @@ pub struct SpaceConfig {
 pub struct SpaceFlight {
     config: SpaceConfig,
     aircraft: SpaceAircraft,
-    estimator: SpaceEstimator,
+    navigator: Navigator,
     regulator: SpaceRegulator,
     map: Box<VoxelGrid>,
     planner: Box<SpacePlanner>,
-    /// The plan that is flown, and the tick of its first knot; the same for the next one.
-    plan: Option<(SpacePlan, i64)>,
-    next: Option<(SpacePlan, i64)>,
+    /// The plan that is flown, and the next one.
+    plan: Option<Planned>,
+    next: Option<Planned>,
+    /// Tick of the first cycle.
+    first_cycle: Option<i64>,
+    /// Last command to the surfaces.
+    surfaces: LateralControl,
     tick: i64,
+}
+
+/// A plan in its time and its wind.
+#[derive(Clone, Debug)]
+struct Planned {
+    plan: SpacePlan,
+    /// Tick of its first knot.
+    first: i64,
+    /// The model of the aircraft with the wind of the plan.
+    model: SpaceModel,
+}
+
+impl Planned {
+    /// Time from the first knot to a tick \[s\].
+    fn age(&self, tick: i64) -> f64 {
+        (tick - self.first) as f64 * TICK_PERIOD
+    }
 }
 
 impl SpaceFlight {
@@ -73,7 +101,13 @@ impl SpaceFlight {
         let mut planner = Box::new(SpacePlanner::new(model, config.keep));
         planner.choose(config.candidates, config.programs);
         Ok(Self {
-            estimator: SpaceEstimator::new(scenario.seed, config.errors, config.wind.steady),
+            navigator: Navigator::new(
+                scenario.seed,
+                config.errors,
+                (&model, &lateral(scenario)?.airframe()),
+                config.wind.steady,
+                config.deskew,
+            ),
             regulator: SpaceRegulator::new(&known.airframe, regulator(scenario)?, &model),
             config,
             aircraft,
@@ -81,6 +115,8 @@ impl SpaceFlight {
             planner,
             plan: None,
             next: None,
+            first_cycle: None,
+            surfaces: LateralControl::default(),
             tick: 0,
         })
     }
@@ -94,7 +130,7 @@ impl SpaceFlight {
     /// The plan that is flown.
     #[must_use]
     pub fn plan(&self) -> Option<&SpacePlan> {
-        self.plan.as_ref().map(|(plan, _)| plan)
+        self.plan.as_ref().map(|it| &it.plan)
     }
 
     /// The planner, after its last cycle.
@@ -103,38 +139,61 @@ impl SpaceFlight {
         &self.planner
     }
 
-    /// Flies one tick. `sweep` gives the beams of the lidar as the estimate places them, when a cycle begins.
+    /// The estimator, unless the flight knows its true motion.
+    #[must_use]
+    pub fn estimator(&self) -> Option<&SpaceEstimator> {
+        self.navigator.estimator()
+    }
+
+    /// Flies one tick. `sweep` gives the beams of the lidar for the true poses at times from the start of a sweep \[s\], when a
+    /// cycle begins.
     ///
     /// # Errors
     /// [`crate::plant::PlantError`] when the plant cannot step: an extreme state.
     pub fn step(
         &mut self,
-        sweep: impl FnOnce(&SpaceState, [f64; 3]) -> Vec<SpaceBeam>,
+        sweep: impl FnOnce(&dyn Fn(f64) -> Pose) -> Vec<Beam>,
     ) -> Result<(), crate::plant::PlantError> {
-        let motion = self.estimator.step(&self.aircraft);
-        self.planner.set_wind(self.estimator.wind());
-        if self
-            .next
-            .as_ref()
-            .is_some_and(|(_, start)| *start <= self.tick)
-        {
+        self.navigator.step(&self.aircraft, &self.surfaces);
+        let wind = self.navigator.wind();
+        self.planner.set_wind(wind);
+        if self.next.as_ref().is_some_and(|it| it.first <= self.tick) {
             self.plan = self.next.take();
         }
-        if self.tick % i64::from(self.config.replan_ticks) == 0 {
-            let errors = self.estimator.attitude_errors();
-            let beams = sweep(self.aircraft.state(), errors);
+        if self.first_cycle.is_none() && self.navigator.covers(self.config.sweep) {
+            self.first_cycle = Some(self.tick);
+        }
+        let since = self.first_cycle.map(|first| self.tick - first);
+        if since.is_some_and(|it| it % i64::from(self.config.replan_ticks) == 0)
+            && let Some(motion) = self.navigator.motion_in(&wind)
+        {
+            let now = Pose::of(self.aircraft.state());
+            let period = self.config.sweep;
+            let beams = sweep(&|time| self.navigator.true_pose(period - time).unwrap_or(now));
+            let beams = self.navigator.placed(&beams, period);
             self.map
                 .insert(&motion.path.position, &beams, self.config.sight);
             self.cycle(&motion);
         }
-        let (now, ahead) = self.reference(&motion);
-        let model = *self.planner.model();
-        let (command, lateral) = self
-            .regulator
-            .step(&model, &motion, &now, (&ahead.0, &ahead.1));
+        let (command, lateral) = self.commands();
         self.aircraft.step(command, lateral)?;
-        self.tick += 1;
+        (self.surfaces, self.tick) = (lateral, self.tick + 1);
         Ok(())
+    }
+
+    /// The commands of this tick. A plan is followed in the wind for which it was made, so that a change of the estimated wind is
+    /// no error of the velocity. Level flight before the motion is known.
+    fn commands(&self) -> (Control, LateralControl) {
+        let model = self
+            .plan
+            .as_ref()
+            .map_or(self.planner.model(), |it| &it.model);
+        let Some(motion) = self.navigator.motion_in(&model.wind) else {
+            return (model.trim.control, LateralControl::default());
+        };
+        let (now, ahead) = self.reference(&motion);
+        self.regulator
+            .step(model, &motion, &now, (&ahead.0, &ahead.1))
     }
 
     /// Plans from where the aircraft will be when the plan is taken over.
@@ -142,10 +201,10 @@ impl SpaceFlight {
         let latency = f64::from(self.config.latency_ticks) * TICK_PERIOD;
         let model = *self.planner.model();
         let (start, shift) = match &self.plan {
-            Some((plan, first)) => {
-                let age = (self.tick - first) as f64 * TICK_PERIOD;
-                let (then, _) = plan.at(&model, age + latency);
-                let (now, _) = plan.at(&model, age);
+            Some(flown) => {
+                let age = flown.age(self.tick);
+                let (then, _) = flown.plan.at(&flown.model, age + latency);
+                let (now, _) = flown.plan.at(&flown.model, age);
                 let (then, now, here) = (then.numbers(), now.numbers(), motion.path.numbers());
                 let moved = core::array::from_fn(|at| here[at] + then[at] - now[at]);
                 (SpacePath::of(moved), age + latency)
@@ -159,26 +218,29 @@ impl SpaceFlight {
             }
         };
         // The last plan of the planner is the next one to be flown; it may have begun later than the flown one.
-        let shift = self.next.as_ref().map_or(shift, |(_, first)| {
-            (self.tick - first) as f64 * TICK_PERIOD + latency
-        });
+        let next = self.next.as_ref();
+        let shift = next.map_or(shift, |it| it.age(self.tick) + latency);
         self.planner.begin(&start, shift);
         while !self.planner.advance(&self.map) {}
         if let Some((plan, _)) = self.planner.best() {
-            self.next = Some((*plan, self.tick + i64::from(self.config.latency_ticks)));
+            self.next = Some(Planned {
+                plan: *plan,
+                first: self.tick + i64::from(self.config.latency_ticks),
+                model,
+            });
         }
     }
 
     /// The plan's state now, and state and control ahead. Without a plan: straight and level.
     fn reference(&self, motion: &SpaceMotion) -> (SpacePath, (SpacePath, SpaceControl)) {
-        let model = self.planner.model();
-        if let Some((plan, first)) = &self.plan {
-            let age = (self.tick - first) as f64 * TICK_PERIOD;
+        if let Some(flown) = &self.plan {
+            let (plan, age) = (&flown.plan, flown.age(self.tick));
             return (
-                plan.at(model, age).0,
-                plan.at(model, age + self.config.ahead),
+                plan.at(&flown.model, age).0,
+                plan.at(&flown.model, age + self.config.ahead),
             );
         }
+        let model = self.planner.model();
         let level = SpacePath {
             position: [motion.path.position[0], 0.0, self.config.keep.altitude],
             airspeed: model.trim.state.airspeed,
@@ -195,11 +257,10 @@ impl SpaceFlight {
     /// Distance of the true position from that of the plan \[m\].
     #[must_use]
     pub fn tracking_error(&self) -> Option<f64> {
-        let (plan, first) = self.plan.as_ref()?;
-        let age = (self.tick - first) as f64 * TICK_PERIOD;
-        let (wanted, _) = plan.at(self.planner.model(), age);
-        let flown = self.true_path().position;
-        let off: [f64; 3] = core::array::from_fn(|axis| wanted.position[axis] - flown[axis]);
+        let flown = self.plan.as_ref()?;
+        let (wanted, _) = flown.plan.at(&flown.model, flown.age(self.tick));
+        let here = self.true_path().position;
+        let off: [f64; 3] = core::array::from_fn(|axis| wanted.position[axis] - here[axis]);
         Some(libm::sqrt(off.iter().map(|it| it * it).sum()))
     }
 

@@ -1,14 +1,13 @@
 //! Whole flights through worlds: the lidar sees the world, and the flight ends where it ends.
 
+use super::Hull;
 use super::flight::{SpaceConfig, SpaceFlight};
-use super::lidar::{Beam, LidarName, SpaceLidar};
+use super::lidar::{LidarName, SpaceLidar};
 use super::world::World;
-use super::{Hull, Pose, Quaternion, SpaceState};
 use crate::file_error::ScenarioError;
 use crate::scenario::Scenario;
 use core::fmt;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::map::SpaceBeam;
 
 /// How a flight through a world ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,23 +58,6 @@ const STRAY: f64 = 0.5;
 /// Clearance beyond which nobody asks \[m\].
 const MOST: f64 = 5.0;
 
-/// The beams of a sweep as an estimate with these errors of bank, pitch and heading \[rad\] places them.
-fn seen(beams: &[Beam], state: &SpaceState, [bank, pitch, heading]: [f64; 3]) -> Vec<SpaceBeam> {
-    let told = Pose {
-        attitude: (state.attitude().times(Quaternion::roll(bank))).times(Quaternion::pitch(pitch)),
-        ..Pose::of(state)
-    };
-    let (sin, cos) = libm::sincos(heading);
-    let placed = beams.iter().map(|beam| {
-        let [x, y, z] = told.direction(beam.direction);
-        SpaceBeam {
-            direction: [cos * x - sin * y, sin * x + cos * y, z],
-            range: beam.range,
-        }
-    });
-    placed.collect()
-}
-
 /// Flies through a world to its end.
 ///
 /// # Errors
@@ -96,10 +78,7 @@ pub fn fly_through(
     let mut end = SpaceEnd::Time;
     while ticks < MOST_TICKS {
         let before = *flight.state();
-        let stepped = flight.step(|state, errors| {
-            let beams = lidar.sweep_at(world, &Pose::of(state));
-            seen(&beams, state, errors)
-        });
+        let stepped = flight.step(|pose| lidar.sweep(world, pose, 0.0));
         ticks += 1;
         if stepped.is_err() {
             end = SpaceEnd::Extreme;

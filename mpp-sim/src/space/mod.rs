@@ -2,14 +2,14 @@
 //! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
 
 mod course;
-mod errors;
 mod flight;
 mod forest;
 mod hull;
 pub mod lidar;
 mod motion;
+mod navigator;
 mod pose;
-mod quaternion;
+mod sensors;
 mod servo;
 #[cfg(test)]
 mod tests;
@@ -17,13 +17,14 @@ mod wind;
 pub mod world;
 
 pub use course::CourseHold;
-pub use errors::{EstimateErrors, SpaceEstimator, true_path};
 pub use flight::{SpaceConfig, SpaceFlight};
 pub use forest::{SpaceEnd, SpaceOutcome, fly_through};
 pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
+pub use mpp_core::vehicle::Quaternion;
+pub use navigator::Deskew;
 pub use pose::Pose;
-pub use quaternion::Quaternion;
+pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_motion, true_path};
 pub use servo::Servo;
 pub use wind::{SpaceWind, WindConfig};
 

@@ -18,7 +18,7 @@
 //! Lift and drag lie in the plane of symmetry, the side force along the body's y axis (Beard, McLain, "Small Unmanned
 //! Aircraft", 2012, section 4.2). Axes: x ahead, y to the right, z down.
 
-use super::quaternion::Quaternion;
+use super::Quaternion;
 use crate::aircraft_file::AircraftModel;
 use crate::dynamics::{Aerodynamics, SUBSTEPS, moved as moved_plane, runge_kutta};
 use crate::plant::PlantError;

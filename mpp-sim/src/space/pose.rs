@@ -1,7 +1,7 @@
 //! Place and attitude of an aircraft in its world.
 
+use super::Quaternion;
 use super::motion::SpaceState;
-use super::quaternion::Quaternion;
 use super::world::Vector;
 
 /// Place and attitude.
@@ -40,14 +40,9 @@ impl Pose {
     /// The pose at a share of the way to another one.
     #[must_use]
     pub fn towards(&self, other: &Self, share: f64) -> Self {
-        let (one, two) = (self.attitude.0, other.attitude.0);
-        // Quaternions of opposite sign are the same attitude.
-        let cosine: f64 = one.iter().zip(two).map(|(a, b)| a * b).sum();
-        let signed = if cosine < 0.0 { -share } else { share };
-        let turn = [0, 1, 2, 3].map(|part| (1.0 - share) * one[part] + signed * two[part]);
         Self {
             at: [0, 1, 2].map(|axis| self.at[axis] + share * (other.at[axis] - self.at[axis])),
-            attitude: Quaternion(turn).normalised(),
+            attitude: self.attitude.towards(other.attitude, share),
         }
     }
 
@@ -55,9 +50,7 @@ impl Pose {
     #[must_use]
     pub fn change(&self, other: &Self) -> (f64, f64) {
         let [x, y, z] = [0, 1, 2].map(|axis| other.at[axis] - self.at[axis]);
-        let pairs = self.attitude.0.iter().zip(other.attitude.0);
-        let cosine: f64 = pairs.map(|(a, b)| a * b).sum();
-        let turned = 2.0 * libm::acos(cosine.abs().min(1.0));
-        ((x * x + y * y + z * z).sqrt(), turned)
+        let way = (x * x + y * y + z * z).sqrt();
+        (way, self.attitude.angle_to(other.attitude))
     }
 }

@@ -1,7 +1,7 @@
 //! `forest`: the planner in space flies through worlds on the plant in six degrees of freedom.
 
 use super::answer::{Failure, data};
-use super::values::seed;
+use super::values::{clock, gusts, seed, wind};
 use crate::files::read_aircraft;
 use mpp_analysis::campaign::wilson;
 use mpp_core::planner::space::{Keep, SPACE_CANDIDATES};
@@ -10,7 +10,7 @@ use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::{WorldConfig, WorldName};
 use mpp_sim::space::{
-    EstimateErrors, Hull, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
+    Deskew, Hull, SensorErrors, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
 };
 use std::fmt;
 
@@ -48,9 +48,22 @@ pub(super) struct ForestArgs {
     /// Fly the best candidate as it is, without a program
     #[arg(long)]
     no_programs: bool,
-    /// An estimate without errors
+    /// Know the true motion, instead of estimating it from sensors with errors
     #[arg(long)]
     exact: bool,
+    /// Steady wind ahead, to the right and up [m/s]
+    #[arg(long, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
+    wind: Option<[f64; 3]>,
+    /// Standard deviation of the vertical gusts [m/s], 0 to 5; those along and across are 1.6 times as strong. Light turbulence of
+    /// MIL-F-8785C has 0.77
+    #[arg(long, default_value_t = 0.0, value_name = "M/S", value_parser = gusts)]
+    gusts: f64,
+    /// Place all beams of a sweep by the pose of its end, not by that of their own time
+    #[arg(long)]
+    no_deskew: bool,
+    /// Error of the lidar's clock \[ms\], -20 to 100: beams seem so much older than they are
+    #[arg(long, default_value_t = 0.0, value_name = "MS", value_parser = clock, allow_negative_numbers = true)]
+    lidar_clock: f64,
     /// Number of flights
     #[arg(long, default_value_t = 20, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     flights: u32,
@@ -128,10 +141,12 @@ fn fly(args: &ForestArgs) -> Result<u8, Failure> {
         world.density = args.density.unwrap_or(world.density);
         let world = world.build().map_err(usage)?;
         let extent = *world.extent();
-        let scenario = Scenario {
+        let mut scenario = Scenario {
             aircraft: model.clone(),
             ..Scenario::new(Preset::Flight, seed)
         };
+        scenario.faults.gusts.intensity = args.gusts;
+        let lidar = args.lidar.config();
         let low = args.sphere.unwrap_or(hull.radius) + BELOW;
         let config = SpaceConfig {
             keep: Keep {
@@ -146,14 +161,19 @@ fn fly(args: &ForestArgs) -> Result<u8, Failure> {
             latency_ticks: LATENCY,
             candidates: usize::from(args.candidates),
             programs: !args.no_programs,
-            sight: args.lidar.config().range[1],
-            ahead: AHEAD,
-            errors: if args.exact {
-                EstimateErrors::NONE
-            } else {
-                EstimateErrors::RTK
+            sight: lidar.range[1],
+            sweep: lidar.period,
+            deskew: Deskew {
+                active: !args.no_deskew,
+                clock: 0.001 * args.lidar_clock,
             },
-            wind: WindConfig::default(),
+            ahead: AHEAD,
+            errors: (!args.exact).then_some(SensorErrors::RTK),
+            wind: WindConfig {
+                steady: args.wind.unwrap_or_default(),
+                lateral_gusts: args.gusts,
+                ..WindConfig::default()
+            },
         };
         let outcome = fly_through(&world, &hull, args.lidar, &scenario, config).map_err(usage)?;
         if args.each {

@@ -1,5 +1,7 @@
 //! Attitudes as unit quaternions. Axes: x ahead, y to the right, z down.
 
+use super::within;
+
 /// A turn from a body's axes to the world's: scalar part, then the vector part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quaternion(pub [f64; 4]);
@@ -22,6 +24,59 @@ impl Quaternion {
         Self([cos, sin, 0.0, 0.0])
     }
 
+    /// The attitude with a bank, a pitch and a heading \[rad\].
+    #[must_use]
+    pub fn attitude([bank, pitch, heading]: [f64; 3]) -> Self {
+        let (sin, cos) = libm::sincos(0.5 * heading);
+        let turned = Self([cos, 0.0, 0.0, sin]);
+        turned.times(Self::pitch(pitch)).times(Self::roll(bank))
+    }
+
+    /// Bank, pitch and heading \[rad\].
+    #[must_use]
+    pub fn angles(self) -> [f64; 3] {
+        let [[ahead, _, _], [right, _, _], [sunk, bank_sin, bank_cos]] = self.rows();
+        [
+            libm::atan2(bank_sin, bank_cos),
+            -libm::asin(within(sunk, 1.0)),
+            libm::atan2(right, ahead),
+        ]
+    }
+
+    /// A turn about an axis of the body by an angle \[rad\], the length of the vector.
+    #[must_use]
+    pub fn about(by: [f64; 3]) -> Self {
+        let square = by.iter().map(|it| it * it).sum::<f64>();
+        let angle = libm::sqrt(square);
+        // The limit of `sin(angle / 2) / angle` for small angles.
+        let share = if angle > 1e-6 {
+            libm::sin(0.5 * angle) / angle
+        } else {
+            0.5
+        };
+        let [x, y, z] = by.map(|it| it * share);
+        Self([libm::cos(0.5 * angle), x, y, z])
+    }
+
+    /// Angle to another attitude \[rad\].
+    #[must_use]
+    pub fn angle_to(self, other: Self) -> f64 {
+        let cosine: f64 = self.0.iter().zip(other.0).map(|(a, b)| a * b).sum();
+        2.0 * libm::acos(cosine.abs().min(1.0))
+    }
+
+    /// The attitude at a share of the way to another one.
+    #[must_use]
+    pub fn towards(self, other: Self, share: f64) -> Self {
+        let cosine: f64 = self.0.iter().zip(other.0).map(|(a, b)| a * b).sum();
+        // Quaternions of opposite sign are the same attitude.
+        let signed = if cosine < 0.0 { -share } else { share };
+        let [a, b, c, d] = self.0;
+        let [w, x, y, z] = other.0.map(|part| signed * part);
+        let kept = 1.0 - share;
+        Self([kept * a + w, kept * b + x, kept * c + y, kept * d + z]).normalised()
+    }
+
     /// This turn after another one.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
@@ -42,7 +97,7 @@ impl Quaternion {
 
     /// `self + h rate`, which is not of unit length.
     #[must_use]
-    pub(super) fn moved(self, rate: Self, h: f64) -> Self {
+    pub fn moved(self, rate: Self, h: f64) -> Self {
         let ([a, b, c, d], [w, x, y, z]) = (self.0, rate.0);
         Self([a + h * w, b + h * x, c + h * y, d + h * z])
     }
@@ -51,7 +106,7 @@ impl Quaternion {
     #[must_use]
     pub fn length(self) -> f64 {
         let [w, x, y, z] = self.0;
-        (w * w + x * x + (y * y + z * z)).sqrt()
+        libm::sqrt(w * w + x * x + (y * y + z * z))
     }
 
     /// The turn of unit length.
