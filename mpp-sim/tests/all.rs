@@ -11,3 +11,4 @@ mod orders;
 mod own_world;
 mod space;
 mod space_air;
+mod space_estimate;

@@ -34,6 +34,7 @@ use crate::dynamics::Aerodynamics;
 use crate::file_error::ScenarioError;
 use crate::plant::PlantError;
 use crate::scenario::Scenario;
+use core::f64::consts::TAU;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::control::LateralRegulator;
 use mpp_core::vehicle::{Control, LateralControl};
@@ -167,6 +168,9 @@ fn meet(state: &mut SpaceState, [x, y, z]: [f64; 3]) {
     let in_plane = libm::hypot(ahead, climb);
     let air = &mut state.plane.air;
     air.airspeed = libm::hypot(in_plane, right);
-    air.flight_path = libm::atan2(climb, ahead);
+    // In turns the pitch in the carried plane grows beyond half a turn, and the flight path with it.
+    let path = libm::atan2(climb, ahead);
+    let turns = libm::round((air.flight_path - path) / TAU);
+    air.flight_path = if turns == 0.0 { path } else { path + turns * TAU };
     state.lateral.sideslip = libm::atan2(right, in_plane);
 }
