@@ -57,7 +57,8 @@
 //! it every parameter value that the core before the restart had accepted, and repeats the request whose
 //! answer it still waits for.
 //!
-//! Messages [15](ConfigureLateral) to [21](SpaceTrajectory) are those of an aircraft that banks. The core refuses them today.
+//! Messages [15](ConfigureLateral) to [22](ConfigureSpace) are those of an aircraft that banks, which preset
+//! [`Space`](Preset::Space) flies.
 //!
 //! # Versions
 //!
@@ -117,8 +118,8 @@ pub use message::session::{
     Configure, ConfigureReply, Hello, ParameterReply, Preset, Role, SetParameter,
 };
 pub use message::space::{
-    ConfigureLateral, InertialFrame, MAX_POINTS, PointPacket, SpacePosition, SpaceReport,
-    SpaceTrajectory, SurfaceCommand,
+    ConfigureLateral, ConfigureSpace, InertialFrame, MAX_POINTS, PointPacket, SpacePosition,
+    SpaceReport, SpaceTrajectory, SurfaceCommand,
 };
 pub use message::verdict::{ConfigureVerdict, ParameterVerdict};
 pub use message::{Body, MAX_PAYLOAD, Message, id};

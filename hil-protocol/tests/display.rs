@@ -47,7 +47,7 @@ fn every_verdict_and_cause_speaks() {
             faults.last().copied().unwrap(),
         ),
         (
-            ConfigureVerdict::ImageDamaged,
+            ConfigureVerdict::SpaceLimits,
             ParameterVerdict::CruiseFixed,
             RejectionCause::PlannerOff,
             DecodeError::TrailingBytes { id: 0 },

@@ -190,6 +190,15 @@ fn of_an_aircraft_in_space() {
         surface_rate: Some(FLOAT),
     };
     assert_eq!(payload(&lateral), ConfigureLateral::MAX_SIZE);
+    let limits = ConfigureSpace {
+        bank: [FLOAT; 2],
+        margin: FLOAT,
+        half_span: FLOAT,
+        heights: [FLOAT; 2],
+        half_width: FLOAT,
+        programs: true,
+    };
+    assert_eq!(payload(&limits), ConfigureSpace::MAX_SIZE);
     let inertial = InertialFrame {
         tick: u32::MAX,
         attitude: [value; 3],

@@ -14,8 +14,8 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use session::{Configure, ConfigureReply, Hello, ParameterReply, SetParameter};
 use space::{
-    ConfigureLateral, InertialFrame, PointPacket, SpacePosition, SpaceReport, SpaceTrajectory,
-    SurfaceCommand,
+    ConfigureLateral, ConfigureSpace, InertialFrame, PointPacket, SpacePosition, SpaceReport,
+    SpaceTrajectory, SurfaceCommand,
 };
 
 /// The struct of a message, which a frame carries.
@@ -127,6 +127,8 @@ messages! {
     20 SPACE_REPORT SpaceReport,
     /// Core to harness: the trajectory in space that a planning cycle chose.
     21 SPACE_TRAJECTORY SpaceTrajectory,
+    /// Harness to core: limits, distances and candidates of plans in space.
+    22 CONFIGURE_SPACE ConfigureSpace,
 }
 
 /// Reads one struct from exactly these bytes.

@@ -87,6 +87,8 @@ pub enum Preset {
     Paper = 1,
     /// Our parameters for flight.
     Flight = 2,
+    /// The planner in space; [`ConfigureLateral`](crate::ConfigureLateral) and [`ConfigureSpace`](crate::ConfigureSpace) come before.
+    Space = 3,
 }
 
 /// Core to harness: the answer to a [`Configure`].

@@ -1,5 +1,5 @@
-//! The messages of an aircraft in space, beside those of the vertical plane. They are reserved: today's core refuses them
-//! as unexpected, and a later one needs no new version of the protocol.
+//! The messages of an aircraft in space, beside those of the vertical plane. The node in space of `mpp-node` takes them; that of
+//! the vertical plane refuses them as unexpected.
 //!
 //! World: x downrange, y to the right, z up. Body: x ahead, y to the right, z down. Bank, heading, course, rates and commands
 //! are positive to the right.
@@ -16,7 +16,8 @@ pub const MAX_POINTS: usize = 40;
 // The lengths of the lists must fit the single byte that the sizes count for them.
 const _: () = assert!(MAX_POINTS < 1 << 7 && MAX_KNOTS < 1 << 7);
 
-/// Harness to core: the lateral part of the aircraft, sent before [`Configure`](crate::Configure).
+/// Harness to core: the lateral part of the aircraft, sent before [`Configure`](crate::Configure). The answer is a
+/// [`ConfigureReply`](crate::ConfigureReply).
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ConfigureLateral {
     /// Inertia and lateral aerodynamics.
@@ -30,6 +31,29 @@ pub struct ConfigureLateral {
 impl ConfigureLateral {
     /// Size of the longest payload \[bytes\].
     pub const MAX_SIZE: usize = LateralAirframe::COUNT * size::F64 + 3 * (size::BYTE + size::F64);
+}
+
+/// Harness to core: limits, distances and candidates of plans in space, sent before [`Configure`](crate::Configure). The answer
+/// is a [`ConfigureReply`](crate::ConfigureReply).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ConfigureSpace {
+    /// Greatest bank \[rad\] and rate of the bank [rad/s] of plans.
+    pub bank: [f64; 2],
+    /// Least distance of the body from the centres of occupied voxels \[m\].
+    pub margin: f64,
+    /// Half of the span of a wing that banks \[m\]; 0 for a sphere.
+    pub half_span: f64,
+    /// Least and greatest height of the body \[m\].
+    pub heights: [f64; 2],
+    /// Greatest distance to either side of the line on which the flight starts \[m\].
+    pub half_width: f64,
+    /// Whether a program improves each candidate.
+    pub programs: bool,
+}
+
+impl ConfigureSpace {
+    /// Size of the longest payload \[bytes\].
+    pub const MAX_SIZE: usize = 7 * size::F64 + size::BYTE;
 }
 
 /// Harness to core: what an attitude reference and its gyroscopes and accelerometers tell, sent before the

@@ -147,6 +147,31 @@ pub enum ConfigureVerdict {
     /// The program in the flight computer's memory is not as it was built.
     #[error("the program in the flight computer's memory is not as it was built: load it again")]
     ImageDamaged,
+    /// The core flies in the vertical plane only, or in space only.
+    #[error(
+        "this core flies no such preset: ask the core in the plane for preset flight, and that in space for space"
+    )]
+    NoSuchPlanner,
+    /// The lateral part of the aircraft or the limits of plans in space were not sent before.
+    #[error(
+        "the core knows no lateral aircraft or no limits of plans in space: send both before the configuration"
+    )]
+    LateralMissing,
+    /// A number of the lateral part is not finite, an inertia is not positive, or a limit of a surface is not.
+    #[error(
+        "a number of the lateral aircraft is not finite, or an inertia, the span or a limit is not positive: correct it"
+    )]
+    LateralAircraft,
+    /// No gain of the lateral regulator holds a bank.
+    #[error(
+        "no gain of the lateral regulator holds a bank: check the lateral table of the aircraft"
+    )]
+    LateralGain,
+    /// A limit of plans in space is not finite or negative, or leaves no room.
+    #[error(
+        "a limit of plans in space is not a number, is negative or leaves no room between floor, ceiling and sides: correct it"
+    )]
+    SpaceLimits,
 }
 
 impl ConfigureVerdict {

@@ -198,6 +198,11 @@ fn configure_reply_and_every_verdict() {
         (reply(OtherPreset), "0a4d5002031f1feeed0800"),
         (reply(Unstable), "0a4d50020321b4f38cc900"),
         (reply(ImageDamaged), "0a4d500203220ea2855000"),
+        (reply(NoSuchPlanner), "0a4d500203239892822700"),
+        (reply(LateralMissing), "0a4d500203243b07e6b900"),
+        (reply(LateralAircraft), "0a4d50020325ad37e1ce00"),
+        (reply(LateralGain), "0a4d500203261766e85700"),
+        (reply(SpaceLimits), "0a4d500203278156ef2000"),
     ]);
 }
 

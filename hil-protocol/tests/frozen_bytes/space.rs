@@ -32,6 +32,22 @@ fn lateral_aircraft() {
 }
 
 #[test]
+fn limits_of_plans_in_space() {
+    let message = ConfigureSpace {
+        bank: [1.0, 2.0],
+        margin: 0.5,
+        half_span: 1.0,
+        heights: [0.5, 16.0],
+        half_width: 32.0,
+        programs: true,
+    };
+    check(&[(
+        Message::ConfigureSpace(message),
+        "054d500216010101010103f03f0101010101010240010101010103e03f010101010103f03f010101010103e03f0101010101033040010101010108404001af5edba700",
+    )]);
+}
+
+#[test]
 fn inertial_frame_and_position() {
     let inertial = InertialFrame {
         tick: 200,

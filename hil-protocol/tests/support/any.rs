@@ -36,6 +36,7 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
 fn space() -> impl Strategy<Value = Message> {
     let lateral = uniform::<_, { LateralAirframe::COUNT }>(f64::ANY);
     let lateral = (lateral, uniform3(option::of(f64::ANY)));
+    let limits = (uniform2(f64::ANY), uniform5(f64::ANY), any::<bool>());
     let inertial = (any::<u32>(), uniform::<_, 10>(f32::ANY));
     let velocity = option::of(uniform4(f32::ANY));
     let position = (any::<u32>(), uniform3(f64::ANY), f32::ANY, velocity);
@@ -45,6 +46,7 @@ fn space() -> impl Strategy<Value = Message> {
     let knots = list::<_, MAX_KNOTS>(uniform5(f32::ANY));
     prop_oneof![
         of(lateral).prop_map(Message::ConfigureLateral),
+        of(limits).prop_map(Message::ConfigureSpace),
         of(inertial).prop_map(Message::InertialFrame),
         of(position).prop_map(Message::SpacePosition),
         of(packet).prop_map(Message::PointPacket),

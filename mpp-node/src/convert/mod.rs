@@ -71,6 +71,7 @@ fn preset(configure: &Configure) -> Result<Settings, ConfigureVerdict> {
         Preset::Reference => Ok(of_paper(Settings::reference())),
         #[cfg(feature = "paper")]
         Preset::Paper => Ok(of_paper(Settings::paper())),
+        Preset::Space => Err(ConfigureVerdict::NoSuchPlanner),
         #[cfg(not(feature = "paper"))]
         Preset::Reference | Preset::Paper => Err(ConfigureVerdict::PresetNotBuilt),
     }
@@ -127,7 +128,7 @@ pub(crate) fn setup_verdict(error: SetupError) -> ConfigureVerdict {
     }
 }
 
-fn trim_verdict(error: TrimError) -> ConfigureVerdict {
+pub(crate) fn trim_verdict(error: TrimError) -> ConfigureVerdict {
     match error {
         TrimError::Airspeed => ConfigureVerdict::CruiseAirspeed,
         TrimError::Airframe => ConfigureVerdict::AirframeNotFinite,

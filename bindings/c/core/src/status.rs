@@ -190,8 +190,13 @@ impl MppStatus {
             | V::RegulatorSingular
             | V::RegulatorNotConverged
             | V::RegulatorNotStabilising
-            | V::Unstable => Self::Regulator,
-            V::PlanModel | V::PlanWeights | V::OtherPreset | V::PresetNotBuilt => Self::Planner,
+            | V::Unstable
+            | V::LateralGain => Self::Regulator,
+            V::PlanModel
+            | V::PlanWeights
+            | V::OtherPreset
+            | V::PresetNotBuilt
+            | V::NoSuchPlanner => Self::Planner,
             V::AlreadyConfigured | V::ImageDamaged => Self::Busy,
             V::AirframeNotFinite
             | V::Penalty
@@ -201,6 +206,9 @@ impl MppStatus {
             | V::WindChange
             | V::AngleOfAttackLimit
             | V::FlightPathLimit
+            | V::LateralMissing
+            | V::LateralAircraft
+            | V::SpaceLimits
             | V::OutOfRange(_) => Self::OutOfRange,
         }
     }
