@@ -21,6 +21,10 @@
 //! The step uses a plan `latency_ticks` after the start of its cycle and not earlier, even if the planner was faster.
 //! The flight therefore does not depend on the speed of the machine.
 //!
+//! # In space
+//!
+//! [`SpaceNode`] does the same for the planner in space, in one thread.
+//!
 //! # Two tasks
 //!
 //! ```text
@@ -39,21 +43,47 @@ mod mail;
 mod node;
 pub mod parameters;
 mod plan_task;
+mod space;
 mod step_task;
 
 pub use convert::sensor_frame;
 pub use mail::{Plan, PlanReply, PlanRequest};
 pub use node::FlightNode;
 pub use plan_task::{PlanTask, Progress};
+pub use space::{MOST_POINTS, SpaceNode};
 pub use step_task::{Pace, StepTask};
+
+use hil_protocol::{Hello, Role};
+use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 
 /// Length of a number of ticks \[s\].
 fn duration(ticks: u32) -> f64 {
-    f64::from(ticks) * mpp_core::config::TICK_PERIOD
+    f64::from(ticks) * TICK_PERIOD
 }
 
 /// Ticks from one tick to another. It is negative if `to` came before `from`. Ticks count on from 0 after the
 /// greatest number, so two ticks may be at most half of all numbers apart, which is 248 days.
 const fn ticks(from: u32, to: u32) -> i32 {
     to.wrapping_sub(from).cast_signed()
+}
+
+/// The hello of a core.
+fn greeting() -> Hello {
+    Hello {
+        role: Role::Core,
+        software: software(),
+        tick_period_us: (TICK_PERIOD * 1e6) as u32,
+        beams_max: MAX_BEAMS as u16,
+        stages: STAGES as u16,
+    }
+}
+
+/// The version of this crate.
+fn software() -> [u8; 3] {
+    let part = |text: &str| text.parse().unwrap_or(0);
+    [
+        part(env!("CARGO_PKG_VERSION_MAJOR")),
+        part(env!("CARGO_PKG_VERSION_MINOR")),
+        part(env!("CARGO_PKG_VERSION_PATCH")),
+    ]
 }

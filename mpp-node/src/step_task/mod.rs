@@ -10,6 +10,7 @@ mod tick;
 mod tune;
 
 use crate::convert;
+use crate::greeting;
 use crate::mail::{Plan, PlanReply, PlanRequest};
 use crate::parameters::Tuning;
 use asker::Asker;
@@ -17,7 +18,6 @@ use hil_protocol::{
     Body, ConfigureVerdict, DecodeError, Decoder, Hello, MAX_FRAME, PlanReport, Rejection,
     RejectionCause, Role, SensorFrame as WireFrame, encode_body, id,
 };
-use mpp_core::config::{MAX_BEAMS, STAGES, TICK_PERIOD};
 use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
 use mpp_core::gate::Cause;
@@ -317,26 +317,9 @@ impl StepTask {
     fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
         self.session = None;
         self.plan = None;
-        let hello = Hello {
-            role: Role::Core,
-            software: software(),
-            tick_period_us: (TICK_PERIOD * 1e6) as u32,
-            beams_max: MAX_BEAMS as u16,
-            stages: STAGES as u16,
-        };
-        self.emit(&hello, send);
+        self.emit(&greeting(), send);
         if self.planner_off {
             self.reject(RejectionCause::PlannerOff, send);
         }
     }
-}
-
-/// The version of this crate.
-fn software() -> [u8; 3] {
-    let part = |text: &str| text.parse().unwrap_or(0);
-    [
-        part(env!("CARGO_PKG_VERSION_MAJOR")),
-        part(env!("CARGO_PKG_VERSION_MINOR")),
-        part(env!("CARGO_PKG_VERSION_PATCH")),
-    ]
 }

@@ -176,6 +176,12 @@ impl SpacePlanner {
         Some((&best.plan, &best.judgement))
     }
 
+    /// Number of candidates of this cycle so far.
+    #[must_use]
+    pub fn proposed(&self) -> usize {
+        self.candidates.len()
+    }
+
     /// The distances of this cycle.
     #[must_use]
     pub fn field(&self) -> &VoxelField {

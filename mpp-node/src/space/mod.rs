@@ -1,0 +1,166 @@
+//! The node of the planner in space: bytes in, bytes out, as [`FlightNode`](crate::FlightNode) is for the vertical plane.
+//!
+//! ```text
+//! ConfigureLateral, ConfigureSpace, Configure   each answered by a ConfigureReply
+//!
+//! [InertialFrame]     attitude, rates and specific force
+//! [SpacePosition]     a fix
+//! [PointPacket ..]    kept until the sensor frame
+//! SensorFrame k       1. a plan that tick k - 1 has taken over is told -> PlanReport, SpaceTrajectory
+//!                     2. a plan that is due is taken over
+//!                     3. estimate, reference, control -> SpaceReport, StepReport, SurfaceCommand, ActuatorCommand
+//!                     4. the points go into the map, each by the pose of its time; a period after the last cycle the next
+//!                        one begins
+//!                     5. the planner runs its slices of this tick
+//! ```
+//!
+//! | file | what it does |
+//! |---|---|
+//! | `set_up.rs` | checks a configuration, and makes models, regulator and planner from it |
+//! | `input.rs` | takes measurements, or says why not |
+//! | `tick.rs` | the step |
+//! | `cycle.rs` | the planner's cycles |
+
+mod cycle;
+mod input;
+mod set_up;
+mod tick;
+
+use crate::greeting;
+use cycle::{Cycle, Flown};
+use hil_protocol::{
+    Body, Configure, ConfigureLateral, ConfigureSpace, DecodeError, Decoder, Hello, InertialFrame,
+    MAX_FRAME, PlanReport, Rejection, RejectionCause, Role, SpacePosition, encode_body, id,
+};
+use input::Sweep;
+use mpp_core::control::SpaceRegulator;
+use mpp_core::estimate::SpaceEstimator;
+use mpp_core::map::{SpaceBeam, VoxelGrid};
+use mpp_core::planner::space::SpacePlanner;
+use mpp_core::vehicle::{LateralControl, SpaceModel};
+
+/// Most points between two sensor frames. A sweep of 90 x 16 beams has 1,440.
+pub const MOST_POINTS: usize = 2048;
+
+/// A flight after its configuration.
+struct Session {
+    configure: Configure,
+    /// The aircraft, with the wind of this tick.
+    model: SpaceModel,
+    /// The last command to the surfaces.
+    surfaces: LateralControl,
+    regulator: SpaceRegulator,
+    planner: SpacePlanner,
+    estimator: SpaceEstimator,
+    /// What was measured since the last sensor frame.
+    inertial: Option<InertialFrame>,
+    position: Option<SpacePosition>,
+    last_tick: Option<u32>,
+    last_cycle: Option<u32>,
+    cycle: Option<Cycle>,
+    /// The plan that is flown.
+    flown: Option<Flown>,
+    /// The report of a plan that the last tick has taken over.
+    untold: Option<PlanReport>,
+}
+
+/// The core in space and its side of the link. The value is large: place it in a `static` or a box.
+pub struct SpaceNode {
+    decoder: Decoder,
+    buffer: [u8; MAX_FRAME],
+    lateral: Option<ConfigureLateral>,
+    limits: Option<ConfigureSpace>,
+    session: Option<Session>,
+    map: VoxelGrid,
+    sweep: Sweep,
+    /// The points of a tick in world axes.
+    beams: heapless::Vec<SpaceBeam, MOST_POINTS>,
+}
+
+impl SpaceNode {
+    /// A node that waits for a hello.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            decoder: Decoder::new(),
+            buffer: [0; MAX_FRAME],
+            lateral: None,
+            limits: None,
+            session: None,
+            map: VoxelGrid::new(),
+            sweep: Sweep::new(),
+            beams: heapless::Vec::new(),
+        }
+    }
+
+    /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function returns, the planner has
+    /// used all slices granted so far.
+    pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
+        let send = &mut send;
+        for byte in bytes {
+            let handled = match self.decoder.take(*byte) {
+                None => continue,
+                Some(Ok(id)) => self.handle(id, send),
+                Some(Err(fault)) => Err(fault),
+            };
+            if let Err(fault) = handled {
+                self.reject(RejectionCause::Frame(fault), send);
+            }
+        }
+    }
+
+    /// The planner and its map, for inspection between ticks.
+    #[must_use]
+    pub fn planner(&self) -> Option<(&SpacePlanner, &VoxelGrid)> {
+        let session = self.session.as_ref()?;
+        Some((&session.planner, &self.map))
+    }
+
+    fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+        match id {
+            id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),
+            id::INERTIAL_FRAME => self.take_inertial(&self.decoder.body()?, send),
+            id::SPACE_POSITION => self.take_position(&self.decoder.body()?, send),
+            id::POINT_PACKET => self.take_points(send)?,
+            id::HELLO => match self.decoder.body::<Hello>()?.role {
+                Role::Harness => self.greet(send),
+                Role::Core => self.reject(RejectionCause::UnexpectedMessage { id }, send),
+            },
+            id::CONFIGURE_LATERAL => self.take_lateral(&self.decoder.body()?, send),
+            id::CONFIGURE_SPACE => self.take_limits(&self.decoder.body()?, send),
+            id::CONFIGURE => self.configure(&self.decoder.body()?, send),
+            id if (id::HELLO..=id::LAST).contains(&id) => {
+                self.reject(RejectionCause::UnexpectedMessage { id }, send);
+            }
+            _ => return Err(DecodeError::UnknownId { id }),
+        }
+        Ok(())
+    }
+
+    fn emit<T: Body>(&mut self, message: &T, send: &mut impl FnMut(&[u8])) {
+        // The buffer holds the longest message, so this cannot fail.
+        if let Ok(frame) = encode_body(message, &mut self.buffer) {
+            send(frame);
+        }
+    }
+
+    fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
+        let last = self.session.as_ref().and_then(|session| session.last_tick);
+        let tick = last.unwrap_or(0);
+        self.emit(&Rejection { tick, cause }, send);
+    }
+
+    /// Answers a hello. It starts a new session, whatever the state of the last one.
+    fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
+        self.session = None;
+        self.lateral = None;
+        self.limits = None;
+        self.emit(&greeting(), send);
+    }
+}
+
+impl Default for SpaceNode {
+    fn default() -> Self {
+        Self::new()
+    }
+}

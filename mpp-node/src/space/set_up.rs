@@ -1,0 +1,173 @@
+//! The set-up of a flight in space: what comes before the configuration, the configuration, and what follows from it.
+
+use super::{Session, SpaceNode};
+use crate::convert::{check, trim_verdict};
+use hil_protocol::{
+    Configure, ConfigureLateral, ConfigureReply, ConfigureSpace, ConfigureVerdict, Preset,
+};
+use mpp_core::control::{LateralRegulator, SpaceRegulator};
+use mpp_core::estimate::SpaceEstimator;
+use mpp_core::planner::space::{Keep, SpacePlanner};
+use mpp_core::vehicle::{Derivatives, LateralAirframe, LateralControl, SpaceModel};
+
+/// Room that floor and ceiling must leave, and the sides \[m\]: some voxels.
+const LEAST_ROOM: f64 = 1.0;
+/// Greatest bank of plans \[rad\]: the lift of a steeper turn is beyond that of any wing.
+const MOST_BANK: f64 = 1.4;
+
+impl SpaceNode {
+    pub(super) fn take_lateral(&mut self, told: &ConfigureLateral, send: &mut impl FnMut(&[u8])) {
+        let sound = is_sound(&told.airframe)
+            && (told.surfaces_max.iter().flatten()).all(|most| *most >= 0.0 && most.is_finite())
+            && told
+                .surface_rate
+                .is_none_or(|rate| rate > 0.0 && rate.is_finite());
+        let verdict = if self.session.is_some() {
+            ConfigureVerdict::AlreadyConfigured
+        } else if sound {
+            self.lateral = Some(*told);
+            ConfigureVerdict::Accepted
+        } else {
+            ConfigureVerdict::LateralAircraft
+        };
+        self.emit(&ConfigureReply { verdict }, send);
+    }
+
+    pub(super) fn take_limits(&mut self, told: &ConfigureSpace, send: &mut impl FnMut(&[u8])) {
+        let verdict = if self.session.is_some() {
+            ConfigureVerdict::AlreadyConfigured
+        } else if leaves_room(told) {
+            self.limits = Some(*told);
+            ConfigureVerdict::Accepted
+        } else {
+            ConfigureVerdict::SpaceLimits
+        };
+        self.emit(&ConfigureReply { verdict }, send);
+    }
+
+    pub(super) fn configure(&mut self, told: &Configure, send: &mut impl FnMut(&[u8])) {
+        let verdict = match self.prepare(told) {
+            Ok(()) => ConfigureVerdict::Accepted,
+            Err(verdict) => verdict,
+        };
+        self.emit(&ConfigureReply { verdict }, send);
+    }
+
+    // Not inlined, so that a new flight is not on the stack of each tick.
+    #[inline(never)]
+    fn prepare(&mut self, told: &Configure) -> Result<(), ConfigureVerdict> {
+        if self.session.is_some() {
+            return Err(ConfigureVerdict::AlreadyConfigured);
+        }
+        if told.preset != Preset::Space {
+            return Err(ConfigureVerdict::NoSuchPlanner);
+        }
+        check(told)?;
+        if told.paths == 0 {
+            return Err(ConfigureVerdict::PathsZero);
+        }
+        let (Some(lateral), Some(limits)) = (self.lateral, self.limits) else {
+            return Err(ConfigureVerdict::LateralMissing);
+        };
+        let [low, high] = limits.heights;
+        if !(low..=high).contains(&told.altitude) {
+            return Err(ConfigureVerdict::SpaceLimits);
+        }
+        let model = model(told, &limits)?;
+        let most = lateral.surfaces_max.map(|most| most.unwrap_or(f64::MAX));
+        let airframe = &told.aircraft.airframe;
+        let holds = LateralRegulator::design(airframe, &lateral.airframe, &model.trim, most)
+            .map_err(|_| ConfigureVerdict::LateralGain)?;
+        let keep = Keep {
+            margin: limits.margin,
+            half_span: limits.half_span,
+            heights: limits.heights,
+            half_width: limits.half_width,
+            altitude: told.altitude,
+        };
+        let mut planner = SpacePlanner::new(model, keep);
+        planner.choose(usize::from(told.paths), limits.programs);
+        self.sweep.clear();
+        self.map.clear(0.0);
+        self.session = Some(Session {
+            configure: *told,
+            model,
+            regulator: SpaceRegulator::new(airframe, holds, &model),
+            planner,
+            estimator: SpaceEstimator::new(&model, &lateral.airframe),
+            surfaces: LateralControl::default(),
+            inertial: None,
+            position: None,
+            last_tick: None,
+            last_cycle: None,
+            cycle: None,
+            flown: None,
+            untold: None,
+        });
+        Ok(())
+    }
+}
+
+fn model(told: &Configure, limits: &ConfigureSpace) -> Result<SpaceModel, ConfigureVerdict> {
+    let aircraft = &told.aircraft;
+    let thrust = told.actuators.thrust_max.unwrap_or(f64::INFINITY);
+    let of = |stall| {
+        SpaceModel::new(
+            &aircraft.airframe,
+            aircraft.cruise,
+            stall,
+            thrust,
+            limits.bank,
+        )
+        .map_err(trim_verdict)
+    };
+    let model = of(f64::INFINITY)?;
+    if model.trim.control.thrust > thrust {
+        return Err(ConfigureVerdict::ThrustTooLow);
+    }
+    // The stall is told from level flight on.
+    let level = model.trim.state.angle_of_attack();
+    aircraft
+        .stall
+        .map_or(Ok(model), |beyond| of(level + beyond))
+}
+
+fn is_sound(told: &LateralAirframe) -> bool {
+    let LateralAirframe {
+        span,
+        roll_inertia,
+        yaw_inertia,
+        product_inertia,
+        side,
+        roll,
+        yaw,
+    } = told;
+    let finite = |it: &Derivatives| {
+        [
+            it.sideslip,
+            it.roll_rate,
+            it.yaw_rate,
+            it.aileron,
+            it.rudder,
+        ]
+        .iter()
+        .all(|number| number.is_finite())
+    };
+    let positive = [*span, *roll_inertia, *yaw_inertia]
+        .iter()
+        .all(|number| *number > 0.0 && number.is_finite());
+    // Without this the inertia is that of no body.
+    let body = product_inertia * product_inertia < roll_inertia * yaw_inertia;
+    positive && body && [side, roll, yaw].into_iter().all(finite)
+}
+
+fn leaves_room(told: &ConfigureSpace) -> bool {
+    let [bank, bank_rate] = told.bank;
+    let [low, high] = told.heights;
+    let limits = bank > 0.0 && bank <= MOST_BANK && bank_rate > 0.0 && bank_rate.is_finite();
+    let kept = told.margin >= 0.0 && told.half_span >= 0.0;
+    // Comparisons with what is no number are false.
+    let upright = low.is_finite() && high.is_finite() && high - low >= LEAST_ROOM;
+    let aside = told.half_width.is_finite() && told.half_width - told.half_span >= LEAST_ROOM;
+    limits && kept && told.margin.is_finite() && upright && aside
+}

@@ -1,0 +1,304 @@
+//! The node in space, message by message.
+
+use hil_protocol::{
+    ActuatorLimits, AirData, Aircraft, Configure, ConfigureLateral, ConfigureSpace,
+    ConfigureVerdict, ControlMode, Decoder, Derivatives, InertialFrame, LateralAirframe, MAX_FRAME,
+    Message, PlanOutcome, PointPacket, Preset, RejectionCause, SensorFrame, SpacePosition, encode,
+};
+use mpp_node::{FlightNode, SpaceNode};
+
+/// Does something on a stack on which the node can be built.
+fn aside(work: impl FnOnce() + Send + 'static) {
+    let thread = std::thread::Builder::new().stack_size(32 << 20);
+    thread.spawn(work).unwrap().join().unwrap();
+}
+
+fn answers(node: &mut SpaceNode, message: &Message) -> Vec<Message> {
+    let (mut buffer, mut sent) = ([0; MAX_FRAME], Vec::new());
+    let frame = encode(message, &mut buffer).unwrap();
+    node.receive(frame, |frame| sent.extend_from_slice(frame));
+    let mut decoder = Decoder::new();
+    let received = sent.iter().filter_map(|byte| decoder.push(*byte));
+    received.map(Result::unwrap).collect()
+}
+
+fn verdict(node: &mut SpaceNode, message: Message) -> ConfigureVerdict {
+    match answers(node, &message).as_slice() {
+        [Message::ConfigureReply(reply)] => reply.verdict,
+        other => panic!("{other:?}"),
+    }
+}
+
+const CONFIGURE: Configure = Configure {
+    preset: Preset::Space,
+    aircraft: Aircraft::REFERENCE,
+    paths: 3,
+    seed: 0,
+    replan_period_ticks: 25,
+    latency_ticks: 10,
+    slices_per_tick: 1000,
+    beams: 1,
+    range_max: 45.0,
+    altitude: 7.5,
+    actuators: ActuatorLimits::NONE,
+};
+
+const LIMITS: ConfigureSpace = ConfigureSpace {
+    bank: [1.0, 1.5],
+    margin: 0.6,
+    half_span: 0.5,
+    heights: [0.5, 14.5],
+    half_width: 29.0,
+    programs: true,
+};
+
+/// A wing that rolls, damps its yaw and holds its nose into the wind.
+fn lateral() -> ConfigureLateral {
+    let of = |sideslip, roll_rate, yaw_rate, aileron, rudder| Derivatives {
+        sideslip,
+        roll_rate,
+        yaw_rate,
+        aileron,
+        rudder,
+    };
+    ConfigureLateral {
+        airframe: LateralAirframe {
+            span: 1.0,
+            roll_inertia: 0.02,
+            yaw_inertia: 0.04,
+            product_inertia: 0.0,
+            side: of(-0.4, 0.0, 0.0, 0.0, 0.1),
+            roll: of(-0.05, -0.5, 0.1, 0.2, 0.0),
+            yaw: of(0.1, -0.03, -0.15, 0.0, 0.06),
+        },
+        surfaces_max: [Some(0.5); 2],
+        surface_rate: None,
+    }
+}
+
+fn ready(configure: Configure) -> Box<SpaceNode> {
+    let mut node = Box::new(SpaceNode::new());
+    for message in [
+        Message::ConfigureLateral(lateral()),
+        Message::ConfigureSpace(LIMITS),
+        Message::Configure(configure),
+    ] {
+        assert_eq!(verdict(&mut node, message), ConfigureVerdict::Accepted);
+    }
+    node
+}
+
+/// What comes before the sensor frame of a tick of level flight at 12 m/s, and the frame. A sensor that repeats to the last bit
+/// would count as frozen.
+fn level(tick: u32, sees: bool) -> Vec<Message> {
+    let noise = 1e-5 * (tick % 7) as f32;
+    let mut messages = vec![
+        Message::InertialFrame(InertialFrame {
+            tick,
+            attitude: [noise, 0.156 - noise, noise],
+            sigma: 0.01,
+            rates: [noise; 3],
+            force: [1.52, noise, -9.69],
+        }),
+        Message::SpacePosition(SpacePosition {
+            tick,
+            position: [0.12 * f64::from(tick), 0.0, 7.5],
+            sigma: 0.02,
+            velocity: Some(([12.0, 0.0, 0.0], 0.1)),
+        }),
+    ];
+    if sees {
+        messages.push(Message::PointPacket(PointPacket {
+            tick,
+            sensor_time: 0,
+            interval: 10,
+            points: [[20.0, 1.0, 0.0], [20.0, 3.0, 0.0]].into_iter().collect(),
+        }));
+    }
+    messages.push(frame(tick));
+    messages
+}
+
+fn frame(tick: u32) -> Message {
+    Message::SensorFrame(SensorFrame {
+        tick,
+        air: Some(AirData {
+            tick,
+            airspeed: 12.0 + 1e-5 * f64::from(tick % 7),
+            pitch: 0.156,
+        }),
+        position: None,
+    })
+}
+
+fn fly(node: &mut SpaceNode, tick: u32, sees: bool) -> Vec<Message> {
+    let messages = level(tick, sees);
+    let told = messages.iter().map(|message| answers(node, message));
+    told.collect::<Vec<_>>().concat()
+}
+
+#[test]
+fn each_part_of_a_configuration_gets_its_verdict() {
+    aside(|| {
+        use ConfigureVerdict::{
+            Accepted, AlreadyConfigured, LateralAircraft, LateralMissing, NoSuchPlanner, PathsZero,
+            SpaceLimits,
+        };
+        let mut node = Box::new(SpaceNode::new());
+        let mut ask = |message| verdict(&mut node, message);
+        assert_eq!(ask(Message::Configure(CONFIGURE)), LateralMissing);
+        let mut odd = lateral();
+        odd.airframe.roll_inertia = f64::NAN;
+        assert_eq!(ask(Message::ConfigureLateral(odd)), LateralAircraft);
+        odd = lateral();
+        odd.airframe.product_inertia = 1.0;
+        assert_eq!(ask(Message::ConfigureLateral(odd)), LateralAircraft);
+        assert_eq!(ask(Message::ConfigureLateral(lateral())), Accepted);
+        for limits in [
+            ConfigureSpace {
+                bank: [0.0, 1.0],
+                ..LIMITS
+            },
+            ConfigureSpace {
+                heights: [14.0, 1.0],
+                ..LIMITS
+            },
+            ConfigureSpace {
+                half_span: 28.5,
+                ..LIMITS
+            },
+            ConfigureSpace {
+                margin: f64::NAN,
+                ..LIMITS
+            },
+        ] {
+            assert_eq!(ask(Message::ConfigureSpace(limits)), SpaceLimits);
+        }
+        assert_eq!(ask(Message::ConfigureSpace(LIMITS)), Accepted);
+        for (configure, expected) in [
+            (
+                Configure {
+                    preset: Preset::Flight,
+                    ..CONFIGURE
+                },
+                NoSuchPlanner,
+            ),
+            (
+                Configure {
+                    paths: 0,
+                    ..CONFIGURE
+                },
+                PathsZero,
+            ),
+            (
+                Configure {
+                    altitude: 20.0,
+                    ..CONFIGURE
+                },
+                SpaceLimits,
+            ),
+            (CONFIGURE, Accepted),
+            (CONFIGURE, AlreadyConfigured),
+        ] {
+            assert_eq!(ask(Message::Configure(configure)), expected);
+        }
+    });
+}
+
+#[test]
+fn the_node_in_the_plane_does_not_fly_in_space() {
+    let mut node = Box::new(FlightNode::new());
+    let (mut buffer, mut sent) = ([0; MAX_FRAME], Vec::new());
+    let frame = encode(&Message::Configure(CONFIGURE), &mut buffer).unwrap();
+    node.receive(frame, |frame| sent.extend_from_slice(frame));
+    let mut decoder = Decoder::new();
+    let told = sent.iter().find_map(|byte| decoder.push(*byte)).unwrap();
+    let Ok(Message::ConfigureReply(reply)) = told else {
+        panic!("{told:?}");
+    };
+    assert_eq!(reply.verdict, ConfigureVerdict::NoSuchPlanner);
+}
+
+#[test]
+fn without_a_fix_the_surfaces_are_neutral_and_old_ticks_get_no_command() {
+    aside(|| {
+        let mut node = ready(CONFIGURE);
+        let told = answers(&mut node, &frame(7));
+        let [
+            Message::SurfaceCommand(surfaces),
+            Message::ActuatorCommand(command),
+        ] = &told[..]
+        else {
+            panic!("{told:?}");
+        };
+        assert_eq!((surfaces.aileron, surfaces.rudder), (0.0, 0.0));
+        assert_eq!((command.tick, command.mode), (7, ControlMode::TrimHold));
+        let told = answers(&mut node, &frame(7));
+        let [Message::Rejection(rejection)] = &told[..] else {
+            panic!("{told:?}");
+        };
+        let order = RejectionCause::TickOrder {
+            expected: 8,
+            found: 7,
+        };
+        assert_eq!(rejection.cause, order);
+        // A lost tick is told, and the next one flown.
+        let told = answers(&mut node, &frame(9));
+        assert!(matches!(told[0], Message::Rejection(_)) && told.len() == 3);
+    });
+}
+
+#[test]
+fn a_plan_is_due_after_its_latency_and_told_in_the_next_tick() {
+    aside(|| {
+        let mut node = ready(CONFIGURE);
+        let mut reports = Vec::new();
+        for tick in 0..60 {
+            for message in fly(&mut node, tick, tick % 25 == 3) {
+                match message {
+                    Message::PlanReport(report) => reports.push((tick, report)),
+                    Message::SpaceTrajectory(it) => {
+                        assert!(it.knots.len() == 19 && reports.len() < 3);
+                    }
+                    Message::ActuatorCommand(command) => {
+                        let tracks = command.mode == ControlMode::Tracking;
+                        assert_eq!(tracks, tick >= 13, "{tick}");
+                    }
+                    Message::Rejection(rejection) => panic!("{tick}: {rejection:?}"),
+                    _ => {}
+                }
+            }
+        }
+        let ticks: Vec<_> = reports
+            .iter()
+            .map(|(tick, it)| (*tick, it.scan_tick, it.used_from_tick))
+            .collect();
+        assert_eq!(ticks, [(14, 3, 13), (39, 28, 38)]);
+        assert!(
+            reports
+                .iter()
+                .all(|(_, it)| it.complete && it.outcome.is_new())
+        );
+    });
+}
+
+/// Few slices give no plan, or a worse one; the tick never does more of them.
+#[test]
+fn a_cycle_gets_its_slices_and_no_more() {
+    aside(|| {
+        let mut node = ready(Configure {
+            slices_per_tick: 1,
+            ..CONFIGURE
+        });
+        let told: Vec<_> = (0..15)
+            .flat_map(|tick| fly(&mut node, tick, tick == 3))
+            .collect();
+        let report = told.iter().find_map(|message| match message {
+            Message::PlanReport(report) => Some(*report),
+            _ => None,
+        });
+        let report = report.unwrap();
+        assert_eq!((report.slices, report.complete), (10, false));
+        assert_eq!(report.outcome, PlanOutcome::TrimHold);
+    });
+}
