@@ -133,6 +133,97 @@ impl Columns {
     }
 }
 
+/// The lateral part of a tick in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LateralTick {
+    /// True position to the right, bank, course through the air, sideslip, roll rate, yaw rate.
+    pub state: [f64; 6],
+    /// Estimated position to the right, bank, course, and motion of the air to the right.
+    pub estimate: [f64; 4],
+    /// Position to the right, bank and course of the plan; `None` while the core tracks no plan.
+    pub reference: Option<[f64; 3]>,
+    /// Commanded aileron and rudder.
+    pub control: [f64; 2],
+    /// Aileron and rudder that the servos gave.
+    pub applied: [f64; 2],
+    /// Motion of the air to the right.
+    pub wind: f64,
+}
+
+/// One column per lateral quantity, one row per tick. Positive is to the right.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LateralColumns {
+    /// True position to the right of the start \[m\].
+    pub y: Vec<f64>,
+    /// True bank about the direction of flight \[rad\].
+    pub bank: Vec<f64>,
+    /// True course through the air \[rad\].
+    pub course: Vec<f64>,
+    /// True sideslip \[rad\].
+    pub sideslip: Vec<f64>,
+    /// True roll rate [rad/s].
+    pub roll_rate: Vec<f64>,
+    /// True yaw rate [rad/s].
+    pub yaw_rate: Vec<f64>,
+    /// Estimated position to the right \[m\].
+    pub est_y: Vec<f64>,
+    /// Estimated bank \[rad\].
+    pub est_bank: Vec<f64>,
+    /// Estimated course through the air \[rad\].
+    pub est_course: Vec<f64>,
+    /// Estimated motion of the air to the right [m/s].
+    pub est_wind_y: Vec<f64>,
+    /// Reference position to the right \[m\]. This and the other references are null without a plan.
+    pub ref_y: Vec<Option<f64>>,
+    /// Reference bank \[rad\].
+    pub ref_bank: Vec<Option<f64>>,
+    /// Reference course through the air \[rad\].
+    pub ref_course: Vec<Option<f64>>,
+    /// Commanded aileron \[rad\].
+    pub aileron: Vec<f64>,
+    /// Commanded rudder \[rad\].
+    pub rudder: Vec<f64>,
+    /// Aileron that the servo gave \[rad\].
+    pub applied_aileron: Vec<f64>,
+    /// Rudder that the servo gave \[rad\].
+    pub applied_rudder: Vec<f64>,
+    /// Motion of the air to the right [m/s].
+    pub wind_y: Vec<f64>,
+}
+
+impl LateralColumns {
+    /// Whether the flight was one in the vertical plane.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.y.is_empty()
+    }
+
+    /// Appends one row.
+    pub fn push(&mut self, tick: &LateralTick) {
+        let [y, bank, course, sideslip, roll_rate, yaw_rate] = tick.state;
+        self.y.push(y);
+        self.bank.push(bank);
+        self.course.push(course);
+        self.sideslip.push(sideslip);
+        self.roll_rate.push(roll_rate);
+        self.yaw_rate.push(yaw_rate);
+        let [y, bank, course, wind] = tick.estimate;
+        self.est_y.push(y);
+        self.est_bank.push(bank);
+        self.est_course.push(course);
+        self.est_wind_y.push(wind);
+        let reference = |at: usize| finite(tick.reference.map(|it| it[at]));
+        self.ref_y.push(reference(0));
+        self.ref_bank.push(reference(1));
+        self.ref_course.push(reference(2));
+        self.aileron.push(tick.control[0]);
+        self.rudder.push(tick.control[1]);
+        self.applied_aileron.push(tick.applied[0]);
+        self.applied_rudder.push(tick.applied[1]);
+        self.wind_y.push(tick.wind);
+    }
+}
+
 /// One plan that the core delivered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PlanEntry {

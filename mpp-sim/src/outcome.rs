@@ -37,6 +37,8 @@ pub enum Outcome {
     Terminated,
     /// Ended by whoever started it, before anything was decided.
     Interrupted,
+    /// In space: the aircraft left the band to the side or upwards, or ran out of time.
+    NotArrived,
 }
 
 impl Outcome {
@@ -49,6 +51,7 @@ impl Outcome {
             Self::PitchLimit | Self::FlightPathLimit => 4,
             Self::Terminated => 8,
             Self::Interrupted => 130,
+            Self::NotArrived => 5,
         }
     }
 }
@@ -62,6 +65,7 @@ impl core::fmt::Display for Outcome {
             Self::FlightPathLimit => "flight path limit",
             Self::Terminated => "terminated",
             Self::Interrupted => "interrupted",
+            Self::NotArrived => "not arrived",
         })
     }
 }
@@ -72,7 +76,7 @@ impl core::fmt::Display for Outcome {
 pub enum Class {
     /// Success by the strict rule.
     Success,
-    /// Success by the paper's rule, but further than [`ALTITUDE_BAND`] from the initial altitude.
+    /// Success by the paper's rule, but further than [`ALTITUDE_BAND`] from the initial altitude; in space, not arrived.
     LeftBand,
     /// A collision while a plan was flown.
     Collision,
@@ -108,7 +112,7 @@ impl Class {
     pub fn of(outcome: Outcome, strict: bool, planless: bool) -> Self {
         match outcome {
             Outcome::Survived if strict => Self::Success,
-            Outcome::Survived => Self::LeftBand,
+            Outcome::Survived | Outcome::NotArrived => Self::LeftBand,
             Outcome::Terminated => Self::Terminated,
             Outcome::Interrupted => Self::Interrupted,
             _ if planless => Self::NoPlan,

@@ -9,12 +9,43 @@ use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::FlightNode;
 use std::collections::VecDeque;
 
+/// The bytes from a core in this process.
+pub(crate) struct Inbox {
+    pub(crate) bytes: VecDeque<u8>,
+    decoder: Decoder,
+}
+
+impl Inbox {
+    /// Nothing yet.
+    pub(crate) fn new() -> Self {
+        Self {
+            bytes: VecDeque::new(),
+            decoder: Decoder::new(),
+        }
+    }
+
+    /// The next message. `awaited` names the expected one for the error.
+    pub(crate) fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        while let Some(byte) = self.bytes.pop_front() {
+            match self.decoder.push(byte) {
+                None => {}
+                Some(Ok(message)) => return Ok(message),
+                Some(Err(error)) => return Err(LinkError::Frame(error)),
+            }
+        }
+        Err(LinkError::Silent {
+            waiting: "harness",
+            awaited: format!("{awaited} from the core"),
+            patience: None,
+        })
+    }
+}
+
 /// A core in this process. Bytes go in and come out as they would over a wire.
 pub struct PipeLink {
     node: Box<FlightNode>,
     oracle: Option<Oracle>,
-    to_harness: VecDeque<u8>,
-    decoder: Decoder,
+    inbox: Inbox,
 }
 
 impl PipeLink {
@@ -24,8 +55,7 @@ impl PipeLink {
         Self {
             node: Box::new(FlightNode::new()),
             oracle: None,
-            to_harness: VecDeque::new(),
-            decoder: Decoder::new(),
+            inbox: Inbox::new(),
         }
     }
 
@@ -54,7 +84,7 @@ impl PipeLink {
 
     /// Sends bytes as they are, without a check.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
-        let send = |frame: &[u8]| self.to_harness.extend(frame);
+        let send = |frame: &[u8]| self.inbox.bytes.extend(frame);
         Oracle::receive(self.oracle.as_ref(), &mut self.node, bytes, send);
     }
 
@@ -80,18 +110,7 @@ impl Link for PipeLink {
     }
 
     fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
-        while let Some(byte) = self.to_harness.pop_front() {
-            match self.decoder.push(byte) {
-                None => {}
-                Some(Ok(message)) => return Ok(message),
-                Some(Err(error)) => return Err(LinkError::Frame(error)),
-            }
-        }
-        Err(LinkError::Silent {
-            waiting: "harness",
-            awaited: format!("{awaited} from the core"),
-            patience: None,
-        })
+        self.inbox.receive(awaited)
     }
 
     fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {

@@ -1,113 +1,263 @@
-//! Whole flights of the planner in space through worlds.
+//! Whole flights in space: plant and sensors on one side of the link, the core on the other.
 
-use mpp_core::planner::space::Keep;
-use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
-use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::lidar::LidarName;
-use mpp_sim::space::world::{Body, Extent, World, WorldConfig, WorldName};
-use mpp_sim::space::{
-    Deskew, Hull, SensorErrors, SpaceConfig, SpaceEnd, SpaceOutcome, WindConfig, fly_through,
-};
+use hil_protocol::{Message, PointPacket, RejectionCause};
+use mpp_sim::aircraft_file::AircraftFile;
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
+use mpp_sim::space::world::Body;
+use mpp_sim::space::{SpaceFile, SpacePipe, fly_space, fly_space_with};
 
-const SPHERE: Hull = Hull {
-    half_span: 0.0,
-    half_length: 0.0,
-    radius: 0.4,
-};
-
-fn config() -> SpaceConfig {
-    SpaceConfig {
-        keep: Keep {
-            margin: 0.85,
-            half_span: 0.0,
-            heights: [0.9, 14.7],
-            half_width: 29.5,
-            altitude: 7.5,
-        },
-        bank: [1.05, 1.57],
-        replan_ticks: 25,
-        latency_ticks: 10,
-        candidates: 3,
-        programs: true,
-        sight: 45.0,
-        sweep: 0.1,
-        deskew: Deskew::RIGHT,
-        ahead: 0.12,
-        errors: Some(SensorErrors::RTK),
-        wind: WindConfig::default(),
-    }
-}
-
-/// Flies on a thread with room for the workspaces of planner and map.
-fn flown(world: World, seed: u64, config: SpaceConfig) -> Result<SpaceOutcome, String> {
-    let body = move || {
-        let mut file = AircraftFile::known("ultrastick").unwrap();
-        file.cruise = 13.0;
-        let scenario = Scenario {
-            aircraft: AircraftModel::new(file).unwrap(),
-            ..Scenario::new(Preset::Flight, seed)
-        };
-        fly_through(&world, &SPHERE, LidarName::Grid90x16, &scenario, config)
-            .map_err(|error| error.to_string())
-    };
+/// Does something on a stack on which the core in space can be built.
+fn aside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let thread = std::thread::Builder::new().stack_size(32 << 20);
-    thread.spawn(body).unwrap().join().unwrap()
+    thread.spawn(work).unwrap().join().unwrap()
 }
 
-fn forest(density: f64, seed: u64) -> World {
-    WorldConfig {
-        density,
-        ..WorldConfig::usual(WorldName::Forest, seed)
+fn forest(density: f64, seed: u64) -> SpaceFile {
+    SpaceFile {
+        density: Some(density),
+        sphere: Some(0.4),
+        seed: Some(seed),
+        ..SpaceFile::default()
     }
-    .build()
-    .unwrap()
+}
+
+fn flown(file: SpaceFile, stems: Option<Vec<Body>>) -> Result<FlightLog, String> {
+    aside(move || {
+        let scenario = file
+            .build(stems.as_deref())
+            .map_err(|error| error.to_string())?;
+        fly_space(&scenario).map_err(|error| error.to_string())
+    })
+}
+
+fn trunk(x: f64, y: f64) -> Body {
+    Body::Cylinder {
+        x,
+        y,
+        radius: 0.4,
+        height: f64::INFINITY,
+    }
+}
+
+/// A trunk in the way, and one that gives the world its size.
+fn way() -> Vec<Body> {
+    vec![trunk(60.0, 0.1), trunk(120.0, 30.0)]
 }
 
 #[test]
 fn light_forests_are_crossed_and_the_same_seed_flies_the_same() {
     let mut arrived = 0;
     for seed in 70..74 {
-        let outcome = flown(forest(0.01, seed), seed, config()).unwrap();
-        assert_ne!(outcome.end, SpaceEnd::Extreme, "{seed}");
-        assert!(outcome.tracking < 0.2, "{seed}: {outcome:?}");
-        arrived += usize::from(outcome.end == SpaceEnd::Arrived && outcome.clearance > 0.0);
+        let log = flown(forest(0.01, seed), None).unwrap();
+        assert_eq!(log.rejections, [], "{seed}");
+        let off = log.lateral.ref_y.iter().zip(&log.lateral.y);
+        let off: Vec<f64> = off.filter_map(|(it, y)| Some((*it)? - y)).collect();
+        let mean = off.iter().map(|it| it.abs()).sum::<f64>() / off.len() as f64;
+        assert!(off.len() > 1000 && mean < 0.2, "{seed}: {mean}");
+        arrived += usize::from(log.summary.outcome == Outcome::Survived);
     }
     assert!(arrived >= 3, "{arrived}");
-    let again = || flown(forest(0.01, 70), 70, config());
+    let again = || flown(forest(0.01, 70), None).unwrap().hash().unwrap();
     assert_eq!(again(), again());
 }
 
-/// Who plans must do better than who flies straight on, and who sees nothing hits what stands in the way.
+#[test]
+fn the_log_has_every_lateral_column_and_reads_back() {
+    let log = flown(forest(0.005, 5), None).unwrap();
+    let side = &log.lateral;
+    assert_eq!(side.y.len(), log.ticks.t.len());
+    let most = |column: &[f64]| column.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+    // A flight straight ahead would show nothing.
+    for column in [
+        &side.y,
+        &side.bank,
+        &side.course,
+        &side.sideslip,
+        &side.roll_rate,
+        &side.aileron,
+    ] {
+        assert!(most(column) > 1e-3);
+    }
+    let off: Vec<f64> = side
+        .bank
+        .iter()
+        .zip(&side.est_bank)
+        .skip(50)
+        .map(|(a, b)| a - b)
+        .collect();
+    assert!(most(&off) < 0.06, "{}", most(&off));
+    let bytes = log.to_json().unwrap();
+    assert_eq!(FlightLog::from_json(&bytes).unwrap(), log);
+    let error = log.header.scenario().unwrap_err().to_string();
+    assert!(error.contains("in space"), "{error}");
+}
+
+/// A link that loses the points of the lidar.
+struct Blind(SpacePipe);
+
+impl Link for Blind {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        match message {
+            Message::PointPacket(_) => Ok(()),
+            other => self.0.send(other),
+        }
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.0.receive(awaited)
+    }
+}
+
+/// Who sees nothing hits what stands in the way.
 #[test]
 fn a_trunk_in_the_way_is_passed_with_the_lidar_and_hit_without_sight() {
-    let trunk = || {
-        let body = Body::Cylinder {
-            x: 60.0,
-            y: 0.1,
-            radius: 0.4,
-            height: f64::INFINITY,
+    let file = || SpaceFile {
+        sphere: Some(0.4),
+        ..SpaceFile::default()
+    };
+    let seeing = flown(file(), Some(way())).unwrap();
+    assert_eq!(seeing.summary.outcome, Outcome::Survived);
+    let blind = aside(move || {
+        let scenario = file().build(Some(&way())).unwrap();
+        fly_space_with(&scenario, &mut Blind(SpacePipe::new()), || false).unwrap()
+    });
+    assert_eq!(blind.summary.outcome, Outcome::Collision);
+    assert_eq!(blind.summary.replans, 0);
+}
+
+/// A lidar that falls silent leaves the map, in which plans go on.
+#[test]
+fn plans_go_on_in_the_map_without_points() {
+    struct Failing(SpacePipe, u32);
+    impl Link for Failing {
+        fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+            match message {
+                Message::PointPacket(packet) if packet.tick > self.1 => Ok(()),
+                other => self.0.send(other),
+            }
+        }
+        fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+            self.0.receive(awaited)
+        }
+    }
+    let log = aside(|| {
+        let file = SpaceFile {
+            sphere: Some(0.4),
+            ..SpaceFile::default()
         };
-        World::new(vec![body], Extent::USUAL).unwrap()
-    };
-    assert_eq!(flown(trunk(), 1, config()).unwrap().end, SpaceEnd::Arrived);
-    // A cycle that begins after the end of the flight never looks.
-    let blind = SpaceConfig {
-        replan_ticks: 1_000_000,
-        latency_ticks: 1_000_000,
-        ..config()
-    };
-    assert_eq!(flown(trunk(), 1, blind).unwrap().end, SpaceEnd::Hit);
+        let scenario = file.build(Some(&way())).unwrap();
+        fly_space_with(&scenario, &mut Failing(SpacePipe::new(), 300), || false).unwrap()
+    });
+    assert!(log.plans.iter().any(|plan| plan.tick > 500));
+    assert_eq!(log.summary.outcome, Outcome::Survived);
 }
 
 #[test]
-fn a_start_in_a_trunk_is_refused() {
-    let body = Body::Cylinder {
-        x: 0.0,
-        y: 0.0,
-        radius: 0.4,
-        height: f64::INFINITY,
-    };
-    let world = World::new(vec![body], Extent::USUAL).unwrap();
-    let refused = flown(world, 1, config()).unwrap_err();
-    assert!(refused.contains("start"), "{refused}");
+fn packets_that_show_nothing_are_refused_by_name() {
+    let causes = aside(|| {
+        let scenario = forest(0.005, 1).build(None).unwrap();
+        let mut ticks = 0;
+        struct Odd<'a>(SpacePipe, &'a mut u32);
+        impl Link for Odd<'_> {
+            fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+                if let Message::SensorFrame(frame) = message {
+                    *self.1 += 1;
+                    let packet = |points: &[[f32; 3]]| {
+                        Message::PointPacket(PointPacket {
+                            tick: frame.tick,
+                            sensor_time: 0,
+                            interval: 0,
+                            points: points.iter().copied().collect(),
+                        })
+                    };
+                    match frame.tick {
+                        1 => self.0.send(&packet(&[]))?,
+                        2 => self
+                            .0
+                            .send(&packet(&[[1.0, 0.0, 0.0], [f32::NAN, 0.0, 0.0]]))?,
+                        3 => self.0.send(&packet(&[[0.0; 3]]))?,
+                        _ => {}
+                    }
+                }
+                self.0.send(message)
+            }
+            fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+                self.0.receive(awaited)
+            }
+        }
+        let log = fly_space_with(&scenario, &mut Odd(SpacePipe::new(), &mut ticks), || false);
+        log.unwrap().rejections
+    });
+    let expected = [
+        RejectionCause::ScanLength {
+            expected: 2048,
+            found: 0,
+        },
+        RejectionCause::ScanNotFinite { beam: 1 },
+        RejectionCause::ScanNotFinite { beam: 0 },
+    ];
+    let causes: Vec<String> = causes.into_iter().map(|it| it.cause).collect();
+    assert_eq!(causes, expected.map(|cause| format!("{cause:?}")));
+}
+
+#[test]
+fn what_makes_no_sense_is_one_sentence() {
+    let named = |name: &str| AircraftFile::known(name);
+    for (file, stems, hint) in [
+        (forest(-1.0, 1), None, "density: give more than 0"),
+        (forest(f64::NAN, 1), None, "density: give more than 0"),
+        (
+            SpaceFile {
+                aircraft: named("cessna182"),
+                ..SpaceFile::default()
+            },
+            None,
+            "give this table",
+        ),
+        (
+            SpaceFile::default(),
+            Some(vec![trunk(0.0, 0.0), trunk(90.0, 30.0)]),
+            "at its start",
+        ),
+        (
+            SpaceFile::default(),
+            Some(vec![trunk(90.0, 1.0)]),
+            "leaves no room",
+        ),
+        (
+            SpaceFile::default(),
+            Some((-40..=40).map(|y| trunk(90.0, f64::from(y))).collect()),
+            "wider than every gap at 90.0 m",
+        ),
+        (
+            SpaceFile {
+                candidates: Some(8),
+                ..SpaceFile::default()
+            },
+            None,
+            "give 1 to 7",
+        ),
+        (
+            SpaceFile {
+                replan_hz: Some(0.0),
+                ..SpaceFile::default()
+            },
+            None,
+            "give a rate",
+        ),
+        (
+            SpaceFile {
+                preset: Some("flight".to_owned()),
+                ..SpaceFile::default()
+            },
+            None,
+            "give space",
+        ),
+    ] {
+        let error = flown(file, stems).unwrap_err();
+        assert!(error.contains(hint), "{error}");
+        assert!(!error.contains('\n'), "{error}");
+    }
 }

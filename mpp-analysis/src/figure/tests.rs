@@ -77,6 +77,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
             ..Header::of(&scenario, &field)
         },
         plans: (100..count as u64).step_by(100).map(plan).collect(),
+        lateral: Default::default(),
         rejections: Vec::new(),
         sensors: Vec::new(),
         health: Default::default(),

@@ -1,5 +1,6 @@
 //! The errors that leave a flight without an outcome.
 
+use crate::file_error::ScenarioError;
 use crate::link::LinkError;
 use crate::plant::PlantError;
 use mpp_core::planner::SetupError;
@@ -17,6 +18,9 @@ pub enum FlyError {
     /// The airframe has no level flight to start from.
     #[error("the airframe has no level flight to start from: {0}")]
     Trim(TrimError),
+    /// The flight in space cannot begin.
+    #[error("{0}")]
+    Scenario(#[source] ScenarioError),
     /// The planner cannot be set up.
     #[error("the planner cannot be set up: {0}")]
     SetUp(SetupError),

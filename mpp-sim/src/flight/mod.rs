@@ -27,6 +27,7 @@ use mpp_core::vehicle::{AirState, Conditions, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 pub use sensing::Sensing;
 use session::{Session, StepReply, Told};
+pub(crate) use session::{check, entry, own_hello};
 use std::collections::BTreeMap;
 use steering::Steering;
 
@@ -321,7 +322,7 @@ fn counters(report: &HealthReport) -> BTreeMap<String, u32> {
         .collect()
 }
 
-fn plan_entry(report: &PlanReport) -> PlanEntry {
+pub(crate) fn plan_entry(report: &PlanReport) -> PlanEntry {
     PlanEntry {
         tick: u64::from(report.scan_tick),
         used_from_tick: Some(u64::from(report.used_from_tick)),

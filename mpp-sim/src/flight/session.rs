@@ -289,7 +289,7 @@ fn relapsed(set: SetParameter, verdict: ParameterVerdict) -> LinkError {
     LinkError::Relapsed(name, value, verdict)
 }
 
-fn entry(rejection: &Rejection) -> RejectionEntry {
+pub(crate) fn entry(rejection: &Rejection) -> RejectionEntry {
     RejectionEntry {
         tick: u64::from(rejection.tick),
         cause: format!("{:?}", rejection.cause),
@@ -306,7 +306,7 @@ fn is_old(tick: u32, rejection: &Rejection) -> bool {
     }
 }
 
-fn own_hello() -> Hello {
+pub(crate) fn own_hello() -> Hello {
     Hello {
         role: Role::Harness,
         software: software(),
@@ -317,7 +317,7 @@ fn own_hello() -> Hello {
 }
 
 /// Checks that the core that said hello suits a flight with this number of beams.
-fn check(peer: &Hello, beams: u16) -> Result<(), LinkError> {
+pub(crate) fn check(peer: &Hello, beams: u16) -> Result<(), LinkError> {
     if peer.role != Role::Core {
         return Err(LinkError::NoCore);
     }

@@ -5,12 +5,14 @@
 //! compact JSON in the order of the fields here; a log's file is exactly the bytes that are hashed,
 //! so `sha256sum flight.json` begins with [`FlightLog::hash`].
 
+mod space;
 mod summary;
 
+pub use space::SpaceHeader;
 pub use summary::Summary;
 
 use crate::aircraft_file::{AircraftFile, AircraftModel};
-use crate::entries::{Columns, PlanEntry, RejectionEntry, SensorEntry};
+use crate::entries::{Columns, LateralColumns, PlanEntry, RejectionEntry, SensorEntry};
 use crate::faults::Faults;
 use crate::field::{Field, FieldFile};
 use crate::generator::Generator;
@@ -42,6 +44,9 @@ pub struct FlightLog {
     pub header: Header,
     /// The ticks of the flight, at 100 Hz.
     pub ticks: Columns,
+    /// The lateral part of the ticks; not written of a flight in the vertical plane.
+    #[serde(default, skip_serializing_if = "LateralColumns::is_empty")]
+    pub lateral: LateralColumns,
     /// Every plan that the core delivered.
     pub plans: Vec<PlanEntry>,
     /// Every input that the core refused.
@@ -110,6 +115,9 @@ pub struct Header {
     pub body_radius: f64,
     /// All obstacles, as in a field file.
     pub field: FieldFile,
+    /// World and aircraft of a flight in space; not written of a flight in the vertical plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub space: Option<SpaceHeader>,
 }
 
 fn papers() -> Generator {
@@ -154,6 +162,7 @@ impl Header {
             known_map: scenario.known_map,
             body_radius: scenario.body_radius,
             field: FieldFile::of(field.obstacles()),
+            space: None,
         }
     }
 
@@ -162,6 +171,9 @@ impl Header {
     /// # Errors
     /// [`LogError::Header`] when no scenario file could ask for it.
     pub fn scenario(&self) -> Result<Scenario, LogError> {
+        if self.space.is_some() {
+            return Err(LogError::Space);
+        }
         let unknown = |key, error: UnknownName| {
             LogError::Header(ScenarioError::Value(key, error.to_string()))
         };
@@ -219,6 +231,7 @@ impl FlightLog {
             schema: SCHEMA,
             header,
             ticks: Columns::default(),
+            lateral: LateralColumns::default(),
             plans: Vec::new(),
             rejections: Vec::new(),
             sensors: Vec::new(),
@@ -276,6 +289,11 @@ pub enum LogError {
     /// The log has the layout of another version; holds that version.
     #[error("flight log has schema {0}, this program reads {SCHEMA}")]
     Schema(u32),
+    /// The flight was one in space.
+    #[error(
+        "flight log: of a flight in space there is no scenario: fly preset space with its seed, or export it"
+    )]
+    Space,
     /// The header says what cannot be flown.
     #[error("flight log: header.{0}")]
     Header(#[source] ScenarioError),

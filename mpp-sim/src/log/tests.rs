@@ -1,7 +1,7 @@
 //! Tests the bytes of a log.
 
 use super::*;
-use crate::entries::{Tick, finite};
+use crate::entries::{LateralColumns, Tick, finite};
 use crate::faults::Faults;
 use crate::field::Obstacle;
 use crate::lidar::LidarConfig;
@@ -85,8 +85,10 @@ fn example() -> FlightLog {
             known_map: false,
             body_radius: 0.0,
             field: FieldFile::of(&[obstacle]),
+            space: None,
         },
         ticks,
+        lateral: LateralColumns::default(),
         plans: vec![PlanEntry {
             tick: 0,
             used_from_tick: Some(1),

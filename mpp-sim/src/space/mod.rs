@@ -2,13 +2,14 @@
 //! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
 
 mod course;
-mod flight;
-mod forest;
+mod host;
 mod hull;
+mod instruments;
 pub mod lidar;
 mod motion;
-mod navigator;
+mod pipe;
 mod pose;
+mod scenario;
 mod sensors;
 mod servo;
 #[cfg(test)]
@@ -17,14 +18,14 @@ mod wind;
 pub mod world;
 
 pub use course::CourseHold;
-pub use flight::{SpaceConfig, SpaceFlight};
-pub use forest::{SpaceEnd, SpaceOutcome, fly_through};
+pub use host::{fly_space, fly_space_with};
 pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use mpp_core::vehicle::Quaternion;
-pub use navigator::Deskew;
+pub use pipe::SpacePipe;
 pub use pose::Pose;
-pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_motion, true_path};
+pub use scenario::{Deskew, SPACE, SpaceFile, SpaceScenario};
+pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_path};
 pub use servo::Servo;
 pub use wind::{SpaceWind, WindConfig};
 

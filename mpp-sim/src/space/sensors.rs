@@ -3,7 +3,6 @@
 use super::{SpaceAircraft, SpaceState};
 use crate::random::{Draws, Stream, gaussian, generator};
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::control::SpaceMotion;
 use mpp_core::estimate::{InertialSample, SpaceFix};
 use mpp_core::vehicle::{GRAVITY, Quaternion, SpacePath};
 use std::collections::VecDeque;
@@ -35,6 +34,16 @@ impl SensorErrors {
         rates: 0.3 * core::f64::consts::PI / 180.0,
         force: 0.05,
         position: 0.02,
+    };
+
+    /// Almost no errors; the delays stay.
+    pub const EXACT: Self = Self {
+        attitude: 1e-4,
+        velocity: 1e-3,
+        airspeed: 1e-3,
+        rates: 1e-4,
+        force: 1e-3,
+        position: 1e-3,
     };
 }
 
@@ -193,22 +202,5 @@ pub fn true_path(state: &SpaceState) -> SpacePath {
         bank: state.bank(),
         flight_path: libm::atan2(-down, libm::hypot(x, y)),
         course: libm::atan2(y, x),
-    }
-}
-
-/// The true motion through air that moves with a wind [m/s]; angle of attack, bank and rates are those to the air as it is.
-#[must_use]
-pub fn true_motion(aircraft: &SpaceAircraft, wind: &[f64; 3]) -> SpaceMotion {
-    let ground = ground_velocity(aircraft);
-    let [x, y, z] = [0, 1, 2].map(|axis| ground[axis] - wind[axis]);
-    let level = libm::hypot(x, y);
-    SpaceMotion {
-        path: SpacePath {
-            airspeed: libm::hypot(level, z),
-            flight_path: libm::atan2(z, level),
-            course: libm::atan2(y, x),
-            ..true_path(aircraft.state())
-        },
-        rates: rates(aircraft.state()),
     }
 }

@@ -44,7 +44,7 @@ pub fn run(
     timed: bool,
     keep: impl Fn(Row) -> Result<(), CampaignError> + Sync,
 ) -> Result<(), CampaignError> {
-    let pool = pool(threads, jobs.len())?;
+    let pool = pool(threads, jobs.len(), STACK)?;
     pool.install(|| {
         // With `par_bridge` the flights start in order, and no flight runs on a stack of half-split
         // lists.
@@ -74,7 +74,7 @@ pub fn run_faults(
         Ok((job, kept(&log, &observer)))
     };
     let jobs = campaign.jobs();
-    pool(threads, jobs.len())?.install(|| jobs.into_par_iter().map(fly_one).collect())
+    pool(threads, jobs.len(), STACK)?.install(|| jobs.into_par_iter().map(fly_one).collect())
 }
 
 /// What a campaign of faults keeps of a flight.
@@ -106,7 +106,7 @@ pub fn run_pairs(
         Ok((pair, kept(&log, &observer)))
     };
     let pairs = campaign.pairs();
-    pool(threads, pairs.len())?.install(|| pairs.into_par_iter().map(fly_one).collect())
+    pool(threads, pairs.len(), STACK)?.install(|| pairs.into_par_iter().map(fly_one).collect())
 }
 
 /// Decides about the fields of a cell. `done` is called after each. The result is in the order of the seeds.
@@ -129,14 +129,20 @@ pub fn decide_all(
         Ok((seed, verdict))
     };
     let seeds: Vec<u64> = campaign.seeds().collect();
-    pool(threads, seeds.len())?.install(|| seeds.into_par_iter().map(decide_one).collect())
+    pool(threads, seeds.len(), STACK)?.install(|| seeds.into_par_iter().map(decide_one).collect())
 }
 
 /// Threads for so many flights; 0 means as many as there are cores.
-fn pool(threads: usize, jobs: usize) -> Result<rayon::ThreadPool, CampaignError> {
+/// A pool of this number of threads, 0 as many as there are cores, and no more than there are jobs, with stacks of this size
+/// [bytes].
+pub(crate) fn pool(
+    threads: usize,
+    jobs: usize,
+    stack: usize,
+) -> Result<rayon::ThreadPool, CampaignError> {
     let builder = rayon::ThreadPoolBuilder::new().num_threads(useful(threads, jobs));
     builder
-        .stack_size(STACK)
+        .stack_size(stack)
         .build()
         .map_err(CampaignError::Threads)
 }

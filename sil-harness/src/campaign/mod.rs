@@ -7,6 +7,7 @@ mod engine;
 mod error;
 mod store;
 
+pub(crate) use engine::pool;
 pub use engine::{decide_all, header, run, run_faults, run_pairs};
 pub use error::CampaignError;
 pub use store::{RowFile, Sheet, parse_rows, read};

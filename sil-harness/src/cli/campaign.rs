@@ -44,7 +44,7 @@ pub(super) struct CampaignArgs {
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(whole::<u16>()), allow_negative_numbers = true)]
     pub(super) paths: Vec<u16>,
-    /// Presets, a list [default: the scenario's]
+    /// Presets, a list, or space, which has flags of its own: see `campaign --preset space --help` [default: the scenario's]
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]

@@ -4,7 +4,7 @@ use super::answer::{FAILURE, Failure, USAGE, data_bytes, talk};
 use crate::campaign::parse_rows;
 use crate::files::{is_row_file, parse_log, read_recorded, write_whole};
 use clap::ValueEnum;
-use mpp_export::schema::{PLANS, REJECTIONS, SENSORS, Schema, TICKS};
+use mpp_export::schema::{LATERAL, PLANS, REJECTIONS, SENSORS, Schema, TICKS};
 use mpp_export::table::Table;
 use mpp_export::{ExportError, csv::csv, flight, mcap::mcap, parquet::parquet, rows};
 use std::path::{Path, PathBuf};
@@ -59,6 +59,8 @@ impl ExportArgs {
 enum FlightTable {
     /// State, estimate, reference, controls and wind, 100 times a second
     Ticks,
+    /// The lateral part of the ticks, of a flight in space
+    Lateral,
     /// The plans that the core delivered
     Plans,
     /// The inputs that the core refused
@@ -71,6 +73,7 @@ impl FlightTable {
     fn schema(self) -> &'static Schema {
         match self {
             Self::Ticks => &TICKS,
+            Self::Lateral => &LATERAL,
             Self::Plans => &PLANS,
             Self::Rejections => &REJECTIONS,
             Self::Sensors => &SENSORS,
@@ -116,6 +119,11 @@ fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
         (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),
         (format, table) => {
             let schema = table.unwrap_or(FlightTable::Ticks).schema();
+            if table == Some(FlightTable::Lateral) && log.lateral.is_empty() {
+                return Err(usage(
+                    "a flight in the vertical plane has no lateral part: take another table",
+                ));
+            }
             let table = flight::table(&log, schema).map_err(|error| failed(&error))?;
             of_table(&table, format)
         }

@@ -48,7 +48,8 @@ pub(super) struct FlyArgs {
     /// itself, without refinement [default: 25]
     #[arg(long, help_heading = PLANNER, value_parser = whole::<u16>(), allow_negative_numbers = true)]
     paths: Option<u16>,
-    /// Preset, which is a set of parameters and rules [default: flight]
+    /// Preset, which is a set of parameters and rules, or space, which has flags of its own: see `fly --preset space --help`
+    /// [default: flight]
     #[arg(long, help_heading = PLANNER, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
@@ -237,24 +238,24 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
 
 fn exit_code(error: &FlyError) -> u8 {
     match error {
-        FlyError::Link(LinkError::Refused(_)) => USAGE,
+        FlyError::Scenario(_) | FlyError::Link(LinkError::Refused(_)) => USAGE,
         FlyError::Link(_) => LINK,
         FlyError::Plant(_) | FlyError::Trim(_) | FlyError::SetUp(_) => FAILURE,
     }
 }
 
 /// What a flight left on the disk.
-struct Kept {
+pub(super) struct Kept {
     log: Option<PathBuf>,
     /// None of a flight that ended before its first tick.
     figure: Option<PathBuf>,
     hash: String,
     /// The reason why a file is missing. It does not cost the result.
-    written: Result<(), Failure>,
+    pub(super) written: Result<(), Failure>,
 }
 
 /// Writes log and picture.
-fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
+pub(super) fn keep(out: &Path, name: &str, log: &FlightLog) -> Result<Kept, Failure> {
     let mut kept = Kept {
         log: None,
         figure: None,
@@ -283,8 +284,19 @@ impl Kept {
     }
 }
 
-/// Prints the result.
+/// Prints the result. Returns the exit code.
 fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
+    told(args.json, log, kept)?;
+    args.loudness.tell(|| told_plans(log));
+    let left_band = log.summary.outcome == Outcome::Survived && !log.summary.strict;
+    if args.strict && left_band {
+        return Ok(LEFT_BAND);
+    }
+    Ok(log.summary.outcome.exit_code())
+}
+
+/// Prints the result, as JSON or as a line.
+pub(super) fn told(json: bool, log: &FlightLog, kept: &Kept) -> Result<(), Failure> {
     let shown = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
     let line = ResultLine {
         seed: log.header.seed,
@@ -298,21 +310,14 @@ fn report(args: &FlyArgs, log: &FlightLog, kept: &Kept) -> Result<u8, Failure> {
         log: shown(&kept.log),
         figure: shown(&kept.figure),
     };
-    if args.json {
-        print_json(&line)?;
-    } else {
-        if let Some(file) = &line.log {
-            let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
-            talk(format_args!("log {file}, picture {figure}"));
-        }
-        data(text_line(&line))?;
+    if json {
+        return print_json(&line);
     }
-    args.loudness.tell(|| told_plans(log));
-    let left_band = log.summary.outcome == Outcome::Survived && !log.summary.strict;
-    if args.strict && left_band {
-        return Ok(LEFT_BAND);
+    if let Some(file) = &line.log {
+        let figure = line.figure.as_deref().unwrap_or("none: nothing was flown");
+        talk(format_args!("log {file}, picture {figure}"));
     }
-    Ok(log.summary.outcome.exit_code())
+    data(text_line(&line))
 }
 
 fn text_line(line: &ResultLine<'_>) -> String {

@@ -71,13 +71,21 @@ Elevator and thrust stay those of level flight, so a turn loses height. With --f
 course is held.
 Exit codes: 0 flown, 2 usage, 4 extreme state: the aircraft departed, 1 anything else";
 
-pub(super) const FOREST: &str = "\
+pub(super) const FLY_IN_SPACE: &str = "\
 Examples:
-  sil-harness forest --airspeed 13 --flights 40
-  sil-harness forest --airspeed 13 --density 0.0625 --sphere 0.4 --each
+  sil-harness fly --preset space --density 0.02
+  sil-harness fly --preset space --aircraft delta --airspeed 12 --world walls --json
+
+Exit codes: 0 reached the end, 2 usage, 3 collision, 4 extreme state, 5 left the band or ran out of time, 130 and 143
+interrupted, 1 anything else";
+
+pub(super) const CAMPAIGN_IN_SPACE: &str = "\
+Examples:
+  sil-harness campaign --preset space --density 0.01,0.02,0.04 --trials 100 --seed 900000
+  sil-harness campaign --preset space --density 0.04 --sphere 0.4 --out rows.jsonl
 
 A flight arrives if neither wing nor fuselage touches anything on its way and it stays in the band.
-Exit codes: 0 flown, 2 usage, 1 anything else";
+Exit codes: 0 flown, 2 usage, 130 and 143 interrupted, 1 anything else";
 
 pub(super) const FIGURES: &str = "\
 Examples:

@@ -17,9 +17,9 @@ mod fault_campaign;
 mod figures;
 mod file_name;
 mod fly;
-mod forest;
 mod ground;
 mod help;
+mod in_space;
 mod loudness;
 mod manual;
 mod params;
@@ -31,7 +31,7 @@ mod space;
 mod values;
 mod worlds;
 
-use answer::complain;
+use answer::{Failure, complain};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -59,8 +59,6 @@ enum Command {
     Aircraft(aircraft::AircraftArgs),
     /// Hold a bank for 20 s in six degrees of freedom, by the lateral regulator, in wind and gusts
     Space(space::SpaceArgs),
-    /// Let the planner in space fly through worlds in six degrees of freedom
-    Forest(forest::ForestArgs),
     /// Draw counterparts of the paper's figures
     Figures(figures::FiguresArgs),
     /// Serve the flight core to harnesses over TCP
@@ -81,11 +79,8 @@ enum Command {
     Man(manual::ManArgs),
 }
 
-/// Parses the command line and does what it says.
-#[must_use]
-pub fn run() -> ExitCode {
-    let cli = Cli::parse();
-    let result = match cli.command {
+fn command(cli: Cli) -> Result<u8, Failure> {
+    match cli.command {
         None => fly::run(&cli.fly),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Campaign(args)) if args.faults.is_empty() => campaign::run(&args),
@@ -93,7 +88,6 @@ pub fn run() -> ExitCode {
         Some(Command::Ceiling(args)) => ceiling::run(&args),
         Some(Command::Aircraft(args)) => aircraft::run(&args),
         Some(Command::Space(args)) => space::run(&args),
-        Some(Command::Forest(args)) => forest::run(&args),
         Some(Command::Figures(args)) => figures::run(&args),
         Some(Command::Core(args)) => core::run(&args),
         Some(Command::Bench(args)) => bench::run(&args),
@@ -103,6 +97,17 @@ pub fn run() -> ExitCode {
         Some(Command::Export(args)) => export::run(&args),
         Some(Command::Completions(args)) => manual::completions(&args, Cli::command()),
         Some(Command::Man(args)) => manual::man(&args, Cli::command()),
+    }
+}
+
+/// Parses the command line and does what it says.
+#[must_use]
+pub fn run() -> ExitCode {
+    let args: Vec<_> = std::env::args_os().collect();
+    let result = if in_space::is_asked(&args) {
+        in_space::SpaceCli::parse().run()
+    } else {
+        command(Cli::parse())
     };
     match result {
         Ok(code) => ExitCode::from(code),

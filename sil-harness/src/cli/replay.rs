@@ -19,7 +19,14 @@ pub(super) struct ReplayArgs {
 }
 
 pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
-    let read = |path: &PathBuf| read_log(path).map_err(Failure::usage);
+    let read = |path: &PathBuf| {
+        let log = read_log(path).map_err(Failure::usage)?;
+        if log.header.space.is_some() {
+            let why = "a page shows flights in the vertical plane: export this flight in space";
+            return Err(Failure::usage(format!("{}: {why}", path.display())));
+        }
+        Ok(log)
+    };
     let log = read(&args.log)?;
     let against = args.against.as_ref().map(read).transpose()?;
     let (page, whole) = replay(&log, against.as_ref())

@@ -117,18 +117,6 @@ pub(super) fn wind(text: &str) -> Result<[f64; 3], String> {
     weak.ok_or_else(|| "give X,Y,Z, three speeds of at most 30 m/s".to_owned())
 }
 
-/// Reads a standard deviation of gusts [m/s].
-pub(super) fn gusts(text: &str) -> Result<f64, String> {
-    let found = text.parse().ok().filter(|it| (0.0..=5.0).contains(it));
-    found.ok_or_else(|| "give 0 to 5 m/s".to_owned())
-}
-
-/// Reads an error of a lidar's clock \[ms\].
-pub(super) fn clock(text: &str) -> Result<f64, String> {
-    let found = text.parse().ok().filter(|it| (-20.0..=100.0).contains(it));
-    found.ok_or_else(|| "give -20 to 100 ms".to_owned())
-}
-
 /// Reads a time to wait \[s\].
 pub(super) fn seconds(text: &str) -> Result<Duration, String> {
     let found = text

@@ -4,7 +4,7 @@ use super::answer::{Failure, USAGE};
 use super::values::world;
 use crate::files::read_stems;
 use mpp_core::config::TICK_PERIOD;
-use mpp_sim::space::world::{Body, Extent, World, WorldConfig, WorldName};
+use mpp_sim::space::world::{World, WorldConfig, WorldName};
 use mpp_sim::space::{Hull, SpaceState};
 use serde::Serialize;
 use std::fmt;
@@ -92,22 +92,10 @@ impl WorldArgs {
     }
 }
 
-/// The world of a stem map: as long and as wide as its trunks reach.
+/// The world of a stem map.
 fn of_stems(path: &Path) -> Result<World, Failure> {
     let bodies = read_stems(path).map_err(|error| Failure::new(USAGE, error))?;
-    let axes = bodies.iter().filter_map(|body| match body {
-        Body::Cylinder { x, y, .. } => Some([*x, y.abs()]),
-        _ => None,
-    });
-    let [length, half_width] = axes.fold([1.0_f64; 2], |most, at| {
-        [most[0].max(at[0]), most[1].max(at[1])]
-    });
-    let extent = Extent {
-        length,
-        half_width,
-        ..Extent::USUAL
-    };
-    World::new(bodies, extent).map_err(|error| Failure::new(USAGE, error))
+    World::of_stems(bodies).map_err(|error| Failure::new(USAGE, error))
 }
 
 impl Flown {

@@ -1,38 +1,93 @@
-//! Flights of the planner in space.
+//! Flights in space by `fly` and `campaign`.
 
 use crate::common::harness;
+use serde_json::Value;
 
-fn forest(flags: &str) -> (Option<i32>, String) {
-    let output = harness()
-        .arg("forest")
-        .args(flags.split(' '))
-        .output()
-        .unwrap();
+fn told(flags: &str) -> (Option<i32>, String) {
+    let output = harness().args(flags.split(' ')).output().unwrap();
     let text = [output.stdout, output.stderr].concat();
     (output.status.code(), String::from_utf8(text).unwrap())
 }
 
+fn folder(name: &str) -> String {
+    let folder = std::env::temp_dir().join(format!("mpp-{name}-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    std::fs::create_dir_all(&folder).unwrap();
+    folder.display().to_string()
+}
+
 #[test]
-fn a_light_forest_is_flown_and_told() {
-    let (code, text) = forest("--airspeed 13 --density 0.005 --flights 2 --seed 5 --each");
+fn a_light_forest_is_flown_logged_and_exported() {
+    let out = folder("fly-in-space");
+    let flags = format!("fly --preset space --density 0.005 --seed 5 --out {out}");
+    let (code, text) = told(&flags);
     assert_eq!(code, Some(0), "{text}");
-    assert!(
-        text.contains("seed 5: ") && text.contains("seed 6: "),
-        "{text}"
+    assert!(text.contains("result: seed 5, survived (strict)"), "{text}");
+    let file = std::fs::read_dir(&out).unwrap().find_map(|entry| {
+        let path = entry.unwrap().path();
+        (path.extension()? == "json").then(|| path.display().to_string())
+    });
+    let log = file.unwrap();
+    let (code, table) = told(&format!("export {log} --table lateral"));
+    assert_eq!(code, Some(0), "{table}");
+    let first = table.lines().next().unwrap();
+    assert!(first.starts_with("t,y,bank,course,"), "{first}");
+    assert!(table.lines().count() > 1500);
+    let (code, text) = told(&format!("replay {log} --out {out}/page.html"));
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("export this flight in space"), "{text}");
+    let (code, text) = told(&format!("fly --orders {log} --out {out}"));
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("of a flight in space"), "{text}");
+    std::fs::remove_dir_all(out).unwrap();
+}
+
+#[test]
+fn a_campaign_counts_its_cells_and_writes_its_rows() {
+    let out = folder("campaign-in-space");
+    let flags = format!(
+        "campaign --preset space --density 0.005,0.006 --sphere 0.4 --trials 2 --seed 5 --json --out {out}/rows.jsonl"
     );
-    assert!(text.contains("of 2 flights arrived"), "{text}");
+    let output = harness().args(flags.split(' ')).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let cells: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(cells[1]["density"], 0.006);
+    assert_eq!(cells[0]["flights"], 2);
+    let rows = std::fs::read_to_string(format!("{out}/rows.jsonl")).unwrap();
+    let mut hashes: Vec<String> = rows
+        .lines()
+        .map(|line| serde_json::from_str::<Value>(line).unwrap()["log_hash"].to_string())
+        .collect();
+    hashes.sort();
+    hashes.dedup();
+    assert_eq!(hashes.len(), 4);
+    let (code, text) = told(&flags);
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("rows.jsonl"), "{text}");
+    std::fs::remove_dir_all(out).unwrap();
 }
 
 #[test]
 fn what_makes_no_sense_is_one_sentence() {
+    let stems = std::env::temp_dir().join(format!("mpp-stems-{}.csv", std::process::id()));
+    std::fs::write(&stems, "x,y,diameter\n60,NaN,0.4\n").unwrap();
+    let stems = stems.display().to_string();
     for (flags, hint) in [
         ("--density=-1", "density: give more than 0 and at most 1"),
+        ("--density 0", "density: give more than 0 and at most 1"),
         ("--world jungle", "jungle"),
-        ("--aircraft cessna182 --flights 1", "give this table"),
-        ("--candidates 8", "1..=7"),
+        ("--aircraft cessna182", "give this table"),
+        ("--candidates 8", "candidates: give 1 to 7"),
+        ("--sphere=-1", "sphere: give more than 0"),
+        ("--world walls --sphere 3", "wider than every gap"),
+        ("--obstacles 5", "--obstacles"),
+        (&*format!("--stems {stems}"), "line 2, y `NaN`"),
     ] {
-        let (code, text) = forest(flags);
-        assert_eq!(code, Some(2), "{flags}: {text}");
-        assert!(text.contains(hint), "{flags}: {text}");
+        for command in ["fly", "campaign --trials 1"] {
+            let (code, text) = told(&format!("{command} --preset space {flags}"));
+            assert_eq!(code, Some(2), "{command} {flags}: {text}");
+            assert!(text.contains(hint), "{command} {flags}: {text}");
+        }
     }
+    std::fs::remove_file(stems).unwrap();
 }

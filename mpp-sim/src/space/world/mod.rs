@@ -8,6 +8,7 @@
 
 mod body;
 mod figures;
+mod gap;
 mod generator;
 mod grid;
 mod stems;
@@ -118,6 +119,26 @@ impl World {
             bodies,
             extent,
         })
+    }
+
+    /// The world of a stem map: as long and as wide as its trunks reach.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_stems(bodies: Vec<Body>) -> Result<Self, WorldError> {
+        let axes = bodies.iter().filter_map(|body| match body {
+            Body::Cylinder { x, y, .. } => Some([*x, y.abs()]),
+            _ => None,
+        });
+        let [length, half_width] = axes.fold([1.0_f64; 2], |most, at| {
+            [most[0].max(at[0]), most[1].max(at[1])]
+        });
+        let extent = Extent {
+            length,
+            half_width,
+            ..Extent::USUAL
+        };
+        Self::new(bodies, extent)
     }
 
     /// Its bodies.

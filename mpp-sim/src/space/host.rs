@@ -1,0 +1,315 @@
+//! One flight in space in lockstep: in each tick the measurements go out over the link, the commands come back, and the plant moves
+//! on.
+
+use super::instruments::{Instruments, Measured};
+use super::{SpaceAircraft, SpacePipe, SpaceScenario, SpaceState, true_path};
+use crate::entries::{LateralTick, PlanEntry, Tick};
+use crate::file_error::ScenarioError;
+use crate::flight::{FlyError, check, entry, own_hello, plan_entry};
+use crate::link::{Link, LinkError};
+use crate::log::{FlightLog, Summary};
+use crate::outcome::{Class, Outcome};
+use crate::scenario::Scenario;
+use hil_protocol::{
+    ActuatorCommand, ConfigureVerdict, ControlMode, Message, PlanReport, SpaceReport, StepReport,
+    SurfaceCommand,
+};
+use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState, Wind};
+use nalgebra::Vector4;
+
+/// How far beyond the band a flight may stray \[m\].
+const STRAY: f64 = 0.5;
+/// Clearance beyond which nobody asks \[m\].
+const MOST: f64 = 5.0;
+
+/// The answer of the core to a tick.
+struct Reply {
+    command: ActuatorCommand,
+    surfaces: SurfaceCommand,
+    step: Option<StepReport>,
+    space: Option<SpaceReport>,
+    plan: Option<PlanReport>,
+}
+
+/// Flies a scenario in space with the core in this process, on a stack of 32 MB.
+///
+/// # Errors
+/// [`FlyError`] when the flight has no outcome.
+pub fn fly_space(scenario: &SpaceScenario) -> Result<FlightLog, FlyError> {
+    fly_space_with(scenario, &mut SpacePipe::new(), || false)
+}
+
+/// Flies a scenario in space over a link, until `stops` says so.
+///
+/// # Errors
+/// [`FlyError`] when the flight has no outcome.
+pub fn fly_space_with(
+    scenario: &SpaceScenario,
+    link: &mut dyn Link,
+    stops: impl Fn() -> bool,
+) -> Result<FlightLog, FlyError> {
+    let mut flight = SpaceHost::begin(scenario, link)?;
+    while flight.end.is_none() {
+        if stops() {
+            flight.end = Some(Outcome::Interrupted);
+        } else {
+            flight.tick(scenario, link)?;
+        }
+    }
+    Ok(flight.log())
+}
+
+struct SpaceHost {
+    aircraft: SpaceAircraft,
+    instruments: Instruments,
+    log: FlightLog,
+    flown: u32,
+    end: Option<Outcome>,
+    clearance: f64,
+    deviation: f64,
+}
+
+impl SpaceHost {
+    /// Configures the core.
+    fn begin(scenario: &SpaceScenario, link: &mut dyn Link) -> Result<Self, FlyError> {
+        let failed = |error: ScenarioError| FlyError::Scenario(error);
+        let mut aircraft = SpaceAircraft::new(&scenario.plane, scenario.wind).map_err(failed)?;
+        aircraft.start_at(scenario.altitude());
+        (scenario.hull())
+            .check_start(&scenario.world, aircraft.state())
+            .map_err(|error| failed(ScenarioError::Value("world", error.to_string())))?;
+        let lateral = scenario.configure_lateral().ok_or_else(|| {
+            let advice = "give this table: the aircraft must bank".to_owned();
+            failed(ScenarioError::Value("aircraft.lateral", advice))
+        })?;
+        let mut log = FlightLog::begin(scenario.header());
+        link.send(&Message::Hello(own_hello()))?;
+        match link.receive("the hello")? {
+            Message::Hello(peer) => check(&peer, 1)?,
+            other => return Err(unexpected("the hello", &other)),
+        }
+        for question in [
+            Message::ConfigureLateral(lateral),
+            Message::ConfigureSpace(scenario.configure_space()),
+            Message::Configure(scenario.configure()),
+        ] {
+            let awaited = "the reply to the configuration";
+            link.send(&question)?;
+            loop {
+                match link.receive(awaited)? {
+                    Message::ConfigureReply(reply) => match reply.verdict {
+                        ConfigureVerdict::Accepted => break,
+                        refused => return Err(LinkError::Refused(refused).into()),
+                    },
+                    // A core in the vertical plane takes no such message.
+                    Message::Rejection(told) => log.rejections.push(entry(&told)),
+                    other => return Err(unexpected(awaited, &other)),
+                }
+            }
+        }
+        Ok(Self {
+            aircraft,
+            instruments: Instruments::new(scenario),
+            log,
+            flown: 0,
+            end: None,
+            clearance: MOST,
+            deviation: 0.0,
+        })
+    }
+
+    fn tick(&mut self, scenario: &SpaceScenario, link: &mut dyn Link) -> Result<(), FlyError> {
+        let before = *self.aircraft.state();
+        let wind = self.aircraft.wind();
+        let measured = self
+            .instruments
+            .measure(self.flown, &self.aircraft, &scenario.world);
+        for message in &measured.messages {
+            link.send(message)?;
+        }
+        let reply = self.answer(link)?;
+        let command = Control {
+            thrust: reply.command.thrust,
+            elevator: reply.command.elevator,
+        };
+        let lateral = LateralControl {
+            aileron: reply.surfaces.aileron,
+            rudder: reply.surfaces.rudder,
+        };
+        let plan = reply.plan.as_ref().map(plan_entry);
+        self.log.plans.extend(plan);
+        let Ok((applied, surfaces)) = self.aircraft.step(command, lateral) else {
+            self.end = Some(Outcome::FlightPathLimit);
+            return Ok(());
+        };
+        self.note(&before, wind, &measured, &reply, applied, surfaces);
+        self.flown += 1;
+        self.judge(scenario, &before);
+        Ok(())
+    }
+
+    /// Reads the answer to its end, which is the command.
+    fn answer(&mut self, link: &mut dyn Link) -> Result<Reply, FlyError> {
+        let awaited = format!("the actuator command of tick {}", self.flown);
+        let (mut surfaces, mut step, mut space, mut plan) = (None, None, None, None);
+        loop {
+            match link.receive(&awaited)? {
+                Message::ActuatorCommand(command) if command.tick == self.flown => {
+                    let neutral = SurfaceCommand {
+                        tick: command.tick,
+                        aileron: 0.0,
+                        rudder: 0.0,
+                    };
+                    return Ok(Reply {
+                        command,
+                        surfaces: surfaces.unwrap_or(neutral),
+                        step,
+                        space,
+                        plan,
+                    });
+                }
+                Message::SurfaceCommand(told) => surfaces = Some(told),
+                Message::StepReport(told) => step = Some(told),
+                Message::SpaceReport(told) => space = Some(told),
+                Message::PlanReport(told) => plan = Some(told),
+                Message::SpaceTrajectory(_) => {}
+                Message::Rejection(told) => self.log.rejections.push(entry(&told)),
+                other => return Err(unexpected(&awaited, &other)),
+            }
+        }
+    }
+
+    /// Writes a tick to the log.
+    fn note(
+        &mut self,
+        state: &SpaceState,
+        wind: [f64; 3],
+        measured: &Measured,
+        reply: &Reply,
+        applied: Control,
+        surfaces: LateralControl,
+    ) {
+        let path = true_path(state);
+        let [_, pitch, _] = state.attitude().angles();
+        let side = &state.lateral;
+        let plane = VehicleState {
+            air: AirState {
+                pitch,
+                flight_path: path.flight_path,
+                ..state.plane.air
+            },
+            ..state.plane
+        };
+        let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
+        let tracks = reply.command.mode == ControlMode::Tracking;
+        let [x, y, z] = wind;
+        self.log.ticks.push(&Tick {
+            t: Scenario::time(self.flown),
+            state: plane,
+            measured: measured.air,
+            estimate: reply.step.map_or(plane, |step| VehicleState {
+                x: step.position[0],
+                z: step.position[1],
+                air: air(step.estimate),
+            }),
+            conditions: reply.step.map_or(Conditions::STILL, |step| Conditions {
+                wind: Wind {
+                    x: step.wind[0],
+                    z: step.wind[1],
+                },
+                lift: step.lift,
+            }),
+            reference: reply.step.filter(|_| tracks).map(|step| {
+                let [x, z, rest @ ..] = step.reference;
+                VehicleState {
+                    x,
+                    z,
+                    air: air(rest),
+                }
+            }),
+            control: Control {
+                thrust: reply.command.thrust,
+                elevator: reply.command.elevator,
+            },
+            applied,
+            wind: (x, z),
+        });
+        let truth = [side.y, path.bank, path.course];
+        let told = reply.space;
+        self.log.lateral.push(&LateralTick {
+            state: [
+                side.y,
+                path.bank,
+                path.course,
+                side.sideslip,
+                side.roll_rate,
+                side.yaw_rate,
+            ],
+            estimate: told.map_or([truth[0], truth[1], truth[2], 0.0], |told| {
+                let [_, bank, _, _, course] = told.estimate;
+                [told.y, bank, course, told.wind]
+            }),
+            reference: told.filter(|_| tracks).map(|told| told.reference),
+            control: [reply.surfaces.aileron, reply.surfaces.rudder],
+            applied: [surfaces.aileron, surfaces.rudder],
+            wind: y,
+        });
+    }
+
+    /// Whether the flight has ended.
+    fn judge(&mut self, scenario: &SpaceScenario, before: &SpaceState) {
+        let (world, hull, state) = (&scenario.world, scenario.hull(), self.aircraft.state());
+        let extent = world.extent();
+        self.clearance = self.clearance.min(hull.clearance(world, state, MOST));
+        self.deviation = self
+            .deviation
+            .max((state.plane.z - scenario.altitude()).abs());
+        let sideways = state.lateral.y.abs() > extent.half_width + STRAY;
+        let end = if hull.first_contact(world, before, state).is_some() {
+            self.clearance = self.clearance.min(0.0);
+            Outcome::Collision
+        } else if state.plane.x >= extent.length {
+            Outcome::Survived
+        } else if sideways
+            || state.plane.z > extent.ceiling + STRAY
+            || self.flown >= scenario.plane.ticks
+        {
+            Outcome::NotArrived
+        } else {
+            return;
+        };
+        self.end = Some(end);
+    }
+
+    fn log(self) -> FlightLog {
+        let outcome = self.end.unwrap_or(Outcome::Interrupted);
+        let strict = outcome == Outcome::Survived;
+        let plans = &self.log.plans;
+        let planless = plans.last().is_some_and(PlanEntry::had_nothing);
+        let summary = Summary {
+            outcome,
+            strict,
+            class: Class::of(outcome, strict, planless),
+            failure: None,
+            t_end: Scenario::time(self.flown),
+            x_end: self.aircraft.state().plane.x,
+            min_clearance: Some(self.clearance).filter(|it| *it < MOST),
+            max_altitude_deviation: self.deviation,
+            replans: plans.len() as u32,
+            candidates: plans.iter().map(|plan| plan.candidates).sum(),
+            feasible: plans.iter().map(|plan| plan.feasible).sum(),
+            slices: plans.iter().map(|plan| u64::from(plan.slices)).sum(),
+        };
+        FlightLog {
+            summary,
+            ..self.log
+        }
+    }
+}
+
+fn unexpected(awaited: &str, message: &Message) -> FlyError {
+    FlyError::Link(LinkError::Unexpected {
+        awaited: awaited.to_owned(),
+        id: message.id(),
+    })
+}

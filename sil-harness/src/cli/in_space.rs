@@ -1,0 +1,374 @@
+//! `fly --preset space` and `campaign --preset space`: the planner in space, over the link, on the plant in six degrees of freedom.
+//! Their flags are others than those of the vertical plane, so they are commands of their own behind the same names.
+
+use super::answer::{Failure, data, print_json, talk};
+use super::fly::{keep, told};
+use super::help::{CAMPAIGN_IN_SPACE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
+use super::signals::Signals;
+use super::values::{item, seed, threads, wind, world};
+use crate::campaign::pool;
+use crate::files::{read_aircraft, read_stems, try_directory};
+use clap::{Parser, Subcommand};
+use mpp_analysis::campaign::wilson;
+use mpp_sim::flight::FlyError;
+use mpp_sim::link::LinkError;
+use mpp_sim::log::FlightLog;
+use mpp_sim::outcome::Outcome;
+use mpp_sim::space::world::WorldName;
+use mpp_sim::space::{SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_with};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ffi::OsString;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
+
+/// Stack of a thread that flies in space [bytes]: the core is built on it before it moves to its box.
+const STACK: usize = 32 << 20;
+
+/// The commands of preset `space`.
+#[derive(Debug, Parser)]
+#[command(name = "sil-harness", version, args_conflicts_with_subcommands = true)]
+pub(super) struct SpaceCli {
+    #[command(subcommand)]
+    command: Option<SpaceCommand>,
+    #[command(flatten)]
+    fly: FlyInSpace,
+}
+
+#[derive(Debug, Subcommand)]
+enum SpaceCommand {
+    /// Fly once through a world in space
+    Fly(FlyInSpace),
+    /// Fly many times, in parallel, and give success rates with their intervals
+    Campaign(CampaignInSpace),
+}
+
+/// What is flown.
+#[derive(Clone, Debug, clap::Args)]
+struct InSpace {
+    /// The planner in space
+    #[arg(long, help_heading = PLANNER, value_parser = [SPACE])]
+    preset: Option<String>,
+    /// Aircraft with a lateral table: a name or a file [default: ultrastick at 13 m/s]
+    #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
+    aircraft: Option<String>,
+    /// Airspeed of level flight [m/s] [default: that of the aircraft's file]
+    #[arg(long, help_heading = WORLD, value_name = "M/S", allow_negative_numbers = true)]
+    airspeed: Option<f64>,
+    /// World of 240 m, drawn from the seed [default: forest]
+    #[arg(long, help_heading = WORLD, value_parser = world())]
+    world: Option<WorldName>,
+    /// World: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height \[m\]
+    #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
+    stems: Option<PathBuf>,
+    /// Radius of a sphere that stands for wing and fuselage \[m\]
+    #[arg(long, help_heading = WORLD, value_name = "M", allow_negative_numbers = true)]
+    sphere: Option<f64>,
+    /// Measurements without errors
+    #[arg(long, help_heading = WORLD)]
+    exact: bool,
+    /// Steady wind ahead, to the right and up [m/s]
+    #[arg(long, help_heading = WORLD, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
+    wind: Option<[f64; 3]>,
+    /// Standard deviation of the vertical gusts [m/s], 0 to 5; those along and across are 1.6 times as strong. Light turbulence of
+    /// MIL-F-8785C has 0.77
+    #[arg(long, help_heading = WORLD, value_name = "M/S", allow_negative_numbers = true)]
+    gusts: Option<f64>,
+    /// Let all beams of a sweep bear the time of its end, and not their own
+    #[arg(long, help_heading = WORLD)]
+    no_deskew: bool,
+    /// Error of the lidar's clock \[ms\], -20 to 100: beams seem so much older than they are
+    #[arg(long, help_heading = WORLD, value_name = "MS", allow_negative_numbers = true)]
+    lidar_clock: Option<f64>,
+    /// Candidates of a cycle, the previous plan included [default: 3]
+    #[arg(long, help_heading = PLANNER, value_name = "N")]
+    candidates: Option<u8>,
+    /// Fly the best candidate as it is, without a program
+    #[arg(long, help_heading = PLANNER)]
+    no_programs: bool,
+    /// Replanning rate [Hz], 1 to 10 [default: 4]
+    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true)]
+    replan_hz: Option<f64>,
+    /// Seed of world and measurements; the next flights of a campaign take the next seeds [default: 1]
+    #[arg(long, help_heading = WORLD, value_parser = seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Print one JSON object
+    #[arg(long, help_heading = OUTPUT)]
+    json: bool,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = FLY_IN_SPACE)]
+pub(super) struct FlyInSpace {
+    #[command(flatten)]
+    flown: InSpace,
+    /// Density of the world: trunks/m^2, walls or rows per m, or the spheres' share of the volume
+    #[arg(long, help_heading = WORLD, value_name = "DENSITY", allow_negative_numbers = true)]
+    density: Option<f64>,
+    /// Directory for the log and the picture
+    #[arg(long, help_heading = OUTPUT, default_value = "out")]
+    out: PathBuf,
+}
+
+#[derive(Clone, Debug, clap::Args)]
+#[command(after_help = CAMPAIGN_IN_SPACE)]
+pub(super) struct CampaignInSpace {
+    #[command(flatten)]
+    flown: InSpace,
+    /// Densities of the world, a list: each is a cell
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<f64>(), allow_negative_numbers = true)]
+    density: Vec<f64>,
+    /// Number of flights in each cell
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    trials: u32,
+    /// Number of threads, at most 1024 and no more than there is work for; 0 takes every core
+    #[arg(long, help_heading = RUN, default_value_t = 0, value_parser = threads())]
+    threads: usize,
+    /// Row file (JSON lines) to write: one line a flight
+    #[arg(long, help_heading = OUTPUT, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// Whether these arguments ask for preset `space` of a command that has it.
+pub(super) fn is_asked(args: &[OsString]) -> bool {
+    let named = args
+        .iter()
+        .skip(1)
+        .find(|arg| !arg.to_string_lossy().starts_with('-'));
+    let has = |command: &OsString| ["fly", "campaign", SPACE].iter().any(|it| command == it);
+    let pair =
+        |pair: &[OsString]| matches!(pair, [flag, value] if flag == "--preset" && value == SPACE);
+    let asked = args.windows(2).any(pair) || args.iter().any(|arg| arg == "--preset=space");
+    asked && named.is_none_or(has)
+}
+
+impl SpaceCli {
+    pub(super) fn run(self) -> Result<u8, Failure> {
+        let fly = || match &self.command {
+            None => fly(&self.fly),
+            Some(SpaceCommand::Fly(args)) => fly(args),
+            Some(SpaceCommand::Campaign(args)) => campaign(args),
+        };
+        let threads = match &self.command {
+            Some(SpaceCommand::Campaign(args)) => args.threads,
+            _ => 1,
+        };
+        let pool = pool(threads, usize::MAX, STACK).map_err(Failure::failed)?;
+        pool.install(fly)
+    }
+}
+
+impl InSpace {
+    fn scenario(&self, density: Option<f64>, seed: u64) -> Result<SpaceScenario, Failure> {
+        let aircraft = self.aircraft.as_ref().map(|name| read_aircraft(name));
+        let stems = self.stems.as_ref().map(|path| read_stems(path));
+        let file = SpaceFile {
+            preset: self.preset.clone(),
+            aircraft: aircraft.transpose().map_err(Failure::usage)?,
+            airspeed: self.airspeed,
+            world: self.world.map(|world| world.name().to_owned()),
+            density,
+            sphere: self.sphere,
+            exact: Some(self.exact),
+            candidates: self.candidates,
+            programs: Some(!self.no_programs),
+            wind: self.wind,
+            gusts: self.gusts,
+            deskew: self.no_deskew.then_some(false),
+            lidar_clock: self.lidar_clock,
+            replan_hz: self.replan_hz,
+            seed: Some(seed),
+        };
+        let stems = stems.transpose().map_err(Failure::usage)?;
+        file.build(stems.as_deref()).map_err(Failure::usage)
+    }
+}
+
+fn flown(scenario: &SpaceScenario, signals: &Signals) -> Result<FlightLog, Failure> {
+    let stops = || signals.raised().is_some();
+    fly_space_with(scenario, &mut SpacePipe::new(), stops).map_err(|error| match error {
+        FlyError::Scenario(_) | FlyError::Link(LinkError::Refused(_)) => Failure::usage(error),
+        other => Failure::failed(other),
+    })
+}
+
+fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
+    let seed = args.flown.seed.unwrap_or(1);
+    let scenario = args.flown.scenario(args.density, seed)?;
+    let signals = Signals::heed()?;
+    try_directory(&args.out).map_err(Failure::failed)?;
+    talk(format_args!(
+        "flying seed {seed} through {} bodies, preset {SPACE}, core in this process",
+        scenario.world.bodies().len()
+    ));
+    let log = flown(&scenario, &signals)?;
+    let usual = SpaceFile {
+        seed: Some(seed),
+        ..SpaceFile::default()
+    };
+    let usual = usual.build(None).map_err(Failure::failed)?;
+    let mut name = format!("{SPACE}-seed{seed}");
+    if usual.header() != log.header {
+        let header = FlightLog::begin(log.header.clone()).hash();
+        name += &format!("-{}", &header.map_err(Failure::failed)?[..8]);
+    }
+    let kept = keep(&args.out, &name, &log)?;
+    told(args.flown.json, &log, &kept)?;
+    kept.written?;
+    let was = log.summary.outcome == Outcome::Interrupted;
+    let code = log.summary.outcome.exit_code();
+    Ok(signals.raised().filter(|_| was).unwrap_or(code))
+}
+
+/// One flight of a campaign.
+#[derive(Clone, Debug, Serialize)]
+struct SpaceRow {
+    world: String,
+    density: Option<f64>,
+    seed: u64,
+    outcome: Outcome,
+    t_end: f64,
+    x_end: f64,
+    min_clearance: Option<f64>,
+    replans: u32,
+    log_hash: String,
+}
+
+/// The flights of a density.
+#[derive(Clone, Debug, Serialize)]
+struct SpaceCell {
+    world: String,
+    density: Option<f64>,
+    flights: u32,
+    arrived: u32,
+    /// Wilson's interval of 95 % [-].
+    interval: (f64, f64),
+    collisions: u32,
+    not_arrived: u32,
+    extreme: u32,
+    /// Median of the least clearance of those that arrived \[m\], where it is less than 5 m.
+    median_clearance: Option<f64>,
+}
+
+fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
+    let first = args.flown.seed.unwrap_or(1);
+    let given = args.density.iter().copied().map(Some);
+    let densities: Vec<_> = if args.density.is_empty() {
+        vec![None]
+    } else {
+        given.collect()
+    };
+    let signals = Signals::heed()?;
+    // What cannot be flown is refused before the file is made.
+    for density in &densities {
+        args.flown.scenario(*density, first)?;
+    }
+    let file = args.out.as_ref().map(|path| {
+        let opened = OpenOptions::new().write(true).create_new(true).open(path);
+        opened.map_err(|error| Failure::usage(format!("--out {}: {error}", path.display())))
+    });
+    let file = Mutex::new(file.transpose()?);
+    let mut cells = Vec::new();
+    for density in densities {
+        let seeds: Vec<u64> = (first..).take(args.trials as usize).collect();
+        let rows: Vec<SpaceRow> = seeds
+            .par_iter()
+            .map(|seed| {
+                let row = row(&args.flown.scenario(density, *seed)?, *seed, &signals)?;
+                let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+                if let Some(file) = file.as_mut() {
+                    let line = serde_json::to_string(&row).map_err(Failure::failed)?;
+                    writeln!(file, "{line}").map_err(Failure::failed)?;
+                }
+                Ok(row)
+            })
+            .collect::<Result<_, Failure>>()?;
+        let cell = SpaceCell::of(&rows);
+        if !args.flown.json {
+            data(cell.to_string())?;
+        }
+        cells.push(cell);
+    }
+    if args.flown.json {
+        print_json(&cells)?;
+    }
+    Ok(0)
+}
+
+fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRow, Failure> {
+    let log = flown(scenario, signals)?;
+    if let Some(code) = signals.raised() {
+        return Err(Failure::new(
+            code,
+            "interrupted: the rows so far are written",
+        ));
+    }
+    let log_hash = log.hash().map_err(Failure::failed)?;
+    let space = log.header.space.as_ref();
+    Ok(SpaceRow {
+        world: space
+            .and_then(|space| space.world.clone())
+            .unwrap_or_else(|| "stems".to_owned()),
+        density: space.and_then(|space| space.density),
+        seed,
+        outcome: log.summary.outcome,
+        t_end: log.summary.t_end,
+        x_end: log.summary.x_end,
+        min_clearance: log.summary.min_clearance,
+        replans: log.summary.replans,
+        log_hash,
+    })
+}
+
+impl SpaceCell {
+    fn of(rows: &[SpaceRow]) -> Self {
+        let count = |outcome: &[Outcome]| {
+            rows.iter()
+                .filter(|row| outcome.contains(&row.outcome))
+                .count() as u32
+        };
+        let (flights, arrived) = (rows.len() as u32, count(&[Outcome::Survived]));
+        let through = rows.iter().filter(|row| row.outcome == Outcome::Survived);
+        let mut clearances: Vec<f64> = through.filter_map(|row| row.min_clearance).collect();
+        clearances.sort_by(f64::total_cmp);
+        let first = rows.first();
+        Self {
+            world: first.map_or_else(String::new, |row| row.world.clone()),
+            density: first.and_then(|row| row.density),
+            flights,
+            arrived,
+            interval: wilson(arrived, flights),
+            collisions: count(&[Outcome::Collision]),
+            not_arrived: count(&[Outcome::NotArrived]),
+            extreme: count(&[Outcome::FlightPathLimit, Outcome::PitchLimit]),
+            median_clearance: clearances.get(clearances.len() / 2).copied(),
+        }
+    }
+}
+
+impl std::fmt::Display for SpaceCell {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (low, high) = self.interval;
+        write!(f, "{}", self.world)?;
+        if let Some(density) = self.density {
+            write!(f, " {density}")?;
+        }
+        write!(
+            f,
+            ": {} of {} flights arrived [{:.1}, {:.1} %]; {} collisions, {} not arrived, {} extreme",
+            self.arrived,
+            self.flights,
+            100.0 * low,
+            100.0 * high,
+            self.collisions,
+            self.not_arrived,
+            self.extreme
+        )?;
+        match self.median_clearance {
+            Some(clearance) => write!(f, "; median clearance {clearance:.2} m"),
+            None => Ok(()),
+        }
+    }
+}
