@@ -23,11 +23,11 @@ mod write {
     use crate::error::ExportError;
     use crate::flight::{TABLES, table};
     use crate::messages::{
-        frame_transform, frame_transform_schema, laser_scan, laser_scan_schema, pose_in_frame,
-        pose_in_frame_schema, scene_update_schema, table_schema,
+        Stance, frame_transform, frame_transform_schema, laser_scan, laser_scan_schema,
+        pose_in_frame, pose_in_frame_schema, scene_update_schema, table_schema,
     };
     use crate::scene::{cycle, moves, obstacles, scans};
-    use crate::schema::VERSION;
+    use crate::schema::{LATERAL, VERSION};
     use mcap::records::{MessageHeader, Metadata};
     use mcap::{WriteOptions, Writer};
     use mpp_analysis::picture::replay::details;
@@ -79,31 +79,21 @@ mod write {
         add(
             "/tf",
             frame_transform_schema(),
-            of_ticks(log, |time, tick| {
-                let ticks = &log.ticks;
-                frame_transform(time, (ticks.x[tick], ticks.z[tick]), ticks.pitch[tick])
-            }),
+            of_ticks(log, |time, tick| frame_transform(time, &flown(log, tick))),
         );
         add(
             "/pose",
             pose_in_frame_schema(),
-            of_ticks(log, |time, tick| {
-                let ticks = &log.ticks;
-                pose_in_frame(time, (ticks.x[tick], ticks.z[tick]), ticks.pitch[tick])
-            }),
+            of_ticks(log, |time, tick| pose_in_frame(time, &flown(log, tick))),
         );
         add(
             "/estimate",
             pose_in_frame_schema(),
-            of_ticks(log, |time, tick| {
-                let ticks = &log.ticks;
-                pose_in_frame(
-                    time,
-                    (ticks.est_x[tick], ticks.est_z[tick]),
-                    ticks.est_pitch[tick],
-                )
-            }),
+            of_ticks(log, |time, tick| pose_in_frame(time, &estimated(log, tick))),
         );
+        if !log.lateral.is_empty() {
+            add("/lateral", table_schema(&LATERAL), of_table(log, &LATERAL)?);
+        }
         let scans = scans(log).into_iter().map(|scan| {
             let time = u64::from(scan.tick) * TICK;
             (time, laser_scan(time, &scan))
@@ -116,6 +106,30 @@ mod write {
         });
         add("/plan", scene_update_schema(), cycles.collect());
         Ok(topics)
+    }
+
+    fn flown(log: &FlightLog, tick: usize) -> Stance {
+        let (ticks, side) = (&log.ticks, &log.lateral);
+        let (x, z, pitch) = (ticks.x[tick], ticks.z[tick], ticks.pitch[tick]);
+        if side.is_empty() {
+            return Stance::plane((x, z), pitch);
+        }
+        Stance::space(
+            [x, side.y[tick], z],
+            [side.bank[tick], pitch, side.course[tick]],
+        )
+    }
+
+    fn estimated(log: &FlightLog, tick: usize) -> Stance {
+        let (ticks, side) = (&log.ticks, &log.lateral);
+        let (x, z, pitch) = (ticks.est_x[tick], ticks.est_z[tick], ticks.est_pitch[tick]);
+        if side.is_empty() {
+            return Stance::plane((x, z), pitch);
+        }
+        Stance::space(
+            [x, side.est_y[tick], z],
+            [side.est_bank[tick], pitch, side.est_course[tick]],
+        )
     }
 
     /// The rows of a table as objects, each at its tick.

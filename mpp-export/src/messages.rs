@@ -131,17 +131,46 @@ fn place(x: f64, z: f64) -> Value {
     json!({ "x": x, "y": 0.0, "z": z })
 }
 
-/// A `foxglove.FrameTransform` of the aircraft at a place \[m\] with a pitch \[rad\].
-pub(crate) fn frame_transform(time: u64, (x, z): (f64, f64), pitch: f64) -> Value {
+/// Place \[m\] and attitude of the aircraft.
+pub(crate) struct Stance {
+    place: Value,
+    rotation: Value,
+}
+
+impl Stance {
+    /// In the vertical plane, at a pitch \[rad\].
+    pub(crate) fn plane((x, z): (f64, f64), pitch: f64) -> Self {
+        Self {
+            place: place(x, z),
+            rotation: nose_up(pitch),
+        }
+    }
+
+    /// In space, `y` to the right, with bank, pitch and course \[rad\]. Foxglove's y axis points to the left.
+    pub(crate) fn space([x, y, z]: [f64; 3], [bank, pitch, course]: [f64; 3]) -> Self {
+        let half = |angle: f64| libm::sincos(angle / 2.0);
+        let ((sr, cr), (sp, cp), (sy, cy)) = (half(bank), half(-pitch), half(-course));
+        Self {
+            place: json!({ "x": x, "y": -y, "z": z }),
+            rotation: json!({
+                "x": cy * cp * sr - sy * sp * cr, "y": cy * sp * cr + sy * cp * sr,
+                "z": sy * cp * cr - cy * sp * sr, "w": cy * cp * cr + sy * sp * sr,
+            }),
+        }
+    }
+}
+
+/// A `foxglove.FrameTransform` of the aircraft.
+pub(crate) fn frame_transform(time: u64, at: &Stance) -> Value {
     json!({
         "timestamp": stamp(time), "parent_frame_id": WORLD, "child_frame_id": BODY,
-        "translation": place(x, z), "rotation": nose_up(pitch),
+        "translation": at.place, "rotation": at.rotation,
     })
 }
 
-/// A `foxglove.PoseInFrame` of the aircraft at a place \[m\] with a pitch \[rad\].
-pub(crate) fn pose_in_frame(time: u64, (x, z): (f64, f64), pitch: f64) -> Value {
-    let pose = json!({ "position": place(x, z), "orientation": nose_up(pitch) });
+/// A `foxglove.PoseInFrame` of the aircraft.
+pub(crate) fn pose_in_frame(time: u64, at: &Stance) -> Value {
+    let pose = json!({ "position": at.place, "orientation": at.rotation });
     json!({ "timestamp": stamp(time), "frame_id": WORLD, "pose": pose })
 }
 

@@ -97,6 +97,33 @@ pub const TICKS: Schema = Schema {
     ],
 };
 
+/// The lateral part of the ticks of a flight in space. Positive is to the right.
+#[rustfmt::skip]
+pub const LATERAL: Schema = Schema {
+    name: "lateral",
+    columns: &[
+        column("t", Kind::Real, "s", "", "time since the start"),
+        column("y", Kind::Real, "m", "world", "true position to the right of the start"),
+        column("bank", Kind::Real, "rad", "air", "true bank about the direction of flight"),
+        column("course", Kind::Real, "rad", "air", "true course through the air"),
+        column("sideslip", Kind::Real, "rad", "air", "true sideslip"),
+        column("roll_rate", Kind::Real, "rad/s", "body", "true roll rate"),
+        column("yaw_rate", Kind::Real, "rad/s", "body", "true yaw rate"),
+        column("est_y", Kind::Real, "m", "world", "estimated position to the right"),
+        column("est_bank", Kind::Real, "rad", "air", "estimated bank"),
+        column("est_course", Kind::Real, "rad", "air", "estimated course through the air"),
+        column("est_wind_y", Kind::Real, "m/s", "world", "estimated motion of the air, to the right"),
+        column("ref_y", Kind::Real, "m", "world", "position to the right that the plan asks for; this and the other references are null without a plan"),
+        column("ref_bank", Kind::Real, "rad", "air", "bank that the plan asks for"),
+        column("ref_course", Kind::Real, "rad", "air", "course through the air that the plan asks for"),
+        column("aileron", Kind::Real, "rad", "body", "commanded aileron"),
+        column("rudder", Kind::Real, "rad", "body", "commanded rudder"),
+        column("applied_aileron", Kind::Real, "rad", "body", "aileron that the servo gave"),
+        column("applied_rudder", Kind::Real, "rad", "body", "rudder that the servo gave"),
+        column("wind_y", Kind::Real, "m/s", "world", "true motion of the air, to the right"),
+    ],
+};
+
 /// The plans that the core delivered.
 #[rustfmt::skip]
 pub const PLANS: Schema = Schema {

@@ -36,6 +36,7 @@ pub(crate) fn scenario(error: ScenarioError) -> PyErr {
 /// A flight without an outcome.
 pub(crate) fn flight(error: FlyError) -> PyErr {
     match error {
+        FlyError::Scenario(error) => scenario(error),
         FlyError::Trim(_) | FlyError::SetUp(_) | FlyError::Link(LinkError::Refused(_)) => {
             set_up(error)
         }

@@ -5,11 +5,12 @@ use crate::errors::{self, input};
 use crate::field::Field;
 use crate::output::{columns, plain};
 use crate::scenario;
-use mpp_sim::entries::Columns;
+use mpp_sim::entries::{Columns, LateralColumns};
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
 use mpp_sim::orders::Ground;
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::space::{SpacePipe, fly_space_with};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -24,12 +25,20 @@ impl Ground for Signalled<'_> {
 }
 
 /// Flies a scenario with the core in this process. The arguments are the keys of a scenario file, as
-/// docs/scenarios/example.toml; `scenario` names such a file.
+/// docs/scenarios/example.toml; `scenario` names such a file. With `preset="space"` they are those of a flight in space.
 #[pyfunction]
 #[pyo3(signature = (**keys))]
 pub(crate) fn fly(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Flight> {
     let none = PyDict::new(py);
-    let scenario = scenario::build(keys.unwrap_or(&none))?;
+    let keys = keys.unwrap_or(&none);
+    if let Some(scenario) = scenario::in_space(keys)? {
+        let flown = aside(py, |stop| {
+            let stops = || stop.load(Ordering::Relaxed);
+            fly_space_with(&scenario, &mut SpacePipe::new(), stops)
+        })?;
+        return Flight::new(flown.map_err(errors::flight)?);
+    }
+    let scenario = scenario::build(keys)?;
     let flown = aside(py, |stop| {
         fly_with(
             &scenario,
@@ -78,7 +87,11 @@ impl Flight {
     /// The ticks of the flight, one column a quantity; SI units. References are NaN without a plan.
     #[getter]
     fn columns<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        columns(py, ticks(&self.log.ticks))
+        let mut all = ticks(&self.log.ticks);
+        if !self.log.lateral.is_empty() {
+            all.extend(lateral(&self.log.lateral));
+        }
+        columns(py, all)
     }
 
     /// The columns as a `pandas.DataFrame`.
@@ -137,21 +150,34 @@ impl Flight {
     }
 }
 
+/// These columns by name.
+macro_rules! named {
+    ($log:ident; $($column:ident),* ; $($reference:ident),*) => {
+        vec![
+            $((stringify!($column), $log.$column.clone()),)*
+            $((stringify!($reference), with_nan(&$log.$reference)),)*
+        ]
+    };
+}
+
 /// The columns of a log by name.
 fn ticks(log: &Columns) -> Vec<(&'static str, Vec<f64>)> {
-    macro_rules! named {
-        ($($column:ident),* ; $($reference:ident),*) => {
-            vec![
-                $((stringify!($column), log.$column.clone()),)*
-                $((stringify!($reference), with_nan(&log.$reference)),)*
-            ]
-        };
-    }
     named!(
+        log;
         t, x, z, airspeed, pitch, pitch_rate, flight_path, measured_airspeed, measured_pitch,
         est_airspeed, est_pitch, est_pitch_rate, est_flight_path, est_x, est_z, est_wind_x,
         est_wind_z, est_lift, thrust, elevator, applied_thrust, applied_elevator, wind_x, wind_z;
         ref_x, ref_z, ref_airspeed, ref_pitch, ref_pitch_rate, ref_flight_path
+    )
+}
+
+/// The lateral columns of a flight in space.
+fn lateral(log: &LateralColumns) -> Vec<(&'static str, Vec<f64>)> {
+    named!(
+        log;
+        y, bank, course, sideslip, roll_rate, yaw_rate, est_y, est_bank, est_course, est_wind_y,
+        aileron, rudder, applied_aileron, applied_rudder, wind_y;
+        ref_y, ref_bank, ref_course
     )
 }
 

@@ -9,6 +9,7 @@ use crate::output;
 use crate::typed::{plain, typed};
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::space::{SPACE, SpaceFile, SpaceScenario};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -17,6 +18,26 @@ pub(crate) fn build(keys: &Bound<'_, PyDict>) -> PyResult<Scenario> {
     // Drawing a field and checking an aircraft take a while.
     let file = file(keys)?;
     keys.py().detach(|| file.build()).map_err(scenario)
+}
+
+/// The flight in space that the keys describe, if they ask for that preset.
+pub(crate) fn in_space(keys: &Bound<'_, PyDict>) -> PyResult<Option<SpaceScenario>> {
+    let preset = keys.get_item("preset")?;
+    if preset.is_none_or(|preset| !preset.eq(SPACE).unwrap_or(false)) {
+        return Ok(None);
+    }
+    let all = PyDict::new(keys.py());
+    for (key, value) in keys {
+        let name = key.str()?.to_string();
+        if !value.is_none() {
+            all.set_item(key, table_of(&name, &value)?)?;
+        }
+    }
+    let file: SpaceFile = typed("", &all)?;
+    keys.py()
+        .detach(|| file.build(None))
+        .map(Some)
+        .map_err(scenario)
 }
 
 /// The scenario that the keys describe, for something that gets no more than sensors tell.

@@ -99,3 +99,15 @@ def test_loop_of_world_and_core_flies_the_same_flight():
 @pytest.mark.parametrize("preset", ["reference", "paper", "flight"])
 def test_presets_fly(preset):
     assert mppflight.fly(preset=preset, seed=1, obstacles=5, duration=3).summary["replans"] == 3
+
+
+def test_a_flight_in_space_has_lateral_columns():
+    flight = mppflight.fly(preset="space", density=0.005, seed=5)
+    columns = flight.columns
+    assert len(columns["y"]) == len(columns["t"]) == len(flight)
+    assert 0.01 < abs(columns["bank"]).max() < 1.5
+    assert flight.header["space"]["density"] == 0.005
+    assert mppflight.fly(preset="space", density=0.005, seed=5).log_hash == flight.log_hash
+    for keys in ({"obstacles": 5}, {"density": -1.0}, {"aircraft": "cessna182"}):
+        with pytest.raises(mppflight.InputError):
+            mppflight.fly(preset="space", **keys)
