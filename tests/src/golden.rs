@@ -8,6 +8,7 @@ use mpp_sim::flight::fly;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::space::{SpaceFile, fly_space};
 use std::error::Error;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -21,6 +22,14 @@ pub struct Golden {
     pub name: String,
     /// Parameters of the flight.
     pub scenario: Scenario,
+}
+
+/// One golden flight in space.
+pub struct GoldenInSpace {
+    /// Its name in the table.
+    pub name: String,
+    /// Its keys.
+    pub file: SpaceFile,
 }
 
 /// The file that holds the expected table.
@@ -42,13 +51,36 @@ pub fn flights() -> Result<Vec<Golden>, Failure> {
     entries.into_iter().map(golden).collect()
 }
 
-fn golden(entry: toml::Value) -> Result<Golden, Failure> {
+/// Reads the keys of the golden flights in space.
+///
+/// # Errors
+/// As [`flights`].
+pub fn flights_in_space() -> Result<Vec<GoldenInSpace>, Failure> {
+    let mut file: toml::Table = std::fs::read_to_string(folder().join("flights.toml"))?.parse()?;
+    let Some(toml::Value::Array(entries)) = file.remove("space") else {
+        return Err("flights.toml has no [[space]]".into());
+    };
+    let golden = |entry| {
+        let (name, keys) = named(entry)?;
+        let file = keys.try_into()?;
+        Ok(GoldenInSpace { name, file })
+    };
+    entries.into_iter().map(golden).collect()
+}
+
+/// The name of an entry, and its other keys.
+fn named(entry: toml::Value) -> Result<(String, toml::Table), Failure> {
     let toml::Value::Table(mut keys) = entry else {
         return Err("a flight is a table of keys".into());
     };
     let Some(toml::Value::String(name)) = keys.remove("name") else {
         return Err("a flight has no name".into());
     };
+    Ok((name, keys))
+}
+
+fn golden(entry: toml::Value) -> Result<Golden, Failure> {
+    let (name, mut keys) = named(entry)?;
     let mut scenario = match keys.remove("base") {
         Some(toml::Value::String(base)) => {
             let path = folder().join("../../docs/scenarios").join(base);
@@ -75,7 +107,24 @@ pub fn table() -> Result<String, Failure> {
         let log = fly(&scenario, &mut PipeLink::of(&scenario), |_| {})?;
         writeln!(table, "{name:<22} {}", line(&log)?)?;
     }
+    for GoldenInSpace { name, file } in flights_in_space()? {
+        let log =
+            in_space(move || -> Result<FlightLog, Failure> { Ok(fly_space(&file.build(None)?)?) })?;
+        writeln!(table, "{name:<22} {}", line(&log)?)?;
+    }
     Ok(table)
+}
+
+/// Does something on a stack on which the core in space can be built.
+///
+/// # Errors
+/// That of `work`, and an error when there is no such thread.
+pub fn in_space<T: Send + 'static>(
+    work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
+) -> Result<T, Failure> {
+    let thread = std::thread::Builder::new().stack_size(32 << 20);
+    let done = thread.spawn(work)?.join();
+    done.map_err(|_| "the flight in space broke")?
 }
 
 fn line(log: &FlightLog) -> Result<String, Failure> {

@@ -20,6 +20,9 @@ pub(crate) struct Aarch64Args {
     /// Fly only, and leave out the tests of mpp-core and hil-protocol
     #[arg(long)]
     no_tests: bool,
+    /// Fly preset `space` through light forests
+    #[arg(long)]
+    space: bool,
 }
 
 pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
@@ -37,7 +40,11 @@ pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     let target = harness(&folder)?;
     let host = Harness::build(&folder)?;
     for seed in 1..=args.flights {
-        let arguments = ["--seed".to_owned(), seed.to_string()];
+        let mut arguments = vec!["--seed".to_owned(), seed.to_string()];
+        if args.space {
+            let space = ["--preset", "space", "--density", "0.02"];
+            arguments.extend(space.map(str::to_owned));
+        }
         let (host, target) = (host.fly(&arguments)?, target.fly(&arguments)?);
         println!(
             "seed {seed}: host {}, aarch64 {}",

@@ -166,8 +166,8 @@ pub(crate) fn await_end(mut program: Child, emulator: &mut Emulator) -> Result<O
 
 fn outcome(output: &Output) -> Result<Outcome> {
     let text = str::from_utf8(&output.stdout)?;
-    // Codes 3 and 4 (collision, extreme state) are results of flights too.
-    if !matches!(output.status.code(), Some(0 | 3 | 4)) {
+    // Codes 3, 4 and 5 (collision, extreme state, not arrived) are results of flights too.
+    if !matches!(output.status.code(), Some(0 | 3 | 4 | 5)) {
         bail!(
             "the flight failed:\n{}",
             String::from_utf8_lossy(&output.stderr)
