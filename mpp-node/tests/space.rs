@@ -1,4 +1,10 @@
 //! The node in space, message by message.
+#![expect(
+    clippy::unwrap_used,
+    clippy::panic,
+    clippy::needless_pass_by_value,
+    reason = "helpers of tests fail by panicking, and messages are made where they are asked"
+)]
 
 use hil_protocol::{
     ActuatorLimits, AirData, Aircraft, Configure, ConfigureLateral, ConfigureSpace,
