@@ -8,9 +8,9 @@ use mpp_core::vehicle::{
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
-/// Radius of the body and centre distance that plans keep \[m\].
+/// Radius of the body and distance that plans keep \[m\].
 const BODY: f64 = 0.4;
-const MARGIN: f64 = 0.85;
+const MARGIN: f64 = 0.75;
 
 fn model() -> SpaceModel {
     SpaceModel::new(&Airframe::PAPER, 12.0, 0.45, 20.0, [0.96, 1.57]).unwrap()
@@ -179,7 +179,7 @@ fn a_wing_banks_or_goes_around_where_a_sphere_passes() {
         let beams = beams.clone();
         let keep = Keep {
             half_span,
-            margin: if half_span > 0.0 { 0.6 } else { MARGIN },
+            margin: if half_span > 0.0 { 0.35 } else { MARGIN },
             ..KEEP
         };
         with_planner(keep, move |map, planner| {
@@ -205,6 +205,62 @@ fn a_wing_banks_or_goes_around_where_a_sphere_passes() {
             );
         });
     }
+}
+
+/// The next plan begins where this one will be, moved by a part of the deviation; along the track by all of it.
+#[test]
+fn the_next_plan_begins_between_the_last_plan_and_the_aircraft() {
+    with_planner(KEEP, |map, planner| {
+        let model = model();
+        let (plan, _) = plan(planner, map, &level(&model), 0.0);
+        let (now, then) = (plan.at(&model, 0.3).0, plan.at(&model, 0.4).0);
+        assert_eq!(plan.next_start(&model, &now, 0.3, 0.1), then);
+        let aside = SpacePath {
+            position: [
+                now.position[0] - 0.4,
+                now.position[1] + 0.2,
+                now.position[2],
+            ],
+            airspeed: now.airspeed + 1.0,
+            bank: now.bank - 0.1,
+            ..now
+        };
+        let start = plan.next_start(&model, &aside, 0.3, 0.1);
+        assert!((start.position[0] - then.position[0] + 0.4).abs() < 1e-9);
+        assert!((start.airspeed - then.airspeed - 1.0).abs() < 1e-9);
+        let share = (start.position[1] - then.position[1]) / 0.2;
+        assert!(share > 0.0 && share < 1.0, "{share}");
+        let bank = (start.bank - then.bank) / -0.1;
+        assert!((bank - share).abs() < 1e-9, "{bank}");
+    });
+}
+
+/// The slices after the programs only make the plan cheaper, and in forests they do.
+#[test]
+fn the_refinement_makes_plans_cheaper_within_the_limits() {
+    with_planner(KEEP, |map, planner| {
+        let (mut draw, model) = (Draw(Pcg64Mcg::seed_from_u64(4)), model());
+        let mut cheaper = 0;
+        for _ in 0..10 {
+            map.clear(0.0);
+            let trunks: Vec<[f64; 3]> = (0..50)
+                .map(|_| [draw.between(9.0, 45.0), draw.between(-20.0, 20.0), 0.3])
+                .collect();
+            let beams = sweep(|direction| to_trunks(&trunks, direction));
+            map.insert(&[0.0, 0.0, 7.5], &beams, 45.0);
+            planner.choose(1, false);
+            planner.begin(&level(&model), 0.0);
+            let mut prices = Vec::new();
+            while !planner.advance(map) {
+                prices.extend(planner.best().map(|(_, judgement)| judgement.price));
+            }
+            let (plan, judgement) = planner.best().unwrap();
+            in_bounds(plan, &model);
+            assert!(prices.iter().all(|price| *price >= judgement.price));
+            cheaper += usize::from(judgement.price < 0.9 * prices[0]);
+        }
+        assert!(cheaper >= 7, "{cheaper}");
+    });
 }
 
 /// Scans and starts that make no sense cost no more slices, and nothing panics.

@@ -9,6 +9,7 @@
 
 pub(crate) mod cell;
 mod distance_field;
+mod extent;
 mod rolling_grid;
 mod scan_monitor;
 pub(crate) mod voxel_field;

@@ -1,5 +1,6 @@
 //! The truncated distance field in space, in a window of the map around the aircraft.
 
+use super::extent::{Extent, PART, PARTS};
 use super::voxels::{CELLS, VoxelGrid, row_centre, row_of, voxel};
 use crate::tuning::grid::{CELL, OCCUPIED};
 
@@ -13,22 +14,21 @@ const BEHIND: i64 = 8;
 const REACH: i32 = 6;
 /// Greatest distance that the field tells \[m\].
 pub const MOST_CLEARANCE: f64 = REACH as f64 * CELL;
-/// Square of a distance beyond the reach.
-const FAR: u8 = (REACH * REACH + 1) as u8;
+/// Square of a distance beyond the reach, in parts of a voxel.
+const FAR: u16 = (REACH * PARTS * REACH * PARTS) as u16;
 
 type Columns = [[u32; WIDTH]; LENGTH];
-type Squares = [[[u8; HEIGHT]; WIDTH]; LENGTH];
+type Squares = [[[u16; HEIGHT]; WIDTH]; LENGTH];
 
-/// Distances \[m\] to the nearest centre of an occupied voxel, and what nobody has seen.
+/// Distances \[m\] to what hits have shown of the nearest occupied voxel, and what nobody has seen.
 #[derive(Clone, Debug)]
 pub struct VoxelField {
     /// Occupied and unknown voxels: a bit for each z.
     occupied: Columns,
     unknown: Columns,
-    /// Squared distances, in voxels.
+    extents: [[Extent; WIDTH]; LENGTH],
+    /// Squared distances of the centres of voxels, in parts of a voxel.
     squares: Squares,
-    /// The same along z and y alone.
-    partial: Squares,
     /// First x and first row of the window.
     first: [i64; 2],
 }
@@ -40,8 +40,8 @@ impl VoxelField {
         Self {
             occupied: [[0; WIDTH]; LENGTH],
             unknown: [[0; WIDTH]; LENGTH],
+            extents: [[Extent::FULL; WIDTH]; LENGTH],
             squares: [[[FAR; HEIGHT]; WIDTH]; LENGTH],
-            partial: [[[FAR; HEIGHT]; WIDTH]; LENGTH],
             first: [0; 2],
         }
     }
@@ -52,52 +52,58 @@ impl VoxelField {
         let row = (row_of(position[1]) - WIDTH as i64 / 2).max(0).min(rows);
         self.first = [(voxel(position[0]) - BEHIND).max(map.first()), row];
         let slices = self.occupied.iter_mut().zip(&mut self.unknown);
-        for (x, (occupied, unknown)) in (self.first[0]..).zip(slices) {
-            for (row, (occupied, unknown)) in (row as usize..).zip(occupied.iter_mut().zip(unknown))
+        for ((x, (occupied, unknown)), extents) in
+            (self.first[0]..).zip(slices).zip(&mut self.extents)
+        {
+            for ((row, (occupied, unknown)), extent) in (row as usize..)
+                .zip(occupied.iter_mut().zip(unknown))
+                .zip(extents)
             {
                 (*occupied, *unknown) = map.column(x, row).map_or((0, u32::MAX), bits);
+                *extent = map.extent(x, row);
             }
         }
         self.measure();
     }
 
-    /// Squared distances, axis by axis: `min over o of (square(o) + (o - at)^2)`.
+    /// Lowers the squared distances around every occupied column.
     fn measure(&mut self) {
-        for (slice, occupied) in self.partial.iter_mut().zip(&self.occupied) {
-            let mut along_z = [[FAR; HEIGHT]; WIDTH];
-            for (squares, occupied) in along_z.iter_mut().zip(occupied) {
-                along_column(*occupied, squares);
-            }
-            *slice = along_z;
-            for (row, occupied) in occupied.iter().enumerate() {
-                if *occupied == 0 {
-                    continue;
-                }
-                if let Some(from) = along_z.get(row) {
-                    spread(slice, row, from);
-                }
-            }
-        }
-        self.squares = self.partial;
+        self.squares.as_flattened_mut().as_flattened_mut().fill(FAR);
         for at in 0..LENGTH {
             for row in 0..WIDTH {
-                let Some(from) = self.partial.get(at).and_then(|slice| slice.get(row)) else {
-                    continue;
-                };
-                if from.iter().all(|square| *square >= FAR) {
+                let column = self.column(at, row);
+                if column == 0 {
                     continue;
                 }
-                for offset in -REACH..=REACH {
-                    let to = at as i32 + offset;
-                    let slice = usize::try_from(to)
-                        .ok()
-                        .and_then(|to| self.squares.get_mut(to));
-                    if let Some(to) = slice.and_then(|slice| slice.get_mut(row)) {
-                        lower(to, from, (offset * offset) as u8);
+                let mut heights = [FAR; HEIGHT];
+                along_column(column, &mut heights);
+                let sides = self.extent(at, row).sides();
+                for (x, slice) in around(at, LENGTH) {
+                    let ahead = off(x, sides[0]);
+                    for (y, row) in around(row, WIDTH) {
+                        let right = off(y, sides[1]);
+                        let square = ahead * ahead + right * right;
+                        let to = self
+                            .squares
+                            .get_mut(slice)
+                            .and_then(|slice| slice.get_mut(row));
+                        if let Some(to) = to.filter(|_| square < i32::from(FAR)) {
+                            lower(to, &heights, square as u16);
+                        }
                     }
                 }
             }
         }
+    }
+
+    fn column(&self, x: usize, row: usize) -> u32 {
+        let slice = self.occupied.get(x).and_then(|slice| slice.get(row));
+        slice.copied().unwrap_or(0)
+    }
+
+    fn extent(&self, x: usize, row: usize) -> Extent {
+        let slice = self.extents.get(x).and_then(|slice| slice.get(row));
+        slice.copied().unwrap_or(Extent::FULL)
     }
 
     /// Places of the voxel of a point, moved into the window.
@@ -110,7 +116,7 @@ impl VoxelField {
         ]
     }
 
-    fn square(&self, [x, y, z]: [usize; 3]) -> u8 {
+    fn square(&self, [x, y, z]: [usize; 3]) -> u16 {
         let column = self.squares.get(x).and_then(|slice| slice.get(y));
         column
             .and_then(|column| column.get(z))
@@ -118,15 +124,15 @@ impl VoxelField {
             .unwrap_or(FAR)
     }
 
-    /// Distance \[m\] of the voxel of a point, at most [`MOST_CLEARANCE`].
-    #[must_use]
-    pub fn nearest(&self, point: &[f64; 3]) -> f64 {
-        root(self.square(self.place(point)))
-    }
-
     /// Distance of a point \[m\], at most [`MOST_CLEARANCE`], interpolated between the centres of voxels.
     #[must_use]
     pub fn clearance(&self, point: &[f64; 3]) -> f64 {
+        self.clearance_and_slope(point).0
+    }
+
+    /// [`clearance`](Self::clearance), and its slope [-].
+    #[must_use]
+    pub fn clearance_and_slope(&self, point: &[f64; 3]) -> (f64, [f64; 3]) {
         let [x, y, z] = point.map(|it| it / CELL - 0.5);
         let middle = CELLS[1] as f64 / 2.0;
         let at = [
@@ -142,16 +148,28 @@ impl VoxelField {
             (low[axis], share[axis]) = (floor as usize, inside - floor);
         }
         let [x, y, z] = low;
+        // Value and slopes along z, then y, then x.
         let mix = |a: f64, b: f64, share: f64| a + (b - a) * share;
         let column = |x, y| {
-            mix(
+            let (below, above) = (
                 root(self.square([x, y, z])),
                 root(self.square([x, y, z + 1])),
-                share[2],
-            )
+            );
+            [mix(below, above, share[2]), above - below]
         };
-        let slice = |x| mix(column(x, y), column(x, y + 1), share[1]);
-        mix(slice(x), slice(x + 1), share[0])
+        let slice = |x| {
+            let ([near, near_up], [far, far_up]) = (column(x, y), column(x, y + 1));
+            [
+                mix(near, far, share[1]),
+                far - near,
+                mix(near_up, far_up, share[1]),
+            ]
+        };
+        let (from, to) = (slice(x), slice(x + 1));
+        let [value, right, up] =
+            core::array::from_fn(|index| mix(from[index], to[index], share[0]));
+        let slope = [to[0] - from[0], right, up];
+        (value, slope.map(|it| it / CELL))
     }
 
     /// Whether nobody has seen the voxel of a point.
@@ -162,14 +180,12 @@ impl VoxelField {
         column.is_some_and(|column| *column >> z & 1 == 1)
     }
 
-    /// Calls `each` with the centre of every occupied voxel of a box that has a free neighbour.
-    pub fn surface(&self, low: &[f64; 3], high: &[f64; 3], mut each: impl FnMut([f64; 3])) {
+    /// Calls `each` with the least and the greatest coordinates of what hits have shown of every occupied voxel of a box that has
+    /// a free neighbour.
+    pub fn surface(&self, low: &[f64; 3], high: &[f64; 3], mut each: impl FnMut(&[[f64; 3]; 2])) {
         let ([x0, y0, z0], [x1, y1, z1]) = (self.place(low), self.place(high));
         let layers = (u32::MAX << z0) & (u32::MAX >> (HEIGHT - 1 - z1));
-        let column = |x: usize, y: usize| {
-            let slice = self.occupied.get(x).and_then(|slice| slice.get(y));
-            slice.copied().unwrap_or(0)
-        };
+        let column = |x: usize, y: usize| self.column(x, y);
         for x in x0..=x1 {
             for y in y0..=y1 {
                 let all = column(x, y);
@@ -180,6 +196,13 @@ impl VoxelField {
                 let beside = beside & column(x, y.wrapping_sub(1)) & column(x, y + 1);
                 let inner = beside & (all << 1) & (all >> 1);
                 let mut left = all & layers & !inner;
+                let corner = [
+                    (x as i64 + self.first[0]) as f64 * CELL,
+                    row_centre(y + self.first[1] as usize) - 0.5 * CELL,
+                ];
+                let sides = self.extent(x, y).sides();
+                let side =
+                    |axis: usize, which: usize| corner[axis] + f64::from(sides[axis][which]) * PART;
                 // A word has so many bits.
                 for _ in 0..HEIGHT {
                     if left == 0 {
@@ -187,10 +210,10 @@ impl VoxelField {
                     }
                     let z = left.trailing_zeros();
                     left &= left - 1;
-                    each([
-                        (x as i64 + self.first[0]) as f64 * CELL + 0.5 * CELL,
-                        row_centre(y + self.first[1] as usize),
-                        f64::from(z) * CELL + 0.5 * CELL,
+                    let bottom = f64::from(z) * CELL;
+                    each(&[
+                        [side(0, 0), side(1, 0), bottom],
+                        [side(0, 1), side(1, 1), bottom + CELL],
                     ]);
                 }
             }
@@ -220,62 +243,43 @@ fn bits(evidence: &[i8; HEIGHT]) -> (u32, u32) {
     (occupied, unknown)
 }
 
-/// Squared distances along z.
-fn along_column(occupied: u32, squares: &mut [u8; HEIGHT]) {
-    if occupied == 0 {
-        return;
-    }
+/// Squared distances of the centres of voxels along z.
+fn along_column(occupied: u32, squares: &mut [u16; HEIGHT]) {
     for (z, square) in squares.iter_mut().enumerate() {
         // Bits above z and z itself, bits up to z.
         let above = (occupied >> z).trailing_zeros() as i32;
         let below = (occupied << (HEIGHT - 1 - z)).leading_zeros() as i32;
-        let distance = above.min(below);
-        if distance <= REACH {
-            *square = (distance * distance) as u8;
+        let distance = (above.min(below) * PARTS - PARTS / 2).max(0);
+        if distance < REACH * PARTS {
+            *square = (distance * distance) as u16;
         }
     }
 }
 
-/// Lowers the squares of the rows around `row` by those of a column in it.
-fn spread(slice: &mut [[u8; HEIGHT]; WIDTH], row: usize, from: &[u8; HEIGHT]) {
-    for offset in -REACH..=REACH {
-        let to = row as i32 + offset;
-        let to = usize::try_from(to).ok().and_then(|to| slice.get_mut(to));
-        if let Some(to) = to {
-            lower(to, from, (offset * offset) as u8);
-        }
-    }
+/// The places within reach of one, with their distances from it in voxels.
+fn around(at: usize, length: usize) -> impl Iterator<Item = (i32, usize)> {
+    (-REACH..=REACH).filter_map(move |offset| {
+        let to = usize::try_from(at as i32 + offset).ok()?;
+        (to < length).then_some((offset, to))
+    })
 }
 
-fn lower(to: &mut [u8; HEIGHT], from: &[u8; HEIGHT], square: u8) {
+/// Distance of the centre of a voxel from the sides of another one, `offset` voxels before it, in parts.
+fn off(offset: i32, [low, high]: [i32; 2]) -> i32 {
+    let centre = offset * PARTS + PARTS / 2;
+    (low - centre).max(centre - high).max(0)
+}
+
+fn lower(to: &mut [u16; HEIGHT], from: &[u16; HEIGHT], square: u16) {
     for (to, from) in to.iter_mut().zip(from) {
         *to = (*to).min(from.saturating_add(square));
     }
 }
 
-/// Distance \[m\] of a square in voxels.
-fn root(square: u8) -> f64 {
-    ROOTS
-        .get(usize::from(square))
-        .copied()
-        .unwrap_or(MOST_CLEARANCE)
+/// Distance \[m\] of a square.
+fn root(square: u16) -> f64 {
+    libm::sqrt(f64::from(square)) * PART
 }
-
-/// Square roots in metres, by Newton's method.
-const ROOTS: [f64; (REACH * REACH) as usize + 1] = {
-    let mut roots = [0.0; (REACH * REACH) as usize + 1];
-    let mut square = 1;
-    while square < roots.len() {
-        let (mut guess, mut round) = (REACH as f64, 0);
-        while round < 12 {
-            guess = 0.5 * (guess + square as f64 / guess);
-            round += 1;
-        }
-        roots[square] = guess * CELL;
-        square += 1;
-    }
-    roots
-};
 
 #[cfg(test)]
 mod tests {
@@ -288,9 +292,10 @@ mod tests {
     use std::boxed::Box;
     use std::vec::Vec;
 
-    /// Beams at random points: the field has the distance to the nearest of their voxels, and the surface has them all.
+    /// Beams at random points, one a column: the field has the distance to the nearest part of a column that one of them shows,
+    /// the surface has them all, and the slope is that of the clearance.
     #[test]
-    fn the_field_has_the_distance_to_the_nearest_voxel() {
+    fn the_field_has_the_distance_to_what_hits_have_shown() {
         let mut random = Pcg64Mcg::seed_from_u64(5);
         let mut draw = |low: f64, high: f64| {
             low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
@@ -298,10 +303,18 @@ mod tests {
         let (mut map, mut field) = (Box::new(VoxelGrid::new()), Box::new(VoxelField::new()));
         map.clear(0.0);
         let from = [0.25, 0.25, 8.25];
-        let mut hits: Vec<[f64; 3]> = Vec::new();
+        // Least and greatest coordinates of a sixteenth of a column, and of a voxel in height.
+        let part = |at: f64, edge: f64| [0.0, 1.0].map(|end| (libm::floor(at / edge) + end) * edge);
+        let mut shown: Vec<[[f64; 2]; 3]> = Vec::new();
+        let mut columns: Vec<[i64; 2]> = Vec::new();
         let mut beams = Vec::new();
-        for _ in 0..60 {
+        while shown.len() < 60 {
             let to = [draw(3.0, 40.0), draw(-12.0, 12.0), draw(1.0, 15.0)];
+            let column = [to[0], to[1]].map(|at| libm::floor(at / CELL) as i64);
+            if columns.contains(&column) {
+                continue;
+            }
+            columns.push(column);
             let way: Vec<f64> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
             let range = libm::sqrt(way.iter().map(|it| it * it).sum());
             let direction = core::array::from_fn(|axis| way[axis] / range);
@@ -309,33 +322,50 @@ mod tests {
                 direction,
                 range: Some(range),
             });
-            hits.push(to.map(|it| (libm::floor(it / CELL) + 0.5) * CELL));
+            let fine = CELL / 16.0;
+            shown.push([part(to[0], fine), part(to[1], fine), part(to[2], CELL)]);
         }
         map.insert(&from, &beams, 45.0);
         field.update(&map, &from);
         let mut seen = 0;
-        field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |centre| {
-            assert!(
-                hits.iter()
-                    .any(|hit| hit.map(f64::to_bits) == centre.map(f64::to_bits)),
-                "{centre:?}"
-            );
+        field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |[least, most]| {
+            let same = |shown: &[[f64; 2]; 3]| {
+                (0..3).all(|axis| {
+                    let [low, high] = shown[axis];
+                    (low - least[axis]).abs() < 1e-9 && (high - most[axis]).abs() < 1e-9
+                })
+            };
+            assert!(shown.iter().any(same), "{least:?} {most:?}");
             seen += 1;
         });
-        assert!(seen > 50);
+        assert!(seen > 50, "{seen}");
+        let distance = |point: &[f64; 3], shown: &[[f64; 2]; 3]| {
+            let off = point.iter().zip(shown);
+            let squares = off.map(|(at, [low, high])| {
+                let off = (low - at).max(at - high).max(0.0);
+                off * off
+            });
+            libm::sqrt(squares.sum())
+        };
         for _ in 0..2000 {
-            let point = [draw(0.0, 42.0), draw(-14.0, 14.0), draw(0.5, 15.5)];
+            let point = [draw(0.0, 42.0), draw(-14.0, 14.0), draw(0.5, 15.0)];
             let centre = point.map(|it| (libm::floor(it / CELL) + 0.5) * CELL);
-            let square = |hit: &[f64; 3]| -> f64 {
-                hit.iter()
-                    .zip(&centre)
-                    .map(|(a, b)| (a - b) * (a - b))
-                    .sum()
-            };
-            let nearest = hits.iter().map(|hit| libm::sqrt(square(hit)));
-            let nearest = nearest.fold(MOST_CLEARANCE, f64::min);
-            assert!((field.nearest(&point) - nearest).abs() < 1e-9, "{point:?}");
-            assert!((field.clearance(&centre) - nearest).abs() < 1e-9);
+            let all = shown.iter().map(|shown| distance(&centre, shown));
+            let nearest = all.fold(MOST_CLEARANCE, f64::min);
+            assert!(
+                (field.clearance(&centre) - nearest).abs() < 1e-9,
+                "{point:?}"
+            );
+            // Within a cell between centres the clearance is linear along an axis.
+            let (_, slope) = field.clearance_and_slope(&point);
+            for axis in 0..3 {
+                let mut moved = point;
+                let middle = libm::floor(point[axis] / CELL - 0.5) * CELL + CELL;
+                moved[axis] += if point[axis] < middle { 0.01 } else { -0.01 };
+                let by = field.clearance(&moved) - field.clearance(&point);
+                let expected = slope[axis] * (moved[axis] - point[axis]);
+                assert!((by - expected).abs() < 1e-9, "{point:?} {axis}");
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 //! The window is `CELLS[0]` voxels long in x and covers a fixed band in y and z. The ground is no part of it: floor and ceiling
 //! are rows of programs.
 
+use super::extent::Extent;
 use super::rolling_grid::updated;
 use crate::tuning::grid::{
     CELL, HIT, HIT_DOUBT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
@@ -34,6 +35,8 @@ pub struct VoxelGrid {
     evidence: [[[i8; CELLS[2]]; CELLS[1]]; CELLS[0]],
     /// Voxels that this scan has hit: a bit for each z.
     hit: [[u32; CELLS[1]]; CELLS[0]],
+    /// What hits show of each column.
+    extents: [[Extent; CELLS[1]]; CELLS[0]],
     /// First x in the window, in voxels.
     first: i64,
 }
@@ -45,6 +48,7 @@ impl VoxelGrid {
         Self {
             evidence: [[[0; CELLS[2]]; CELLS[1]]; CELLS[0]],
             hit: [[0; CELLS[1]]; CELLS[0]],
+            extents: [[Extent::FULL; CELLS[1]]; CELLS[0]],
             first: 0,
         }
     }
@@ -54,6 +58,7 @@ impl VoxelGrid {
         for slice in &mut self.evidence {
             slice.as_flattened_mut().fill(0);
         }
+        self.extents.as_flattened_mut().fill(Extent::FULL);
         self.first = voxel(x) - BEHIND;
     }
 
@@ -73,7 +78,7 @@ impl VoxelGrid {
             if let Some(range) = beam.range {
                 let end =
                     core::array::from_fn(|axis| position[axis] + range * beam.direction[axis]);
-                self.mark(&end);
+                self.mark(&end, range);
             }
         }
         for beam in beams {
@@ -91,8 +96,12 @@ impl VoxelGrid {
         let length = CELLS[0] as i64;
         // A jump beyond the window clears all of it, and no more than that.
         for x in (self.first + length).max(first)..(first + length) {
-            if let Some(slice) = self.evidence.get_mut(x.rem_euclid(length) as usize) {
+            let at = x.rem_euclid(length) as usize;
+            if let Some(slice) = self.evidence.get_mut(at) {
                 slice.as_flattened_mut().fill(0);
+            }
+            if let Some(slice) = self.extents.get_mut(at) {
+                slice.fill(Extent::FULL);
             }
         }
         self.first = self.first.max(first);
@@ -113,7 +122,7 @@ impl VoxelGrid {
         })
     }
 
-    fn mark(&mut self, point: &[f64; 3]) {
+    fn mark(&mut self, point: &[f64; 3], range: f64) {
         let at = point.map(voxel);
         // The lowest layer is the ground's.
         let Some([x, y, z]) = self.place(at).filter(|[_, _, z]| *z > 0) else {
@@ -125,6 +134,10 @@ impl VoxelGrid {
         ) {
             *evidence = updated(*evidence, HIT);
             *hit |= 1 << z;
+        }
+        let extent = self.extents.get_mut(x).and_then(|slice| slice.get_mut(y));
+        if let Some(extent) = extent {
+            extent.take(point, range);
         }
     }
 
@@ -171,6 +184,15 @@ impl VoxelGrid {
         let inside = x >= self.first && x < self.first + CELLS[0] as i64;
         let slice = self.evidence.get(x.rem_euclid(CELLS[0] as i64) as usize);
         slice.filter(|_| inside)?.get(row)
+    }
+}
+
+impl VoxelGrid {
+    /// What hits show of the column at a voxel's x and row.
+    pub(crate) fn extent(&self, x: i64, row: usize) -> Extent {
+        let slice = self.extents.get(x.rem_euclid(CELLS[0] as i64) as usize);
+        let extent = slice.and_then(|slice| slice.get(row));
+        extent.copied().unwrap_or(Extent::FULL)
     }
 }
 

@@ -11,7 +11,10 @@ mod space;
 mod space_estimate;
 mod watches;
 
-pub use space::{space_judgement, space_lattice, space_limits, space_program};
+pub use space::{
+    space_judgement, space_lattice, space_limits, space_map, space_program, space_pursuit,
+    space_refinement, space_take_over,
+};
 pub use space_estimate::{space_air, space_inertial};
 pub use watches::{airspeed_bias, elevator, motor, pitch_bias, pitch_monitor, sensors};
 

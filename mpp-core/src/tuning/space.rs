@@ -1,6 +1,36 @@
 //! The tuning of the planner in space. All numbers are in SI units, of aircraft that cruise at 12 to 16 m/s. The source S is the
 //! trial of a prototype that decision 46 names. The map and the price of the unknown have the numbers of the plane.
 
+/// The map in space.
+pub mod space_map {
+    /// Share of the range of earlier hits below which a hit begins the box of its column anew, and above the inverse of which it
+    /// does not count [-]. More keeps the errors of far hits, less forgets flanks. Source: S.
+    pub const CLOSER: f64 = 0.7;
+}
+
+/// The state in which a plan begins.
+pub mod space_take_over {
+    /// Share of the deviation from the last plan by which the next one begins beside it [-]. With 1 the errors of the estimate
+    /// shake each plan, with 0 it leaves the aircraft behind. Source: decision 47.
+    pub const TRUST: f64 = 0.3;
+}
+
+/// The pursuit of paths.
+pub mod space_pursuit {
+    /// Distances ahead at which the pursuit aims, in seconds of cruise \[s\]; the cheapest roll-out counts. Less swings, more
+    /// cuts corners, and more of them cost roll-outs. Source: decision 47.
+    pub const AIMS: [f64; 3] = [0.75, 0.5, 1.0];
+}
+
+/// The refinement of the cheapest trajectory.
+pub mod space_refinement {
+    /// Change of the bank in the first round \[rad\]; each further round halves it. More finds other ways, less polishes. Source:
+    /// decision 47.
+    pub const SIZE: f64 = 0.35;
+    /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 47.
+    pub const ROUNDS: usize = 2;
+}
+
 /// The lattice in space.
 pub mod space_lattice {
     /// Cost of a square metre of missing clearance at a node [1/m^2]. Source: S.

@@ -88,11 +88,9 @@ impl Session {
         let (start, shift) = match &self.flown {
             Some(flown) => {
                 let age = flown.age(tick);
-                let (then, _) = flown.plan.at(&flown.model, age + latency);
-                let (now, _) = flown.plan.at(&flown.model, age);
-                let (then, now, here) = (then.numbers(), now.numbers(), motion.path.numbers());
-                let moved = core::array::from_fn(|at| here[at] + then[at] - now[at]);
-                (SpacePath::of(moved), age + latency)
+                let plan = &flown.plan;
+                let start = plan.next_start(&flown.model, &motion.path, age, latency);
+                (start, age + latency)
             }
             None => {
                 let level = SpaceControl {

@@ -19,10 +19,8 @@ use serde::{Deserialize, Serialize};
 pub const SPACE: &str = "space";
 /// Greatest bank of plans, and its rate [rad, rad/s]: 60 deg and 90 deg/s. Source: decision 46.
 const BANK: [f64; 2] = [60_f64.to_radians(), 90_f64.to_radians()];
-/// Half the diagonal of a voxel \[m\], which the margin of a sphere includes, and the margin of a fuselage with its wing. Source:
-/// decision 46.
-const HALF_DIAGONAL: f64 = 0.45;
-const WING_MARGIN: f64 = 0.6;
+/// Distance of plans from what hits have shown, beyond the radius of a sphere or the half span \[m\]. Source: decision 47.
+const MARGIN: f64 = 0.35;
 /// Part of a fuselage that reaches below its wing, and room to ceiling and sides \[m\].
 const BELOW: f64 = 0.5;
 const ROOM: f64 = 0.3;
@@ -302,7 +300,7 @@ impl SpaceScenario {
         let sphere = self.header.sphere;
         ConfigureSpace {
             bank: BANK,
-            margin: sphere.map_or(WING_MARGIN, |radius| HALF_DIAGONAL + radius),
+            margin: MARGIN + sphere.unwrap_or(0.0),
             half_span: hull.half_span,
             heights: [hull.radius + BELOW, extent.ceiling - ROOM],
             half_width: extent.half_width - SIDE_ROOM,

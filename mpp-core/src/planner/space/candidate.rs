@@ -2,11 +2,12 @@
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::tuning::space_limits;
+use crate::tuning::space_take_over::TRUST;
 use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath, between, within};
 
-/// Distance ahead at which the pursuit aims, in seconds of cruise [s]. Less swings, more cuts corners. Source: S of
-/// `tuning/space.rs`.
-const AIM: f64 = 0.75;
+/// Numbers of a state that no regulator holds to the plan's time.
+const ALONG: usize = 0;
+const AIRSPEED: usize = 3;
 /// Least squared distance of the aim \[m^2\].
 const LEAST_AIM: f64 = 9.0;
 /// Least upward pull that the pursuit asks for [m/s^2]: the direction of the lift needs it.
@@ -62,6 +63,28 @@ impl SpacePlan {
             state = state.after(model, control, STAGE_PERIOD);
             *knot = state;
         }
+    }
+
+    /// The state in which the next plan begins, `latency` \[s\] after this plan has the age `age` \[s\] and the aircraft is
+    /// `here`. It is this plan's, moved by a [share](TRUST) of the deviation: the regulator takes care of the rest. Along the
+    /// track it is moved by all of it, because no regulator holds the time of a plan.
+    #[must_use]
+    pub fn next_start(
+        &self,
+        model: &SpaceModel,
+        here: &SpacePath,
+        age: f64,
+        latency: f64,
+    ) -> SpacePath {
+        let (now, then) = (self.at(model, age).0, self.at(model, age + latency).0);
+        let (now, here, start) = (now.numbers(), here.numbers(), then.numbers());
+        SpacePath::of(core::array::from_fn(|number| {
+            let share = match number {
+                ALONG | AIRSPEED => 1.0,
+                _ => TRUST,
+            };
+            start[number] + share * (here[number] - now[number])
+        }))
     }
 
     /// State and control at a time \[s\] after the first knot. Beyond the last knot the flight is straight and level.
@@ -127,17 +150,23 @@ pub(super) struct Pursuit<'a> {
     points: &'a [[f64; 3]],
     /// The segment in which the aim lies.
     segment: usize,
+    /// Distance ahead of the aim, in seconds of cruise \[s\].
+    aim: f64,
 }
 
 impl<'a> Pursuit<'a> {
-    pub(super) fn new(points: &'a [[f64; 3]]) -> Self {
-        Self { points, segment: 0 }
+    pub(super) fn new(points: &'a [[f64; 3]], aim: f64) -> Self {
+        Self {
+            points,
+            segment: 0,
+            aim,
+        }
     }
 
     /// The control of the next stage: towards the point of the path some distance ahead, on a circle.
     pub(super) fn control(&mut self, model: &SpaceModel, state: &SpacePath) -> SpaceControl {
         let at = state.position;
-        let aim = self.aim(at[0] + AIM * model.trim.state.airspeed);
+        let aim = self.point(at[0] + self.aim * model.trim.state.airspeed);
         let way: [f64; 3] = core::array::from_fn(|axis| aim[axis] - at[axis]);
         let square = dot(&way, &way).max(LEAST_AIM);
         let velocity = state.ground_velocity(&model.wind);
@@ -151,7 +180,7 @@ impl<'a> Pursuit<'a> {
     }
 
     /// The point of the path at an x; beyond the end its last point, moved to this x.
-    fn aim(&mut self, x: f64) -> [f64; 3] {
+    fn point(&mut self, x: f64) -> [f64; 3] {
         let last = self.points.len().saturating_sub(2);
         // The number of points bounds the loop.
         for _ in 0..self.points.len() {

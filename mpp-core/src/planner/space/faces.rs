@@ -63,14 +63,18 @@ fn separate_segment(
     let mut planes: heapless::Vec<([f64; 3], f64), FACES> = heapless::Vec::new();
     for _ in 0..FACES {
         let mut nearest = (REACH * REACH, [0.0; 3], [0.0; 3]);
-        field.surface(&low, &high, |centre| {
+        field.surface(&low, &high, |[least, most]| {
+            let centre: [f64; 3] = core::array::from_fn(|axis| 0.5 * (least[axis] + most[axis]));
             let behind = |(normal, level): &([f64; 3], f64)| dot(normal, &centre) >= level - BEHIND;
             let way: [f64; 3] = core::array::from_fn(|axis| centre[axis] - from[axis]);
             let share = between(dot(&way, &along) / length_squared, [0.0, 1.0]);
-            let off: [f64; 3] = core::array::from_fn(|axis| way[axis] - share * along[axis]);
+            let at: [f64; 3] = core::array::from_fn(|axis| from[axis] + share * along[axis]);
+            let place: [f64; 3] =
+                core::array::from_fn(|axis| between(at[axis], [least[axis], most[axis]]));
+            let off: [f64; 3] = core::array::from_fn(|axis| place[axis] - at[axis]);
             let square = dot(&off, &off);
             if square < nearest.0 && !planes.iter().any(behind) {
-                nearest = (square, centre, off);
+                nearest = (square, place, off);
             }
         });
         let (square, centre, off) = nearest;

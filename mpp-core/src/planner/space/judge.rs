@@ -43,8 +43,8 @@ pub(super) fn judge(
             if to_go.is_none() && point[0] >= via {
                 to_go = Some(lattice.cost_to_go(&point, &to.ground_velocity(&model.wind)));
             }
-            let clearance = field.clearance(&point);
-            let margin = keep.margin(field, &point, clearance, &to.wing());
+            let (clearance, slope) = field.clearance_and_slope(&point);
+            let margin = keep.margin(clearance, &slope, &wing(from, to, share));
             let lack = (margin - clearance).max(0.0) + keep.outside(&point);
             let room = (margin + ROOM - clearance).max(0.0);
             price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
@@ -75,6 +75,13 @@ pub(super) fn judge(
         f64::INFINITY
     };
     SpaceJudgement { price, missing }
+}
+
+/// The wing at a share of the way between two knots.
+fn wing(from: &SpacePath, to: &SpacePath, share: f64) -> [f64; 3] {
+    let (from, to) = (from.numbers(), to.numbers());
+    let mixed = core::array::from_fn(|at| from[at] + share * (to[at] - from[at]));
+    SpacePath::of(mixed).wing()
 }
 
 /// The position at a share of the way between two knots: a cubic with the velocities of both.

@@ -1,15 +1,12 @@
 //! What a plan keeps clear of.
 
 use super::candidate::dot;
-use crate::map::{MOST_CLEARANCE, VoxelField};
-
-/// Step for the direction to the nearest obstacle \[m\].
-const GRADIENT: f64 = 0.25;
+use crate::map::MOST_CLEARANCE;
 
 /// Distances and heights that a plan keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keep {
-    /// Least distance of the body from the centres of occupied voxels \[m\]: its radius, half a voxel's diagonal, and errors.
+    /// Least distance of the body from the what hits have shown \[m\]: its radius, and errors of map, estimate and regulator.
     pub margin: f64,
     /// Half the span of a wing that banks \[m\]; 0 for a sphere.
     pub half_span: f64,
@@ -27,25 +24,12 @@ impl Keep {
         self.margin + self.half_span * libm::fabs(dot(normal, wing))
     }
 
-    /// The same at a point of a field with a clearance \[m\] there.
-    pub(super) fn margin(
-        &self,
-        field: &VoxelField,
-        point: &[f64; 3],
-        clearance: f64,
-        wing: &[f64; 3],
-    ) -> f64 {
+    /// The same at a point with a clearance \[m\] and its slope.
+    pub(super) fn margin(&self, clearance: f64, slope: &[f64; 3], wing: &[f64; 3]) -> f64 {
         if self.half_span <= 0.0 || clearance >= MOST_CLEARANCE {
             return self.margin;
         }
-        let slope: [f64; 3] = core::array::from_fn(|axis| {
-            let mut ahead = *point;
-            ahead[axis] += GRADIENT;
-            let mut back = *point;
-            back[axis] -= GRADIENT;
-            field.clearance(&ahead) - field.clearance(&back)
-        });
-        let steep = libm::sqrt(dot(&slope, &slope));
+        let steep = libm::sqrt(dot(slope, slope));
         if steep < 1e-6 {
             return self.margin + self.half_span;
         }

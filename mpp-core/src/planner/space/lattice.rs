@@ -19,6 +19,8 @@ pub(super) const VIA: usize = 5;
 /// Distance of places across \[m\]: to the sides and in height.
 pub(super) const ACROSS: f64 = 0.5;
 pub(super) const UP: f64 = 1.0;
+/// A slope of the track moves a path by so much from station to station, for each place of it \[m\].
+const SLOPE_STEP: f64 = 2.0 * ACROSS;
 /// Least and greatest distance of stations \[m\]. Near stations need small steps, far ones time.
 const LEAST_STEP: f64 = 2.8;
 const MOST_STEP: f64 = 6.0;
@@ -81,7 +83,7 @@ impl Lattice {
     pub(super) fn begin(&mut self, position: &[f64; 3], velocity: &[f64; 3]) {
         self.origin = *position;
         let ahead = velocity[0].max(2.0);
-        let slope = place(velocity[1] / ahead * self.step / ACROSS + 3.0, SLOPES);
+        let slope = place(velocity[1] / ahead * self.step / SLOPE_STEP + 3.0, SLOPES);
         let climb = place(velocity[2] / ahead * self.step / UP + 1.0, CLIMBS);
         let [first, ..] = &mut self.forward;
         clear(first);
@@ -204,7 +206,7 @@ impl Lattice {
         };
         let (row, by_row) = split((y - self.origin[1]) / ACROSS + (ROWS / 2) as f64, ROWS);
         let (layer, by_layer) = split((z - self.origin[2]) / UP + (LAYERS / 2) as f64, LAYERS);
-        let (slope, by_slope) = split(velocity[1] / ahead * self.step / ACROSS + 3.0, SLOPES);
+        let (slope, by_slope) = split(velocity[1] / ahead * self.step / SLOPE_STEP + 3.0, SLOPES);
         let climb = place(velocity[2] / ahead * self.step / UP + 1.0, CLIMBS);
         let mut sum = 0.0;
         for corner in 0..8 {
@@ -261,7 +263,7 @@ fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -
     let [low, high] = rules.heights;
     let beyond = (low - point[2]).max(point[2] - high).max(0.0);
     let outside = (libm::fabs(point[1]) - rules.half_width).max(0.0);
-    let lack = (rules.margin - field.nearest(point)).max(0.0) + beyond + outside;
+    let lack = (rules.margin - field.clearance(point)).max(0.0) + beyond + outside;
     let near = 1.0 - ahead / UNKNOWN_AHEAD;
     let unknown = if near > 0.0 && field.is_unknown(point) {
         UNKNOWN_COST * near

@@ -6,6 +6,7 @@
 //! | lattice | `lattice.rs` | paths on different sides of obstacles, and the cost-to-go |
 //! | candidates | `candidate.rs`, `judge.rs` | the previous plan (warm start) and the paths, flown under all limits, with their price |
 //! | programs | `faces.rs`, `program.rs` | each candidate gets a corridor and a QP that improves it; its controls are flown out |
+//! | refinement | `refine.rs` | a direct search moves the bank of the cheapest trajectory |
 //!
 //! The cheapest trajectory is the plan. Any call of [`SpacePlanner::advance`] does a bounded amount of work, and
 //! [`SpacePlanner::best`] is a plan at any time after the first candidate.
@@ -20,6 +21,7 @@ mod keep;
 mod lattice;
 mod paths;
 mod program;
+mod refine;
 
 pub use candidate::SpacePlan;
 pub use judge::SpaceJudgement;
@@ -30,6 +32,7 @@ use crate::map::{VoxelField, VoxelGrid};
 use crate::qp::Status;
 use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
 use crate::tuning::space_lattice::MORE_MARGIN;
+use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 use candidate::{Pursuit, limited, towards};
 use judge::judge;
@@ -43,10 +46,17 @@ const APART: usize = 2;
 /// Steps of the solver in a slice, and in a program.
 const SLICE_STEPS: usize = 8;
 const MOST_STEPS: usize = 120;
-/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice, candidates with the one straight on, and programs with
-/// their solves.
-pub const MOST_SPACE_SLICES: usize =
-    1 + STATIONS + SPACE_CANDIDATES + 2 + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1);
+/// Roll-outs of the refinement in a slice.
+const SLICE_TRIALS: usize = 4;
+/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice, candidates with the one straight on, programs with
+/// their solves, and the refinement.
+pub const MOST_SPACE_SLICES: usize = 1
+    + STATIONS
+    + SPACE_CANDIDATES
+    + 2
+    + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1)
+    + refine::TRIALS / SLICE_TRIALS
+    + 1;
 /// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of `tuning/space.rs`.
 const LEVEL_SPAN: f64 = 0.75;
 /// What a cycle is doing.
@@ -60,6 +70,7 @@ enum Phase {
     Candidate(usize),
     Pose(usize),
     Solve(usize),
+    Refine(usize),
 }
 
 /// A candidate and its worth.
@@ -165,6 +176,7 @@ impl SpacePlanner {
             Phase::Candidate(path) => self.propose(path),
             Phase::Pose(candidate) => self.pose(candidate),
             Phase::Solve(candidate) => self.solve(candidate),
+            Phase::Refine(number) => self.refine(number),
         };
         self.phase == Phase::Idle
     }
@@ -237,12 +249,8 @@ impl SpacePlanner {
                 limited(&model, state, &wanted)
             });
             let points: [[f64; 3]; KNOTS] = core::array::from_fn(|stage| at(stage).0.position);
-            let mut pursued = SpacePlan::new();
-            let mut pursuit = Pursuit::new(&points);
-            pursued.fly(&model, &self.start, |_, state| {
-                pursuit.control(&model, state)
-            });
-            let [flown, pursued] = [flown, pursued].map(|plan| self.judged(plan));
+            let [aim, ..] = AIMS;
+            let (flown, pursued) = (self.judged(flown), self.pursued(&points, aim));
             let better = if pursued.judgement.price < flown.judgement.price {
                 pursued
             } else {
@@ -257,29 +265,43 @@ impl SpacePlanner {
     }
 
     fn propose(&mut self, path: usize) -> Phase {
-        let model = self.model;
-        let mut plan = SpacePlan::new();
-        if let Some(points) = self.paths.get(path) {
-            let mut pursuit = Pursuit::new(points);
-            plan.fly(&model, &self.start, |_, state| {
-                pursuit.control(&model, state)
-            });
+        let candidate = if let Some(points) = self.paths.get(path) {
+            let [first, more @ ..] = AIMS;
+            let mut best = self.pursued(points, first);
+            for aim in more {
+                let other = self.pursued(points, aim);
+                if other.judgement.price < best.judgement.price {
+                    best = other;
+                }
+            }
+            best
         } else if self.candidates.is_empty() {
             // No way through the lattice: straight on and level is something to start from.
+            let (model, mut plan) = (self.model, SpacePlan::new());
             plan.fly(&model, &self.start, |_, state| {
                 let up = crate::vehicle::GRAVITY - state.flight_path * state.airspeed;
                 towards(&model, state, [up, 0.0], STAGE_PERIOD)
             });
+            self.judged(plan)
         } else {
             return if self.programs {
                 Phase::Pose(0)
             } else {
-                Phase::Idle
+                Phase::Refine(0)
             };
-        }
-        let candidate = self.judged(plan);
+        };
         self.take(candidate);
         Phase::Candidate(path + 1)
+    }
+
+    /// The pursuit of a path.
+    fn pursued(&self, points: &[[f64; 3]], aim: f64) -> Candidate {
+        let (model, mut plan) = (self.model, SpacePlan::new());
+        let mut pursuit = Pursuit::new(points, aim);
+        plan.fly(&model, &self.start, |_, state| {
+            pursuit.control(&model, state)
+        });
+        self.judged(plan)
     }
 
     fn judged(&self, plan: SpacePlan) -> Candidate {
@@ -301,10 +323,28 @@ impl SpacePlanner {
         }
     }
 
+    /// Tries the next moves of the best plan.
+    fn refine(&mut self, first: usize) -> Phase {
+        let end = (first + SLICE_TRIALS).min(refine::TRIALS);
+        for number in first..end {
+            if let Some(best) = self.best {
+                let by = refine::Move::of(number);
+                let plan = refine::moved(&self.model, &self.start, &best.plan, &by);
+                let candidate = self.judged(plan);
+                self.consider(candidate);
+            }
+        }
+        if end < refine::TRIALS {
+            Phase::Refine(end)
+        } else {
+            Phase::Idle
+        }
+    }
+
     /// Poses the program of a candidate.
     fn pose(&mut self, index: usize) -> Phase {
         let Some(candidate) = self.candidates.get(index) else {
-            return Phase::Idle;
+            return Phase::Refine(0);
         };
         let plan = candidate.plan;
         let frame = Frame {
