@@ -235,7 +235,7 @@ fn the_next_plan_begins_between_the_last_plan_and_the_aircraft() {
     });
 }
 
-/// The slices after the programs only make the plan cheaper, and in forests they do.
+/// The slices after the programs never make the plan dearer, and where it lacks room they make it cheaper by a fifth.
 #[test]
 fn the_refinement_makes_plans_cheaper_within_the_limits() {
     with_planner(KEEP, |map, planner| {
@@ -257,9 +257,13 @@ fn the_refinement_makes_plans_cheaper_within_the_limits() {
             let (plan, judgement) = planner.best().unwrap();
             in_bounds(plan, &model);
             assert!(prices.iter().all(|price| *price >= judgement.price));
-            cheaper += usize::from(judgement.price < 0.9 * prices[0]);
+            // A plan with room has nothing to gain.
+            if prices[0] > 5.0 {
+                assert!(judgement.price < 0.8 * prices[0], "{}", prices[0]);
+                cheaper += 1;
+            }
         }
-        assert!(cheaper >= 7, "{cheaper}");
+        assert!(cheaper >= 3, "{cheaper}");
     });
 }
 
