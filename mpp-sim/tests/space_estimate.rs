@@ -6,9 +6,7 @@ use mpp_core::estimate::SpaceEstimator;
 use mpp_core::vehicle::{GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::{
-    SensorErrors, SpaceAircraft, SpaceSensors, WindConfig, regulator, true_path,
-};
+use mpp_sim::space::{SensorErrors, SpaceAircraft, SpaceSensors, WindConfig, regulator, true_path};
 
 /// Time by which bank and angle of attack follow, as flights of the planner use it \[s\].
 const AHEAD: f64 = 0.12;
@@ -126,8 +124,7 @@ fn fly(
             turns.now.position,
             turns.now.course + AHEAD * GRAVITY * bank(time).tan() / known.cruise,
         );
-        let (command, lateral) =
-            follower.step(&turns.model, &motion, &now, (&ahead.0, &ahead.1));
+        let (command, lateral) = follower.step(&turns.model, &motion, &now, (&ahead.0, &ahead.1));
         each(&Tick {
             time,
             estimator: estimator.clone(),
@@ -206,7 +203,20 @@ fn show() {
                 s[11].take(t.wanted.position[2] - t.truth.position[2]);
             });
         }
-        let n = ["pos", "vel", "nees p", "nees v", "wind", "gusty", "alpha", "beta", "bank", "bias", "true beta", "height"];
+        let n = [
+            "pos",
+            "vel",
+            "nees p",
+            "nees v",
+            "wind",
+            "gusty",
+            "alpha",
+            "beta",
+            "bank",
+            "bias",
+            "true beta",
+            "height",
+        ];
         println!("{name}");
         for (n, s) in n.iter().zip(&s) {
             println!("  {n:10} rms {:.4} most {:.3}", s.rms(), s.most);
@@ -223,7 +233,21 @@ fn debug() {
             worst = worst.max(h.abs());
             if seed == 1 && ((t.time * 100.0).round() as i64) % 20 == 0 {
                 let m = t.estimator.motion().unwrap();
-                println!("{:.2} w {:.2?} g {:.2?} bank {:.2} {:.2} al {:.3} {:.3} h {:.2} off {:.2?} c {:.2} {:.2} v {:.1}", t.time, t.estimator.wind(), t.estimator.gusty_wind(), m.path.bank, t.truth.bank, m.path.angle_of_attack, t.truth.angle_of_attack, h, [0, 1].map(|a| t.wanted.position[a] - t.truth.position[a]), t.wanted.course, t.truth.course, t.truth.airspeed);
+                println!(
+                    "{:.2} w {:.2?} g {:.2?} bank {:.2} {:.2} al {:.3} {:.3} h {:.2} off {:.2?} c {:.2} {:.2} v {:.1}",
+                    t.time,
+                    t.estimator.wind(),
+                    t.estimator.gusty_wind(),
+                    m.path.bank,
+                    t.truth.bank,
+                    m.path.angle_of_attack,
+                    t.truth.angle_of_attack,
+                    h,
+                    [0, 1].map(|a| t.wanted.position[a] - t.truth.position[a]),
+                    t.wanted.course,
+                    t.truth.course,
+                    t.truth.airspeed
+                );
             }
         });
         println!("{seed} {worst:.2}");

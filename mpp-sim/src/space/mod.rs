@@ -172,6 +172,10 @@ fn meet(state: &mut SpaceState, [x, y, z]: [f64; 3]) {
     // In turns the pitch in the carried plane grows beyond half a turn, and the flight path with it.
     let path = libm::atan2(climb, ahead);
     let turns = libm::round((air.flight_path - path) / TAU);
-    air.flight_path = if turns == 0.0 { path } else { path + turns * TAU };
+    air.flight_path = if turns == 0.0 {
+        path
+    } else {
+        path + turns * TAU
+    };
     state.lateral.sideslip = libm::atan2(right, in_plane);
 }
