@@ -13,8 +13,8 @@ use crate::tuning::space_air::{
 };
 use crate::vehicle::{LateralAirframe, LateralControl, Quaternion, SpaceModel, within};
 
-/// Variance of one of the measurements of a tick, as if their errors were white [(m/s)^2].
-const WHITE: f64 = SIGMA * SIGMA * 2.0 * TIME / TICK_PERIOD;
+/// Number of measurements of which the errors are alike [-]: the variance of one of them, as if they were white, is so much more.
+const ALIKE: f64 = 2.0 * TIME / TICK_PERIOD;
 
 /// Kalman filter on a wind that changes by chance. One variance serves all axes.
 #[derive(Clone, Copy, Debug)]
@@ -34,8 +34,8 @@ impl RandomWalk {
         }
     }
 
-    fn restart(&mut self, wind: [f64; 3]) {
-        (self.wind, self.variance) = (wind, SIGMA * SIGMA);
+    fn restart(&mut self, wind: [f64; 3], variance: f64) {
+        (self.wind, self.variance) = (wind, variance);
     }
 
     fn predict(&mut self) {
@@ -43,8 +43,9 @@ impl RandomWalk {
         self.variance = (self.variance + self.noise * TICK_PERIOD).min(most);
     }
 
-    fn observe(&mut self, off: [f64; 3]) {
-        let gain = self.variance / (self.variance + WHITE);
+    /// Takes a wind that is off by `off` [m/s] and has a variance of its own.
+    fn observe(&mut self, off: [f64; 3], own: f64) {
+        let gain = self.variance / (self.variance + ALIKE * own);
         for (wind, off) in self.wind.iter_mut().zip(off) {
             *wind += gain * off;
         }
@@ -148,18 +149,19 @@ impl AirFilter {
         let [u, v, w] = flow.velocity;
         let measured = [u - x, v - y, w + down].map(|it| within(it, MOST_SHARE * level));
         let off = [0, 1, 2].map(|axis| measured[axis] - self.quick.wind[axis]);
-        let most = GATE * GATE * (self.quick.variance + SIGMA * SIGMA + flow.variance);
+        let own = SIGMA * SIGMA + flow.variance;
+        let most = GATE * GATE * (self.smooth.variance + own);
         let agrees = off.iter().all(|it| it * it <= most);
         if self.started && !agrees && f64::from(self.silent) * TICK_PERIOD <= RESTART_TIME {
             return MeasurementStatus::Gated;
         }
         if !self.started || !agrees {
-            self.quick.restart(measured);
-            self.smooth.restart(measured);
+            self.quick.restart(measured, own);
+            self.smooth.restart(measured, own);
         } else {
-            self.quick.observe(off);
+            self.quick.observe(off, own);
             let off = [0, 1, 2].map(|axis| measured[axis] - self.smooth.wind[axis]);
-            self.smooth.observe(off);
+            self.smooth.observe(off, own);
         }
         (self.started, self.silent) = (true, 0);
         MeasurementStatus::Accepted
