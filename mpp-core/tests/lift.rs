@@ -221,7 +221,7 @@ fn the_damping_of_a_turn_is_no_lack_of_lift() {
             elevator: trim.control.elevator + up,
             ..trim.control
         };
-        let climb = air.airspeed * air.flight_path.sin();
+        let climb = air.airspeed * libm::sin(air.flight_path);
         estimator.update(TICK_PERIOD, climb, &air, control);
         let rate = air_rate(&DAMPED, &air, control).to_vector();
         air = AirState::from_vector(&(air.to_vector() + rate * TICK_PERIOD));

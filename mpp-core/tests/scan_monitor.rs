@@ -128,7 +128,7 @@ fn fog_shortens_the_sight_until_a_beam_returns_from_farther() {
     };
     let mut monitor = ScanMonitor::new();
     check(&mut monitor, 0.0, |_| {});
-    assert_eq!(monitor.sight(SIGHT), SIGHT);
+    assert!((monitor.sight(SIGHT) - SIGHT).abs() < 1e-9);
     let (verdict, _) = check(&mut monitor, 3.0, fog);
     assert_eq!(verdict, ScanVerdict::Short);
     assert!(
@@ -137,7 +137,7 @@ fn fog_shortens_the_sight_until_a_beam_returns_from_farther() {
         monitor.sight(SIGHT)
     );
     check(&mut monitor, 6.0, |_| {});
-    assert_eq!(monitor.sight(SIGHT), SIGHT);
+    assert!((monitor.sight(SIGHT) - SIGHT).abs() < 1e-9);
 }
 
 /// The next scan may look past a wire that one beam has met.
