@@ -20,7 +20,6 @@ const TASK: LatticeTask = LatticeTask {
     z: 50.0,
     slope: 0.0,
     altitude: 50.0,
-    middle: 50.0,
     band: 10.3,
     curvature: 1.0 / 18.0,
     room: 2.0,

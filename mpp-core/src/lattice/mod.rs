@@ -48,9 +48,7 @@ pub struct LatticeTask {
     pub slope: f64,
     /// Height to which the paths return \[m\].
     pub altitude: f64,
-    /// Middle of the altitude band \[m\].
-    pub middle: f64,
-    /// Greatest distance of a path from it \[m\].
+    /// Greatest distance of a path from `altitude` \[m\].
     pub band: f64,
     /// Greatest curvature of a path [1/m].
     pub curvature: f64,
@@ -95,7 +93,6 @@ impl Lattice {
                 z: 0.0,
                 slope: 0.0,
                 altitude: 0.0,
-                middle: 0.0,
                 band: 0.0,
                 curvature: 0.0,
                 room: 0.0,
@@ -357,7 +354,7 @@ impl HeightTerms {
         let from_altitude = z - task.altitude;
         Self {
             height: field.height(z),
-            outside: ((z - task.middle).abs() - task.band + BAND_MARGIN).max(0.0),
+            outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
             altitude_cost: ALTITUDE_WEIGHT * from_altitude * from_altitude,
         }
     }

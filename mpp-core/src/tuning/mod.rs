@@ -139,19 +139,6 @@ pub mod scan_match {
     pub const LEAST_GAIN: u32 = 4;
 }
 
-/// A lidar that does not show what comes: the aircraft leaves the altitude band upwards.
-pub mod leave {
-    /// Height above the band to which plans climb \[m\]. The climb gets steeper with it. Past 40 obstacles 44, 57, 78, 92 and 85 of
-    /// 100 flights with a half-blind lidar survived with no climb, 2, 5, 9 and 12 m. Source: D50.
-    pub const HEIGHT: f64 = 9.0;
-    /// Room above this height \[m\]. Source: chosen.
-    pub const CEILING: f64 = 3.0;
-    /// Time without a scan that is believed after which the aircraft leaves \[s\]. With 0 s a lidar that is silent for 3 s lost 6 of
-    /// 100 flights past 40 obstacles, with 1.5 s 3 of 200; one that is silent for good lost 49 of 100, with 2.5 s 70, without leaving 85.
-    /// Source: D50.
-    pub const DARK: f64 = 1.5;
-}
-
 /// Candidates of a cycle.
 pub mod candidates {
     /// Number of beams that one slice takes in. This slice then takes less than half of the time of the

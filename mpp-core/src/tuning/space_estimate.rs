@@ -22,7 +22,7 @@ pub mod space_inertial {
     /// Greatest rate [rad/s] and specific force [m/s^2] that a sound sample has. Source: chosen; the ranges of gyroscopes and
     /// accelerometers, 2000 deg/s and 16 g.
     pub const MOST_RATE: f64 = 35.0;
-    /// See [`MOST_RATE`].
+    /// See [`MOST_RATE`]. Source: as there.
     pub const MOST_FORCE: f64 = 160.0;
     /// Time over which a bias of the bank is learned \[s\]. A shorter one takes the wander of the attitude for a bias. Source: D48.
     pub const BIAS_TIME: f64 = 5.0;
@@ -44,12 +44,12 @@ pub mod space_air {
     /// Variance of the change of the wind in a second [(m/s)^2], for plans and for the angles to the flow. More follows gusts and
     /// the errors of the airspeed. Source: D48.
     pub const SMOOTH: f64 = 0.12;
-    /// See [`SMOOTH`].
+    /// See [`SMOOTH`]. Source: as there.
     pub const QUICK: f64 = 3.0;
     /// Standard deviation of the specific force sideways from which the sideslip follows [m/s^2], and of the sideslip before any
     /// force is measured \[rad\]. Source: chosen; bias and model of the side force, 5 deg.
     pub const SIDE_FORCE: f64 = 0.2;
-    /// See [`SIDE_FORCE`].
+    /// See [`SIDE_FORCE`]. Source: as there.
     pub const SIDESLIP: f64 = 0.087;
     /// Greatest angle to the flow that a force may tell \[rad\]. Source: chosen, 30 deg.
     pub const MOST_ANGLE: f64 = 0.52;

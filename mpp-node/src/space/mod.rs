@@ -19,11 +19,14 @@
 //! | `set_up.rs` | checks a configuration, and makes models, regulator and planner from it |
 //! | `input.rs` | takes measurements, or says why not |
 //! | `tick.rs` | the step |
-//! | `cycle.rs` | the planner's cycles |
+//! | `sweep.rs` | the points of a sensor frame, each placed by the pose of its time |
+//! | `planning.rs`, `cycle.rs` | the planner's cycles, and the plan that is flown |
 
 mod cycle;
 mod input;
+mod planning;
 mod set_up;
+mod sweep;
 mod tick;
 
 use crate::greeting;
@@ -32,15 +35,14 @@ use hil_protocol::{
     Body, Configure, ConfigureLateral, ConfigureSpace, DecodeError, Decoder, Hello, InertialFrame,
     MAX_FRAME, PlanReport, Rejection, RejectionCause, Role, SpacePosition, encode_body, id,
 };
-use input::Sweep;
 use mpp_core::control::SpaceRegulator;
 use mpp_core::estimate::SpaceEstimator;
 use mpp_core::map::{SpaceBeam, VoxelGrid};
 use mpp_core::planner::space::SpacePlanner;
 use mpp_core::vehicle::{LateralControl, SpaceModel};
+use sweep::Sweep;
 
-/// Most points between two sensor frames. A sweep of 90 x 16 beams has 1,440.
-pub const MOST_POINTS: usize = 2048;
+pub use sweep::MOST_POINTS;
 
 /// A flight after its configuration.
 struct Session {

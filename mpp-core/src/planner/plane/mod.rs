@@ -98,8 +98,6 @@ pub struct PlanePlanner {
     /// The height that the settings ask for, and the height to which this cycle plans \[m\].
     destination: f64,
     altitude: f64,
-    /// Middle of the cycle's altitude band, and its reach to either side \[m\].
-    band: [f64; 2],
     weights: Weights,
     units: Units,
     /// Airframe and trim of the set-up in own units, and the airframe in SI units.
@@ -109,6 +107,7 @@ pub struct PlanePlanner {
     lag: ThrustLag,
     /// Whether the planner is set up.
     ready: bool,
+
     // Values of the present cycle.
     phase: Phase,
     /// The estimated wind and lift in SI units.
@@ -127,13 +126,9 @@ pub struct PlanePlanner {
 
     // From the scan to paths. The map outlives the cycle.
     map: RollingGrid,
-    /// Whether an empty scan has contradicted the map, and no beam has returned since.
+    /// Whether a scan without a return has contradicted the map, and no beam has returned since.
     lidar_distrusted: bool,
     monitor: ScanMonitor,
-    /// Whether this cycle leaves the band upwards, because the lidar does not show what comes.
-    leaves: bool,
-    /// Time of the last cycle with a believed scan \[s\]; infinite before.
-    seen: f64,
     field: DistanceField,
     cost_to_go: CostToGo,
 
@@ -165,7 +160,6 @@ impl PlanePlanner {
             paths: 0,
             destination: 0.0,
             altitude: 0.0,
-            band: [0.0; 2],
             weights: Weights::PAPER,
             units: Units::SI,
             known: (Airframe::REFERENCE, NO_TRIM),
@@ -195,8 +189,6 @@ impl PlanePlanner {
             map: RollingGrid::new(),
             lidar_distrusted: false,
             monitor: ScanMonitor::new(),
-            leaves: false,
-            seen: f64::INFINITY,
             field: DistanceField::new(),
             cost_to_go: CostToGo::new(),
             candidates: heapless::Vec::new(),
@@ -240,7 +232,6 @@ impl PlanePlanner {
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
-        self.band = [self.altitude, self.settings.band];
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.bound_thrust();
@@ -275,8 +266,8 @@ impl PlanePlanner {
 
     fn bound_thrust(&mut self) {
         let reserve = self.trim.control.thrust;
-        let bounds = [self.limits.thrust_max - reserve, reserve];
-        self.solver.problem.bounds.set_thrust(bounds);
+        let rise = self.limits.thrust_max - reserve;
+        self.solver.problem.bounds.set_thrust([rise, reserve]);
     }
 
     /// The state, in own units, in which the step takes over the plan of a scan at this time \[s\]. The aircraft flies its

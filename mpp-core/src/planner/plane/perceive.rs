@@ -2,10 +2,9 @@
 
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
-use crate::lattice::{CLIMB, Lattice, LatticeTask};
+use crate::lattice::{Lattice, LatticeTask};
 use crate::map::{ScanVerdict, has_return};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
-use crate::tuning::leave::{CEILING, DARK, HEIGHT};
 use crate::vehicle::Trim;
 
 impl PlanePlanner {
@@ -40,14 +39,12 @@ impl PlanePlanner {
             .widen(self.settings.margin, self.field.openness());
         self.warm_start();
         let (run, rise) = self.wind.ground_velocity(&self.state.air);
-        let [middle, band] = self.band;
         let task = LatticeTask {
             x: self.state.x,
             z: self.state.z,
             slope: rise / run.max(1.0),
             altitude: self.altitude,
-            middle,
-            band,
+            band: self.settings.band,
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
             room_weight: self.limits.room_weight,
@@ -76,34 +73,11 @@ impl PlanePlanner {
         if verdict == ScanVerdict::ReversedBefore {
             self.map.clear();
         }
-        let dark = self.summary.blind || self.lidar_distrusted;
-        let unseen = (self.time - self.seen) / self.units.time;
-        self.leaves = match verdict {
-            ScanVerdict::Silent => true,
-            _ => dark && unseen > DARK,
-        };
-        if !dark {
-            self.seen = self.time;
-        }
         self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
-        if self.leaves {
-            self.aim_above();
-        }
-        let [middle, _] = self.band;
-        self.map.roll(pose.x, middle);
+        self.map.roll(pose.x, self.altitude);
         if let Workspace::Scan(Intake { scan, isolated, .. }) = &mut self.workspace {
             self.map.write_isolated_hits(scan, sight, &pose, isolated);
         }
-    }
-
-    /// Raises the altitude of the cycle to a height above the band, and its ceiling with it.
-    fn aim_above(&mut self) {
-        let [middle, half] = self.band;
-        let height = self.destination + self.settings.band + HEIGHT;
-        let (floor, ceiling) = (middle - half, height.max(middle + half) + CEILING);
-        self.band = [0.5 * (ceiling + floor), 0.5 * (ceiling - floor)];
-        self.altitude = height.min(self.state.z + CLIMB);
-        self.solver.problem.target[1] = self.altitude - self.state.z;
     }
 
     /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what

@@ -25,13 +25,12 @@ impl PlanePlanner {
             return self.climb_down();
         };
         let own = &self.settings;
-        let [middle, half] = self.band;
         let keep = Keep {
             margin: own.margin + ROUNDING,
             room: self.limits.room,
             body_radius: own.body_radius,
-            floor: middle - half,
-            ceiling: middle + half,
+            floor: self.altitude - own.band,
+            ceiling: self.altitude + own.band,
         };
         let cruise = self.trim.state.airspeed;
         let mut corridor = Corridor::new();
