@@ -1,14 +1,12 @@
 //! `deb`: makes the Debian package of the harness with `dpkg-deb`.
 
-use crate::folders::root;
+use crate::folders::{VERSION, root};
 use crate::toolchain::{install, output, succeed};
 use anyhow::{Context, Result};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 pub(crate) fn run() -> Result<()> {
     let mut cargo = Command::new("cargo");

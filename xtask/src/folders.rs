@@ -1,7 +1,10 @@
-//! The folder of the repository, and the folder for the output of commands.
+//! The folder of the repository, the folder for the output of commands, and the version of all.
 
 use anyhow::Result;
 use std::path::{Path, PathBuf};
+
+/// The version of the workspace.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The top folder of the repository.
 pub(crate) fn root() -> PathBuf {
@@ -17,4 +20,14 @@ pub(crate) fn work(name: &str) -> Result<PathBuf> {
         .join(name);
     std::fs::create_dir_all(&path)?;
     Ok(path)
+}
+
+/// The files of a folder, by name.
+pub(crate) fn files(place: &Path) -> Result<Vec<PathBuf>> {
+    let entries: std::io::Result<Vec<_>> = std::fs::read_dir(place)?
+        .map(|entry| Ok(entry?.path()))
+        .collect();
+    let mut files = entries?;
+    files.sort();
+    Ok(files)
 }

@@ -1,13 +1,12 @@
 //! The C library as people install it: archives, header, pkg-config and CMake, for hosts and flight computers.
 
-use crate::folders::{root, work};
+use crate::folders::{VERSION, root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
 use std::fs::{copy, create_dir_all, write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 const EMBED: &str = "bindings/c/embed";
 const THUMB: &str = "thumbv7em-none-eabihf";
 

@@ -6,15 +6,14 @@ mod tried;
 
 pub(crate) use c::{cortex_m, lay_out, try_out};
 
-use crate::folders::{root, work};
+use crate::folders::{VERSION, files, root, work};
 use crate::toolchain::{output, succeed};
 use crate::{aarch64, deb, wasm};
 use anyhow::{Context, Result, bail};
-use std::fs::{copy, create_dir_all, read_dir, remove_dir_all};
+use std::fs::{copy, create_dir_all, remove_dir_all};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-const VERSION: &str = env!("CARGO_PKG_VERSION");
 const HOST: &str = "x86_64-unknown-linux-gnu";
 /// The parts, in the order in which they are made.
 const PARTS: [&str; 6] = ["harness", "aarch64", "c", "deb", "wheel", "page"];
@@ -168,13 +167,4 @@ fn take(file: &Path, place: &Path) -> Result<()> {
     let name = file.file_name().context("a file has a name")?;
     copy(file, place.join(name))?;
     Ok(())
-}
-
-/// The files of a folder, by name.
-fn files(place: &Path) -> Result<Vec<PathBuf>> {
-    let entries: std::io::Result<Vec<_>> =
-        read_dir(place)?.map(|entry| Ok(entry?.path())).collect();
-    let mut files = entries?;
-    files.sort();
-    Ok(files)
 }

@@ -1,7 +1,6 @@
 //! What a release says of itself: the packages inside with their licences, a bill of materials, and checksums.
 
-use super::{VERSION, files};
-use crate::folders::root;
+use crate::folders::{VERSION, files, root};
 use crate::toolchain::output;
 use anyhow::{Context, Result};
 use serde_json::{Value, json};

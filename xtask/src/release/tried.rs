@@ -1,7 +1,7 @@
 //! Tries what a release holds as its users do: in an empty folder, without the sources.
 
-use super::files;
-use crate::release::try_out;
+use super::c::try_out;
+use crate::folders::files;
 use crate::toolchain::output;
 use anyhow::{Context, Result, ensure};
 use std::fs::{create_dir_all, remove_dir_all};
