@@ -10,7 +10,7 @@ use crate::vehicle::{AirState, Airframe, Control, GRAVITY};
 /// The estimator differentiates the climb rate over ground. Lift, drag, thrust and weight cause this
 /// acceleration. The estimator averages the difference from the acceleration of the known airframe at the
 /// elevator's angle of attack. An aircraft that follows its elevator slowly, or whose turn damps its pitch, has another angle
-/// than the elevator balances: [`Answer`] follows it. Errors of mass, lift slope and pitch stiffness all appear in this one number;
+/// than the elevator balances: `Answer` follows it. Errors of mass, lift slope and pitch stiffness all appear in this one number;
 /// gusts average out. The noise of the climb rate averages out too: the sum of its differences is the
 /// difference between last and first.
 #[derive(Clone, Debug)]
