@@ -187,19 +187,15 @@ fn a_pitch_sensor_that_fails_is_named_and_left_out() {
         bias: Some(10.0),
         ..SignalFault::default()
     };
-    let mut strict = 0;
     for pitch in [stuck, drifts, toggles] {
         let faults = Faults {
             pitch,
             ..Faults::default()
         };
-        for log in flights(faults, 6) {
+        for log in flown(faults) {
             let excluded = log.sensors.iter().filter(|it| it.state == "excluded");
             let sensors: Vec<_> = excluded.map(|it| it.sensor.clone()).collect();
             assert!(sensors.iter().any(|it| it == "pitch"), "{sensors:?}");
-            strict += u32::from(log.summary.strict);
         }
     }
-    // A campaign loses 2 to 5 of 100 flights to a pitch that sticks (docs/validation/faults.md), so one of 18 may be among them.
-    assert!(strict >= 17, "{strict} of 18");
 }

@@ -1,4 +1,4 @@
-//! `deb`: makes the Debian package of the harness with `dpkg-deb`.
+//! The Debian package of the harness, made with `dpkg-deb`.
 
 use crate::folders::{VERSION, root};
 use crate::toolchain::{install, output, succeed};
@@ -7,20 +7,6 @@ use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-
-pub(crate) fn run() -> Result<()> {
-    let mut cargo = Command::new("cargo");
-    cargo.current_dir(root());
-    let features = ["-p", "sil-harness", "--features", "formats,clarabel"];
-    succeed(
-        cargo
-            .args(["build", "--release", "--locked"])
-            .args(features),
-    )?;
-    let program = root().join("target/release/sil-harness");
-    println!("{}", package(&program)?.display());
-    Ok(())
-}
 
 /// Makes the package of a harness, and returns it.
 pub(crate) fn package(program: &Path) -> Result<PathBuf> {

@@ -68,8 +68,6 @@ enum Command {
     Nucleo,
     /// Build the firmware in two folders and compare the images, byte for byte
     Reproduce,
-    /// Make the Debian package of the harness, in target/deb
-    Deb,
     /// Make what a release holds, in target/release-VERSION, and try each part in a clean folder
     Release(release::ReleaseArgs),
     /// Send random and damaged frames to the flight core and the MAVLink parts, with overflow checks
@@ -95,7 +93,6 @@ fn main() -> ExitCode {
         Command::Identity(args) => identity::run(&args),
         Command::Nucleo => nucleo::run(),
         Command::Reproduce => reproduce::run(),
-        Command::Deb => deb::run(),
         Command::Release(args) => release::run(&args),
         Command::Fuzz(args) => fuzz::run(&args),
         Command::Golden(args) => golden::run(&args),

@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Greatest size of the page as a server would send it \[bytes\].
-const PAGE_MAX: usize = 560_000;
+const PAGE_MAX: usize = 500_000;
 /// The crates in which a flight in the browser spends its time. They are built for speed, and the rest for size.
 const FAST: [&str; 6] = [
     "mpp-data",

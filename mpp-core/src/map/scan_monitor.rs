@@ -1,8 +1,8 @@
 //! Whether a scan agrees with the one before it: what the lidar showed has to be there again.
 //!
-//! The monitor predicts where beams meet again what they met in the last scan, or in short sight in the last scan that saw farther. It uses only returns that an adjacent beam
-//! confirms, so a wire that falls between two beams predicts nothing. What comes nearer than predicted hides the rest and
-//! says nothing; what comes from farther, or not at all, is a *miss*.
+//! The monitor predicts where beams meet again what they met in the last scan, or in short sight in the last scan that saw
+//! farther. It uses only returns that an adjacent beam confirms, so a wire that falls between two beams predicts nothing. What
+//! comes nearer than predicted hides the rest and says nothing; what comes from farther, or not at all, is a *miss*.
 
 use super::rolling_grid::{has_return, is_return};
 use crate::sense::LidarScan;
@@ -21,9 +21,9 @@ pub enum ScanVerdict {
     Silent,
     /// Nothing returns from beyond a range although returns were predicted there, as in fog.
     Short,
-    /// The beams come in reverse order, from this scan on. The scan has them in the right order now.
+    /// The beams come in reverse order. The first such scan is empty now; later ones have them in the right order.
     Reversed,
-    /// The beams come in reverse order, and came so before: the map is wrong too. The scan has them in the right order now.
+    /// The beams come in reverse order, and came so before: the map is wrong too. The scan is empty now.
     ReversedBefore,
 }
 
@@ -91,7 +91,7 @@ impl ScanMonitor {
     /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
     /// to be believed. A scan without a return says nothing here; [`super::RollingGrid::contradicts`] judges it.
     pub fn check(&mut self, scan: &mut LidarScan, sight: f64, pose: &Pose) -> ScanVerdict {
-        let mut before = false;
+        let (mut before, known) = (false, self.reversed);
         if has_return(scan, sight) {
             let as_sent = self.fit(scan, sight, pose, [false, false]);
             before = self.note_order(scan, sight, pose, &as_sent);
@@ -108,7 +108,12 @@ impl ScanMonitor {
             }
         }
         if self.reversed {
-            scan.ranges.reverse();
+            // A wrong pitch may make one scan fit so; the next one decides.
+            if known {
+                scan.ranges.reverse();
+            } else {
+                scan.ranges.clear();
+            }
             return if before {
                 ScanVerdict::ReversedBefore
             } else {

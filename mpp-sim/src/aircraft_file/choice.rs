@@ -29,7 +29,7 @@ impl AircraftFile {
             }
 
             fn visit_map<A: MapAccess<'a>>(self, map: A) -> Result<AircraftFile, A::Error> {
-                AircraftFile::deserialize(MapAccessDeserializer::new(map))
+                Deserialize::deserialize(MapAccessDeserializer::new(map))
             }
         }
         input.deserialize_any(NameOrTable).map(Some)

@@ -6,17 +6,22 @@ mod lateral;
 mod numbers;
 mod pitch_loop;
 mod ranges;
+mod reading;
 mod similar;
 
+use crate::file_error::ScenarioError;
 pub use lateral::{Coefficient, Lateral, Surface};
 use mpp_core::vehicle::Airframe;
 pub use numbers::AircraftModel;
+pub use pitch_loop::PitchLoop;
+use pitch_loop::absent;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The content of an aircraft file.
+// `remote`: reading ends with a pitch loop, which stands for three of the keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(remote = "Self", deny_unknown_fields)]
 pub struct AircraftFile {
     /// Name in reports and in names of files: 1 to 64 bytes without slashes and control characters.
     pub name: String,
@@ -28,6 +33,7 @@ pub struct AircraftFile {
     /// Mass \[kg\].
     pub mass: f64,
     /// Moment of inertia in pitch [kg m^2].
+    #[serde(default = "absent")]
     pub pitch_inertia: f64,
     /// Wing area [m^2].
     pub wing_area: f64,
@@ -46,9 +52,14 @@ pub struct AircraftFile {
     /// Drag.
     pub drag: Drag,
     /// Pitching moment.
+    #[serde(default = "Moment::absent")]
     pub moment: Moment,
     /// Elevator.
+    #[serde(default = "Elevator::absent")]
     pub elevator: Elevator,
+    /// An autopilot's pitch loop instead of inertia, moment and elevator. Reading replaces it by them.
+    #[serde(default, skip_serializing)]
+    pub pitch_loop: Option<PitchLoop>,
     /// Motor.
     #[serde(default)]
     pub thrust: Thrust,
@@ -191,6 +202,14 @@ impl AircraftFile {
         ("rascal", include_str!("../../aircraft/rascal.toml")),
         ("delta", include_str!("../../aircraft/delta.toml")),
     ];
+
+    /// Reads an aircraft file from text. An error shows `name` as the name of the text.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Toml`].
+    pub fn parse(name: &str, text: &str) -> Result<Self, ScenarioError> {
+        toml::from_str(text).map_err(|error| ScenarioError::Toml(name.to_owned(), Box::new(error)))
+    }
 
     /// The airframe in the form that the core knows: derivatives per radian and per unit of the elevator's command,
     /// derivatives by rates per radian and second at cruise.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::scenario::ScenarioFile;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;
 use mpp_core::vehicle::{ActuatorLimits, Airframe};
@@ -305,6 +306,18 @@ fn a_pitch_loop_stands_for_the_moments() {
         assert!((unit * a.moment_elevator - 49.0).abs() < 1e-9);
         assert!((unit * a.moment_pitch_rate + 2.0 * 0.84 * 7.0).abs() < 1e-9);
     }
+}
+
+/// A table of a scenario is read as a file is.
+#[test]
+fn a_scenario_may_have_an_aircraft_with_a_pitch_loop() {
+    let text = format!("[aircraft]{LOOPED}");
+    let scenario = ScenarioFile::parse("s.toml", &text)
+        .unwrap()
+        .build()
+        .unwrap();
+    let file = AircraftFile::parse("looped", LOOPED).unwrap();
+    assert_eq!(scenario.aircraft.file, file);
 }
 
 /// The same with its lift per degree.

@@ -155,14 +155,11 @@ impl SpaceHost {
         loop {
             match link.receive(&awaited)? {
                 Message::ActuatorCommand(command) if command.tick == self.flown => {
-                    let neutral = SurfaceCommand {
-                        tick: command.tick,
-                        aileron: 0.0,
-                        rudder: 0.0,
-                    };
+                    let missing =
+                        || unexpected("the surface command", &Message::ActuatorCommand(command));
                     return Ok(Reply {
                         command,
-                        surfaces: surfaces.unwrap_or(neutral),
+                        surfaces: surfaces.ok_or_else(missing)?,
                         step,
                         space,
                         plan,

@@ -132,7 +132,6 @@ pub fn decide_all(
     pool(threads, seeds.len(), STACK)?.install(|| seeds.into_par_iter().map(decide_one).collect())
 }
 
-/// Threads for so many flights; 0 means as many as there are cores.
 /// A pool of this number of threads, 0 as many as there are cores, and no more than there are jobs, with stacks of this size
 /// [bytes].
 pub(crate) fn pool(

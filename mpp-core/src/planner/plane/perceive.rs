@@ -12,9 +12,6 @@ impl PlanePlanner {
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
-        if let Workspace::Scan(Intake { beams: 0, .. }) = self.workspace {
-            self.judge_scan();
-        }
         let Workspace::Scan(Intake {
             scan,
             beams,
@@ -23,12 +20,28 @@ impl PlanePlanner {
         else {
             return self.end_inconsistent();
         };
+        let (pose, sight) = (self.pose, self.settings.sight);
+        if *beams == 0 {
+            self.map.roll(pose.x, self.altitude);
+            // A lidar that was distrusted once stays so until a beam returns.
+            self.lidar_distrusted = !has_return(scan, sight)
+                && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
+            let verdict = self.monitor.check(scan, sight, &pose);
+            if verdict == ScanVerdict::ReversedBefore {
+                self.map.clear();
+                self.map.roll(pose.x, self.altitude);
+            }
+            self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
+            if self.lidar_distrusted {
+                scan.ranges.clear();
+            }
+            self.map.write_isolated_hits(scan, sight, &pose, isolated);
+        }
         if *beams < scan.ranges.len() {
             let next = *beams..*beams + BEAMS_PER_SLICE;
             *beams = next.end;
-            let sight = self.monitor.sight(self.settings.sight);
-            self.map
-                .insert_beams(scan, next, sight, &self.pose, isolated);
+            let sight = self.monitor.sight(sight);
+            self.map.insert_beams(scan, next, sight, &pose, isolated);
             return;
         }
         if self.summary.blind {
@@ -55,29 +68,6 @@ impl PlanePlanner {
             lattice.start(&task, &self.field);
         }
         self.phase = Phase::Lattice;
-    }
-
-    /// Decides what of the scan is believed, and moves the map along with the aircraft.
-    fn judge_scan(&mut self) {
-        let Workspace::Scan(Intake { scan, .. }) = &mut self.workspace else {
-            return;
-        };
-        let (pose, sight) = (self.pose, self.settings.sight);
-        // A lidar that was distrusted once stays so until a beam returns.
-        self.lidar_distrusted = !has_return(scan, sight)
-            && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
-        if self.lidar_distrusted {
-            scan.ranges.clear();
-        }
-        let verdict = self.monitor.check(scan, sight, &pose);
-        if verdict == ScanVerdict::ReversedBefore {
-            self.map.clear();
-        }
-        self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
-        self.map.roll(pose.x, self.altitude);
-        if let Workspace::Scan(Intake { scan, isolated, .. }) = &mut self.workspace {
-            self.map.write_isolated_hits(scan, sight, &pose, isolated);
-        }
     }
 
     /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what
