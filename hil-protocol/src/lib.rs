@@ -75,7 +75,7 @@
 //! | version | release | what changed |
 //! |---|---|---|
 //! | 1 | none | messages 1 to 9 |
-//! | 2 | 0.2.0, open | messages 10 to 21; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors, the elevator and the motor; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`], which may end without its dead times; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
+//! | 2 | 0.2.0, open | messages 10 to 22; [`SensorFrame`] with the time and the errors of each measurement; [`StepReport`] with position, wind, lift and trust in the sensors, the elevator and the motor; [`RejectionCause`] from [`BytesLost`](RejectionCause::BytesLost) on; [`Configure::aircraft`] instead of the number of an airframe, [`Configure::actuators`], which may end without its dead times; [`ConfigureVerdict`] from [`Actuators`](ConfigureVerdict::Actuators) on; [`ParameterVerdict`] from [`NotInPreset`](ParameterVerdict::NotInPreset) on; [`Setting`] |
 //!
 //! # Use
 //!

@@ -39,7 +39,7 @@ impl ConfigureLateral {
 pub struct ConfigureSpace {
     /// Greatest bank \[rad\] and rate of the bank [rad/s] of plans.
     pub bank: [f64; 2],
-    /// Least distance of the body from the centres of occupied voxels \[m\].
+    /// Least distance of the body from what hits have shown, beyond the half span \[m\]. A sphere has its radius in it.
     pub margin: f64,
     /// Half of the span of a wing that banks \[m\]; 0 for a sphere.
     pub half_span: f64,

@@ -79,6 +79,9 @@ pub struct SpaceNode {
     beams: heapless::Vec<SpaceBeam, MOST_POINTS>,
 }
 
+// Whoever places it counts on 2 MB, as docs say.
+const _: () = assert!(size_of::<SpaceNode>() < 2_100_000);
+
 impl SpaceNode {
     /// A node that waits for a hello.
     #[must_use]
