@@ -107,11 +107,26 @@ impl Units {
         VehicleState {
             x: state.x / self.length,
             z: state.z / self.length,
-            air: AirState {
-                airspeed: state.air.airspeed / self.speed(),
-                pitch_rate: state.air.pitch_rate * self.time,
-                ..state.air
-            },
+            air: self.own_air(&state.air),
+        }
+    }
+
+    /// A motion through the air in own units.
+    #[must_use]
+    pub fn own_air(&self, air: &AirState) -> AirState {
+        AirState {
+            airspeed: air.airspeed / self.speed(),
+            pitch_rate: air.pitch_rate * self.time,
+            ..*air
+        }
+    }
+
+    /// Controls in own units. The elevator keeps the unit of its command.
+    #[must_use]
+    pub fn own_control(&self, control: Control) -> Control {
+        Control {
+            thrust: control.thrust / self.force(),
+            ..control
         }
     }
 
@@ -130,16 +145,9 @@ impl Units {
     /// A trim in own units.
     #[must_use]
     pub fn own_trim(&self, trim: &Trim) -> Trim {
-        let state = VehicleState {
-            air: trim.state,
-            ..VehicleState::default()
-        };
         Trim {
-            state: self.own_state(&state).air,
-            control: Control {
-                thrust: trim.control.thrust / self.force(),
-                elevator: trim.control.elevator,
-            },
+            state: self.own_air(&trim.state),
+            control: self.own_control(trim.control),
         }
     }
 

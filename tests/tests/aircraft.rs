@@ -63,6 +63,18 @@ fn a_heavily_damped_aircraft_flies_an_empty_sky() {
     }
 }
 
+/// It answers its elevator within seconds. What has not come within the reference aircraft's times is not missing: a watch that
+/// thought so doubled the commands, and stalled the wing.
+#[test]
+fn the_elevator_of_a_slow_aircraft_is_not_suspected() {
+    let file = brought("stol", include_str!("../aircraft/stol.toml"));
+    for seed in [781_516, 781_517, 781_521] {
+        let log = flown(&file, 20, seed);
+        assert!(log.summary.strict, "seed {seed}: {:?}", log.summary);
+        assert!(log.sensors.is_empty(), "seed {seed}: {:?}", log.sensors);
+    }
+}
+
 /// The wing pitches up half way to the stall, fast enough to swing through, and the elevator is asked for all it has.
 #[test]
 fn the_guard_stops_a_wing_that_swings_up_before_the_stall() {

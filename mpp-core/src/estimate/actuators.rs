@@ -2,6 +2,7 @@
 
 use super::{CommandLine, ElevatorEffect, MotorWatch, Progress};
 use crate::settings::Settings;
+use crate::units::Units;
 use crate::vehicle::{ActuatorLimits, AirState, Control, Trim};
 
 /// The actuators by their model, and the watches of their effect.
@@ -10,7 +11,9 @@ pub struct Actuators {
     limits: ActuatorLimits,
     /// The controls that the actuators gave up to the last step, by the model of the actuators.
     given: Control,
+    /// The watch of the elevator, in the units of the planner, so that its times are those of the aircraft.
     elevator: ElevatorEffect,
+    units: Units,
     /// Elevator command of the plan since the last step, and the one that the aircraft has felt since then.
     planned: f64,
     felt: f64,
@@ -28,7 +31,11 @@ impl Actuators {
         Self {
             limits: settings.actuators,
             given: trim.control,
-            elevator: ElevatorEffect::new(&settings.airframe, trim),
+            elevator: ElevatorEffect::new(
+                &settings.units.own_airframe(&settings.airframe),
+                &settings.units.own_trim(trim),
+            ),
+            units: settings.units,
             planned: trim.control.elevator,
             felt: trim.control.elevator,
             line: CommandLine::new(&settings.actuators, trim.control),
@@ -108,9 +115,18 @@ impl Actuators {
     }
 
     /// Compares the measured pitch \[rad\] and altitude \[m\] with the commands; see [`ElevatorEffect::update`].
-    pub fn see_turn(&mut self, seen: (f64, f64), air: &AirState, lift_offset: f64, period: f64) {
-        let effective = self.effective();
-        (self.elevator).update(seen, air, lift_offset, effective, self.felt, period);
+    pub fn see_turn(
+        &mut self,
+        (pitch, altitude): (f64, f64),
+        air: &AirState,
+        lift_offset: f64,
+        period: f64,
+    ) {
+        let own = &self.units;
+        let seen = (pitch, altitude / own.length);
+        let effective = own.own_control(self.effective());
+        let (air, period) = (own.own_air(air), period / own.time);
+        (self.elevator).update(seen, &air, lift_offset, effective, self.felt, period);
     }
 
     /// Compares the gain of speed with the thrust; see [`MotorWatch::update`]. `None` if the estimates have

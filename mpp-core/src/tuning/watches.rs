@@ -103,7 +103,8 @@ pub mod airspeed_bias {
     pub const MOST_LIFT: f64 = 0.18;
 }
 
-/// Effect of the elevator, seen by the turns that commands miss.
+/// Effect of the elevator, seen by the turns that commands miss. Times and lengths are those of the reference aircraft; others have
+/// them in their own units. Source: D55.
 pub mod elevator {
     /// Time over which a turn fades from the comparison \[s\]. With 0.5 errors of the lift stay in it for longer.
     /// Source: chosen.
@@ -139,7 +140,7 @@ pub mod elevator {
     pub const LEAST_EFFECT: f64 = 0.15;
 }
 
-/// The monitor of the pitch sensor, by the altitude.
+/// The monitor of the pitch sensor, by the altitude. Its units are those of [`elevator`].
 pub mod pitch_monitor {
     /// Time of each of the two high passes of altitudes \[s\]. With less the noise of positions weighs more, with more a turn is
     /// seen later. Source: chosen.
