@@ -5,7 +5,7 @@
 use super::vehicle::Vehicle;
 use hil_protocol::mavlink::MessageData;
 use hil_protocol::mavlink::messages::*;
-use mpp_core::vehicle::GRAVITY;
+use mpp_core::vehicle::{GRAVITY, air_rate};
 use mpp_node::parameters::Tuning;
 
 /// MAV_FRAME_LOCAL_NED and MAV_FRAME_BODY_FRD.
@@ -13,8 +13,8 @@ const LOCAL_NED: u8 = 1;
 const BODY_FRD: u8 = 12;
 /// MAV_ESTIMATOR_TYPE_AUTOPILOT.
 const AUTOPILOT: u8 = 8;
-/// The three turn rates among HIGHRES_IMU_UPDATED_FLAGS.
-const TURN_RATES: u16 = 0x38;
+/// The accelerations and turn rates among HIGHRES_IMU_UPDATED_FLAGS.
+const INERTIAL: u16 = 0x3f;
 
 impl Vehicle {
     /// Sends a message about the motion or the place. Returns `false` if it is none of these.
@@ -26,7 +26,7 @@ impl Vehicle {
             VFR_HUD_DATA::ID => self.send_display(),
             ALTITUDE_DATA::ID => self.send_altitude(),
             ODOMETRY_DATA::ID => self.send_odometry(),
-            HIGHRES_IMU_DATA::ID => self.send_turn_rate(),
+            HIGHRES_IMU_DATA::ID => self.send_inertial(),
             HOME_POSITION_DATA::ID => self.send_home(),
             GPS_GLOBAL_ORIGIN_DATA::ID => {
                 let [latitude, longitude] = self.home.place(0.0);
@@ -146,15 +146,33 @@ impl Vehicle {
         });
     }
 
-    /// The turn rate is the core's estimate. The simulation has no accelerometer, magnetometer, barometer or thermometer.
-    fn send_turn_rate(&mut self) {
+    /// The accelerations that an accelerometer in the body axes would show, forward and down [m/s^2]: by the core's equations of
+    /// motion, from its estimate and its commands, without those of the wind.
+    fn acceleration(&self) -> [f64; 2] {
+        let air = self.motion().0;
+        let (along, turn) = match &self.tuning {
+            Some(tuning) if self.flying => {
+                let airframe = self.conditions.airframe(&tuning.settings.airframe);
+                let rate = air_rate(&airframe, air, self.control);
+                (rate.airspeed, air.airspeed * rate.flight_path)
+            }
+            _ => (0.0, 0.0),
+        };
+        let (climbing, level) = libm::sincos(air.flight_path);
+        let (along, across) = (along + GRAVITY * climbing, turn + GRAVITY * level);
+        let (sin, cos) = libm::sincos(air.angle_of_attack());
+        [along * cos + across * sin, along * sin - across * cos]
+    }
+
+    /// Accelerations and turn rate are the core's. The simulation has no accelerometer, magnetometer, barometer or thermometer.
+    fn send_inertial(&mut self) {
         let ygyro = self.motion().0.pitch_rate as f32;
+        let [xacc, zacc] = self.acceleration().map(|part| part as f32);
         let none = f32::NAN;
         self.send(&HIGHRES_IMU_DATA {
             time_usec: self.microseconds(),
-            xacc: none,
-            yacc: none,
-            zacc: none,
+            xacc,
+            zacc,
             ygyro,
             xmag: none,
             ymag: none,
@@ -163,7 +181,7 @@ impl Vehicle {
             diff_pressure: none,
             pressure_alt: none,
             temperature: none,
-            fields_updated: TURN_RATES,
+            fields_updated: INERTIAL,
             ..HIGHRES_IMU_DATA::DEFAULT
         });
     }

@@ -108,7 +108,7 @@ impl Vehicle {
     }
 
     fn send_wind(&mut self) {
-        let wind = self.wind;
+        let wind = self.conditions.wind;
         let [wind_x, wind_y] = self.home.north_east(wind.x).map(|part| part as f32);
         self.send(&WIND_COV_DATA {
             time_usec: self.microseconds(),

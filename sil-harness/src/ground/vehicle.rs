@@ -19,7 +19,7 @@ use super::tails::Tails;
 use hil_protocol::SensorStates;
 use hil_protocol::mavlink::messages::*;
 use hil_protocol::mavlink::{Frame, Framer, Key, Sender};
-use mpp_core::vehicle::{AirState, VehicleState, Wind};
+use mpp_core::vehicle::{AirState, Conditions, Control, VehicleState};
 use mpp_node::parameters::{self, Tuning};
 use mpp_sim::navigation::NavigationConfig;
 use mpp_sim::orders::{Mode, Order, Refused};
@@ -81,9 +81,9 @@ pub struct Vehicle {
     pub(super) mode: Mode,
     pub(super) state: VehicleState,
     estimate: AirState,
-    thrust: f64,
-    /// Motion of the air by the core's estimate [m/s].
-    pub(super) wind: Wind,
+    pub(super) control: Control,
+    /// Wind and lift by the core's estimate.
+    pub(super) conditions: Conditions,
     rejections: usize,
     pub(super) sensors: SensorStates,
     pub(super) doubts: Doubts,
@@ -122,8 +122,8 @@ impl Vehicle {
             mode: Mode::Auto,
             state: VehicleState::default(),
             estimate: AirState::default(),
-            thrust: 0.0,
-            wind: Wind::STILL,
+            control: Control::default(),
+            conditions: Conditions::STILL,
             rejections: 0,
             sensors: SensorStates::default(),
             doubts: Doubts::default(),
@@ -277,8 +277,8 @@ impl Vehicle {
         // A station sees what the aircraft believes, as it would from a real one.
         self.state = record.tick.estimate;
         self.estimate = record.tick.estimate.air;
-        self.thrust = record.tick.control.thrust;
-        self.wind = record.tick.conditions.wind;
+        self.control = record.tick.control;
+        self.conditions = record.tick.conditions;
         for entry in record.rejections.iter().skip(self.rejections) {
             self.note_fault(&entry.cause);
         }
@@ -382,14 +382,14 @@ impl Vehicle {
     /// Estimated velocity over ground, downrange and up [m/s]. A vehicle that waits hangs in the air.
     pub(super) fn over_ground(&self) -> (f64, f64) {
         if self.flying {
-            self.wind.ground_velocity(&self.estimate)
+            self.conditions.wind.ground_velocity(&self.estimate)
         } else {
             (0.0, 0.0)
         }
     }
 
     pub(super) fn motion(&self) -> (&AirState, f64, usize) {
-        (&self.estimate, self.thrust, self.rejections)
+        (&self.estimate, self.control.thrust, self.rejections)
     }
 
     pub(super) fn damaged_frames(&self) -> u32 {

@@ -85,6 +85,13 @@ fn what_stations_wait_for_is_sent() {
     assert!((speed - log.ticks.est_airspeed[row]).abs() < 2.0);
     let steep = f64::from(told.vz / told.vx) - (pitch - log.ticks.est_flight_path[row]);
     assert!(steep.abs() < 0.05, "{steep}");
+    // Near level flight an accelerometer shows gravity, upwards.
+    let imu = heard!(radio, HIGHRES_IMU, |imu| imu.clone());
+    let (_, told) = &imu[0];
+    let felt = libm::hypot(told.xacc.into(), told.zacc.into());
+    assert!((felt - 9.81).abs() < 0.3 && told.zacc < -9.0, "{told:?}");
+    assert_eq!(told.yacc, 0.0);
+    assert!(imu.iter().all(|(_, told)| told.zacc.is_finite()));
 }
 
 /// The motor of an aircraft file counts, not a number of newtons.
