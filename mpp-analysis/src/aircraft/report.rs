@@ -2,7 +2,7 @@
 
 use super::doubts::doubts;
 use super::lateral_doubts::lateral_doubts;
-use super::{Doubt, LateralReport, Modes};
+use super::{Doubt, LateralReport, Modes, flown_cells};
 use mpp_core::config::{STAGE_PERIOD, STAGES};
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::aircraft_file::AircraftModel;
@@ -113,7 +113,7 @@ impl AircraftReport {
             body_radius: known.body_radius,
             horizon: [horizon, horizon * known.cruise],
             sight: 45.0 * units.length,
-            replan_hz: [1.0 / units.time, 4.0 / units.time],
+            replan_hz: [20, 40].map(|count| flown_cells(&[count], units.time)[0].1),
             densest: [units.length, DENSEST * units.length],
             lateral,
             doubts,
@@ -161,7 +161,7 @@ impl fmt::Display for AircraftReport {
         let ([sparse, dense], [radius, spacing]) = (self.replan_hz, self.densest);
         writeln!(
             f,
-            "it needs       sight {:.0} m, replanning at {sparse:.2} Hz in sparse and {dense:.2} Hz in dense fields",
+            "it needs       sight {:.0} m, replanning at {sparse} Hz in sparse and {dense} Hz in dense fields",
             self.sight
         )?;
         write!(

@@ -53,10 +53,15 @@ pub fn flown_cells(obstacles: &[usize], time_unit: f64) -> Vec<(usize, f64)> {
         let ticks = (f64::from(TICKS_PER_SECOND) * time_unit / rate)
             .round()
             .max(1.0);
-        f64::from(TICKS_PER_SECOND) / ticks
+        six_digits(f64::from(TICKS_PER_SECOND) / ticks)
     };
     obstacles
         .iter()
         .map(|count| (*count, rate(*count)))
         .collect()
+}
+
+/// A rate with six significant digits: short to read, and enough that a scenario takes it.
+fn six_digits(rate: f64) -> f64 {
+    format!("{rate:.5e}").parse().unwrap_or(rate)
 }

@@ -42,13 +42,13 @@ pub(super) struct CampaignArgs {
     #[command(flatten)]
     field: FieldArgs,
     /// Numbers of candidate paths of a planning cycle, a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(whole::<u16>()), allow_negative_numbers = true)]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(whole::<u16>()))]
     pub(super) paths: Vec<u16>,
     /// Presets, a list, or space, which has flags of its own: see `campaign --preset space --help` [default: the scenario's]
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>(), allow_negative_numbers = true)]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>())]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies. With --faults it flies with the faults
@@ -78,7 +78,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) trials: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
-    #[arg(long, help_heading = RUN, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, help_heading = RUN, value_parser = seed)]
     pub(super) seed: Option<u64>,
     /// Number of threads, at most 1024 and no more than there is work for; 0 takes every core
     #[arg(long, help_heading = RUN, default_value_t = 0, value_parser = threads())]

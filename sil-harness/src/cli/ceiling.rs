@@ -25,7 +25,7 @@ pub(super) struct CeilingArgs {
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     fields: u32,
     /// Seed of the first field; the next fields take the next seeds [default: the scenario's]
-    #[arg(long, help_heading = RUN, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, help_heading = RUN, value_parser = seed)]
     seed: Option<u64>,
     /// Number of threads, at most 1024 and no more than there is work for; 0 takes every core
     #[arg(long, help_heading = RUN, default_value_t = 0, value_parser = threads())]

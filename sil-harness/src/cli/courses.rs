@@ -58,7 +58,7 @@ pub(super) fn courses(
         });
         let [plane, space] = told;
         data(format_args!(
-            "{aircraft}: {obstacles} obstacles at {replan_hz:.3} Hz: strict successes of {flights} in the plane {plane}, in space {space}"
+            "{aircraft}: {obstacles} obstacles at {replan_hz} Hz: strict successes of {flights} in the plane {plane}, in space {space}"
         ))?;
     }
     Ok(0)

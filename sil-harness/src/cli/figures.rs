@@ -27,7 +27,7 @@ pub(super) struct FiguresArgs {
     #[arg(long)]
     pdf: bool,
     /// Seed of all flights in the pictures
-    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Row files of one campaign; its success rates are then drawn too
     #[arg(long, value_name = "FILE", num_args = 1..)]

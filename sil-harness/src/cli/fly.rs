@@ -30,7 +30,7 @@ pub(super) struct FlyArgs {
     #[command(flatten)]
     scenario: ScenarioArgs,
     /// Seed of the field, of all noise and of the planner [default: 1]
-    #[arg(long, help_heading = WORLD, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_parser = seed)]
     seed: Option<u64>,
     /// Field of obstacles (TOML, as docs/fields.md); it stands alone unless --obstacles is given
     #[arg(long, help_heading = WORLD, value_name = "FILE")]
@@ -42,18 +42,18 @@ pub(super) struct FlyArgs {
     #[arg(long, help_heading = WORLD, value_parser = generator())]
     generator: Option<GeneratorName>,
     /// Number of obstacles between 25 m and 240 m downrange [default: 20]
-    #[arg(long, help_heading = WORLD, value_parser = whole::<usize>(), allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_parser = whole::<usize>())]
     obstacles: Option<usize>,
     /// Number of candidate paths of a planning cycle; with 0 the core tracks the shortest path
     /// itself, without refinement [default: 25]
-    #[arg(long, help_heading = PLANNER, value_parser = whole::<u16>(), allow_negative_numbers = true)]
+    #[arg(long, help_heading = PLANNER, value_parser = whole::<u16>())]
     paths: Option<u16>,
     /// Preset, which is a set of parameters and rules, or space, which has flags of its own: see `fly --preset space --help`
     /// [default: flight]
     #[arg(long, help_heading = PLANNER, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
-    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true)]
+    #[arg(long, help_heading = PLANNER)]
     replan_hz: Option<f64>,
     /// Let an oracle fly, which knows the true field and state and replans at 10 Hz of the reference aircraft
     #[arg(long, help_heading = CORE, conflicts_with = "link")]

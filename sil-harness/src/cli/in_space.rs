@@ -55,7 +55,7 @@ struct InSpace {
     #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
     aircraft: Option<String>,
     /// Airspeed of level flight [m/s] [default: that of the aircraft's file]
-    #[arg(long, help_heading = WORLD, value_name = "M/S", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "M/S")]
     airspeed: Option<f64>,
     /// World of 240 m, drawn from the seed [default: forest]
     #[arg(long, help_heading = WORLD, value_parser = world())]
@@ -64,7 +64,7 @@ struct InSpace {
     #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
     stems: Option<PathBuf>,
     /// Radius of a sphere that stands for wing and fuselage \[m\]
-    #[arg(long, help_heading = WORLD, value_name = "M", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "M")]
     sphere: Option<f64>,
     /// Measurements without errors
     #[arg(long, help_heading = WORLD)]
@@ -74,13 +74,13 @@ struct InSpace {
     wind: Option<[f64; 3]>,
     /// Standard deviation of the vertical gusts [m/s], 0 to 5; those along and across are 1.6 times as strong. Light turbulence of
     /// MIL-F-8785C has 0.77
-    #[arg(long, help_heading = WORLD, value_name = "M/S", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "M/S")]
     gusts: Option<f64>,
     /// Let all beams of a sweep bear the time of its end, and not their own
     #[arg(long, help_heading = WORLD)]
     no_deskew: bool,
     /// Error of the lidar's clock \[ms\], -20 to 100: beams seem so much older than they are
-    #[arg(long, help_heading = WORLD, value_name = "MS", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "MS")]
     lidar_clock: Option<f64>,
     /// Candidates of a cycle, the previous plan included [default: 3]
     #[arg(long, help_heading = PLANNER, value_name = "N")]
@@ -89,10 +89,10 @@ struct InSpace {
     #[arg(long, help_heading = PLANNER)]
     no_programs: bool,
     /// Replanning rate [Hz], 1 to 10 [default: 4]
-    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true)]
+    #[arg(long, help_heading = PLANNER)]
     replan_hz: Option<f64>,
     /// Seed of world and measurements; the next flights of a campaign take the next seeds [default: 1]
-    #[arg(long, help_heading = WORLD, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_parser = seed)]
     seed: Option<u64>,
     /// Print one JSON object
     #[arg(long, help_heading = OUTPUT)]
@@ -105,7 +105,7 @@ pub(super) struct FlyInSpace {
     #[command(flatten)]
     flown: InSpace,
     /// Density of the world: trunks/m^2, walls or rows per m, or the spheres' share of the volume
-    #[arg(long, help_heading = WORLD, value_name = "DENSITY", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "DENSITY")]
     density: Option<f64>,
     /// Directory for the log and the picture
     #[arg(long, help_heading = OUTPUT, default_value = "out")]
@@ -118,7 +118,7 @@ pub(super) struct CampaignInSpace {
     #[command(flatten)]
     flown: InSpace,
     /// Densities of the world, a list: each is a cell
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<f64>(), allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<f64>())]
     density: Vec<f64>,
     /// Number of flights in each cell
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]

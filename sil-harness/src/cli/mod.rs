@@ -32,7 +32,7 @@ mod values;
 mod worlds;
 
 use answer::{Failure, complain};
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 
 /// Software in the loop for Model Predictive Planning: flies the flight core through obstacle
@@ -100,14 +100,30 @@ fn command(cli: Cli) -> Result<u8, Failure> {
     }
 }
 
+/// The command line, where a negative number is a value, so that its flag tells what to give. A wrong one ends the program.
+fn parsed<T: CommandFactory + FromArgMatches>(args: Vec<std::ffi::OsString>) -> T {
+    let matches = with_negative_numbers(T::command()).get_matches_from(args);
+    T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+fn with_negative_numbers(command: clap::Command) -> clap::Command {
+    let takes_values = |arg: &clap::Arg| arg.get_action().takes_values();
+    command
+        .mut_args(|arg| match takes_values(&arg) {
+            true => arg.allow_negative_numbers(true),
+            false => arg,
+        })
+        .mut_subcommands(with_negative_numbers)
+}
+
 /// Parses the command line and does what it says.
 #[must_use]
 pub fn run() -> ExitCode {
     let args: Vec<_> = std::env::args_os().collect();
     let result = if in_space::is_asked(&args) {
-        in_space::SpaceCli::parse().run()
+        parsed::<in_space::SpaceCli>(args).run()
     } else {
-        command(Cli::parse())
+        command(parsed(args))
     };
     match result {
         Ok(code) => ExitCode::from(code),

@@ -26,7 +26,7 @@ pub(super) struct ScenarioArgs {
     aircraft: Option<String>,
     /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's
     /// speed squared]
-    #[arg(long, help_heading = WORLD, value_name = "FACTOR", allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_name = "FACTOR")]
     world_scale: Option<f64>,
     /// Lidar (TOML, as docs/lidars/example.toml); its keys take precedence over the scenario's
     #[arg(long, help_heading = WORLD, value_name = "FILE")]
@@ -35,13 +35,13 @@ pub(super) struct ScenarioArgs {
     #[arg(long, help_heading = WORLD, value_parser = navigation())]
     navigation: Option<NavigationSource>,
     /// Simulated time from the start of a planning cycle until its plan is flown [ms], a multiple of 10 [default: 10]
-    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true, value_parser = whole::<u32>())]
+    #[arg(long, help_heading = PLANNER, value_parser = whole::<u32>())]
     latency_ms: Option<u32>,
     /// Planner slices that run between two ticks [default: all that the cycle needs]
-    #[arg(long, help_heading = PLANNER, allow_negative_numbers = true, value_parser = whole::<u32>())]
+    #[arg(long, help_heading = PLANNER, value_parser = whole::<u32>())]
     slices_per_tick: Option<u32>,
     /// Length of the flight [s], a multiple of 0.01 [default: 20]
-    #[arg(long, help_heading = WORLD, allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD)]
     duration: Option<f64>,
 }
 
@@ -124,7 +124,7 @@ pub(super) struct FieldArgs {
     #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(generator()))]
     generator: Vec<GeneratorName>,
     /// Numbers of random obstacles, a list such as 20,40 [default: the scenario's]
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(whole::<usize>()), allow_negative_numbers = true)]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(whole::<usize>()))]
     obstacles: Vec<usize>,
 }
 

@@ -21,7 +21,7 @@ pub(super) struct SpaceArgs {
     #[arg(long, value_name = "NAME|FILE")]
     aircraft: String,
     /// Bank to take at once and to hold, to the right positive, -60 to 60 \[deg\] [default: 30, and 0 in a world]
-    #[arg(long, value_name = "DEG", value_parser = bank, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEG", value_parser = bank)]
     bank: Option<f64>,
     /// Steady wind ahead, to the right and up [m/s]
     #[arg(long, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
@@ -30,7 +30,7 @@ pub(super) struct SpaceArgs {
     #[arg(long)]
     gusts: Option<Turbulence>,
     /// Seed of the gusts and of the world
-    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Let the planner fly this number of flights in its vertical plane, with the course held, past 20 and 40 scaled obstacles
     #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "json", "out"])]

@@ -30,7 +30,26 @@ fn every_example_in_the_help_is_a_valid_command() {
     let examples = examples(&Cli::command());
     assert!(examples.len() > 15, "{examples:?}");
     for example in examples {
-        let parsed = Cli::try_parse_from(example.split_whitespace());
+        let command = with_negative_numbers(Cli::command());
+        let parsed = command.try_get_matches_from(example.split_whitespace());
         assert!(parsed.is_ok(), "{example}: {:?}", parsed.err());
+    }
+}
+
+/// `unexpected argument '-1'` does not say what to give.
+#[test]
+fn a_negative_number_is_a_value_of_its_flag() {
+    for line in [
+        "campaign --trials -1",
+        "campaign --threads -2",
+        "aircraft x8 --flights -2",
+        "aircraft x8 --obstacles -1",
+        "fly --obstacles -3",
+        "fly --live -1",
+    ] {
+        let arguments = ["sil-harness"].into_iter().chain(line.split(' '));
+        let parsed = with_negative_numbers(Cli::command()).try_get_matches_from(arguments);
+        let text = parsed.unwrap_err().to_string();
+        assert!(text.contains("invalid value '-"), "{line}: {text}");
     }
 }

@@ -46,7 +46,7 @@ struct CycleArgs {
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     flights: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: 1]
-    #[arg(long, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, value_parser = seed)]
     seed: Option<u64>,
     /// Number of times that each cycle is planned; the fastest counts
     #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
@@ -73,7 +73,7 @@ struct QpArgs {
     #[arg(long, requires = "generate")]
     dense: bool,
     /// Seed of the first flight from which programs are generated
-    #[arg(long, default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Preset of those flights; `flight` has soft rows
     #[arg(long, value_parser = preset(), default_value_t = Preset::Reference)]
