@@ -41,6 +41,7 @@
 mod convert;
 mod mail;
 mod node;
+mod out;
 pub mod parameters;
 mod plan_task;
 mod space;

@@ -1,8 +1,10 @@
 //! The node that runs both tasks in one thread.
 
 use crate::mail::PlanRequest;
+use crate::out::{Frames, Messages, Out};
 use crate::plan_task::{PlanTask, Progress};
 use crate::step_task::{Pace, StepTask};
+use hil_protocol::Message;
 use mpp_core::health::Health;
 use mpp_core::planner::Planner;
 
@@ -33,13 +35,27 @@ impl FlightNode {
     pub fn receive_advised(
         &mut self,
         bytes: &[u8],
-        mut send: impl FnMut(&[u8]),
+        send: impl FnMut(&[u8]),
         mut advise: impl FnMut(&mut PlanRequest, &mut Planner),
     ) {
+        let send = &mut Frames(send);
         for byte in bytes {
-            self.step.receive(*byte, &mut send);
-            self.run_planner(&mut send, &mut advise);
+            self.step.take_byte(*byte, send);
+            self.run_planner(send, &mut advise);
         }
+    }
+
+    /// Does the work of [`FlightNode::receive_advised`] without a link: takes a message as it is, and `send` gets the
+    /// messages of the answer.
+    pub fn take_advised(
+        &mut self,
+        message: &Message,
+        send: impl FnMut(Message),
+        mut advise: impl FnMut(&mut PlanRequest, &mut Planner),
+    ) {
+        let send = &mut Messages(send);
+        self.step.take_message(message, send);
+        self.run_planner(send, &mut advise);
     }
 
     /// The counters of this flight; `None` before the configuration.
@@ -58,7 +74,7 @@ impl FlightNode {
     /// a reply starts at most one more tick.
     fn run_planner(
         &mut self,
-        send: &mut impl FnMut(&[u8]),
+        send: &mut impl Out,
         advise: &mut impl FnMut(&mut PlanRequest, &mut Planner),
     ) {
         loop {
@@ -71,7 +87,7 @@ impl FlightNode {
                 Progress::Working => {}
                 Progress::Replied => {
                     if let Some(reply) = self.plan.reply() {
-                        self.step.take_reply(reply, &mut *send);
+                        self.step.settle(reply, send);
                     }
                 }
             }

@@ -17,13 +17,14 @@
 //! nothing beyond. Estimates, sensors, rates and latency are as without it. So the difference of both flights is what
 //! hidden obstacles cost. The oracle besides has exact measurements, more plans, all rounds and more sight.
 
-use crate::field::{Obstacle, Point, Shape};
+use crate::field::{Field, Obstacle, Point, Shape};
+use crate::scenario::Scenario;
 use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::Planner;
 use mpp_core::sense::LidarScan;
 use mpp_core::tuning::grid::CELL;
 use mpp_core::vehicle::{VehicleState, Wind};
-use mpp_node::{FlightNode, PlanRequest};
+use mpp_node::PlanRequest;
 
 /// Distance along the track, in both directions, that covers the map and somewhat more \[m\].
 const REACH: f64 = 80.0;
@@ -73,18 +74,23 @@ impl Oracle {
         }
     }
 
-    /// Gives bytes to a core, with the advice of an oracle if there is one. `send` takes each frame of the core.
-    pub fn receive(
-        oracle: Option<&Self>,
-        node: &mut FlightNode,
-        bytes: &[u8],
-        send: impl FnMut(&[u8]),
-    ) {
-        match oracle {
-            None => node.receive(bytes, send),
-            Some(oracle) => node.receive_advised(bytes, send, |request, planner| {
+    /// The oracle of a scenario in a field, if the scenario has one.
+    pub(crate) fn of(scenario: &Scenario, field: &dyn Field) -> Option<Self> {
+        if scenario.oracle {
+            Some(Self::new(field.obstacles()))
+        } else if scenario.known_map {
+            Some(Self::of_map(field.obstacles(), scenario.lidar.range_max))
+        } else {
+            None
+        }
+    }
+
+    /// The advice that a core gets: that of an oracle if there is one.
+    pub fn advice(oracle: Option<&Self>) -> impl FnMut(&mut PlanRequest, &mut Planner) {
+        move |request, planner| {
+            if let Some(oracle) = oracle {
                 oracle.advise(request, planner);
-            }),
+            }
         }
     }
 

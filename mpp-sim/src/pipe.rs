@@ -1,4 +1,4 @@
-//! The core in the harness's own process, behind a pipe of bytes.
+//! The core in the harness's own process, behind a pipe of bytes, or without a link.
 
 use crate::field::Field;
 use crate::link::{Link, LinkError};
@@ -33,11 +33,16 @@ impl Inbox {
                 Some(Err(error)) => return Err(LinkError::Frame(error)),
             }
         }
-        Err(LinkError::Silent {
-            waiting: "harness",
-            awaited: format!("{awaited} from the core"),
-            patience: None,
-        })
+        Err(silent(awaited))
+    }
+}
+
+/// The core has nothing more to say.
+fn silent(awaited: &str) -> LinkError {
+    LinkError::Silent {
+        waiting: "harness",
+        awaited: format!("{awaited} from the core"),
+        patience: None,
     }
 }
 
@@ -68,16 +73,8 @@ impl PipeLink {
     /// A fresh core for a scenario in a field that is not the scenario's.
     #[must_use]
     pub fn in_field(scenario: &Scenario, field: &dyn Field) -> Self {
-        let obstacles = field.obstacles();
-        let oracle = if scenario.oracle {
-            Some(Oracle::new(obstacles))
-        } else if scenario.known_map {
-            Some(Oracle::of_map(obstacles, scenario.lidar.range_max))
-        } else {
-            None
-        };
         Self {
-            oracle,
+            oracle: Oracle::of(scenario, field),
             ..Self::new()
         }
     }
@@ -85,7 +82,8 @@ impl PipeLink {
     /// Sends bytes as they are, without a check.
     pub fn send_bytes(&mut self, bytes: &[u8]) {
         let send = |frame: &[u8]| self.inbox.bytes.extend(frame);
-        Oracle::receive(self.oracle.as_ref(), &mut self.node, bytes, send);
+        let advice = Oracle::advice(self.oracle.as_ref());
+        self.node.receive_advised(bytes, send, advice);
     }
 
     /// The core, for inspection.
@@ -114,12 +112,64 @@ impl Link for PipeLink {
     }
 
     fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
-        match &mut self.oracle {
-            Some(oracle) => {
-                oracle.see(truth, wind);
-                Ok(())
-            }
-            None => Err(LinkError::NoOracle),
+        reveal(self.oracle.as_mut(), truth, wind)
+    }
+}
+
+fn reveal(oracle: Option<&mut Oracle>, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+    oracle.ok_or(LinkError::NoOracle)?.see(truth, wind);
+    Ok(())
+}
+
+/// A core in this process that takes and gives messages, without the frames of a wire. A campaign keeps one for each thread,
+/// so that its flights share the memory of their cores.
+pub struct DirectLink {
+    node: Box<FlightNode>,
+    oracle: Option<Oracle>,
+    inbox: VecDeque<Message>,
+}
+
+impl DirectLink {
+    /// A fresh core without an oracle.
+    #[must_use]
+    pub fn new() -> Self {
+        Self {
+            node: Box::new(FlightNode::new()),
+            oracle: None,
+            inbox: VecDeque::new(),
         }
+    }
+
+    /// Puts a fresh core for a scenario, with its oracle if it has one, in place of the core.
+    pub fn restart(&mut self, scenario: &Scenario) {
+        *self.node = FlightNode::new();
+        self.inbox.clear();
+        self.oracle = scenario
+            .is_advised()
+            .then(|| Oracle::of(scenario, &scenario.field()))
+            .flatten();
+    }
+}
+
+impl Default for DirectLink {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Link for DirectLink {
+    fn send(&mut self, message: &Message) -> Result<(), LinkError> {
+        let send = |answer| self.inbox.push_back(answer);
+        let advice = Oracle::advice(self.oracle.as_ref());
+        self.node.take_advised(message, send, advice);
+        Ok(())
+    }
+
+    fn receive(&mut self, awaited: &str) -> Result<Message, LinkError> {
+        self.inbox.pop_front().ok_or_else(|| silent(awaited))
+    }
+
+    fn reveal(&mut self, truth: &VehicleState, wind: Wind) -> Result<(), LinkError> {
+        reveal(self.oracle.as_mut(), truth, wind)
     }
 }

@@ -10,7 +10,7 @@ use mpp_analysis::campaign::{self, Campaign as Grid, Cell, Lists, NamedField, Ro
 use mpp_analysis::rows::Header;
 use mpp_sim::flight::fly;
 use mpp_sim::flight_observer::FlightObserver;
-use mpp_sim::pipe::PipeLink;
+use mpp_sim::pipe::DirectLink;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
@@ -132,7 +132,8 @@ impl Campaign {
 fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let scenario = campaign.scenario(cell, seed).map_err(errors::scenario)?;
     let mut observer = FlightObserver::of(&scenario);
-    let mut link = PipeLink::of(&scenario);
+    let mut link = DirectLink::new();
+    link.restart(&scenario);
     let log = fly(&scenario, &mut link, |record| observer.watch(record)).map_err(errors::flight)?;
     let hash = log.hash().map_err(input)?;
     Ok(Row::new(cell.clone(), &log, &observer, hash, None))

@@ -19,9 +19,12 @@ use space::{
 };
 
 /// The struct of a message, which a frame carries.
-pub trait Body: Serialize + DeserializeOwned {
+pub trait Body: Clone + Serialize + DeserializeOwned {
     /// The number that stands for the message in a frame's header, one of [`id`].
     const ID: u8;
+
+    /// The message of this struct.
+    fn into_message(self) -> Message;
 }
 
 /// Makes all that follows from the list of messages.
@@ -40,6 +43,10 @@ macro_rules! messages {
         $(
             impl Body for $body {
                 const ID: u8 = id::$id;
+
+                fn into_message(self) -> Message {
+                    Message::$body(self)
+                }
             }
         )*
 

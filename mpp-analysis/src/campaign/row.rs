@@ -22,7 +22,7 @@ pub struct Row {
     /// Whether it collided with an obstacle that a beam had met more than 1 s before; not written if not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub known_collision: bool,
-    /// The flight log's hash.
+    /// The flight log's hash; empty in a campaign that keeps no rows.
     pub log_hash: String,
     /// Wall time of the core's work \[ms\], if it was measured. A seed does not determine it.
     #[serde(default, skip_serializing_if = "Option::is_none")]

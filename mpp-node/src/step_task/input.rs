@@ -1,6 +1,7 @@
 //! Scans and sensor frames as they arrive: which of them are used.
 
 use super::StepTask;
+use crate::out::Out;
 use crate::{convert, ticks};
 use hil_protocol::{DecodeError, LidarScan as WireScan, RejectionCause, SensorFrame as WireFrame};
 
@@ -17,12 +18,12 @@ impl StepTask {
     /// Checks a scan. It waits for its sensor frame.
     // Not inlined, so that the message is not on the stack of each tick.
     #[inline(never)]
-    pub(super) fn take_scan(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+    pub(super) fn take_scan(&mut self, send: &mut impl Out) -> Result<(), DecodeError> {
         self.check_scan(&self.decoder.body()?, send);
         Ok(())
     }
 
-    fn check_scan(&mut self, wire: &WireScan, send: &mut impl FnMut(&[u8])) {
+    pub(super) fn check_scan(&mut self, wire: &WireScan, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return self.reject(RejectionCause::NotConfigured, send);
         };
@@ -52,7 +53,7 @@ impl StepTask {
     }
 
     /// Makes the tick of a sensor frame, unless the frame is old.
-    pub(super) fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+    pub(super) fn sensor_frame(&mut self, frame: &WireFrame, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return self.reject(RejectionCause::NotConfigured, send);
         };

@@ -12,11 +12,12 @@ mod tune;
 use crate::convert;
 use crate::greeting;
 use crate::mail::{Plan, PlanReply, PlanRequest};
+use crate::out::{Frames, Out};
 use crate::parameters::Tuning;
 use asker::Asker;
 use hil_protocol::{
-    Body, ConfigureVerdict, DecodeError, Decoder, Hello, MAX_FRAME, PlanReport, Rejection,
-    RejectionCause, Role, SensorFrame as WireFrame, encode_body, id,
+    Body, ConfigureVerdict, DecodeError, Decoder, Hello, MAX_FRAME, Message, PlanReport, Rejection,
+    RejectionCause, Role, SensorFrame as WireFrame, id,
 };
 use mpp_core::estimate::SensorMonitor;
 use mpp_core::flight::FlightLoop;
@@ -184,8 +185,8 @@ impl StepTask {
 
     /// Sends a hello without being asked. By this hello a harness notices that a core has started during a
     /// flight.
-    pub fn announce(&mut self, mut send: impl FnMut(&[u8])) {
-        self.greet(&mut send);
+    pub fn announce(&mut self, send: impl FnMut(&[u8])) {
+        self.greet(&mut Frames(send));
     }
 
     /// Refuses every configuration from now on, so that the core does not fly.
@@ -195,8 +196,11 @@ impl StepTask {
 
     /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller must not give
     /// bytes to a task that [waits](StepTask::waits).
-    pub fn receive(&mut self, byte: u8, mut send: impl FnMut(&[u8])) {
-        let send = &mut send;
+    pub fn receive(&mut self, byte: u8, send: impl FnMut(&[u8])) {
+        self.take_byte(byte, &mut Frames(send));
+    }
+
+    pub(crate) fn take_byte(&mut self, byte: u8, send: &mut impl Out) {
         let handled = match self.decoder.take(byte) {
             None => return,
             Some(Ok(id)) => self.handle(id, send),
@@ -225,8 +229,11 @@ impl StepTask {
     }
 
     /// Takes a reply of the planner.
-    pub fn take_reply(&mut self, reply: PlanReply, mut send: impl FnMut(&[u8])) {
-        let send = &mut send;
+    pub fn take_reply(&mut self, reply: PlanReply, send: impl FnMut(&[u8])) {
+        self.settle(reply, &mut Frames(send));
+    }
+
+    pub(crate) fn settle(&mut self, reply: PlanReply, send: &mut impl Out) {
         match reply {
             PlanReply::Plan(mut plan) => {
                 if plan.seal != plan.trajectory.seal() {
@@ -252,8 +259,8 @@ impl StepTask {
     }
 
     /// Reports a cause that the owner of the task knows, such as lost bytes of the link.
-    pub fn report(&mut self, cause: RejectionCause, mut send: impl FnMut(&[u8])) {
-        self.reject(cause, &mut send);
+    pub fn report(&mut self, cause: RejectionCause, send: impl FnMut(&[u8])) {
+        self.reject(cause, &mut Frames(send));
     }
 
     /// The tick of the last step of this flight, if there was one.
@@ -277,18 +284,15 @@ impl StepTask {
     }
 
     /// Acts on the message that the decoder has found. Only what comes to a core is read.
-    fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+    fn handle(&mut self, id: u8, send: &mut impl Out) -> Result<(), DecodeError> {
         match id {
             id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),
             id::LIDAR_SCAN => self.take_scan(send)?,
             id::HELLO => {
-                // An echo of the core's own hello opens no session.
-                match self.decoder.body::<Hello>()?.role {
-                    Role::Harness => self.greet(send),
-                    Role::Core => self.reject(RejectionCause::UnexpectedMessage { id }, send),
-                }
+                let peer = self.decoder.body::<Hello>()?;
+                self.greeted_by(peer.role, send);
             }
-            id::CONFIGURE => self.configure(send)?,
+            id::CONFIGURE => self.read_configure(send)?,
             id::SET_PARAMETER => self.set_parameter(&self.decoder.body()?, send),
             id if (id::HELLO..=id::LAST).contains(&id) => {
                 self.reject(RejectionCause::UnexpectedMessage { id }, send);
@@ -301,20 +305,46 @@ impl StepTask {
         Ok(())
     }
 
-    fn emit<T: Body>(&mut self, message: &T, send: &mut impl FnMut(&[u8])) {
-        // The buffer holds the longest message, so this cannot fail.
-        if let Ok(frame) = encode_body(message, &mut self.buffer) {
-            send(frame);
+    /// Does the work of [`StepTask::handle`] for a message that comes as it is.
+    pub(crate) fn take_message(&mut self, message: &Message, send: &mut impl Out) {
+        match message {
+            Message::SensorFrame(frame) => self.sensor_frame(frame, send),
+            Message::LidarScan(scan) => self.check_scan(scan, send),
+            Message::Hello(peer) => self.greeted_by(peer.role, send),
+            Message::Configure(configure) => self.configure(configure, send),
+            Message::SetParameter(set) => self.set_parameter(set, send),
+            other => {
+                let id = other.id();
+                self.reject(RejectionCause::UnexpectedMessage { id }, send);
+            }
+        }
+        if self.planner_off {
+            self.fly_without_planner(send);
         }
     }
 
-    fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
+    fn emit<T: Body>(&mut self, message: &T, send: &mut impl Out) {
+        send.put(message, &mut self.buffer);
+    }
+
+    fn reject(&mut self, cause: RejectionCause, send: &mut impl Out) {
         let tick = self.last_tick().unwrap_or(0);
         self.emit(&Rejection { tick, cause }, send);
     }
 
+    /// Acts on a hello. An echo of the core's own one opens no session.
+    fn greeted_by(&mut self, role: Role, send: &mut impl Out) {
+        match role {
+            Role::Harness => self.greet(send),
+            Role::Core => {
+                let id = id::HELLO;
+                self.reject(RejectionCause::UnexpectedMessage { id }, send);
+            }
+        }
+    }
+
     /// Answers a hello. It starts a new session, whatever the state of the last one.
-    fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
+    fn greet(&mut self, send: &mut impl Out) {
         self.session = None;
         self.plan = None;
         self.emit(&greeting(), send);

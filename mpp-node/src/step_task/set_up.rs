@@ -4,6 +4,7 @@ use super::asker::Asker;
 use super::{Session, StepTask};
 use crate::convert;
 use crate::mail::PlanRequest;
+use crate::out::Out;
 use crate::parameters::Tuning;
 use hil_protocol::{Configure, ConfigureReply, ConfigureVerdict, DecodeError};
 use mpp_core::estimate::SensorMonitor;
@@ -12,15 +13,19 @@ use mpp_core::flight::{FlightLoop, Regulated};
 impl StepTask {
     // Not inlined, so that a new flight is not on the stack of each tick.
     #[inline(never)]
-    pub(super) fn configure(&mut self, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
-        match self.prepare(&self.decoder.body()?) {
+    pub(super) fn read_configure(&mut self, send: &mut impl Out) -> Result<(), DecodeError> {
+        self.configure(&self.decoder.body()?, send);
+        Ok(())
+    }
+
+    pub(super) fn configure(&mut self, configure: &Configure, send: &mut impl Out) {
+        match self.prepare(configure) {
             Ok((tuning, regulated)) => {
                 self.begin(&tuning, &regulated);
                 self.request_set_up();
             }
             Err(verdict) => self.reply(verdict, send),
         }
-        Ok(())
     }
 
     /// Requests the set-up of the planner with the values of the session. It replaces a request that still waits.
@@ -85,7 +90,7 @@ impl StepTask {
     pub(super) fn set_up_done(
         &mut self,
         result: Result<(), ConfigureVerdict>,
-        send: &mut impl FnMut(&[u8]),
+        send: &mut impl Out,
     ) {
         let Some(session) = &mut self.session else {
             return;
@@ -109,7 +114,7 @@ impl StepTask {
         }
     }
 
-    fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl FnMut(&[u8])) {
+    fn reply(&mut self, verdict: ConfigureVerdict, send: &mut impl Out) {
         self.emit(&ConfigureReply { verdict }, send);
     }
 }

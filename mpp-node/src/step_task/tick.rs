@@ -3,6 +3,7 @@
 use super::{Cycle, Pace, Session, StepTask};
 use crate::convert;
 use crate::mail::PlanRequest;
+use crate::out::Out;
 use crate::{duration, ticks};
 use hil_protocol::SensorFrame as WireFrame;
 use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, RejectionCause};
@@ -19,7 +20,7 @@ const HEALTH_PERIOD: u32 = 100;
 
 impl StepTask {
     /// Makes one tick. The crate's documentation describes it.
-    pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+    pub(super) fn tick(&mut self, frame: &WireFrame, send: &mut impl Out) {
         self.tell_plan(send);
         if self.plan_is_due(frame.tick) {
             if self.plan.is_none() && self.pace == Pace::Lockstep {
@@ -42,7 +43,7 @@ impl StepTask {
     }
 
     /// Takes over the result of a cycle, if it has ended.
-    fn take_over(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+    fn take_over(&mut self, tick: u32, send: &mut impl Out) {
         let (Some(session), Some(plan)) = (&mut self.session, &self.plan) else {
             return;
         };
@@ -94,7 +95,7 @@ impl StepTask {
     /// Tells the plan that the tick before has taken over, and a tick later its commands. The tick that takes over has enough
     /// to do.
     #[inline(never)]
-    fn tell_plan(&mut self, send: &mut impl FnMut(&[u8])) {
+    fn tell_plan(&mut self, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -118,7 +119,7 @@ impl StepTask {
         }
     }
 
-    fn step(&mut self, frame: &WireFrame, send: &mut impl FnMut(&[u8])) {
+    fn step(&mut self, frame: &WireFrame, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -160,7 +161,7 @@ impl StepTask {
     }
 
     /// Sends the counters once a second, at a tick at which scans and plans are rare.
-    fn report_health(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+    fn report_health(&mut self, tick: u32, send: &mut impl Out) {
         if tick % HEALTH_PERIOD != HEALTH_PERIOD / 2 + 13 {
             return;
         }
@@ -172,7 +173,7 @@ impl StepTask {
 
     /// Starts a cycle from the scan that has come, if one is due, or without a scan if the lidar has fallen silent. Both wait
     /// while the place of the aircraft is in doubt.
-    fn start_cycle(&mut self, tick: u32, send: &mut impl FnMut(&[u8])) {
+    fn start_cycle(&mut self, tick: u32, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -190,7 +191,7 @@ impl StepTask {
         }
     }
 
-    fn plan_from_scan(&mut self, tick: u32, scan_tick: u32, send: &mut impl FnMut(&[u8])) {
+    fn plan_from_scan(&mut self, tick: u32, scan_tick: u32, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return;
         };

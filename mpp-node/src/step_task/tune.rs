@@ -4,6 +4,7 @@
 use super::asker::Asker;
 use super::{Session, StepTask};
 use crate::convert;
+use crate::out::Out;
 use crate::parameters::Tuning;
 use hil_protocol::{ConfigureVerdict, ParameterReply, ParameterVerdict, SetParameter};
 use mpp_core::flight::{FlightLoop, Regulated};
@@ -11,7 +12,7 @@ use mpp_core::flight::{FlightLoop, Regulated};
 impl StepTask {
     // Not inlined, so that a new flight loop is not on the stack of each tick.
     #[inline(never)]
-    pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl FnMut(&[u8])) {
+    pub(super) fn set_parameter(&mut self, set: &SetParameter, send: &mut impl Out) {
         if let Err(verdict) = self.tune(set) {
             self.reply_to_parameter(set.parameter, verdict, send);
         } else if self.session.as_ref().is_some_and(|session| session.ready) {
@@ -40,11 +41,7 @@ impl StepTask {
     }
 
     /// Handles the result of a set-up with a new value of a parameter, or with the previous values again.
-    pub(super) fn tuned(
-        &mut self,
-        result: Result<(), ConfigureVerdict>,
-        send: &mut impl FnMut(&[u8]),
-    ) {
+    pub(super) fn tuned(&mut self, result: Result<(), ConfigureVerdict>, send: &mut impl Out) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -74,7 +71,7 @@ impl StepTask {
         &mut self,
         parameter: u8,
         verdict: ParameterVerdict,
-        send: &mut impl FnMut(&[u8]),
+        send: &mut impl Out,
     ) {
         let reply = ParameterReply { parameter, verdict };
         self.emit(&reply, send);

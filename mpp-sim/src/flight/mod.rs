@@ -4,14 +4,15 @@
 mod error;
 mod exchange;
 mod judge;
+mod noted;
 mod receiver;
 mod sensing;
 mod session;
 mod steering;
 
-use crate::entries::{PlanEntry, Tick, finite};
+use crate::entries::Tick;
 use crate::link::Link;
-use crate::log::{FlightLog, Header};
+use crate::log::{FlightLog, Header, Summary};
 use crate::orders::Ground;
 use crate::outcome::Outcome;
 use crate::plant::PlantError;
@@ -21,14 +22,14 @@ use crate::tick_record::TickRecord;
 use crate::world::World;
 pub use error::FlyError;
 use exchange::Exchange;
-use hil_protocol::{ControlMode, HealthReport, LidarScan, PlanReport, SensorStates};
+use hil_protocol::{ControlMode, LidarScan, SensorStates};
 use judge::Judge;
-use mpp_core::vehicle::{AirState, Conditions, Control, VehicleState, Wind};
-use nalgebra::Vector4;
+use mpp_core::vehicle::{VehicleState, Wind};
+pub(crate) use noted::plan_entry;
+use noted::{control, counters, logged};
 pub use sensing::Sensing;
 use session::{Session, StepReply, Told};
 pub(crate) use session::{check, entry, own_hello};
-use std::collections::BTreeMap;
 use steering::Steering;
 
 /// A ground that watches the flight and gives no orders.
@@ -77,9 +78,25 @@ pub fn fly_in(
     link: &mut dyn Link,
     ground: &mut dyn Ground,
 ) -> Result<FlightLog, FlyError> {
-    let mut flight = Flight::begin(world, scenario, link, ground)?;
-    while flight.tick(world, link, ground)? {}
-    Ok(flight.log(world))
+    Flight::begin(world, scenario, link, ground)?.to_end(world, link, ground)
+}
+
+/// Flies a scenario as [`fly`] does, and keeps no ticks: the log has everything else. A campaign needs no more.
+///
+/// # Errors
+/// [`FlyError`] when the flight has no outcome.
+pub fn fly_in_brief(
+    scenario: &Scenario,
+    link: &mut dyn Link,
+    watch: impl FnMut(&TickRecord<'_>),
+) -> Result<FlightLog, FlyError> {
+    let (mut world, ground) = (
+        World::of(scenario).map_err(FlyError::Trim)?,
+        &mut Onlooker(watch),
+    );
+    let mut flight = Flight::begin(&mut world, scenario, link, ground)?;
+    flight.is_brief = true;
+    flight.to_end(&mut world, link, ground)
 }
 
 /// What the aircraft measured in a tick, and the core's reply.
@@ -106,6 +123,8 @@ pub struct Flight {
     ticks: u32,
     /// Whether the core gets advice of an [`crate::oracle`].
     advised: bool,
+    /// Whether the log gets no ticks.
+    is_brief: bool,
 }
 
 impl Flight {
@@ -142,6 +161,7 @@ impl Flight {
             log,
             ticks: scenario.ticks,
             advised: scenario.is_advised(),
+            is_brief: false,
         })
     }
 
@@ -268,7 +288,9 @@ impl Flight {
         if let Some(health) = record.health {
             self.log.health = counters(health);
         }
-        self.log.ticks.push(tick);
+        if !self.is_brief {
+            self.log.ticks.push(tick);
+        }
         self.log.plans.extend(plan);
     }
 
@@ -293,6 +315,31 @@ impl Flight {
     /// The log so far. Of a flight that goes on it is the log of a flight that is interrupted now.
     #[must_use]
     pub fn log(&self, world: &World) -> FlightLog {
+        FlightLog {
+            rejections: self.told.rejections.clone(),
+            orders: self.steering.orders.clone(),
+            summary: self.summary(world),
+            ..self.log.clone()
+        }
+    }
+
+    /// Flies what is left of the flight.
+    fn to_end(
+        mut self,
+        world: &mut World,
+        link: &mut dyn Link,
+        ground: &mut dyn Ground,
+    ) -> Result<FlightLog, FlyError> {
+        while self.tick(world, link, ground)? {}
+        Ok(FlightLog {
+            summary: self.summary(world),
+            rejections: self.told.rejections,
+            orders: self.steering.orders,
+            ..self.log
+        })
+    }
+
+    fn summary(&self, world: &World) -> Summary {
         let open = if self.judge.flown < self.ticks {
             Outcome::Interrupted
         } else {
@@ -301,79 +348,7 @@ impl Flight {
         let outcome = self.judge.end.unwrap_or(open);
         let x_end = world.plant.state().x;
         let plans = &self.log.plans;
-        let summary = self
-            .judge
-            .conclude(outcome, plans, world.field.as_ref(), x_end);
-        FlightLog {
-            rejections: self.told.rejections.clone(),
-            orders: self.steering.orders.clone(),
-            summary,
-            ..self.log.clone()
-        }
-    }
-}
-
-/// The counters that are not zero, by name.
-fn counters(report: &HealthReport) -> BTreeMap<String, u32> {
-    let named = HealthReport::NAMES.iter().zip(report.counters);
-    named
-        .filter(|(_, count)| *count > 0)
-        .map(|(name, count)| ((*name).to_owned(), count))
-        .collect()
-}
-
-pub(crate) fn plan_entry(report: &PlanReport) -> PlanEntry {
-    PlanEntry {
-        tick: u64::from(report.scan_tick),
-        used_from_tick: Some(u64::from(report.used_from_tick)),
-        outcome: format!("{:?}", report.outcome),
-        candidates: u32::from(report.candidates),
-        feasible: u32::from(report.feasible),
-        tree_runs: u32::from(report.tree_runs),
-        slices: report.slices,
-        cost: finite(Some(report.cost)),
-        violation: finite(Some(report.violation)),
-    }
-}
-
-fn logged(number: u32, state: &VehicleState, measured: Measurement, reply: &StepReply) -> Tick {
-    let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
-    let tracking = reply.command.mode == ControlMode::Tracking;
-    let reference = reply.step.filter(|_| tracking).map(|step| {
-        let [x, z, rest @ ..] = step.reference;
-        VehicleState {
-            x,
-            z,
-            air: air(rest),
-        }
-    });
-    Tick {
-        t: Scenario::time(number),
-        state: *state,
-        measured,
-        estimate: reply.step.map_or(*state, |step| VehicleState {
-            x: step.position[0],
-            z: step.position[1],
-            air: air(step.estimate),
-        }),
-        conditions: reply.step.map_or(Conditions::STILL, |step| Conditions {
-            wind: Wind {
-                x: step.wind[0],
-                z: step.wind[1],
-            },
-            lift: step.lift,
-        }),
-        reference,
-        control: control(reply),
-        applied: control(reply),
-        wind: (0.0, 0.0),
-    }
-}
-
-/// The control that the core commands.
-fn control(reply: &StepReply) -> Control {
-    Control {
-        thrust: reply.command.thrust,
-        elevator: reply.command.elevator,
+        self.judge
+            .conclude(outcome, plans, world.field.as_ref(), x_end)
     }
 }

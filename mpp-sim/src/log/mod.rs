@@ -27,6 +27,7 @@ use hil_protocol::SensorStates;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::io::{BufWriter, Result as IoResult, Write};
 
 /// Version of the log's layout.
 pub const SCHEMA: u32 = 4;
@@ -272,11 +273,30 @@ impl FlightLog {
     /// # Errors
     /// [`LogError::Json`].
     pub fn hash(&self) -> Result<String, LogError> {
-        let digest = Sha256::digest(self.to_json()?);
-        Ok(digest[..8]
+        // Serde writes a few bytes at a time; the hash takes them in pieces, so that the text is nowhere as a whole.
+        let mut hashing = Hashing(Sha256::new());
+        let mut pieces = BufWriter::new(&mut hashing);
+        serde_json::to_writer(&mut pieces, self)?;
+        pieces.flush().map_err(serde_json::Error::io)?;
+        drop(pieces);
+        Ok(hashing.0.finalize()[..8]
             .iter()
             .map(|byte| format!("{byte:02x}"))
             .collect())
+    }
+}
+
+/// A hash that bytes are written into.
+struct Hashing(Sha256);
+
+impl Write for Hashing {
+    fn write(&mut self, bytes: &[u8]) -> IoResult<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> IoResult<()> {
+        Ok(())
     }
 }
 

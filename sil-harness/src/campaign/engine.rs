@@ -8,13 +8,14 @@ use mpp_analysis::campaign::{
 use mpp_analysis::ceiling::{Feasibility, decide};
 use mpp_analysis::rows::Header;
 use mpp_core::vehicle::{VehicleState, Wind};
-use mpp_sim::flight::{FlyError, fly};
+use mpp_sim::flight::{FlyError, fly, fly_in_brief};
 use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
-use mpp_sim::pipe::PipeLink;
+use mpp_sim::pipe::DirectLink;
 use mpp_sim::scenario::Scenario;
+use mpp_sim::tick_record::TickRecord;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
@@ -22,18 +23,42 @@ use std::time::{Duration, Instant};
 /// Stack of a thread [bytes]. The core is built on the stack before it moves to its box.
 const STACK: usize = 8 << 20;
 
+/// What the rows of a campaign hold besides what its report needs.
+#[derive(Clone, Copy)]
+pub struct Extras {
+    /// The log's hash; without it the flights have no log.
+    pub hashed: bool,
+    /// The core's wall time.
+    pub timed: bool,
+}
+
+impl Extras {
+    /// What a report needs.
+    pub const NONE: Self = Self {
+        hashed: false,
+        timed: false,
+    };
+    /// The hash alone: the rows depend on the seeds alone.
+    pub const HASHED: Self = Self {
+        hashed: true,
+        timed: false,
+    };
+}
+
 /// The first line of a row file of this program.
 ///
 /// # Errors
 /// [`CampaignError`] of the first flight that fails.
 pub fn header(campaign: Campaign, shard: Shard) -> Result<Header, CampaignError> {
-    let hash = |start: &Campaign, cell: &Cell, seed| Ok(flown(start, cell, seed, false)?.log_hash);
+    let hash = |start: &Campaign, cell: &Cell, seed| {
+        let row = flown(&mut DirectLink::new(), start, cell, seed, Extras::HASHED)?;
+        Ok(row.log_hash)
+    };
     Header::new(campaign, shard, hash)
 }
 
 /// Flies these flights on this number of threads; 0 means as many as there are cores. Each thread
-/// gives its row to `keep` as soon as the row is flown. With `timed` rows also hold the core's wall
-/// time.
+/// gives its row to `keep` as soon as the row is flown.
 ///
 /// # Errors
 /// [`CampaignError`] of the first flight or row that fails; the rows kept so far are valid.
@@ -41,7 +66,7 @@ pub fn run(
     campaign: &Campaign,
     jobs: &[(Cell, u64)],
     threads: usize,
-    timed: bool,
+    extras: Extras,
     keep: impl Fn(Row) -> Result<(), CampaignError> + Sync,
 ) -> Result<(), CampaignError> {
     let pool = pool(threads, jobs.len(), STACK)?;
@@ -50,7 +75,9 @@ pub fn run(
         // lists.
         jobs.iter()
             .par_bridge()
-            .try_for_each(|(cell, seed)| keep(flown(campaign, cell, *seed, timed)?))
+            .try_for_each_init(DirectLink::new, |link, (cell, seed)| {
+                keep(flown(link, campaign, cell, *seed, extras)?)
+            })
     })
 }
 
@@ -64,9 +91,9 @@ pub fn run_faults(
     threads: usize,
     done: impl Fn() -> Result<(), CampaignError> + Sync,
 ) -> Result<Vec<(FaultJob, Flown)>, CampaignError> {
-    let fly_one = |job: FaultJob| {
+    let fly_one = |link: &mut DirectLink, job: FaultJob| {
         let scenario = campaign.scenario(&job).map_err(CampaignError::Scenario)?;
-        let (log, observer, _) = observed(&scenario).map_err(|error| {
+        let (log, observer, _) = observed(&scenario, link, false).map_err(|error| {
             let fault = campaign.name(&job).unwrap_or("no fault");
             CampaignError::Faulty(fault, Box::new(job.cell.clone()), job.seed, error)
         })?;
@@ -74,7 +101,10 @@ pub fn run_faults(
         Ok((job, kept(&log, &observer)))
     };
     let jobs = campaign.jobs();
-    pool(threads, jobs.len(), STACK)?.install(|| jobs.into_par_iter().map(fly_one).collect())
+    pool(threads, jobs.len(), STACK)?.install(|| {
+        let flown = jobs.into_par_iter().map_init(DirectLink::new, fly_one);
+        flown.collect()
+    })
 }
 
 /// What a campaign of faults keeps of a flight.
@@ -98,15 +128,18 @@ pub fn run_pairs(
     threads: usize,
     done: impl Fn() -> Result<(), CampaignError> + Sync,
 ) -> Result<Vec<(FaultPair, Flown)>, CampaignError> {
-    let fly_one = |pair: FaultPair| {
+    let fly_one = |link: &mut DirectLink, pair: FaultPair| {
         let scenario = campaign.scenario(&pair).map_err(CampaignError::Scenario)?;
-        let (log, observer, _) = observed(&scenario)
+        let (log, observer, _) = observed(&scenario, link, false)
             .map_err(|error| CampaignError::Pair(pair.faults.join(" and "), pair.seed, error))?;
         done()?;
         Ok((pair, kept(&log, &observer)))
     };
     let pairs = campaign.pairs();
-    pool(threads, pairs.len(), STACK)?.install(|| pairs.into_par_iter().map(fly_one).collect())
+    pool(threads, pairs.len(), STACK)?.install(|| {
+        let flown = pairs.into_par_iter().map_init(DirectLink::new, fly_one);
+        flown.collect()
+    })
 }
 
 /// Decides about the fields of a cell. `done` is called after each. The result is in the order of the seeds.
@@ -153,38 +186,54 @@ fn useful(threads: usize, jobs: usize) -> usize {
     threads.min(jobs).max(1)
 }
 
-/// Flies a scenario in this process. Also gives the time for which the core worked.
-fn observed(scenario: &Scenario) -> Result<(FlightLog, FlightObserver, Duration), FlyError> {
+/// Flies a scenario in this process, with a log of its ticks or without. Also gives the time for which the core worked.
+fn observed(
+    scenario: &Scenario,
+    link: &mut DirectLink,
+    logged: bool,
+) -> Result<(FlightLog, FlightObserver, Duration), FlyError> {
+    link.restart(scenario);
     let mut link = Stopwatch {
-        link: PipeLink::of(scenario),
+        link,
         elapsed: Duration::ZERO,
     };
     let mut observer = FlightObserver::of(scenario);
-    let log = fly(scenario, &mut link, |record| observer.watch(record))?;
+    let watch = |record: &TickRecord<'_>| observer.watch(record);
+    let log = if logged {
+        fly(scenario, &mut link, watch)?
+    } else {
+        fly_in_brief(scenario, &mut link, watch)?
+    };
     Ok((log, observer, link.elapsed))
 }
 
 /// Flies one row.
-fn flown(campaign: &Campaign, cell: &Cell, seed: u64, timed: bool) -> Result<Row, CampaignError> {
+fn flown(
+    link: &mut DirectLink,
+    campaign: &Campaign,
+    cell: &Cell,
+    seed: u64,
+    extras: Extras,
+) -> Result<Row, CampaignError> {
     let scenario = campaign
         .scenario(cell, seed)
         .map_err(CampaignError::Scenario)?;
-    let (log, observer, elapsed) = observed(&scenario)
+    let (log, observer, elapsed) = observed(&scenario, link, extras.hashed)
         .map_err(|error| CampaignError::Flight(Box::new(cell.clone()), seed, error))?;
-    let hash = log
-        .hash()
-        .map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
-    let core_ms = timed.then_some(elapsed.as_secs_f64() * 1e3);
+    let hash = extras.hashed.then(|| log.hash()).transpose();
+    let hash = hash.map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
+    let core_ms = extras.timed.then_some(elapsed.as_secs_f64() * 1e3);
+    let hash = hash.unwrap_or_default();
     Ok(Row::new(cell.clone(), &log, &observer, hash, core_ms))
 }
 
 /// A link that measures how long the core works. In this process the core works during `send`.
-struct Stopwatch {
-    link: PipeLink,
+struct Stopwatch<'a> {
+    link: &'a mut DirectLink,
     elapsed: Duration,
 }
 
-impl Link for Stopwatch {
+impl Link for Stopwatch<'_> {
     fn send(&mut self, message: &Message) -> Result<(), LinkError> {
         let begin = Instant::now();
         let sent = self.link.send(message);
@@ -204,6 +253,45 @@ impl Link for Stopwatch {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mpp_analysis::campaign::Lists;
+    use mpp_sim::pipe::PipeLink;
+    use mpp_sim::scenario::{Preset, ScenarioFile};
+
+    /// The rows by structs, of flights that share a core, are the rows over frames: with an oracle, faults of the link and
+    /// the clock, and after a flight by another preset.
+    #[test]
+    fn a_row_by_structs_is_the_row_over_frames() {
+        let mut link = DirectLink::new();
+        let faults = "duration = 6.0\n[faults.link]\nfrom = 1.0\nloss = 0.2\n[faults.clock]\nfrom = 2.0\njump = 1.0\n";
+        let lists = |obstacles, preset| Lists {
+            obstacles: vec![obstacles],
+            preset: vec![preset],
+            replan_hz: vec![4.0],
+            ..Lists::default()
+        };
+        for (text, obstacles, preset) in [
+            ("duration = 6.0", 160, Preset::Flight),
+            ("duration = 3.0", 40, Preset::Paper),
+            (faults, 40, Preset::Flight),
+            ("duration = 3.0\noracle = true", 40, Preset::Flight),
+            ("duration = 6.0", 40, Preset::Flight),
+        ] {
+            let file = ScenarioFile::parse("test", text).unwrap();
+            let campaign = Campaign::new(file, lists(obstacles, preset), 1, Some(77)).unwrap();
+            for cell in campaign.cells() {
+                let row = flown(&mut link, &campaign, &cell, 77, Extras::HASHED).unwrap();
+                let scenario = campaign.scenario(&cell, 77).unwrap();
+                let mut observer = FlightObserver::of(&scenario);
+                let mut wire = PipeLink::of(&scenario);
+                let log = fly(&scenario, &mut wire, |record| observer.watch(record)).unwrap();
+                let hash = log.hash().unwrap();
+                assert_eq!(row, Row::new(cell.clone(), &log, &observer, hash, None));
+                let brief = flown(&mut link, &campaign, &cell, 77, Extras::NONE).unwrap();
+                let log_hash = String::new();
+                assert_eq!(brief, Row { log_hash, ..row });
+            }
+        }
+    }
 
     #[test]
     fn no_thread_is_without_a_job() {

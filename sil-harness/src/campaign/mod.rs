@@ -8,7 +8,7 @@ mod error;
 mod store;
 
 pub(crate) use engine::pool;
-pub use engine::{decide_all, header, run, run_faults, run_pairs};
+pub use engine::{Extras, decide_all, header, run, run_faults, run_pairs};
 pub use error::CampaignError;
 pub use store::{RowFile, Sheet, parse_rows, read};
 

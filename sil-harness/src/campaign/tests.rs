@@ -26,10 +26,16 @@ fn short() -> Campaign {
 
 fn fly_jobs(campaign: &Campaign, shard: Shard, threads: usize) -> Vec<Row> {
     let rows = Mutex::new(Vec::new());
-    run(campaign, &campaign.jobs(shard), threads, false, |row| {
-        rows.lock().unwrap().push(row);
-        Ok(())
-    })
+    run(
+        campaign,
+        &campaign.jobs(shard),
+        threads,
+        Extras::HASHED,
+        |row| {
+            rows.lock().unwrap().push(row);
+            Ok(())
+        },
+    )
     .unwrap();
     rows.into_inner().unwrap()
 }

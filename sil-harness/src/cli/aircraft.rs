@@ -5,7 +5,7 @@ use super::campaign::failure;
 use super::loudness::progress_bar;
 use super::signals::Signals;
 use super::values::{item, navigation, seed, threads};
-use crate::campaign::{CampaignError, run as fly_all};
+use crate::campaign::{CampaignError, Extras, run as fly_all};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
 use mpp_analysis::campaign::{Campaign, Lists, Row, Shard, merge, wilson};
@@ -168,7 +168,7 @@ fn fly(campaign: &Campaign, threads: usize) -> Result<Vec<Row>, Failure> {
     let jobs = campaign.jobs(Shard::WHOLE);
     let progress = progress_bar(jobs.len() as u64, "flights");
     let rows = Mutex::new(Vec::new());
-    let flown = fly_all(campaign, &jobs, threads, false, |row| {
+    let flown = fly_all(campaign, &jobs, threads, Extras::NONE, |row| {
         progress.inc(1);
         rows.lock()
             .unwrap_or_else(PoisonError::into_inner)

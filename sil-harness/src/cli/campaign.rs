@@ -5,10 +5,10 @@ use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{Item, item, preset, seed, threads, whole};
-use crate::campaign::{CampaignError, RowFile, decide_all, header, read, run as fly_all};
+use super::values::{Item, item, preset, seed, threads, whole, width};
+use crate::campaign::{CampaignError, Extras, RowFile, decide_all, header, read, run as fly_all};
 use mpp_analysis::campaign::{
-    Campaign, Cell, CellReport, Lists, Report, Row, Shard, Taxonomy, merge,
+    Campaign, Cell, CellReport, Lists, Report, Row, Sequential, Shard, Taxonomy, merge,
 };
 use mpp_analysis::rows::Header;
 use mpp_sim::scenario::{Preset, ScenarioFile};
@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// The flags that say what is flown, and how it is kept; the first two are all flags of their groups. Row files say it
 /// themselves.
-const FLOWN: [&str; 13] = [
+const FLOWN: [&str; 14] = [
     "ScenarioArgs",
     "FieldArgs",
     "paths",
@@ -26,6 +26,7 @@ const FLOWN: [&str; 13] = [
     "replan_hz",
     "oracle",
     "trials",
+    "until_width",
     "seed",
     "shard",
     "timing",
@@ -77,6 +78,17 @@ pub(super) struct CampaignArgs {
     /// Number of flights in each cell
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) trials: u32,
+    /// Fly each cell until the 95 % interval of its strict successes is at most so wide [percentage points], or --trials is
+    /// reached. Every 20 flights decide
+    #[arg(
+        long,
+        help_heading = RUN,
+        value_name = "POINTS",
+        value_parser = width,
+        conflicts_with_all = ["faults", "oracle", "ceiling", "shard"],
+        allow_negative_numbers = true
+    )]
+    until_width: Option<f64>,
     /// Seed of the first flight; the next flights take the next seeds [default: the scenario's]
     #[arg(long, help_heading = RUN, value_parser = seed)]
     pub(super) seed: Option<u64>,
@@ -112,11 +124,12 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         let why = "--report flies nothing: leave --threads out, or give --ceiling";
         return Err(Failure::usage(why));
     }
-    let (campaign, rows) = if args.report.is_empty() {
-        flown(args)
+    let (campaign, rows, told) = if args.report.is_empty() {
+        flown(args)?
     } else {
-        rows_of(&args.report).map_err(|error| failure(&error))
-    }?;
+        let (campaign, rows) = rows_of(&args.report).map_err(|error| failure(&error))?;
+        (campaign, rows, None)
+    };
     let mut report = Report::new(&campaign, &rows);
     if args.ceiling {
         set_beside_ceiling(&campaign, &rows, &mut report, args.threads)?;
@@ -127,6 +140,13 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
         data(report.to_string().trim_end())?;
         if args.taxonomy {
             data(Taxonomy(&report).to_string().trim_end())?;
+        }
+    }
+    if let Some(told) = told {
+        if args.json {
+            talk(told);
+        } else {
+            data(told)?;
         }
     }
     Ok(0)
@@ -215,38 +235,73 @@ pub(super) fn scenario(args: &CampaignArgs) -> Result<ScenarioFile, Failure> {
     Ok(scenario)
 }
 
-fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>), Failure> {
+/// Flies the campaign. With --until-width the text tells how it stopped.
+fn flown(args: &CampaignArgs) -> Result<(Campaign, Vec<Row>, Option<String>), Failure> {
     let scenario = scenario(args)?;
     let campaign = Campaign::new(scenario, lists(args)?, args.trials, args.seed);
     let campaign = campaign.map_err(Failure::usage)?;
     let signals = Signals::heed()?;
-    let rows = fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
-        Some(code) if matches!(error, CampaignError::Interrupted(_)) => Failure::new(code, error),
-        _ => failure(&error),
-    })?;
+    let (rows, told) =
+        fly_rows(args, &campaign, &signals).map_err(|error| match signals.raised() {
+            Some(code) if matches!(error, CampaignError::Interrupted(_)) => {
+                Failure::new(code, error)
+            }
+            _ => failure(&error),
+        })?;
     let rows = merge(&campaign, rows).map_err(Failure::failed)?;
-    Ok((campaign, rows))
+    Ok((campaign, rows, told))
 }
 
-/// Flies the missing flights and returns every row of this shard.
+/// Flies the missing flights and returns every row of this shard, or of the blocks up to the stop.
 fn fly_rows(
     args: &CampaignArgs,
     campaign: &Campaign,
     signals: &Signals,
-) -> Result<Vec<Row>, CampaignError> {
-    let (file, known) = match &args.out {
+) -> Result<(Vec<Row>, Option<String>), CampaignError> {
+    let (file, rows) = match &args.out {
         Some(path) => {
             let header = header(campaign.clone(), args.shard)?;
             RowFile::open(path, &header).map(|(file, rows)| (Some(file), rows))?
         }
         None => (None, Vec::new()),
     };
-    let all = campaign.jobs(args.shard);
-    let places = known.iter().map(|row| campaign.place(&row.cell, row.seed));
+    let mut kept = Kept { file, rows };
+    let Some(points) = args.until_width else {
+        let jobs = campaign.jobs(args.shard);
+        let kept = fly_missing(args, campaign, signals, &jobs, kept)?;
+        return Ok((kept.rows, None));
+    };
+    let mut sequential = Sequential::new(campaign, points / 100.0);
+    loop {
+        let block = sequential.next_block(&kept.rows);
+        if block.is_empty() {
+            break;
+        }
+        kept = fly_missing(args, campaign, signals, &block, kept)?;
+    }
+    kept.rows.retain(|row| sequential.counts(row));
+    Ok((kept.rows, Some(sequential.to_string())))
+}
+
+/// The rows so far, and the file that they go to.
+struct Kept {
+    file: Option<RowFile>,
+    rows: Vec<Row>,
+}
+
+/// Flies those of these flights that have no row.
+fn fly_missing(
+    args: &CampaignArgs,
+    campaign: &Campaign,
+    signals: &Signals,
+    all: &[(Cell, u64)],
+    kept: Kept,
+) -> Result<Kept, CampaignError> {
+    let places = (kept.rows.iter()).map(|row| campaign.place(&row.cell, row.seed));
     let places: HashSet<Option<(usize, u64)>> = places.collect();
     let missing = |(cell, seed): &(Cell, u64)| !places.contains(&campaign.place(cell, *seed));
     let jobs: Vec<(Cell, u64)> = all.iter().filter(|job| missing(job)).cloned().collect();
-    if !known.is_empty() {
+    if args.until_width.is_none() && !kept.rows.is_empty() {
         talk(format_args!(
             "{} of {} flights are there",
             all.len() - jobs.len(),
@@ -262,14 +317,18 @@ fn fly_rows(
         )
     });
     let progress = progress_bar(jobs.len() as u64, "flights");
-    let sink = Mutex::new((file, known));
-    let flown = fly_all(campaign, &jobs, args.threads, args.timing, |row| {
+    let extras = Extras {
+        hashed: args.out.is_some(),
+        timed: args.timing,
+    };
+    let sink = Mutex::new(kept);
+    let flown = fly_all(campaign, &jobs, args.threads, extras, |row| {
         progress.inc(1);
-        let (file, rows) = &mut *sink.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(file) = file {
+        let kept = &mut *sink.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(file) = &mut kept.file {
             file.push(&row)?;
         }
-        rows.push(row);
+        kept.rows.push(row);
         match signals.raised() {
             Some(_) => Err(CampaignError::Interrupted(
                 args.out.as_ref().map(|path| path.display().to_string()),
@@ -279,5 +338,5 @@ fn fly_rows(
     });
     progress.finish_and_clear();
     flown?;
-    Ok(sink.into_inner().unwrap_or_else(PoisonError::into_inner).1)
+    Ok(sink.into_inner().unwrap_or_else(PoisonError::into_inner))
 }

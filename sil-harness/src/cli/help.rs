@@ -39,6 +39,7 @@ Examples:
   sil-harness campaign --obstacles 20,40 --paths 5,25 --trials 300 --seed 0 --out rows.jsonl
   sil-harness campaign --shard 2/8 --out part2.jsonl --trials 300
   sil-harness campaign --report part1.jsonl part2.jsonl --json
+  sil-harness campaign --trials 3000 --until-width 1.0
   sil-harness campaign --faults all --trials 60
   sil-harness campaign --faults all --pairs --trials 2000
 

@@ -101,6 +101,12 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| advice)
 }
 
+/// Reads the width of an interval [percentage points].
+pub(super) fn width(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|it| *it > 0.0 && *it <= 100.0);
+    found.ok_or_else(|| "give a width of more than 0 and at most 100 percentage points".to_owned())
+}
+
 /// Reads a bank \[deg\].
 pub(super) fn bank(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|it| (-60.0..=60.0).contains(it));

@@ -126,11 +126,12 @@ fn serve_session(
             Err(error) => return Err(read_error(error, "core", client.awaited(), patience)),
         };
         let mut sent = Ok(());
-        Oracle::receive(oracle, &mut node, &bytes[..count], |frame| {
+        let send = |frame: &[u8]| {
             if sent.is_ok() {
                 sent = stream.write_all(frame);
             }
-        });
+        };
+        node.receive_advised(&bytes[..count], send, Oracle::advice(oracle));
         *configured |= node.health().is_some();
         // After the core has done its work: that takes nothing of the harness's time.
         client.hear(&bytes[..count]);

@@ -11,6 +11,7 @@ mod peers;
 mod refused;
 mod space;
 mod speech;
+mod until_width;
 
 use crate::common::{harness, place, run, scratch};
 use serde_json::Value;

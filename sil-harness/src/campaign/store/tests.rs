@@ -1,7 +1,7 @@
 //! Row files on disks that are full, and files that are none.
 
 use super::*;
-use crate::campaign::{header, run};
+use crate::campaign::{Extras, header, run};
 use mpp_analysis::campaign::{Campaign, Lists, Shard};
 use mpp_sim::scenario::ScenarioFile;
 use std::path::PathBuf;
@@ -51,10 +51,16 @@ impl Sheet for Disk {
 fn a_full_disk_keeps_whole_rows_whichever_thread_comes_next() {
     let campaign = short();
     let rows = Mutex::new(Vec::new());
-    run(&campaign, &campaign.jobs(Shard::WHOLE), 1, false, |row| {
-        rows.lock().unwrap().push(row);
-        Ok(())
-    })
+    run(
+        &campaign,
+        &campaign.jobs(Shard::WHOLE),
+        1,
+        Extras::HASHED,
+        |row| {
+            rows.lock().unwrap().push(row);
+            Ok(())
+        },
+    )
     .unwrap();
     let rows = rows.into_inner().unwrap();
     let line = |row: &Row| serde_json::to_string(row).unwrap() + "\n";
