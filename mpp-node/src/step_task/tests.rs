@@ -2,6 +2,7 @@
 
 use super::{Cycle, Pace, StepTask};
 use crate::mail::{Plan, PlanReply};
+use crate::out::Frames;
 use hil_protocol::{
     ActuatorLimits, Aircraft, Body, Configure, MAX_FRAME, Preset, SensorFrame, encode_body,
 };
@@ -44,7 +45,7 @@ fn tick(task: &mut StepTask, tick: u32) {
 fn a_cycle_that_ended_by_a_defect_of_the_planner_is_counted() {
     let mut task = StepTask::new(Pace::RealTime);
     tell(&mut task, &CONFIGURE);
-    task.set_up_done(Ok(()), &mut |_| {});
+    task.set_up_done(Ok(()), &mut Frames(|_: &[u8]| {}));
     tick(&mut task, 0);
     for (begun, inconsistent, count) in [(1, false, 0), (2, true, 1), (3, true, 2), (4, false, 2)] {
         if let Some(session) = &mut task.session {
@@ -77,7 +78,7 @@ fn a_plan_of_which_a_bit_flipped_on_its_way_is_not_flown() {
     for altered in [false, true] {
         let mut task = StepTask::new(Pace::RealTime);
         tell(&mut task, &CONFIGURE);
-        task.set_up_done(Ok(()), &mut |_| {});
+        task.set_up_done(Ok(()), &mut Frames(|_: &[u8]| {}));
         tick(&mut task, 0);
         if let Some(session) = &mut task.session {
             session.cycle = Some(Cycle {
