@@ -3,28 +3,27 @@
 use super::fault_report::Flown;
 use super::faults::NamedFault;
 use super::grid::{Campaign, Cell, Lists};
+use super::single_fault::Single;
 use super::stats::wilson;
 use mpp_sim::random::{Draws, Stream, generator, uniform};
 use mpp_sim::scenario::{Scenario, ScenarioError, ScenarioFile};
 use serde::Serialize;
 use std::fmt;
+use toml::Table;
 
 /// First and last start of a fault \[s\], and the step between starts. Starts fall on all phases of a cycle.
 const STARTS: (f64, f64) = (1.0, 12.0);
 const STEP: f64 = 0.01;
-/// Tables of a fault that have a start.
-const TIMED: [&str; 9] = [
-    "airspeed", "pitch", "x", "z", "air", "position", "scan", "elevator", "thrust",
-];
-/// Names of faults that are no single ones, or that are none.
-const NO_SINGLE: [&str; 3] = ["rtk", "both-frozen", "airspeed-pitch-bias"];
-
+/// Share of the faults that come and go, of those that can [-].
+const TOGGLING: f64 = 0.25;
+/// Slowest and fastest rate at which they do \[Hz\].
+const TOGGLE_HZ: (f64, f64) = (0.5, 10.0);
 /// The flights of a campaign of pairs.
 #[derive(Clone, Debug)]
 pub struct FaultPairs {
     clean: Campaign,
     cells: Vec<Cell>,
-    faults: Vec<NamedFault>,
+    faults: Vec<Single>,
 }
 
 /// One flight with two faults.
@@ -34,12 +33,16 @@ pub struct FaultPair {
     pub faults: [&'static str; 2],
     /// Start of each \[s\]; 0 for one that acts from the beginning.
     pub starts: [f64; 2],
+    /// Rate at which each comes and goes \[Hz\]; null for one that stays.
+    pub toggle_hz: [Option<f64>; 2],
     /// Number of random obstacles.
     pub obstacles: usize,
     /// Replanning rate \[Hz\].
     pub replan_hz: f64,
     /// Seed of the flight.
     pub seed: u64,
+    /// What fails, by the names that the core has; null when the link or the clock fails, because then anything can seem to.
+    pub culprits: Option<Vec<&'static str>>,
     #[serde(skip)]
     cell: usize,
 }
@@ -56,6 +59,8 @@ pub struct PairRow {
     pub aircraft_lost: bool,
     /// Names of the sensors and actuators that the core told as failed.
     pub told: Vec<&'static str>,
+    /// Those of them that did not fail.
+    pub wrongly: Vec<&'static str>,
     /// Time from the first fault until the core said that something is wrong \[s\]. A flight ends with its loss, so it said
     /// so before.
     pub flagged: Option<f64>,
@@ -72,6 +77,8 @@ pub struct PairReport {
     pub aircraft_lost: u32,
     /// Lost flights in which the core said nothing.
     pub lost_untold: u32,
+    /// Flights in which the core told a sensor or actuator as failed that did not fail.
+    pub wrongly_told: u32,
     /// Lower end of the 95 % interval of their share of all flights (Wilson).
     pub untold_low: f64,
     /// Upper end of this interval.
@@ -93,12 +100,8 @@ impl FaultPairs {
         faults: &[NamedFault],
     ) -> Result<Self, ScenarioError> {
         let (clean, cells) = super::faults::cells_of(scenario, lists, trials, seed)?;
-        let single = |fault: &&NamedFault| {
-            // A fault in a field of its own is no fault in this one.
-            let placed = fault.text.lines().any(|line| line.starts_with("obstacles"));
-            !placed && !NO_SINGLE.contains(&fault.name)
-        };
-        let faults = faults.iter().filter(single).copied().collect();
+        let single = |fault: &NamedFault| Single::of(fault).transpose();
+        let faults = faults.iter().filter_map(single).collect::<Result<_, _>>()?;
         Ok(Self {
             clean,
             cells,
@@ -123,19 +126,29 @@ impl FaultPairs {
         let (first, second) = (0..1000).find_map(|_| {
             let mut one = || self.faults.get(index(&mut draws, self.faults.len()));
             let (first, second) = (one()?, one()?);
-            (!overlap(first, second)).then_some((first, second))
+            (!first.overlaps(second)).then_some((first, second))
         })?;
         let span = ((STARTS.1 - STARTS.0) / STEP) as usize;
         let starts = [first, second].map(|fault| {
             let start = STARTS.0 + STEP * index(&mut draws, span) as f64;
-            if is_timed(fault) { start } else { 0.0 }
+            if fault.is_timed() { start } else { 0.0 }
+        });
+        let toggle_hz = [first, second].map(|fault| {
+            let (drawn, along) = (uniform(&mut draws), uniform(&mut draws));
+            let rate = TOGGLE_HZ.0 * libm::pow(TOGGLE_HZ.1 / TOGGLE_HZ.0, along);
+            (drawn < TOGGLING && fault.toggles()).then_some((10.0 * rate).round() / 10.0)
         });
         Some(FaultPair {
             faults: [first.name, second.name],
             starts,
+            toggle_hz,
             obstacles: found.obstacles,
             replan_hz: found.replan_hz,
             seed,
+            culprits: [first, second]
+                .iter()
+                .all(|fault| fault.is_of_a_part())
+                .then(|| first.culprits().chain(second.culprits()).collect()),
             cell,
         })
     }
@@ -146,10 +159,10 @@ impl FaultPairs {
     /// [`ScenarioError`].
     pub fn scenario(&self, pair: &FaultPair) -> Result<Scenario, ScenarioError> {
         let mut campaign = self.clean.clone();
-        for (name, start) in pair.faults.iter().zip(pair.starts) {
+        for ((name, start), toggle) in pair.faults.iter().zip(pair.starts).zip(pair.toggle_hz) {
             let fault = self.faults.iter().find(|fault| fault.name == *name);
-            let text = fault.map_or_else(String::new, |fault| beginning(fault.text, start));
-            campaign.scenario = campaign.scenario.under(name, &text)?;
+            let file = fault.map_or_else(Table::new, |fault| fault.begun(start, toggle));
+            campaign.scenario = campaign.scenario.under(name, &file.to_string())?;
         }
         let cell = self.cells.get(pair.cell).cloned();
         let mut cell = cell.unwrap_or_else(|| self.clean.cells().swap_remove(0));
@@ -158,64 +171,12 @@ impl FaultPairs {
     }
 }
 
-/// The tables and keys of a fault.
-fn tables(fault: &NamedFault) -> impl Iterator<Item = &'static str> {
-    let heads = fault.text.lines().filter(|line| line.starts_with('['));
-    let keys = (fault.text.lines().take_while(|line| !line.starts_with('[')))
-        .filter_map(|line| Some(line.split_once('=')?.0.trim()));
-    heads.chain(keys)
-}
-
-fn overlap(one: &NamedFault, other: &NamedFault) -> bool {
-    one.name == other.name || tables(one).any(|name| tables(other).any(|its| its == name))
-}
-
-/// The name of a table that has a start.
-fn timed(line: &str) -> Option<&str> {
-    let name = line.strip_prefix("[faults.")?.strip_suffix(']')?;
-    TIMED.contains(&name).then_some(name)
-}
-
-fn is_timed(fault: &NamedFault) -> bool {
-    let moves = |line: &str| timed(line).is_some() || line.starts_with("from");
-    fault.text.lines().any(moves)
-}
-
-/// The text of a fault that begins at a time \[s\] and lasts as long as it does.
-fn beginning(text: &str, start: f64) -> String {
-    let seconds = |key: &str| -> Option<f64> {
-        let line = text.lines().find(|line| line.starts_with(key))?;
-        line.split_once('=')?
-            .1
-            .split('#')
-            .next()?
-            .trim()
-            .parse()
-            .ok()
-    };
-    let lasts = seconds("until").map(|until| until - seconds("from").unwrap_or(0.0));
-    let mut moved = String::new();
-    for line in text.lines() {
-        let line = match line.split_once('=').map(|(key, _)| key.trim()) {
-            Some("from") if timed_head(text, line) => continue,
-            Some("from") => format!("from = {start:.2}"),
-            Some("until") => format!("until = {:.2}", start + lasts.unwrap_or(0.0)),
-            _ => line.to_owned(),
-        };
-        moved += &line;
-        moved.push('\n');
-        if timed(&line).is_some() {
-            moved += &format!("from = {start:.2}\n");
-        }
-    }
-    moved
-}
-
-/// Whether a line stands in a table that gets its start with its head.
-fn timed_head(text: &str, line: &str) -> bool {
-    let before = text.split(line).next().unwrap_or_default();
-    let head = before.lines().rfind(|line| line.starts_with('['));
-    head.is_some_and(|head| timed(head).is_some())
+/// What was told as failed and did not fail.
+fn innocent(pair: &FaultPair, flown: &Flown) -> Vec<&'static str> {
+    let culprits = pair.culprits.as_ref();
+    let told = flown.told.iter().copied();
+    told.filter(|name| culprits.is_some_and(|culprits| !culprits.contains(name)))
+        .collect()
 }
 
 impl PairReport {
@@ -225,11 +186,12 @@ impl PairReport {
         let rows: Vec<PairRow> = flown
             .into_iter()
             .map(|(pair, flown)| PairRow {
-                pair,
                 lost: !flown.strict,
                 aircraft_lost: !flown.survived,
+                wrongly: innocent(&pair, &flown),
                 told: flown.told.into_iter().collect(),
                 flagged: flown.flagged,
+                pair,
             })
             .collect();
         let count = |is: &dyn Fn(&&PairRow) -> bool| rows.iter().filter(is).count() as u32;
@@ -241,6 +203,7 @@ impl PairReport {
             lost: count(&|row| row.lost),
             aircraft_lost: count(&|row| row.aircraft_lost),
             lost_untold: untold,
+            wrongly_told: count(&|row| !row.wrongly.is_empty()),
             untold_low,
             untold_high,
             rows,
@@ -259,6 +222,7 @@ impl fmt::Display for PairReport {
             let FaultPair {
                 faults,
                 starts,
+                toggle_hz,
                 obstacles,
                 replan_hz,
                 seed,
@@ -268,10 +232,17 @@ impl fmt::Display for PairReport {
                 Some(after) => format!("after {after:.2} s {}", row.told.join(", ")),
                 None => "nothing".to_owned(),
             };
-            let (names, from) = (
-                faults.join(" + "),
-                format!("{:.2}, {:.2}", starts[0], starts[1]),
-            );
+            let named = |(name, rate): (&&str, &Option<f64>)| match rate {
+                Some(rate) => format!("{name} at {rate} Hz"),
+                None => (*name).to_owned(),
+            };
+            let names = faults
+                .iter()
+                .zip(toggle_hz)
+                .map(named)
+                .collect::<Vec<_>>()
+                .join(" + ");
+            let from = format!("{:.2}, {:.2}", starts[0], starts[1]);
             writeln!(
                 f,
                 "{obstacles:>9} {replan_hz:>4}  {names:<44} {from:>11}  {seed:>20} {told}"
@@ -281,7 +252,7 @@ impl fmt::Display for PairReport {
         let of = f64::from(self.flights.max(1));
         writeln!(
             f,
-            "{} of {} flights lost, {} with the aircraft; lost untold: {}, {:.2} % [{:.2}, {:.2}]",
+            "{} of {} flights lost, {} with the aircraft; lost untold: {}, {:.2} % [{:.2}, {:.2}]; wrongly told in {}",
             self.lost,
             self.flights,
             self.aircraft_lost,
@@ -289,6 +260,7 @@ impl fmt::Display for PairReport {
             percent(f64::from(self.lost_untold) / of),
             percent(self.untold_low),
             percent(self.untold_high),
+            self.wrongly_told,
         )
     }
 }
@@ -331,20 +303,19 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_begins_when_it_was_drawn_and_lasts_as_long_as_its_own() {
-        let text = "[faults.scan]\nfrom = 5.0\nuntil = 8.0\nmissing = true\n";
-        let expected = "[faults.scan]\nfrom = 2.50\nuntil = 5.50\nmissing = true\n";
-        assert_eq!(beginning(text, 2.5), expected);
-        let (always, begun) = (
-            "[faults.pitch]\nbias = 5.0\n",
-            "[faults.pitch]\nfrom = 2.50\nbias = 5.0\n",
-        );
-        assert_eq!(beginning(always, 2.5), begun);
-        let clock = "[faults.clock]\nfrom = 8.0\njump = 1.0\n";
-        assert_eq!(
-            beginning(clock, 2.5),
-            "[faults.clock]\nfrom = 2.50\njump = 1.0\n"
-        );
+    fn what_did_not_fail_and_was_told_is_counted() {
+        let mut pair = pairs(1).pairs().remove(0);
+        pair.culprits = Some(vec!["pitch"]);
+        let flown = Flown {
+            strict: true,
+            survived: true,
+            known_collision: false,
+            flagged: Some(0.1),
+            told: ["motor", "pitch"].into(),
+        };
+        assert_eq!(innocent(&pair, &flown), ["motor"]);
+        pair.culprits = None;
+        assert!(innocent(&pair, &flown).is_empty());
     }
 
     #[test]

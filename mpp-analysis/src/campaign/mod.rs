@@ -14,6 +14,7 @@ mod pairs;
 mod report;
 mod row;
 mod sequential;
+mod single_fault;
 mod stats;
 mod table;
 mod taxonomy;
