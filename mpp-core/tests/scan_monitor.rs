@@ -161,3 +161,21 @@ fn a_monitor_that_forgets_holds_nothing_against_the_lidar() {
     monitor.clear();
     assert_eq!(check(&mut monitor, 3.0, reverse).0, ScanVerdict::Agrees);
 }
+
+/// A wrong pitch moves all returns by as many beams. The lidar is not the culprit then.
+#[test]
+fn a_wrong_pitch_is_not_held_against_the_lidar() {
+    for error in [-12.0_f64, -6.0, 6.0, 12.0] {
+        let mut monitor = ScanMonitor::new();
+        check(&mut monitor, 0.0, |_| {});
+        let told = pose(3.0);
+        let pitch = told.pitch + error.to_radians();
+        let mut scan = seen(&FIELD, &Pose { pitch, ..told });
+        let verdict = monitor.check(&mut scan, SIGHT, &told);
+        assert_eq!(
+            (verdict, scan.bad_beams()),
+            (ScanVerdict::Agrees, 0),
+            "{error}"
+        );
+    }
+}

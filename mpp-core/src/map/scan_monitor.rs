@@ -2,13 +2,15 @@
 //!
 //! The monitor predicts where beams meet again what they met in the last scan, or in short sight in the last scan that saw
 //! farther. It uses only returns that an adjacent beam confirms, so a wire that falls between two beams predicts nothing. What
-//! comes nearer than predicted hides the rest and says nothing; what comes from farther, or not at all, is a *miss*.
+//! comes nearer than predicted hides the rest and says nothing; what comes from farther, or not at all, is a *miss*. If most
+//! misses are hits when the scan is turned, the pitch is wrong and not the lidar: the scan says nothing.
 
 use super::rolling_grid::{has_return, is_return};
+use crate::config::MAX_BEAMS;
 use crate::sense::LidarScan;
 use crate::tuning::scan_match::{
     ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, OFF, OFF_SHARE,
-    SECTORS, SIGHT_SHARE,
+    SECTORS, SIGHT_SHARE, TURN_STEP, TURN_STEPS,
 };
 use crate::vehicle::Pose;
 
@@ -54,8 +56,17 @@ struct Fit {
     first_beyond: f64,
 }
 
-/// The order in which the beams of the last scan and of this one are taken: as sent, or reversed.
-type Orders = [bool; 2];
+/// A return of the last scan that is expected again.
+struct Prediction {
+    /// Where it is expected, as a number of beams from the first one [-].
+    place: f64,
+    /// Its range \[m\].
+    range: f64,
+    /// Number of adjacent beams that confirmed it.
+    confirmed: u32,
+}
+
+type Predictions = heapless::Vec<Prediction, MAX_BEAMS>;
 
 impl ScanMonitor {
     /// A monitor that has seen no scan.
@@ -93,9 +104,11 @@ impl ScanMonitor {
     pub fn check(&mut self, scan: &mut LidarScan, sight: f64, pose: &Pose) -> ScanVerdict {
         let (mut before, known) = (false, self.reversed);
         if has_return(scan, sight) {
-            let as_sent = self.fit(scan, sight, pose, [false, false]);
-            before = self.note_order(scan, sight, pose, &as_sent);
-            if self.reversed {
+            let predictions = self.predict(scan, sight, pose, false);
+            let as_sent = fit(scan, sight, &predictions, 0.0, false);
+            let turned = turned_hits(scan, sight, &predictions, &as_sent);
+            before = self.note_order(scan, sight, pose, &as_sent, turned.unwrap_or(0));
+            if self.reversed || turned.is_some() {
                 self.silent = [false; SECTORS];
             } else {
                 self.note_sight(scan, sight, &as_sent);
@@ -130,20 +143,30 @@ impl ScanMonitor {
         }
     }
 
-    /// Notes whether the reverse order fits better than the one as sent. Returns true if this is new and the last scan was
-    /// reversed too.
-    fn note_order(&mut self, scan: &LidarScan, sight: f64, pose: &Pose, as_sent: &Fit) -> bool {
+    /// Notes whether the reverse order fits better than the one as sent, and no worse than a turn with so many hits. Returns
+    /// true if this is new and the last scan was reversed too.
+    fn note_order(
+        &mut self,
+        scan: &LidarScan,
+        sight: f64,
+        pose: &Pose,
+        as_sent: &Fit,
+        turned: u32,
+    ) -> bool {
         if !self.reversed && as_sent.misses < LEAST_MISSES {
             return false;
         }
-        let both = self.fit(scan, sight, pose, [true, true]).hits;
-        let now = self.fit(scan, sight, pose, [false, true]).hits;
+        let hits = |before| {
+            let predictions = self.predict(scan, sight, pose, before);
+            fit(scan, sight, &predictions, 0.0, true).hits
+        };
+        let (both, now) = (hits(true), hits(false));
         let reversed = both.max(now);
         if self.reversed {
             self.reversed = as_sent.hits < reversed + LEAST_GAIN;
             return false;
         }
-        self.reversed = reversed >= as_sent.hits + LEAST_GAIN;
+        self.reversed = reversed >= (as_sent.hits + LEAST_GAIN).max(turned + 1);
         self.reversed && both >= now
     }
 
@@ -189,56 +212,39 @@ impl ScanMonitor {
         }
     }
 
-    /// How well a scan fits the last one, if the beams of both are taken in these orders.
-    fn fit(&self, scan: &LidarScan, sight: f64, pose: &Pose, [before, now]: Orders) -> Fit {
-        let mut fit = Fit {
-            first_beyond: f64::INFINITY,
-            ..Fit::default()
-        };
-        let far = farthest(scan, sight);
+    /// What this scan should show of the last one, if the beams of that are taken as sent or in reverse order.
+    // Not inlined, so that the predictions of one order are off the stack before those of the next.
+    #[inline(never)]
+    fn predict(&self, scan: &LidarScan, sight: f64, pose: &Pose, reversed: bool) -> Predictions {
+        let mut predictions = Predictions::new();
         let step = self.last.angle_increment;
-        let beams = scan.ranges.len();
         let last = self.last.ranges.len();
-        for beam in 0..last {
-            let range = self
-                .last
-                .ranges
-                .get(beam)
-                .map_or(0.0, |range| f64::from(*range));
+        for (beam, range) in self.last.ranges.iter().enumerate() {
+            let range = f64::from(*range);
             let confirmed = self.confirmed(beam, range, sight);
             if confirmed == 0 {
                 continue;
             }
-            let sent = if before { last - 1 - beam } else { beam };
+            let sent = if reversed { last - 1 - beam } else { beam };
             let angle = self.pose.pitch + self.last.angle_min + step * sent as f64;
             let (up, ahead) = libm::sincos(angle);
             let (ahead, up) = (
                 self.pose.x + range * ahead - pose.x,
                 self.pose.z + range * up - pose.z,
             );
-            let expected = libm::hypot(ahead, up);
             let place =
                 (libm::atan2(up, ahead) - pose.pitch - scan.angle_min) / scan.angle_increment;
-            let inside = (EDGE_BEAMS..=beams as f64 - 1.0 - EDGE_BEAMS).contains(&place);
-            if !inside || !(NEAR..=SIGHT_SHARE * sight).contains(&expected) {
-                continue;
-            }
-            let first = place as usize;
-            match met(scan, sight, first, expected, now) {
-                Some(true) => fit.hits += 1,
-                Some(false) => {
-                    fit.misses += 1;
-                    if expected > far {
-                        fit.beyond += confirmed;
-                        fit.first_beyond = fit.first_beyond.min(expected);
-                    } else {
-                        fit.missed[sector(first, beams)] += confirmed;
-                    }
-                }
-                None => {}
+            let range = libm::hypot(ahead, up);
+            if (NEAR..=SIGHT_SHARE * sight).contains(&range) {
+                // A scan has no more beams than there is room for.
+                let _ = predictions.push(Prediction {
+                    place,
+                    range,
+                    confirmed,
+                });
             }
         }
-        fit
+        predictions
     }
 
     /// Number of adjacent beams of the last scan that met the same surface as a beam with this range \[m\].
@@ -256,6 +262,53 @@ impl ScanMonitor {
         };
         u32::from(alike(beam.wrapping_sub(1))) + u32::from(alike(beam + 1))
     }
+}
+
+/// How well a scan fits predictions that are moved by so many beams, if its own beams are taken as sent or in reverse order.
+fn fit(scan: &LidarScan, sight: f64, predictions: &Predictions, turn: f64, reversed: bool) -> Fit {
+    let mut fit = Fit {
+        first_beyond: f64::INFINITY,
+        ..Fit::default()
+    };
+    let far = farthest(scan, sight);
+    let beams = scan.ranges.len();
+    for it in predictions {
+        let place = it.place + turn;
+        if !(EDGE_BEAMS..=beams as f64 - 1.0 - EDGE_BEAMS).contains(&place) {
+            continue;
+        }
+        let first = place as usize;
+        match met(scan, sight, first, it.range, reversed) {
+            Some(true) => fit.hits += 1,
+            Some(false) => {
+                fit.misses += 1;
+                if it.range > far {
+                    fit.beyond += it.confirmed;
+                    fit.first_beyond = fit.first_beyond.min(it.range);
+                } else {
+                    fit.missed[sector(first, beams)] += it.confirmed;
+                }
+            }
+            None => {}
+        }
+    }
+    fit
+}
+
+/// The most hits of a scan that is turned, as by a wrong pitch, if a turn makes hits of half of the misses.
+fn turned_hits(
+    scan: &LidarScan,
+    sight: f64,
+    predictions: &Predictions,
+    as_sent: &Fit,
+) -> Option<u32> {
+    if as_sent.misses < 2 {
+        return None;
+    }
+    let turns = (1..=TURN_STEPS).flat_map(|it| [it, -it]);
+    let hits = |turn| fit(scan, sight, predictions, TURN_STEP * f64::from(turn), false).hits;
+    let most = turns.map(hits).max()?;
+    (most >= as_sent.hits + as_sent.misses.div_ceil(2)).then_some(most)
 }
 
 /// The farthest return of a scan \[m\]; 0 without one.

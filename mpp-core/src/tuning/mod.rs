@@ -137,6 +137,12 @@ pub mod scan_match {
     /// Hits by which the reverse order fits better than the one as sent before it is believed [-]. With 2 instead of 4, a poor
     /// lidar was told in 3 of 60 flights, with 4 in none. Source: D37.
     pub const LEAST_GAIN: u32 = 4;
+    /// Turns of a scan that are tried before something is held against the lidar, to either side, and the step between them in
+    /// beams. A return may be 1.5 beams from its prediction, so steps of 3 leave none out. With beams 1 deg apart they reach
+    /// 15 deg, which a pitch that sticks is wrong by before it is excluded. Source: derived.
+    pub const TURN_STEPS: i32 = 5;
+    /// See [`TURN_STEPS`].
+    pub const TURN_STEP: f64 = 3.0;
 }
 
 /// Candidates of a cycle.
