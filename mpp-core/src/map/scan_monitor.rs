@@ -166,7 +166,7 @@ impl ScanMonitor {
             self.reversed = as_sent.hits < reversed + LEAST_GAIN;
             return false;
         }
-        self.reversed = reversed >= (as_sent.hits + LEAST_GAIN).max(turned + 1);
+        self.reversed = reversed >= (as_sent.hits + LEAST_GAIN).max(turned);
         self.reversed && both >= now
     }
 

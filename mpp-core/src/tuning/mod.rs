@@ -141,7 +141,7 @@ pub mod scan_match {
     /// beams. A return may be 1.5 beams from its prediction, so steps of 3 leave none out. With beams 1 deg apart they reach
     /// 15 deg, which a pitch that sticks is wrong by before it is excluded. Source: derived.
     pub const TURN_STEPS: i32 = 5;
-    /// See [`TURN_STEPS`].
+    /// See [`TURN_STEPS`]. Source: derived.
     pub const TURN_STEP: f64 = 3.0;
 }
 

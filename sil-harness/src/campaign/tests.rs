@@ -26,17 +26,12 @@ fn short() -> Campaign {
 
 fn fly_jobs(campaign: &Campaign, shard: Shard, threads: usize) -> Vec<Row> {
     let rows = Mutex::new(Vec::new());
-    run(
-        campaign,
-        &campaign.jobs(shard),
-        threads,
-        Extras::HASHED,
-        |row| {
-            rows.lock().unwrap().push(row);
-            Ok(())
-        },
-    )
-    .unwrap();
+    let keep = |row| {
+        rows.lock().unwrap().push(row);
+        Ok(())
+    };
+    let jobs = campaign.jobs(shard);
+    run(campaign, &jobs, threads, Extras::HASHED, keep).unwrap();
     rows.into_inner().unwrap()
 }
 
