@@ -1,0 +1,113 @@
+//! The core, linked in: the same bytes as over the link, without a socket.
+
+use crate::CompanionError;
+use hil_protocol::{
+    ActuatorCommand, Configure, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, Role,
+    SensorFrame, SensorState, StepReport,
+};
+use mpp_core::config::STAGES;
+use mpp_sim::link::{Link, LinkError};
+use mpp_sim::pipe::PipeLink;
+use mpp_sim::scenario::TICK_US;
+
+/// What the core said in a tick.
+#[derive(Clone, Copy, Debug)]
+pub struct Thought {
+    /// The command.
+    pub command: ActuatorCommand,
+    /// Estimate and reference.
+    pub step: StepReport,
+}
+
+impl Thought {
+    /// Whether the core trusts air data and positions.
+    #[must_use]
+    pub fn knows(&self) -> bool {
+        let sensors = self.step.sensors;
+        let trusted = |sensor| sensor != SensorState::Excluded;
+        trusted(sensors.airspeed) && trusted(sensors.pitch) && trusted(sensors.position)
+    }
+
+    /// Whether the core trusts the scans.
+    #[must_use]
+    pub fn sees(&self) -> bool {
+        self.step.sensors.lidar != SensorState::Excluded
+    }
+}
+
+/// A core that flies.
+pub struct Brain {
+    link: PipeLink,
+    /// The next tick.
+    pub next: u32,
+    /// The last scan that the core got.
+    pub scanned: Option<u32>,
+    /// Plans that were adopted one after the other.
+    pub plans: u32,
+    /// Ticks in trim hold, one after the other.
+    pub planless: u32,
+    /// What it said last.
+    pub last: Option<Thought>,
+}
+
+impl Brain {
+    /// A configured core.
+    ///
+    /// # Errors
+    /// [`CompanionError`] when the core refuses.
+    pub fn new(configure: &Configure) -> Result<Self, CompanionError> {
+        let mut link = PipeLink::new();
+        let hello = Hello {
+            role: Role::Harness,
+            software: [0; 3],
+            tick_period_us: TICK_US,
+            beams_max: hil_protocol::MAX_BEAMS as u16,
+            stages: STAGES as u16,
+        };
+        link.send(&Message::Hello(hello))?;
+        link.send(&Message::Configure(*configure))?;
+        loop {
+            if let Message::ConfigureReply(reply) = link.receive("the reply to a configuration")? {
+                if reply.verdict != ConfigureVerdict::Accepted {
+                    return Err(CompanionError::Refused(reply.verdict));
+                }
+                return Ok(Self {
+                    link,
+                    next: 0,
+                    scanned: None,
+                    plans: 0,
+                    planless: 0,
+                    last: None,
+                });
+            }
+        }
+    }
+
+    /// Does the next tick. The frame's tick is `next`.
+    ///
+    /// # Errors
+    /// [`LinkError`] when the core does not answer.
+    pub fn tick(&mut self, frame: SensorFrame, scan: Option<LidarScan>) -> Result<(), LinkError> {
+        if let Some(scan) = scan {
+            self.scanned = Some(frame.tick);
+            self.link.send(&Message::LidarScan(scan))?;
+        }
+        self.link.send(&Message::SensorFrame(frame))?;
+        self.next = frame.tick.wrapping_add(1);
+        let mut step = None;
+        loop {
+            match self.link.receive("the command of a tick")? {
+                Message::StepReport(report) => step = Some(report),
+                Message::PlanReport(report) if report.outcome.is_new() => self.plans += 1,
+                Message::PlanReport(_) => self.plans = 0,
+                Message::ActuatorCommand(command) => {
+                    let holds = command.mode == ControlMode::TrimHold;
+                    self.planless = if holds { self.planless + 1 } else { 0 };
+                    self.last = step.map(|step| Thought { command, step });
+                    return Ok(());
+                }
+                _ => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The core's part of the companion: measurements to its ticks, its command to a setpoint.
+
+use super::{Companion, Flown, Told};
+use crate::frames::{CourseFrame, true_airspeed};
+use crate::guard::State;
+use crate::{Brain, Setpoint};
+use hil_protocol::{AirData, LidarScan, Position, SensorFrame};
+use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
+
+/// Length of a tick \[ms\].
+const TICK_MS: u32 = 10;
+/// The most ticks that are made up for. A longer hole in the measurements is a new flight.
+const MOST_TICKS: u32 = 50;
+
+impl Companion {
+    pub(super) fn hear_position(&mut self, position: &LOCAL_POSITION_NED_DATA) {
+        self.heard.position = Some(position.clone());
+        if let Some(flown) = &mut self.flown {
+            flown.placed = flown.frame.place(position).or(flown.placed);
+        }
+    }
+
+    pub(super) fn is_level(&self) -> bool {
+        let (Some(attitude), Some(position), Some(airspeed)) =
+            (&self.heard.attitude, &self.heard.position, self.airspeed())
+        else {
+            return false;
+        };
+        let cruise = self.config.model.file.cruise;
+        let trim = self.config.model.trim.state.pitch;
+        (f64::from(attitude.pitch) - trim).abs() < 0.12
+            && attitude.roll.abs() < 0.1
+            && position.vz.abs() < 1.5
+            && (airspeed - cruise).abs() < 0.1 * cruise
+    }
+
+    fn airspeed(&self) -> Option<f64> {
+        let density = self.config.model.file.air_density;
+        Some(true_airspeed(self.heard.airspeed?, density))
+    }
+
+    /// Begins a flight of the core at this attitude.
+    fn begin(&mut self, attitude: &ATTITUDE_DATA) -> Option<Flown> {
+        let position = self.heard.position.as_ref()?;
+        let frame = CourseFrame::at(position)?;
+        let height = -f64::from(position.z);
+        match Brain::new(&self.config.configure(height)) {
+            Ok(brain) => Some(Flown {
+                brain,
+                frame,
+                start: attitude.time_boot_ms,
+                height,
+                placed: None,
+                headed: None,
+            }),
+            Err(error) => {
+                self.told.push(Told::Core(error.to_string()));
+                None
+            }
+        }
+    }
+
+    /// Lets the core do all ticks up to this attitude.
+    pub(super) fn think(&mut self, now: u64, attitude: &ATTITUDE_DATA) {
+        if !matches!(self.guard.state, State::Listening | State::Flying | State::Climb) {
+            return;
+        }
+        if self.flown.is_none() {
+            self.flown = self.begin(attitude);
+        }
+        let airspeed = self.airspeed();
+        let Some(flown) = &mut self.flown else {
+            return;
+        };
+        let Some(since) = attitude.time_boot_ms.checked_sub(flown.start) else {
+            return;
+        };
+        let tick = (since + TICK_MS / 2) / TICK_MS;
+        if tick.saturating_sub(flown.brain.next) > MOST_TICKS {
+            self.flown = None;
+            return;
+        }
+        while flown.brain.next <= tick {
+            let next = flown.brain.next;
+            let mut frame = SensorFrame {
+                tick: next,
+                air: None,
+                position: None,
+            };
+            let mut scan: Option<LidarScan> = None;
+            if next == tick {
+                let pitch = f64::from(attitude.pitch);
+                frame.air = airspeed.filter(|_| pitch.is_finite()).map(|airspeed| AirData {
+                    tick,
+                    airspeed,
+                    pitch,
+                });
+                frame.position = position(flown, tick);
+                let due = |scanned| next - scanned >= self.config.replan_ticks;
+                if flown.brain.scanned.is_none_or(due) {
+                    scan = self.lidar.take(now).map(|scan| LidarScan { tick, ..scan });
+                }
+            }
+            if let Err(error) = flown.brain.tick(frame, scan) {
+                self.told.push(Told::Core(error.to_string()));
+                self.flown = None;
+                return;
+            }
+        }
+    }
+
+    /// The setpoint that the core wants.
+    pub(super) fn wanted(&self) -> Option<Setpoint> {
+        let thought = self.flown.as_ref()?.brain.last?;
+        let [.., path] = thought.step.estimate;
+        let [.., pitch_rate, _] = thought.step.reference;
+        Some(Setpoint {
+            pitch: thought.command.elevator + path + self.config.lead * pitch_rate,
+            throttle: thought.command.thrust / self.thrust_max,
+        })
+    }
+}
+
+/// The position that came since the last tick.
+fn position(flown: &mut Flown, tick: u32) -> Option<Position> {
+    let placed = flown.placed?;
+    let since = placed.time.checked_sub(flown.start)?;
+    Some(Position {
+        tick: ((since + TICK_MS / 2) / TICK_MS).min(tick),
+        x: placed.x,
+        z: placed.z,
+        sigma: 0.1,
+        velocity: None,
+    })
+}

@@ -1,0 +1,349 @@
+//! The companion: inputs with their times go in, frames to the autopilot come out.
+
+mod core_side;
+mod questions;
+
+use crate::checks::Checked;
+use crate::clock::Clock;
+use crate::frames::{CourseFrame, Placed};
+use crate::guard::{Guard, Reason, Sight, State};
+use crate::lidar::Lidar;
+use crate::setpoint::{Gate, Setpoint};
+use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
+use crate::{Brain, CompanionError};
+use hil_protocol::{Configure, MAX_BEAMS};
+use mavlink::dialects::common::{
+    ATTITUDE_DATA, AttitudeTargetTypemask, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag,
+    SET_ATTITUDE_TARGET_DATA,
+};
+use mpp_sim::aircraft_file::AircraftModel;
+
+/// ArduPlane's number of the mode GUIDED.
+pub(crate) const GUIDED: u32 = 15;
+/// System of the autopilot; the companion is a component of the same system.
+pub(crate) const SYSTEM: u8 = 1;
+/// The autopilot's component.
+pub(crate) const AUTOPILOT: u8 = 1;
+/// ArduPlane then takes the pitch from the quaternion and the throttle, and holds the heading by itself.
+pub(crate) const MASK: AttitudeTargetTypemask = AttitudeTargetTypemask::from_bits_retain(133);
+
+/// Where an input comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Bytes of the autopilot.
+    Autopilot,
+    /// A datagram of the lidar.
+    Lidar,
+    /// No bytes: time passed. It comes each 20 ms.
+    Time,
+}
+
+/// What the companion tells its user.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Told {
+    /// The state changed.
+    State(State, Reason),
+    /// What was verified, or why the companion is not ready.
+    Verified(String),
+    /// The core cannot fly.
+    Core(String),
+}
+
+/// What a companion flies.
+#[derive(Clone, Debug)]
+pub struct Config {
+    /// The aircraft.
+    pub model: AircraftModel,
+    /// Beams of a scan.
+    pub beams: u16,
+    /// Longest range of the lidar \[m\].
+    pub range: f32,
+    /// Ticks from one plan to the next.
+    pub replan_ticks: u32,
+    /// Ticks from the start of a cycle until its plan is flown.
+    pub latency_ticks: u32,
+    /// Slices of planning work in a tick.
+    pub slices: u32,
+    /// Time by which the wanted pitch leads the command \[s\].
+    pub lead: f64,
+}
+
+impl Config {
+    /// The usual flight of an aircraft: 100 beams, 2 Hz.
+    #[must_use]
+    pub fn new(model: AircraftModel, range: f32) -> Self {
+        Self {
+            model,
+            beams: 100,
+            range,
+            replan_ticks: 50,
+            latency_ticks: 5,
+            slices: u32::MAX,
+            lead: 0.0,
+        }
+    }
+
+    /// The core's configuration at a height \[m\].
+    pub(crate) fn configure(&self, altitude: f64) -> Configure {
+        Configure {
+            preset: hil_protocol::Preset::Flight,
+            aircraft: self.model.known,
+            paths: 25,
+            replan_period_ticks: self.replan_ticks,
+            latency_ticks: self.latency_ticks,
+            slices_per_tick: self.slices,
+            seed: 1,
+            beams: self.beams.min(MAX_BEAMS as u16),
+            range_max: self.range,
+            altitude,
+            actuators: self.model.actuators,
+        }
+    }
+}
+
+/// What the autopilot said last.
+#[derive(Default)]
+struct Heard {
+    /// When anything came \[us\].
+    at: Option<u64>,
+    ours: bool,
+    attitude: Option<ATTITUDE_DATA>,
+    position: Option<LOCAL_POSITION_NED_DATA>,
+    airspeed: Option<f64>,
+}
+
+/// A flight by the core.
+struct Flown {
+    brain: Brain,
+    frame: CourseFrame,
+    /// The autopilot's time of tick 0 \[ms\].
+    start: u32,
+    /// Height at hand-over \[m\].
+    height: f64,
+    placed: Option<Placed>,
+    /// When a heading was asked for last \[us\].
+    headed: Option<u64>,
+}
+
+/// A companion. It has no clock: each input bears its time.
+pub struct Companion {
+    config: Config,
+    thrust_max: f64,
+    framer: Framer,
+    sender: Sender,
+    heard: Heard,
+    lidar: Lidar,
+    clock: Clock,
+    checked: Checked,
+    guard: Guard,
+    flown: Option<Flown>,
+    asked: questions::Asked,
+    told: Vec<Told>,
+}
+
+impl Companion {
+    /// A companion that has heard nothing.
+    ///
+    /// # Errors
+    /// [`CompanionError::Lacks`] when the aircraft is not one that an autopilot flies.
+    pub fn new(config: Config) -> Result<Self, CompanionError> {
+        let file = &config.model.file;
+        let thrust_max = file.thrust.max.ok_or(CompanionError::Lacks("thrust.max"))?;
+        if file.elevator.min.is_none() || file.elevator.max.is_none() {
+            return Err(CompanionError::Lacks("pitch_loop.min and pitch_loop.max"));
+        }
+        Ok(Self {
+            config,
+            thrust_max,
+            framer: Framer::default(),
+            sender: Sender::new(SYSTEM, OWN_COMPONENT),
+            heard: Heard::default(),
+            lidar: Lidar::new(),
+            clock: Clock::default(),
+            checked: Checked::default(),
+            guard: Guard::new(0.0),
+            flown: None,
+            asked: questions::Asked::default(),
+            told: Vec::new(),
+        })
+    }
+
+    /// The state.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.guard.state
+    }
+
+    /// What is new for the user.
+    pub fn told(&mut self) -> Vec<Told> {
+        std::mem::take(&mut self.told)
+    }
+
+    /// Takes an input at a time \[us\]. `send` gets each frame to the autopilot.
+    pub fn receive(&mut self, now: u64, side: Side, bytes: &[u8], send: &mut dyn FnMut(&[u8])) {
+        match side {
+            Side::Autopilot => {
+                let mut messages = Vec::new();
+                self.framer.receive(bytes, |system, component, message| {
+                    if (system, component) == (u32::from(SYSTEM), AUTOPILOT) {
+                        messages.push(message);
+                    }
+                });
+                for message in messages {
+                    self.heard.at = Some(now);
+                    self.hear(now, &message, send);
+                }
+            }
+            Side::Lidar => self.lidar.receive(now, bytes),
+            Side::Time => {
+                self.look(now, send);
+                self.ask(now, send);
+            }
+        }
+    }
+
+    fn hear(&mut self, now: u64, message: &Mav, send: &mut dyn FnMut(&[u8])) {
+        match message {
+            Mav::HEARTBEAT(beat) => {
+                self.heard.ours = is_ours(beat);
+                self.look(now, send);
+            }
+            Mav::TIMESYNC(sync) if sync.tc1 != 0 => {
+                self.clock.hear(now, sync.ts1 / 1000, sync.tc1 / 1000);
+            }
+            Mav::PARAM_VALUE(value) => {
+                let name = value.param_id.to_str().unwrap_or_default();
+                self.checked.hear(name, value.param_value);
+            }
+            Mav::VFR_HUD(hud) => {
+                self.heard.airspeed = Some(f64::from(hud.airspeed)).filter(|speed| speed.is_finite());
+            }
+            Mav::LOCAL_POSITION_NED(position) => self.hear_position(position),
+            Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
+            _ => {}
+        }
+    }
+
+    fn hear_attitude(
+        &mut self,
+        now: u64,
+        attitude: &ATTITUDE_DATA,
+        send: &mut dyn FnMut(&[u8]),
+    ) {
+        let last = self.heard.attitude.as_ref().map(|last| last.time_boot_ms);
+        if last.is_some_and(|last| attitude.time_boot_ms.saturating_add(1000) < last) {
+            self.start_anew();
+        } else if last.is_some_and(|last| attitude.time_boot_ms <= last) {
+            return;
+        }
+        self.heard.attitude = Some(attitude.clone());
+        self.look(now, send);
+        self.think(now, attitude);
+        self.look(now, send);
+        self.propose(attitude, send);
+    }
+
+    /// The autopilot restarted: nothing that it said holds any more.
+    fn start_anew(&mut self) {
+        self.heard = Heard {
+            at: self.heard.at,
+            ..Heard::default()
+        };
+        self.flown = None;
+        self.clock = Clock::default();
+        self.checked = Checked::default();
+        self.asked.told = false;
+    }
+
+    /// Lets the guard look, and does what its change asks for.
+    fn look(&mut self, now: u64, send: &mut dyn FnMut(&[u8])) {
+        let sight = self.sight(now);
+        let Some(reason) = self.guard.look(&sight) else {
+            return;
+        };
+        self.told.push(Told::State(self.guard.state, reason));
+        match self.guard.state {
+            State::GiveBack => self.give_back(send),
+            State::Flying | State::Climb => {}
+            State::Off | State::Ready | State::Listening | State::Lost => self.flown = None,
+        }
+    }
+
+    fn sight(&self, now: u64) -> Sight {
+        let seconds = |at: Option<u64>| {
+            at.map_or(f64::INFINITY, |at| now.saturating_sub(at) as f64 * 1e-6)
+        };
+        let attitude = self.heard.attitude.as_ref();
+        let placed = self.flown.as_ref().and_then(|flown| flown.placed);
+        let thought = self.flown.as_ref().and_then(|flown| flown.brain.last);
+        let age = attitude.and_then(|last| self.clock.age(now, last.time_boot_ms));
+        let bank = attitude.map_or(f64::NAN, |last| f64::from(last.roll).abs());
+        let brain = self.flown.as_ref().map(|flown| &flown.brain);
+        Sight {
+            now: now as f64 * 1e-6,
+            silence: seconds(self.heard.at),
+            verified: self.checked.flaw().is_none() && self.clock.is_in_step(),
+            ours: self.heard.ours,
+            level: self.is_level(),
+            plans: brain.map_or(0, |brain| brain.plans),
+            planless: brain.map_or(f64::INFINITY, |brain| f64::from(brain.planless) * 0.01),
+            unseen: seconds(self.lidar.heard),
+            sees: thought.is_some_and(|thought| thought.sees()),
+            knows: thought.is_some_and(|thought| thought.knows()),
+            age: age.unwrap_or(f64::NAN),
+            bank,
+            aside: placed.map_or(f64::NAN, |placed| placed.cross.abs()),
+            climbed: self
+                .flown
+                .as_ref()
+                .and_then(|flown| Some(flown.placed?.z - flown.height))
+                .unwrap_or(0.0),
+        }
+    }
+
+    /// Sends the setpoint of the state, if one may be sent.
+    fn propose(&mut self, attitude: &ATTITUDE_DATA, send: &mut dyn FnMut(&[u8])) {
+        let Some((pitch_min, pitch_max)) = self.checked.pitch() else {
+            return;
+        };
+        let asked = match self.guard.state {
+            State::Flying => self.wanted(),
+            State::Climb => Some(Setpoint {
+                pitch: self.config.model.trim.state.pitch + 0.2,
+                throttle: 1.0,
+            }),
+            _ => None,
+        };
+        let gate = Gate {
+            pitch_min,
+            pitch_max,
+        };
+        let Some(setpoint) = asked.and_then(|asked| gate.pass(asked)) else {
+            return;
+        };
+        let (sin, cos) = (0.5 * setpoint.pitch).sin_cos();
+        self.send(
+            &Mav::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
+                time_boot_ms: attitude.time_boot_ms,
+                q: [cos as f32, 0.0, sin as f32, 0.0],
+                thrust: setpoint.throttle as f32,
+                target_system: SYSTEM,
+                target_component: AUTOPILOT,
+                type_mask: MASK,
+                ..SET_ATTITUDE_TARGET_DATA::DEFAULT
+            }),
+            send,
+        );
+    }
+
+    fn send(&mut self, message: &Mav, send: &mut dyn FnMut(&[u8])) {
+        send(&self.sender.frame(message));
+    }
+}
+
+/// Whether the autopilot is armed and in GUIDED.
+fn is_ours(beat: &HEARTBEAT_DATA) -> bool {
+    let flags =
+        MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
+    beat.base_mode.contains(flags) && beat.custom_mode == GUIDED
+}

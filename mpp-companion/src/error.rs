@@ -1,0 +1,36 @@
+//! Why the companion cannot start or go on.
+
+use hil_protocol::ConfigureVerdict;
+use mpp_sim::link::LinkError;
+use mpp_sim::scenario::ScenarioError;
+
+/// Why the companion cannot start or go on.
+#[derive(Debug, thiserror::Error)]
+pub enum CompanionError {
+    /// The aircraft file makes no sense.
+    #[error("{0}")]
+    Aircraft(#[from] ScenarioError),
+    /// The aircraft is not one that an autopilot flies.
+    #[error("the aircraft file lacks `{0}`: a companion needs it")]
+    Lacks(&'static str),
+    /// The core does not answer.
+    #[error("the core does not answer: {0}")]
+    Core(#[from] LinkError),
+    /// The core refuses its configuration.
+    #[error("the core refuses the configuration: {0}")]
+    Refused(ConfigureVerdict),
+    /// The operating system reports an error. The text names the action that failed.
+    #[error("{0}: {1}")]
+    Io(String, #[source] std::io::Error),
+    /// An address makes no sense.
+    #[error("`{0}` is no address: give {1}")]
+    Address(String, &'static str),
+    /// A log is damaged.
+    #[error("the log is damaged at record {0}: record the flight anew")]
+    Log(usize),
+    /// A replay sent something else than the flight.
+    #[error(
+        "the replay differs from the flight at sent frame {0}: give the same aircraft file and options as in flight"
+    )]
+    Differs(usize),
+}

@@ -1,0 +1,25 @@
+//! The flight core on the computer beside an autopilot. MAVLink and a lidar's scans go in, attitude setpoints come out.
+//!
+//! [`Companion`] has no clock, socket and thread: each input bears its time, so that a recorded flight replays to the last
+//! bit. The binary brings sockets, clock and log; [`stand_in`] brings an autopilot that flies in simulated time.
+
+mod brain;
+mod checks;
+mod clock;
+pub(crate) mod companion;
+mod error;
+mod frames;
+mod guard;
+mod lidar;
+mod log;
+mod setpoint;
+pub mod stand_in;
+mod wire;
+
+pub use brain::{Brain, Thought};
+pub use companion::{Companion, Config, Side, Told};
+pub use error::CompanionError;
+pub use guard::{Guard, Reason, Sight, State};
+pub use log::{LogReader, LogWriter, Record, replay};
+pub use setpoint::{Gate, Setpoint};
+pub use wire::{Framer, Mav};

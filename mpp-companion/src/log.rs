@@ -1,0 +1,94 @@
+//! The log of both sides: each record is time \[us\], kind, length and bytes, little-endian. It replays to the last bit.
+
+use crate::{Companion, CompanionError, Side};
+use std::io::{Read, Write};
+
+/// One record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// Time \[us\].
+    pub time: u64,
+    /// Where it came from; `None` if the companion sent it.
+    pub side: Option<Side>,
+    /// The bytes.
+    pub bytes: Vec<u8>,
+}
+
+const SIDES: [Option<Side>; 4] = [
+    None,
+    Some(Side::Autopilot),
+    Some(Side::Lidar),
+    Some(Side::Time),
+];
+
+/// Writes a log.
+pub struct LogWriter<W>(pub W);
+
+impl<W: Write> LogWriter<W> {
+    /// Writes a record.
+    ///
+    /// # Errors
+    /// What the file reports.
+    pub fn write(&mut self, time: u64, side: Option<Side>, bytes: &[u8]) -> std::io::Result<()> {
+        let kind = SIDES.iter().position(|known| *known == side).unwrap_or(0);
+        let length = u16::try_from(bytes.len()).map_err(std::io::Error::other)?;
+        self.0.write_all(&time.to_le_bytes())?;
+        self.0.write_all(&[kind as u8])?;
+        self.0.write_all(&length.to_le_bytes())?;
+        self.0.write_all(bytes)
+    }
+}
+
+/// Reads a log.
+pub struct LogReader<R> {
+    from: R,
+    read: usize,
+}
+
+impl<R: Read> LogReader<R> {
+    /// A reader at the first record.
+    pub fn new(from: R) -> Self {
+        Self { from, read: 0 }
+    }
+
+    /// The next record; `None` at the end. A record that the end cuts off, as when the power fails, is the end.
+    ///
+    /// # Errors
+    /// [`CompanionError::Log`].
+    pub fn next(&mut self) -> Result<Option<Record>, CompanionError> {
+        let mut head = [0; 11];
+        if self.from.read_exact(&mut head).is_err() {
+            return Ok(None);
+        }
+        let [a, b, c, d, e, f, g, h, kind, low, high] = head;
+        let side = SIDES.get(usize::from(kind));
+        let side = *side.ok_or(CompanionError::Log(self.read))?;
+        let mut bytes = vec![0; usize::from(u16::from_le_bytes([low, high]))];
+        if self.from.read_exact(&mut bytes).is_err() {
+            return Ok(None);
+        }
+        self.read += 1;
+        let time = u64::from_le_bytes([a, b, c, d, e, f, g, h]);
+        Ok(Some(Record { time, side, bytes }))
+    }
+}
+
+/// Flies a log again, and compares each frame that the companion sends. Returns the number of frames.
+///
+/// # Errors
+/// [`CompanionError::Differs`] at the first frame that is another.
+pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, CompanionError> {
+    let mut reader = LogReader::new(from);
+    let mut sent = std::collections::VecDeque::new();
+    let mut same = 0;
+    while let Some(Record { time, side, bytes }) = reader.next()? {
+        match side {
+            Some(side) => {
+                companion.receive(time, side, &bytes, &mut |frame| sent.push_back(frame.to_vec()));
+            }
+            None if sent.pop_front().as_ref() == Some(&bytes) => same += 1,
+            None => return Err(CompanionError::Differs(same)),
+        }
+    }
+    Ok(same)
+}

@@ -1,0 +1,390 @@
+//! One flight of companion and stand-in, in lockstep and in simulated time.
+
+use super::autopilot::StandIn;
+use super::faults::Fault;
+use crate::companion::GUIDED;
+use crate::wire::{Framer, Mav};
+use crate::{Companion, CompanionError, Config, LogWriter, Side, State, Told};
+use hil_protocol::{MAX_FRAME, Message, encode};
+use mpp_sim::field::Field;
+use mpp_sim::lidar::{FanLidar, Lidar};
+use mpp_sim::random::{Draws, Stream, gaussian, generator};
+use mpp_sim::scenario::{Scenario, ScenarioFile};
+use std::collections::VecDeque;
+
+/// How far the field is moved, so that it begins where the core takes over: level flight of 7 s.
+const RUN_UP: f64 = 7.0;
+/// Ticks from the switch to GUIDED until a fault begins.
+const FAULT: u32 = 800;
+/// The tick at which the pilot chooses GUIDED.
+const CHOSEN: u32 = 150;
+
+/// What is flown.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// Seed.
+    pub seed: u64,
+    /// Obstacles over the length of the field.
+    pub obstacles: usize,
+    /// Dead time of the pitch \[ticks\], and whether the companion's aircraft file tells it.
+    pub dead: usize,
+    /// Whether it is told.
+    pub told: bool,
+    /// Replanning [Hz].
+    pub replan_hz: f64,
+    /// Wind along the course [m/s].
+    pub wind: f64,
+    /// Intensity of the turbulence [m/s].
+    pub gusts: f64,
+    /// Fault of the exchange.
+    pub fault: Option<Fault>,
+}
+
+/// How it went.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Least distance to an obstacle, less the body \[m\].
+    pub clearance: f64,
+    /// Greatest distance from the height at the start \[m\].
+    pub off: f64,
+    /// Whether the core had the aircraft to the end of the field.
+    pub flown: bool,
+    /// Setpoints that were sent.
+    pub setpoints: u32,
+    /// Setpoints that were not finite or beyond limits.
+    pub unsound: u32,
+    /// Setpoints after the companion heard of a take-over.
+    pub late: u32,
+    /// Time from a take-over to the last setpoint \[ms\].
+    pub last_after: u32,
+    /// What the companion told.
+    pub told: Vec<Told>,
+}
+
+impl Outcome {
+    /// Past the field, within the strict band, without a touch.
+    #[must_use]
+    pub fn is_strict(&self, scenario: &Scenario) -> bool {
+        self.flown && self.clearance > 0.0 && self.off <= scenario.band()
+    }
+}
+
+impl Flight {
+    /// 20 obstacles, 2 Hz, a dead time of 0.1 s that is told.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self {
+            seed,
+            obstacles: 20,
+            dead: 10,
+            told: true,
+            replan_hz: 2.0,
+            wind: 0.0,
+            gusts: 0.0,
+            fault: None,
+        }
+    }
+
+    /// The scenario: field, lidar, plant.
+    ///
+    /// # Errors
+    /// [`CompanionError::Aircraft`].
+    pub fn scenario(&self) -> Result<Scenario, CompanionError> {
+        let text = super::AIRCRAFT;
+        let file = mpp_sim::aircraft_file::AircraftFile::parse("plane.toml", text)?;
+        let mut scenario = ScenarioFile {
+            aircraft: Some(file),
+            seed: Some(self.seed),
+            obstacles: Some(self.obstacles),
+            replan_hz: Some(self.replan_hz),
+            ..ScenarioFile::default()
+        }
+        .build()?;
+        scenario.faults.gusts.intensity = self.gusts;
+        Ok(scenario)
+    }
+
+    fn config(&self, scenario: &Scenario) -> Config {
+        let mut model = scenario.aircraft.clone();
+        model.known.body_radius = scenario.body_radius;
+        if !self.told {
+            model.actuators.elevator_delay = None;
+        }
+        Config {
+            replan_ticks: scenario.replan_ticks,
+            ..Config::new(model, scenario.lidar.farthest() as f32)
+        }
+    }
+
+    /// Flies, and logs what goes in and out.
+    ///
+    /// # Errors
+    /// [`CompanionError`].
+    pub fn fly(&self, log: Option<&mut Vec<u8>>) -> Result<Outcome, CompanionError> {
+        let scenario = self.scenario()?;
+        let companion = Companion::new(self.config(&scenario))?;
+        let mut plant = scenario.clone();
+        // The dead time is the autopilot's, of the pitch that is demanded. The plant has none beside it.
+        plant.aircraft.actuators.elevator_delay = None;
+        plant.aircraft.actuators.elevator_below = None;
+        plant.aircraft.actuators.elevator_above = None;
+        let no_trim = |error: mpp_core::vehicle::TrimError| {
+            mpp_sim::scenario::ScenarioError::Value("aircraft", error.to_string())
+        };
+        let autopilot = StandIn::new(&plant, self.wind, self.dead).map_err(no_trim)?;
+        let run = Run {
+            lidar: FanLidar::new(self.seed, scenario.lidar),
+            noise: generator(self.seed, Stream::AirspeedSensor),
+            fault: self.fault,
+            companion,
+            autopilot,
+            log: log.map(LogWriter),
+            up: VecDeque::new(),
+            down: VecDeque::new(),
+            framer: Framer::default(),
+            count: 0,
+            held: None,
+            frozen: None,
+            taken: None,
+            outcome: Outcome {
+                clearance: f64::INFINITY,
+                ..Outcome::default()
+            },
+        };
+        run.fly(&scenario)
+    }
+
+    /// Flies a log again: the number of frames that are the same.
+    ///
+    /// # Errors
+    /// [`CompanionError::Differs`].
+    pub fn replay(&self, log: &[u8]) -> Result<usize, CompanionError> {
+        let mut companion = Companion::new(self.config(&self.scenario()?))?;
+        crate::replay(&mut companion, log)
+    }
+}
+
+struct Run<'a> {
+    companion: Companion,
+    autopilot: StandIn,
+    lidar: FanLidar,
+    noise: Draws,
+    fault: Option<Fault>,
+    log: Option<LogWriter<&'a mut Vec<u8>>>,
+    /// Frames to the companion, and to the autopilot, with the tick at which they arrive.
+    up: VecDeque<(u32, Vec<u8>)>,
+    down: VecDeque<(u32, Vec<u8>)>,
+    framer: Framer,
+    count: u32,
+    held: Option<Vec<u8>>,
+    frozen: Option<Vec<u8>>,
+    /// When the pilot took over, and whether the companion heard of it.
+    taken: Option<(u32, bool)>,
+    outcome: Outcome,
+}
+
+impl Run<'_> {
+    fn fly(mut self, scenario: &Scenario) -> Result<Outcome, CompanionError> {
+        let speed = scenario.aircraft.file.cruise;
+        let shift = speed * RUN_UP + 0.01 * f64::from(CHOSEN) * speed;
+        let mut obstacles = scenario.field().obstacles().to_vec();
+        for obstacle in &mut obstacles {
+            obstacle.shape.shift((shift, 0.0));
+        }
+        let field = mpp_sim::field::ObstacleField::new(obstacles);
+        let end = shift + 242.0 * scenario.world_scale;
+        let start = self.autopilot.state().z;
+        while self.autopilot.state().x < end && self.autopilot.tick < 9000 {
+            let before = self.autopilot.state();
+            self.tick(scenario, &field);
+            if self.autopilot.step().is_err() {
+                self.outcome.clearance = -1.0;
+                break;
+            }
+            let after = self.autopilot.state();
+            let clearance =
+                field.clearance_of_motion((before.x, before.z), (after.x, after.z), 0.01);
+            let clear = clearance - scenario.body_radius;
+            self.outcome.clearance = self.outcome.clearance.min(clear);
+            self.outcome.off = self.outcome.off.max((after.z - start).abs());
+        }
+        self.outcome.flown = self.companion.state() == State::Flying;
+        self.outcome.told = self.companion.told();
+        Ok(self.outcome)
+    }
+
+    fn since(&self) -> Option<u32> {
+        self.autopilot.tick.checked_sub(CHOSEN + FAULT)
+    }
+
+    /// The fault, once it has begun.
+    fn acting(&self) -> Option<Fault> {
+        self.fault.filter(|_| self.since().is_some())
+    }
+
+    /// The companion's clock \[us\].
+    fn now(&self) -> u64 {
+        let tick = i64::from(self.autopilot.tick);
+        let slower = match self.fault {
+            Some(Fault::Drift(parts)) => tick * parts,
+            _ => 0,
+        };
+        u64::try_from(3_000_000 + 10_000 * tick + slower).unwrap_or(0)
+    }
+
+    fn tick(&mut self, scenario: &Scenario, field: &dyn Field) {
+        let tick = self.autopilot.tick;
+        let mode = self.autopilot.mode;
+        if tick == CHOSEN {
+            self.autopilot.mode = GUIDED;
+        }
+        if let (Some(fault), Some(since)) = (self.fault, self.since()) {
+            fault.act(&mut self.autopilot, since);
+        }
+        if mode == GUIDED && self.autopilot.mode != GUIDED {
+            self.taken = Some((tick, false));
+        } else if self.autopilot.mode == GUIDED {
+            self.taken = None;
+        }
+        if mode != self.autopilot.mode || tick.is_multiple_of(100) {
+            let beat = self.autopilot.heartbeat();
+            self.post_up(beat);
+        }
+        if tick.is_multiple_of(2) {
+            let noise = self.draw();
+            for frame in self.autopilot.stream(noise) {
+                self.post_up(frame);
+            }
+            self.input(Side::Time, &[]);
+        }
+        if tick.is_multiple_of(10) {
+            self.scan(scenario, field);
+        }
+        while self.up.front().is_some_and(|(due, _)| *due <= tick) {
+            let Some((_, frame)) = self.up.pop_front() else {
+                break;
+            };
+            self.input(Side::Autopilot, &frame);
+            if let Some((_, heard)) = &mut self.taken {
+                // The heartbeat is the first frame of its tick.
+                *heard = true;
+            }
+        }
+        self.deliver(tick);
+    }
+
+    /// Noise of airspeed, pitch and position, as navigation by a filter has it.
+    fn draw(&mut self) -> [f64; 5] {
+        let mut draw = |sigma: f64| sigma * gaussian(&mut self.noise);
+        let mut noise = [draw(0.1), draw(0.002), draw(0.05), draw(0.05), 0.0];
+        if self.acting() == Some(Fault::NotFinite) && self.autopilot.tick.is_multiple_of(3) {
+            noise = [f64::NAN; 5];
+        }
+        noise
+    }
+
+    /// Puts a frame of the autopilot on its way.
+    fn post_up(&mut self, mut frame: Vec<u8>) {
+        self.count = self.count.wrapping_add(1);
+        let mut due = self.autopilot.tick;
+        match self.acting() {
+            Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => return,
+            Some(Fault::Silent(ticks)) if self.since().is_some_and(|since| since < ticks) => return,
+            Some(Fault::Late(ticks)) => due += ticks as u32,
+            Some(Fault::Doubled) => self.up.push_back((due, frame.clone())),
+            Some(Fault::Damaged) if self.count.is_multiple_of(3) => {
+                let at = self.count as usize % frame.len();
+                if let Some(byte) = frame.get_mut(at) {
+                    *byte ^= 0x55;
+                }
+            }
+            Some(Fault::Reordered) => match self.held.take() {
+                None => {
+                    self.held = Some(frame);
+                    return;
+                }
+                Some(held) => {
+                    self.up.push_back((due, frame));
+                    frame = held;
+                }
+            },
+            _ => {}
+        }
+        self.up.push_back((due, frame));
+    }
+
+    fn scan(&mut self, scenario: &Scenario, field: &dyn Field) {
+        let ranges = self.lidar.scan(&self.autopilot.state(), field);
+        let scan = scenario.lidar.wire_scan(0, &ranges);
+        let mut buffer = [0; MAX_FRAME];
+        let Ok(frame) = encode(&Message::LidarScan(scan), &mut buffer) else {
+            return;
+        };
+        let frame = match self.acting() {
+            Some(Fault::LidarSilent) => return,
+            Some(Fault::LidarFrozen) => self.frozen.get_or_insert(frame.to_vec()).clone(),
+            _ => frame.to_vec(),
+        };
+        self.input(Side::Lidar, &frame);
+    }
+
+    /// Gives the companion an input, and puts what it sends on its way.
+    fn input(&mut self, side: Side, bytes: &[u8]) {
+        let now = self.now();
+        let mut sent = Vec::new();
+        self.companion
+            .receive(now, side, bytes, &mut |frame| sent.push(frame.to_vec()));
+        if let Some(log) = &mut self.log {
+            // A vector takes all bytes.
+            let _ = log.write(now, Some(side), bytes);
+            for frame in &sent {
+                let _ = log.write(now, None, frame);
+            }
+        }
+        for frame in sent {
+            self.watch(&frame);
+            self.count = self.count.wrapping_add(1);
+            let late = match self.acting() {
+                Some(Fault::SetpointsLate(ticks)) => ticks as u32,
+                Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => continue,
+                _ => 0,
+            };
+            self.down.push_back((self.autopilot.tick + late, frame));
+        }
+    }
+
+    /// Judges a frame of the companion.
+    fn watch(&mut self, frame: &[u8]) {
+        let (taken, tick, outcome) = (self.taken, self.autopilot.tick, &mut self.outcome);
+        self.framer.receive(frame, |_, _, message| {
+            let Mav::SET_ATTITUDE_TARGET(target) = message else {
+                return;
+            };
+            outcome.setpoints += 1;
+            let [w, _, y, _] = target.q;
+            let pitch = 2.0 * y.atan2(w);
+            let within = pitch.abs() <= 35_f32.to_radians() + 1e-5;
+            // Not a number is not within.
+            if !(within && (0.0..=1.0).contains(&target.thrust)) {
+                outcome.unsound += 1;
+            }
+            if let Some((since, heard)) = taken {
+                outcome.late += u32::from(heard);
+                outcome.last_after = outcome.last_after.max(10 * (tick - since) + 10);
+            }
+        });
+    }
+
+    fn deliver(&mut self, tick: u32) {
+        while self.down.front().is_some_and(|(due, _)| *due <= tick) {
+            let Some((_, frame)) = self.down.pop_front() else {
+                break;
+            };
+            let mut answers = Vec::new();
+            self.autopilot.receive(&frame, &mut |answer| answers.push(answer));
+            for answer in answers {
+                self.post_up(answer);
+            }
+        }
+    }
+}
