@@ -46,6 +46,8 @@ pub struct Brain {
     pub plans: u32,
     /// Ticks in trim hold, one after the other.
     pub planless: u32,
+    /// Ticks without trust in air data or positions, one after the other.
+    pub unsure: u32,
     /// What it said last.
     pub last: Option<Thought>,
 }
@@ -77,6 +79,7 @@ impl Brain {
                     scanned: None,
                     plans: 0,
                     planless: 0,
+                    unsure: 0,
                     last: None,
                 });
             }
@@ -104,6 +107,8 @@ impl Brain {
                     let holds = command.mode == ControlMode::TrimHold;
                     self.planless = if holds { self.planless + 1 } else { 0 };
                     self.last = step.map(|step| Thought { command, step });
+                    let knows = self.last.is_some_and(|last| last.knows());
+                    self.unsure = if knows { 0 } else { self.unsure + 1 };
                     return Ok(());
                 }
                 _ => {}

@@ -51,11 +51,13 @@ impl Checked {
 
     /// What keeps the companion on the ground; `None` if all is well.
     pub(crate) fn flaw(&self) -> Option<String> {
-        CHECKS.iter().find_map(|check| match self.told.get(check.name) {
-            None => Some(format!("{} is not told", check.name)),
-            Some(value) if (check.least..=check.most).contains(value) => None,
-            Some(value) => Some(format!("{} is {value}: {}", check.name, check.advice)),
-        })
+        CHECKS
+            .iter()
+            .find_map(|check| match self.told.get(check.name) {
+                None => Some(format!("{} is not told", check.name)),
+                Some(value) if (check.least..=check.most).contains(value) => None,
+                Some(value) => Some(format!("{} is {value}: {}", check.name, check.advice)),
+            })
     }
 
     /// Least and greatest pitch that the autopilot allows \[rad\].
@@ -66,7 +68,10 @@ impl Checked {
 
     /// A line on what was verified.
     pub(crate) fn summary(&self) -> String {
-        let pairs = self.told.iter().map(|(name, value)| format!("{name} {value}"));
+        let pairs = self
+            .told
+            .iter()
+            .map(|(name, value)| format!("{name} {value}"));
         pairs.collect::<Vec<_>>().join(", ")
     }
 }

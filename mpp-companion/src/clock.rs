@@ -17,7 +17,9 @@ pub(crate) struct Clock {
 impl Clock {
     /// Takes an answer of the autopilot that came at `now`: `sent` is our time of the question, `theirs` its time \[us\].
     pub(crate) fn hear(&mut self, now: u64, sent: i64, theirs: i64) {
-        let round = u64::try_from(sent).ok().and_then(|sent| now.checked_sub(sent));
+        let round = u64::try_from(sent)
+            .ok()
+            .and_then(|sent| now.checked_sub(sent));
         let Some(round) = round.filter(|round| *round <= LONGEST) else {
             return;
         };

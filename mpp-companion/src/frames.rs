@@ -25,8 +25,8 @@ pub(crate) struct Placed {
     pub(crate) z: f64,
     /// Upwards [m/s].
     pub(crate) climb: f64,
-    /// Angle from the course to the motion over ground, to the right \[rad\].
-    pub(crate) drift: f64,
+    /// Along the course [m/s].
+    pub(crate) speed: f64,
 }
 
 /// The frame that is fixed at hand-over, and what the autopilot's estimate has jumped since.
@@ -88,7 +88,7 @@ impl CourseFrame {
             cross: de * cos - dn * sin,
             z: self.jumped[2] - down,
             climb: -f64::from(position.vz),
-            drift: (ve * cos - vn * sin).atan2(vn * cos + ve * sin),
+            speed: vn * cos + ve * sin,
         }
     }
 }
@@ -124,7 +124,7 @@ mod tests {
         let mut frame = CourseFrame::at(&at(0, [100.0, 0.0, -50.0])).unwrap();
         let placed = frame.place(&at(20, [99.0, 0.3, -50.0])).unwrap();
         assert!((placed.x - 0.3).abs() < 1e-6 && (placed.cross - 1.0).abs() < 1e-6);
-        assert!((placed.z - 50.0).abs() < 1e-9 && placed.drift.abs() < 1e-9);
+        assert!((placed.z - 50.0).abs() < 1e-9 && (placed.speed - 15.0).abs() < 1e-9);
         let jumped = frame.place(&at(40, [99.0, 8.6, -57.0])).unwrap();
         assert!((jumped.x - 0.6).abs() < 1e-5 && (jumped.z - 50.0).abs() < 1e-5);
         let next = frame.place(&at(60, [99.0, 8.9, -57.0])).unwrap();

@@ -84,7 +84,9 @@ pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, Compa
     while let Some(Record { time, side, bytes }) = reader.next()? {
         match side {
             Some(side) => {
-                companion.receive(time, side, &bytes, &mut |frame| sent.push_back(frame.to_vec()));
+                companion.receive(time, side, &bytes, &mut |frame| {
+                    sent.push_back(frame.to_vec())
+                });
             }
             None if sent.pop_front().as_ref() == Some(&bytes) => same += 1,
             None => return Err(CompanionError::Differs(same)),

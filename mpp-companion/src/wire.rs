@@ -39,7 +39,8 @@ impl Framer {
             }
         }
         let known = self.bytes.iter().skip(at).any(|byte| *byte == START);
-        self.bytes.drain(..if known { at } else { self.bytes.len() });
+        self.bytes
+            .drain(..if known { at } else { self.bytes.len() });
     }
 }
 

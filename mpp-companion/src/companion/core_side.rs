@@ -4,13 +4,15 @@ use super::{Companion, Flown, Told};
 use crate::frames::{CourseFrame, true_airspeed};
 use crate::guard::State;
 use crate::{Brain, Setpoint};
-use hil_protocol::{AirData, LidarScan, Position, SensorFrame};
+use hil_protocol::{AirData, GroundVelocity, LidarScan, Position, SensorFrame};
 use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
 
 /// Length of a tick \[ms\].
 const TICK_MS: u32 = 10;
 /// The most ticks that are made up for. A longer hole in the measurements is a new flight.
 const MOST_TICKS: u32 = 50;
+/// A core that nobody obeys takes its sensors for wrong after some seconds. While the companion listens it begins anew.
+const DISOBEYED: u32 = 250;
 
 impl Companion {
     pub(super) fn hear_position(&mut self, position: &LOCAL_POSITION_NED_DATA) {
@@ -62,10 +64,15 @@ impl Companion {
 
     /// Lets the core do all ticks up to this attitude.
     pub(super) fn think(&mut self, now: u64, attitude: &ATTITUDE_DATA) {
-        if !matches!(self.guard.state, State::Listening | State::Flying | State::Climb) {
+        if !matches!(
+            self.guard.state,
+            State::Listening | State::Flying | State::Climb
+        ) {
             return;
         }
-        if self.flown.is_none() {
+        let listens = self.guard.state == State::Listening;
+        let old = |flown: &Flown| listens && flown.brain.next > DISOBEYED;
+        if self.flown.as_ref().is_none_or(old) {
             self.flown = self.begin(attitude);
         }
         let airspeed = self.airspeed();
@@ -90,11 +97,13 @@ impl Companion {
             let mut scan: Option<LidarScan> = None;
             if next == tick {
                 let pitch = f64::from(attitude.pitch);
-                frame.air = airspeed.filter(|_| pitch.is_finite()).map(|airspeed| AirData {
-                    tick,
-                    airspeed,
-                    pitch,
-                });
+                frame.air = airspeed
+                    .filter(|_| pitch.is_finite())
+                    .map(|airspeed| AirData {
+                        tick,
+                        airspeed,
+                        pitch,
+                    });
                 frame.position = position(flown, tick);
                 let due = |scanned| next - scanned >= self.config.replan_ticks;
                 if flown.brain.scanned.is_none_or(due) {
@@ -130,6 +139,10 @@ fn position(flown: &mut Flown, tick: u32) -> Option<Position> {
         x: placed.x,
         z: placed.z,
         sigma: 0.1,
-        velocity: None,
+        velocity: Some(GroundVelocity {
+            x: placed.speed as f32,
+            z: placed.climb as f32,
+            sigma: 0.3,
+        }),
     })
 }

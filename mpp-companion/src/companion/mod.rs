@@ -27,6 +27,9 @@ pub(crate) const AUTOPILOT: u8 = 1;
 /// ArduPlane then takes the pitch from the quaternion and the throttle, and holds the heading by itself.
 pub(crate) const MASK: AttitudeTargetTypemask = AttitudeTargetTypemask::from_bits_retain(133);
 
+/// Ticks for which the core may be without trust in a sensor: it flies on without that sensor.
+const UNSURE: u32 = 100;
+
 /// Where an input comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
@@ -216,7 +219,8 @@ impl Companion {
                 self.checked.hear(name, value.param_value);
             }
             Mav::VFR_HUD(hud) => {
-                self.heard.airspeed = Some(f64::from(hud.airspeed)).filter(|speed| speed.is_finite());
+                self.heard.airspeed =
+                    Some(f64::from(hud.airspeed)).filter(|speed| speed.is_finite());
             }
             Mav::LOCAL_POSITION_NED(position) => self.hear_position(position),
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
@@ -224,12 +228,7 @@ impl Companion {
         }
     }
 
-    fn hear_attitude(
-        &mut self,
-        now: u64,
-        attitude: &ATTITUDE_DATA,
-        send: &mut dyn FnMut(&[u8]),
-    ) {
+    fn hear_attitude(&mut self, now: u64, attitude: &ATTITUDE_DATA, send: &mut dyn FnMut(&[u8])) {
         let last = self.heard.attitude.as_ref().map(|last| last.time_boot_ms);
         if last.is_some_and(|last| attitude.time_boot_ms.saturating_add(1000) < last) {
             self.start_anew();
@@ -270,9 +269,8 @@ impl Companion {
     }
 
     fn sight(&self, now: u64) -> Sight {
-        let seconds = |at: Option<u64>| {
-            at.map_or(f64::INFINITY, |at| now.saturating_sub(at) as f64 * 1e-6)
-        };
+        let seconds =
+            |at: Option<u64>| at.map_or(f64::INFINITY, |at| now.saturating_sub(at) as f64 * 1e-6);
         let attitude = self.heard.attitude.as_ref();
         let placed = self.flown.as_ref().and_then(|flown| flown.placed);
         let thought = self.flown.as_ref().and_then(|flown| flown.brain.last);
@@ -289,7 +287,7 @@ impl Companion {
             planless: brain.map_or(f64::INFINITY, |brain| f64::from(brain.planless) * 0.01),
             unseen: seconds(self.lidar.heard),
             sees: thought.is_some_and(|thought| thought.sees()),
-            knows: thought.is_some_and(|thought| thought.knows()),
+            knows: brain.is_some_and(|brain| brain.last.is_some() && brain.unsure < UNSURE),
             age: age.unwrap_or(f64::NAN),
             bank,
             aside: placed.map_or(f64::NAN, |placed| placed.cross.abs()),

@@ -29,11 +29,22 @@ impl Companion {
     /// Asks what is due.
     pub(super) fn ask(&mut self, now: u64, send: &mut dyn FnMut(&[u8])) {
         let due = |last: Option<u64>, period| last.is_none_or(|last| now >= last + period);
-        let sync = if self.clock.is_in_step() { SECOND } else { SECOND / 10 };
+        let sync = if self.clock.is_in_step() {
+            SECOND
+        } else {
+            SECOND / 10
+        };
         if due(self.asked.sync, sync) {
             self.asked.sync = Some(now);
             let ts1 = i64::try_from(now).unwrap_or(i64::MAX).saturating_mul(1000);
-            self.send(&Mav::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1, ..TIMESYNC_DATA::DEFAULT }), send);
+            self.send(
+                &Mav::TIMESYNC(TIMESYNC_DATA {
+                    tc1: 0,
+                    ts1,
+                    ..TIMESYNC_DATA::DEFAULT
+                }),
+                send,
+            );
         }
         if due(self.asked.second, SECOND) {
             self.asked.second = Some(now);
@@ -93,7 +104,10 @@ impl Companion {
 
     /// Asks the autopilot to hold the course, and to come back to its line.
     fn hold_course(&mut self, now: u64, send: &mut dyn FnMut(&[u8])) {
-        if !matches!(self.guard.state, State::Listening | State::Flying | State::Climb) {
+        if !matches!(
+            self.guard.state,
+            State::Listening | State::Flying | State::Climb
+        ) {
             return;
         }
         let Some(flown) = &mut self.flown else {
@@ -109,14 +123,24 @@ impl Companion {
         let course = flown.frame.course - (placed.cross / BACK).atan();
         let degrees = course.to_degrees().rem_euclid(360.0) as f32;
         // Type 0 is a course over ground.
-        self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_HEADING, [0.0, degrees, 5.0], 0.0, send);
+        self.command(
+            MavCmd::MAV_CMD_GUIDED_CHANGE_HEADING,
+            [0.0, degrees, 5.0],
+            0.0,
+            send,
+        );
     }
 
     /// Sets the autopilot's own targets. The companion falls silent after that.
     pub(super) fn give_back(&mut self, send: &mut dyn FnMut(&[u8])) {
-        let here = self.heard.position.as_ref().map_or(0.0, |position| -position.z);
+        let here = self
+            .heard
+            .position
+            .as_ref()
+            .map_or(0.0, |position| -position.z);
         let cruise = self.config.model.file.cruise;
-        let equivalent = cruise / crate::frames::true_airspeed(1.0, self.config.model.file.air_density);
+        let equivalent =
+            cruise / crate::frames::true_airspeed(1.0, self.config.model.file.air_density);
         self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE, [0.0; 3], here, send);
         let speed = [0.0, equivalent as f32, 0.0];
         self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_SPEED, speed, 0.0, send);

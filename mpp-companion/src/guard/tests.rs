@@ -34,7 +34,12 @@ fn goes(state: State, to: State, reason: Reason, change: impl Fn(&mut Sight)) {
     assert_eq!(after(state, 1.0, change), (to, Some(reason)), "{state:?}");
 }
 
-const OWNED: [State; 4] = [State::Listening, State::Flying, State::Climb, State::GiveBack];
+const OWNED: [State; 4] = [
+    State::Listening,
+    State::Flying,
+    State::Climb,
+    State::GiveBack,
+];
 
 #[test]
 fn a_flight_begins_step_by_step() {
@@ -48,15 +53,22 @@ fn a_flight_begins_step_by_step() {
 #[test]
 fn without_verification_or_choice_nothing_begins() {
     assert_eq!(after(State::Off, 9.0, |s| s.verified = false).0, State::Off);
-    goes(State::Ready, State::Off, Reason::NotVerified, |s| s.verified = false);
-    goes(State::Listening, State::Off, Reason::NotVerified, |s| s.verified = false);
+    goes(State::Ready, State::Off, Reason::NotVerified, |s| {
+        s.verified = false
+    });
+    goes(State::Listening, State::Off, Reason::NotVerified, |s| {
+        s.verified = false
+    });
     assert_eq!(after(State::Ready, 9.0, |s| s.ours = false).0, State::Ready);
 }
 
 #[test]
 fn listening_waits_for_each_condition() {
     let waits = |change: fn(&mut Sight)| {
-        assert_eq!(after(State::Listening, 9.0, change), (State::Listening, None));
+        assert_eq!(
+            after(State::Listening, 9.0, change),
+            (State::Listening, None)
+        );
     };
     assert_eq!(after(State::Listening, 4.9, |_| {}).0, State::Listening);
     waits(|s| s.level = false);
@@ -91,11 +103,19 @@ fn silence_is_a_loss_and_comes_before_all_else() {
 
 #[test]
 fn what_the_core_lacks_ends_a_flight() {
-    goes(State::Flying, State::Climb, Reason::Blind, |s| s.sees = false);
-    goes(State::Flying, State::Climb, Reason::Blind, |s| s.unseen = 1.1);
-    goes(State::Flying, State::Climb, Reason::NoPlan, |s| s.planless = 1.1);
+    goes(State::Flying, State::Climb, Reason::Blind, |s| {
+        s.sees = false
+    });
+    goes(State::Flying, State::Climb, Reason::Blind, |s| {
+        s.unseen = 1.1
+    });
+    goes(State::Flying, State::Climb, Reason::NoPlan, |s| {
+        s.planless = 1.1
+    });
     for state in [State::Flying, State::Climb] {
-        goes(state, State::GiveBack, Reason::Estimate, |s| s.knows = false);
+        goes(state, State::GiveBack, Reason::Estimate, |s| {
+            s.knows = false
+        });
         goes(state, State::GiveBack, Reason::Late, |s| s.age = 0.2);
         goes(state, State::GiveBack, Reason::Late, |s| s.age = f64::NAN);
         goes(state, State::GiveBack, Reason::Aside, |s| s.bank = 0.6);
@@ -105,18 +125,29 @@ fn what_the_core_lacks_ends_a_flight() {
 
 #[test]
 fn a_climb_ends_by_height_or_time_and_the_aircraft_stays_given_back() {
-    goes(State::Climb, State::GiveBack, Reason::Climbed, |s| s.climbed = 30.0);
+    goes(State::Climb, State::GiveBack, Reason::Climbed, |s| {
+        s.climbed = 30.0
+    });
     let long = after(State::Climb, 20.0, |s| s.sees = false);
     assert_eq!(long, (State::GiveBack, Some(Reason::Climbed)));
     assert_eq!(after(State::Climb, 1.0, |s| s.sees = false).0, State::Climb);
-    assert_eq!(after(State::GiveBack, 99.0, |_| {}), (State::GiveBack, None));
+    assert_eq!(
+        after(State::GiveBack, 99.0, |_| {}),
+        (State::GiveBack, None)
+    );
 }
 
 #[test]
 fn setpoints_are_sent_in_two_states() {
     let sends = |state| Guard { state, since: 0.0 }.sends();
     assert!(sends(State::Flying) && sends(State::Climb));
-    for state in [State::Off, State::Ready, State::Listening, State::GiveBack, State::Lost] {
+    for state in [
+        State::Off,
+        State::Ready,
+        State::Listening,
+        State::GiveBack,
+        State::Lost,
+    ] {
         assert!(!sends(state));
     }
 }

@@ -135,7 +135,8 @@ impl StandIn {
     /// Takes bytes of the companion. `send` gets each answer.
     pub(crate) fn receive(&mut self, bytes: &[u8], send: &mut dyn FnMut(Vec<u8>)) {
         let mut messages = Vec::new();
-        self.framer.receive(bytes, |_, _, message| messages.push(message));
+        self.framer
+            .receive(bytes, |_, _, message| messages.push(message));
         for message in messages {
             match message {
                 Mav::TIMESYNC(sync) if sync.tc1 == 0 => {
@@ -187,15 +188,25 @@ impl StandIn {
     /// Flies a tick.
     pub(crate) fn step(&mut self) -> Result<(), PlantError> {
         let state = *self.plant.state();
-        let timeout = self.parameters.get("GUIDED_TIMEOUT").copied().unwrap_or(3.0);
+        let timeout = self
+            .parameters
+            .get("GUIDED_TIMEOUT")
+            .copied()
+            .unwrap_or(3.0);
         let kept = (100.0 * timeout) as u32;
         let guided = self.mode == GUIDED;
-        self.obeyed = self.obeyed.filter(|last| guided && self.tick - last.at <= kept);
+        self.obeyed = self
+            .obeyed
+            .filter(|last| guided && self.tick - last.at <= kept);
         let (pitch, thrust) = match self.obeyed {
             Some(obeyed) => (obeyed.pitch, obeyed.throttle * self.thrust_max),
             None => self.hold(&state),
         };
-        let limit = |name| self.parameters.get(name).map_or(0.0, |deg| f64::from(*deg).to_radians());
+        let limit = |name| {
+            self.parameters
+                .get(name)
+                .map_or(0.0, |deg| f64::from(*deg).to_radians())
+        };
         let pitch = pitch.clamp(limit("PTCH_LIM_MIN_DEG"), limit("PTCH_LIM_MAX_DEG"));
         self.demands.push_back(pitch);
         let acting = if self.demands.len() > self.dead {
@@ -266,15 +277,16 @@ impl StandIn {
                 airspeed: equivalent as f32,
                 ..VFR_HUD_DATA::DEFAULT
             })),
-            self.sender.frame(&Mav::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
-                time_boot_ms,
-                x: north as f32 + self.jumped[0],
-                y: east as f32 + self.jumped[1],
-                z: -(state.z + dz) as f32 + self.jumped[2],
-                vx: (forward * course.cos()) as f32,
-                vy: (forward * course.sin()) as f32,
-                vz: -(state.air.airspeed * state.air.flight_path.sin() + wind.1) as f32,
-            })),
+            self.sender
+                .frame(&Mav::LOCAL_POSITION_NED(LOCAL_POSITION_NED_DATA {
+                    time_boot_ms,
+                    x: north as f32 + self.jumped[0],
+                    y: east as f32 + self.jumped[1],
+                    z: -(state.z + dz) as f32 + self.jumped[2],
+                    vx: (forward * course.cos()) as f32,
+                    vy: (forward * course.sin()) as f32,
+                    vz: -(state.air.airspeed * state.air.flight_path.sin() + wind.1) as f32,
+                })),
             self.sender.frame(&Mav::ATTITUDE(ATTITUDE_DATA {
                 time_boot_ms,
                 roll: bank as f32,

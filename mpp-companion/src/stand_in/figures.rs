@@ -31,14 +31,23 @@ pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
         ("20 obstacles, dead time 0.1 s told", base),
         ("20 obstacles, dead time 0.1 s untold", untold),
         ("40 obstacles at 4 Hz", forty),
-        ("20 obstacles, wind 5 m/s from 30 deg ahead, gusts 0.5 m/s", windy),
+        (
+            "20 obstacles, wind 5 m/s from 30 deg ahead, gusts 0.5 m/s",
+            windy,
+        ),
     ];
     let mut text = String::from("| set | strict | touched | given back |\n|---|---|---|---|\n");
     for (name, set) in sets {
         let scenario = set.scenario()?;
         let outcomes = (seed..seed + flights)
             .into_par_iter()
-            .map(|seed| Flight { seed, ..set.clone() }.fly(None))
+            .map(|seed| {
+                Flight {
+                    seed,
+                    ..set.clone()
+                }
+                .fly(None)
+            })
             .collect::<Result<Vec<_>, _>>()?;
         let count = |test: &dyn Fn(&super::Outcome) -> bool| {
             outcomes.iter().filter(|outcome| test(outcome)).count()
@@ -49,7 +58,10 @@ pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
         text += &format!("| {name} | {strict} of {flights} | {touched} | {back} |\n");
     }
     text += &faults((flights / 8).max(1), seed)?;
-    text += &format!("\nCompanion dies at -15 deg of pitch and 10 % of throttle: {:.1} m lost\n", lost()?);
+    text += &format!(
+        "\nCompanion dies at -15 deg of pitch and 10 % of throttle: {:.1} m lost\n",
+        lost()?
+    );
     Ok(text)
 }
 
@@ -64,7 +76,11 @@ fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
             .into_par_iter()
             .map(|seed| {
                 let fault = Some(fault);
-                Flight { fault, ..Flight::new(seed) }.fly(None)
+                Flight {
+                    fault,
+                    ..Flight::new(seed)
+                }
+                .fly(None)
             })
             .collect::<Result<Vec<_>, _>>()?;
         let sum = |part: fn(&super::Outcome) -> u32| outcomes.iter().map(part).sum::<u32>();
@@ -78,9 +94,15 @@ fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
             });
             *ends.entry(state.unwrap_or_default()).or_default() += 1;
         }
-        let ends: Vec<_> = ends.iter().map(|(end, count)| format!("{end} {count}")).collect();
+        let ends: Vec<_> = ends
+            .iter()
+            .map(|(end, count)| format!("{end} {count}"))
+            .collect();
         let (late, unsound) = (sum(|one| one.late), sum(|one| one.unsound));
-        text += &format!("| {fault:?} | {late} | {unsound} | {last} | {} |\n", ends.join("; "));
+        text += &format!(
+            "| {fault:?} | {late} | {unsound} | {last} | {} |\n",
+            ends.join("; ")
+        );
     }
     Ok(text)
 }
@@ -104,7 +126,9 @@ pub(crate) fn lost() -> Result<f64, CompanionError> {
     });
     let mut least = start;
     for _ in 0..1500 {
-        autopilot.step().map_err(|error| failed(error.to_string()))?;
+        autopilot
+            .step()
+            .map_err(|error| failed(error.to_string()))?;
         least = least.min(autopilot.state().z);
     }
     Ok(start - least)

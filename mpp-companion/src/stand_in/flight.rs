@@ -381,7 +381,8 @@ impl Run<'_> {
                 break;
             };
             let mut answers = Vec::new();
-            self.autopilot.receive(&frame, &mut |answer| answers.push(answer));
+            self.autopilot
+                .receive(&frame, &mut |answer| answers.push(answer));
             for answer in answers {
                 self.post_up(answer);
             }
