@@ -34,7 +34,7 @@ const HOST: &[&str] = &[
 const PEOPLE: &[&str] = &["clap", "rayon", "indicatif", "clarabel", "plotters"];
 
 /// One rule for each crate of the workspace.
-const RULES: [Rule; 14] = [
+const RULES: [Rule; 15] = [
     rule("mpp-data", &[], HOST),
     rule("mpp-core", lowest(1), HOST),
     rule("hil-protocol", lowest(1), HOST),
@@ -48,6 +48,7 @@ const RULES: [Rule; 14] = [
     rule("mpp-web", &["mpp-core", "mpp-node", "mpp-sim"], PEOPLE),
     rule("mpp-tests", lowest(8), &[]),
     rule("xtask", &["hil-protocol"], &[]),
+    rule("mpp-companion", lowest(5), &[]),
     rule("mpp-python", lowest(6), PEOPLE),
 ];
 

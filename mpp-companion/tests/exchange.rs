@@ -1,0 +1,53 @@
+//! Flights of the companion with the stand-in: what holds whatever the exchange does.
+
+use mpp_companion::stand_in::{Fault, Flight};
+use mpp_companion::{Reason, State, Told};
+
+#[test]
+fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
+    let flight = Flight::new(3);
+    let mut log = Vec::new();
+    let outcome = flight.fly(Some(&mut log)).unwrap();
+    assert!(
+        outcome.is_strict(&flight.scenario().unwrap()),
+        "{outcome:?}"
+    );
+    let same = flight.replay(&log).unwrap();
+    assert!(same > 900 && outcome.setpoints > 500, "{same} frames");
+    // A flight with another aircraft file sends something else.
+    let other = Flight {
+        told: false,
+        ..flight
+    };
+    assert!(other.replay(&log).is_err());
+}
+
+#[test]
+fn no_fault_of_the_exchange_brings_a_setpoint_that_must_not_be() {
+    for fault in Fault::ALL {
+        let flight = Flight {
+            fault: Some(fault),
+            ..Flight::new(4)
+        };
+        let outcome = flight.fly(None).unwrap();
+        let bad = (outcome.late, outcome.unsound);
+        assert_eq!(bad, (0, 0), "{fault:?}");
+        assert!(
+            outcome.last_after <= 50,
+            "{fault:?}: {} ms",
+            outcome.last_after
+        );
+        assert!(outcome.setpoints > 50, "{fault:?} begins in flight");
+    }
+}
+
+#[test]
+fn a_pilot_who_takes_over_has_the_aircraft() {
+    let flight = Flight {
+        fault: Some(Fault::TakeOver),
+        ..Flight::new(5)
+    };
+    let told = flight.fly(None).unwrap().told;
+    let taken = Told::State(State::Off, Reason::TakenOver);
+    assert!(told.contains(&taken), "{told:?}");
+}
