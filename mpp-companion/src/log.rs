@@ -85,7 +85,7 @@ pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, Compa
         match side {
             Some(side) => {
                 companion.receive(time, side, &bytes, &mut |frame| {
-                    sent.push_back(frame.to_vec())
+                    sent.push_back(frame.to_vec());
                 });
             }
             None if sent.pop_front().as_ref() == Some(&bytes) => same += 1,

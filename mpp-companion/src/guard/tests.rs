@@ -54,10 +54,10 @@ fn a_flight_begins_step_by_step() {
 fn without_verification_or_choice_nothing_begins() {
     assert_eq!(after(State::Off, 9.0, |s| s.verified = false).0, State::Off);
     goes(State::Ready, State::Off, Reason::NotVerified, |s| {
-        s.verified = false
+        s.verified = false;
     });
     goes(State::Listening, State::Off, Reason::NotVerified, |s| {
-        s.verified = false
+        s.verified = false;
     });
     assert_eq!(after(State::Ready, 9.0, |s| s.ours = false).0, State::Ready);
 }
@@ -104,17 +104,17 @@ fn silence_is_a_loss_and_comes_before_all_else() {
 #[test]
 fn what_the_core_lacks_ends_a_flight() {
     goes(State::Flying, State::Climb, Reason::Blind, |s| {
-        s.sees = false
+        s.sees = false;
     });
     goes(State::Flying, State::Climb, Reason::Blind, |s| {
-        s.unseen = 1.1
+        s.unseen = 1.1;
     });
     goes(State::Flying, State::Climb, Reason::NoPlan, |s| {
-        s.planless = 1.1
+        s.planless = 1.1;
     });
     for state in [State::Flying, State::Climb] {
         goes(state, State::GiveBack, Reason::Estimate, |s| {
-            s.knows = false
+            s.knows = false;
         });
         goes(state, State::GiveBack, Reason::Late, |s| s.age = 0.2);
         goes(state, State::GiveBack, Reason::Late, |s| s.age = f64::NAN);
@@ -126,7 +126,7 @@ fn what_the_core_lacks_ends_a_flight() {
 #[test]
 fn a_climb_ends_by_height_or_time_and_the_aircraft_stays_given_back() {
     goes(State::Climb, State::GiveBack, Reason::Climbed, |s| {
-        s.climbed = 30.0
+        s.climbed = 30.0;
     });
     let long = after(State::Climb, 20.0, |s| s.sees = false);
     assert_eq!(long, (State::GiveBack, Some(Reason::Climbed)));
