@@ -43,9 +43,9 @@ impl CourseFrame {
     /// The frame of an aircraft that is here and flies this course; `None` unless it moves.
     pub(crate) fn at(position: &LOCAL_POSITION_NED_DATA) -> Option<Self> {
         let [north, east] = [position.vx, position.vy].map(f64::from);
-        (is_sound(position) && north.hypot(east) > 1.0).then(|| Self {
+        (is_sound(position) && libm::hypot(north, east) > 1.0).then(|| Self {
             origin: [f64::from(position.x), f64::from(position.y)],
-            course: east.atan2(north),
+            course: libm::atan2(east, north),
             jumped: [0.0; 3],
             last: position.clone(),
         })
@@ -80,7 +80,7 @@ impl CourseFrame {
             north - self.jumped[0] - self.origin[0],
             east - self.jumped[1] - self.origin[1],
         ];
-        let (sin, cos) = self.course.sin_cos();
+        let (sin, cos) = libm::sincos(self.course);
         let [vn, ve] = [position.vx, position.vy].map(f64::from);
         Placed {
             time: position.time_boot_ms,

@@ -55,7 +55,7 @@ impl<R: Read> LogReader<R> {
     ///
     /// # Errors
     /// [`CompanionError::Log`].
-    pub fn next(&mut self) -> Result<Option<Record>, CompanionError> {
+    pub fn record(&mut self) -> Result<Option<Record>, CompanionError> {
         let mut head = [0; 11];
         if self.from.read_exact(&mut head).is_err() {
             return Ok(None);
@@ -81,7 +81,7 @@ pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, Compa
     let mut reader = LogReader::new(from);
     let mut sent = std::collections::VecDeque::new();
     let mut same = 0;
-    while let Some(Record { time, side, bytes }) = reader.next()? {
+    while let Some(Record { time, side, bytes }) = reader.record()? {
         match side {
             Some(side) => {
                 companion.receive(time, side, &bytes, &mut |frame| {

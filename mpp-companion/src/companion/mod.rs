@@ -319,7 +319,7 @@ impl Companion {
         let Some(setpoint) = asked.and_then(|asked| gate.pass(asked)) else {
             return;
         };
-        let (sin, cos) = (0.5 * setpoint.pitch).sin_cos();
+        let (sin, cos) = libm::sincos(0.5 * setpoint.pitch);
         self.send(
             &Mav::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
                 time_boot_ms: attitude.time_boot_ms,

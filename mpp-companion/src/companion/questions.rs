@@ -37,14 +37,7 @@ impl Companion {
         if due(self.asked.sync, sync) {
             self.asked.sync = Some(now);
             let ts1 = i64::try_from(now).unwrap_or(i64::MAX).saturating_mul(1000);
-            self.send(
-                &Mav::TIMESYNC(TIMESYNC_DATA {
-                    tc1: 0,
-                    ts1,
-                    ..TIMESYNC_DATA::DEFAULT
-                }),
-                send,
-            );
+            self.send(&Mav::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1 }), send);
         }
         if due(self.asked.second, SECOND) {
             self.asked.second = Some(now);
@@ -120,7 +113,7 @@ impl Companion {
             return;
         }
         flown.headed = Some(now);
-        let course = flown.frame.course - (placed.cross / BACK).atan();
+        let course = flown.frame.course - libm::atan(placed.cross / BACK);
         let degrees = course.to_degrees().rem_euclid(360.0) as f32;
         // Type 0 is a course over ground.
         self.command(

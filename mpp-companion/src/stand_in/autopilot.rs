@@ -170,7 +170,7 @@ impl StandIn {
         }
         self.obeyed = Some(Obeyed {
             at: self.tick,
-            pitch: (2.0 * (w * y - z * x)).clamp(-1.0, 1.0).asin(),
+            pitch: libm::asin((2.0 * (w * y - z * x)).clamp(-1.0, 1.0)),
             throttle: f64::from(target.thrust),
         });
     }
@@ -243,8 +243,8 @@ impl StandIn {
         let wanted = (1.2 * error).clamp(-0.5, 0.5);
         self.lateral = [
             bank + 0.01 * (wanted - bank) / ROLL,
-            course + 0.01 * GRAVITY * bank.tan() / airspeed.max(1.0),
-            aside + 0.01 * airspeed * (course - self.course).sin(),
+            course + 0.01 * GRAVITY * libm::tan(bank) / airspeed.max(1.0),
+            aside + 0.01 * airspeed * libm::sin(course - self.course),
         ];
     }
 
@@ -265,8 +265,8 @@ impl StandIn {
     pub(crate) fn stream(&mut self, noise: [f64; 5]) -> [Vec<u8>; 3] {
         let (state, wind) = (self.state(), self.plant.wind());
         let [bank, course, aside] = self.lateral;
-        let (sin, cos) = self.course.sin_cos();
-        let forward = state.air.airspeed * state.air.flight_path.cos() + self.wind + wind.0;
+        let (sin, cos) = libm::sincos(self.course);
+        let forward = state.air.airspeed * libm::cos(state.air.flight_path) + self.wind + wind.0;
         let time_boot_ms = self.boot_ms();
         let [speed, pitch, dx, dz, _] = noise;
         let x = state.x + dx;
@@ -283,9 +283,9 @@ impl StandIn {
                     x: north as f32 + self.jumped[0],
                     y: east as f32 + self.jumped[1],
                     z: -(state.z + dz) as f32 + self.jumped[2],
-                    vx: (forward * course.cos()) as f32,
-                    vy: (forward * course.sin()) as f32,
-                    vz: -(state.air.airspeed * state.air.flight_path.sin() + wind.1) as f32,
+                    vx: (forward * libm::cos(course)) as f32,
+                    vy: (forward * libm::sin(course)) as f32,
+                    vz: -(state.air.airspeed * libm::sin(state.air.flight_path) + wind.1) as f32,
                 })),
             self.sender.frame(&Mav::ATTITUDE(ATTITUDE_DATA {
                 time_boot_ms,

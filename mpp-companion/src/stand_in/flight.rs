@@ -361,9 +361,9 @@ impl Run<'_> {
                 return;
             };
             outcome.setpoints += 1;
-            let [w, _, y, _] = target.q;
-            let pitch = 2.0 * y.atan2(w);
-            let within = pitch.abs() <= 35_f32.to_radians() + 1e-5;
+            let [w, _, y, _] = target.q.map(f64::from);
+            let pitch = 2.0 * libm::atan2(y, w);
+            let within = pitch.abs() <= 35_f64.to_radians() + 1e-5;
             // Not a number is not within.
             if !(within && (0.0..=1.0).contains(&target.thrust)) {
                 outcome.unsound += 1;
