@@ -63,6 +63,8 @@ pub struct Sight {
     pub ours: bool,
     /// Whether attitude, climb and speed are those of level cruise.
     pub level: bool,
+    /// Whether the core began so lately that it misses no command yet, and has a plan.
+    pub fresh: bool,
     /// Plans that were adopted one after the other.
     pub plans: u32,
     /// Time for which the core has held trim.
@@ -144,6 +146,7 @@ impl Guard {
             State::Listening => {
                 let ready = lasts >= Self::LISTEN
                     && sight.level
+                    && sight.fresh
                     && sight.plans >= 2
                     && Self::abort(sight).is_none();
                 ready.then_some((State::Flying, Reason::Settled))

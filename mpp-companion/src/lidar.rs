@@ -1,10 +1,10 @@
 //! Scans of the lidar: frames of our link with a `LidarScan`, one or more in a datagram. Their tick is not used: a scan
-//! is as old as its way to the companion.
+//! counts as taken when it came.
 
 use hil_protocol::{Decoder, LidarScan, Message};
 
 /// A scan that waits longer is not used \[us\].
-const OLDEST: u64 = 60_000;
+const OLDEST: u64 = 200_000;
 
 /// The newest scan.
 pub(crate) struct Lidar {
@@ -33,9 +33,10 @@ impl Lidar {
         }
     }
 
-    /// Takes the newest scan away, unless it is old.
-    pub(crate) fn take(&mut self, now: u64) -> Option<LidarScan> {
+    /// Takes the newest scan away, with its age \[us\], unless it is old.
+    pub(crate) fn take(&mut self, now: u64) -> Option<(u64, LidarScan)> {
         let (came, scan) = self.newest.take()?;
-        (now.saturating_sub(came) <= OLDEST).then_some(scan)
+        let age = now.saturating_sub(came);
+        (age <= OLDEST).then_some((age, scan))
     }
 }

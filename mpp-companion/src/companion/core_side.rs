@@ -11,8 +11,11 @@ use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
 const TICK_MS: u32 = 10;
 /// The most ticks that are made up for. A longer hole in the measurements is a new flight.
 const MOST_TICKS: u32 = 50;
-/// A core that nobody obeys takes its sensors for wrong after some seconds. While the companion listens it begins anew.
-const DISOBEYED: u32 = 250;
+/// A core that nobody obeys learns a wrong lift, and then takes its sensors for wrong. While the companion listens it begins
+/// anew after so many ticks.
+const DISOBEYED: u32 = 100;
+/// The most ticks of a core that takes over: it has a plan, and has learnt nothing wrong yet.
+pub(super) const FRESH: u32 = 30;
 
 impl Companion {
     pub(super) fn hear_position(&mut self, position: &LOCAL_POSITION_NED_DATA) {
@@ -73,7 +76,11 @@ impl Companion {
         let listens = self.guard.state == State::Listening;
         let old = |flown: &Flown| listens && flown.brain.next > DISOBEYED;
         if self.flown.as_ref().is_none_or(old) {
+            let plans = self.flown.as_ref().map_or(0, |old| old.brain.plans);
             self.flown = self.begin(attitude);
+            if let Some(flown) = &mut self.flown {
+                flown.brain.plans = plans;
+            }
         }
         let airspeed = self.airspeed();
         let Some(flown) = &mut self.flown else {
@@ -107,7 +114,11 @@ impl Companion {
                 frame.position = position(flown, tick);
                 let due = |scanned| next - scanned >= self.config.replan_ticks;
                 if flown.brain.scanned.is_none_or(due) {
-                    scan = self.lidar.take(now).map(|scan| LidarScan { tick, ..scan });
+                    scan = self.lidar.take(now).map(|(age, scan)| {
+                        let ticks = (age / 1000) as u32 / TICK_MS;
+                        let tick = tick.saturating_sub(ticks);
+                        LidarScan { tick, ..scan }
+                    });
                 }
             }
             if let Err(error) = flown.brain.tick(frame, scan) {

@@ -283,6 +283,7 @@ impl Companion {
             verified: self.checked.flaw().is_none() && self.clock.is_in_step(),
             ours: self.heard.ours,
             level: self.is_level(),
+            fresh: brain.is_some_and(|brain| brain.next <= core_side::FRESH && brain.planless == 0),
             plans: brain.map_or(0, |brain| brain.plans),
             planless: brain.map_or(f64::INFINITY, |brain| f64::from(brain.planless) * 0.01),
             unseen: seconds(self.lidar.heard),

@@ -10,6 +10,7 @@ fn well(now: f64) -> Sight {
         verified: true,
         ours: true,
         level: true,
+        fresh: true,
         plans: 2,
         planless: 0.0,
         unseen: 0.1,
