@@ -109,21 +109,6 @@ impl Brain {
                     self.last = step.map(|step| Thought { command, step });
                     let knows = self.last.is_some_and(|last| last.knows());
                     self.unsure = if knows { 0 } else { self.unsure + 1 };
-                    if std::env::var("DBG").is_ok() {
-                        if let Some(l) = self.last {
-                            if self.next % 10 == 0 {
-                                eprintln!(
-                                    "{} {:?} {:?} w {:.2?} lift {:.3} est {:.2?}",
-                                    self.next,
-                                    command.mode,
-                                    l.step.sensors,
-                                    l.step.wind,
-                                    l.step.lift,
-                                    l.step.estimate
-                                );
-                            }
-                        }
-                    }
                     return Ok(());
                 }
                 _ => {}
