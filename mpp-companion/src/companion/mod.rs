@@ -76,13 +76,14 @@ impl Config {
     #[must_use]
     pub fn new(model: AircraftModel, range: f32) -> Self {
         Self {
-            model,
             beams: 100,
             range,
             replan_ticks: 50,
             latency_ticks: 5,
             slices: u32::MAX,
-            lead: 0.0,
+            // The command is pitch above the path, and the path turns on until the command acts.
+            lead: model.actuators.elevator_delay.unwrap_or(0.0),
+            model,
         }
     }
 

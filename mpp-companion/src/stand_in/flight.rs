@@ -264,13 +264,19 @@ impl Run<'_> {
             let Some((_, frame)) = self.up.pop_front() else {
                 break;
             };
+            self.note(&frame);
             self.input(Side::Autopilot, &frame);
-            if let Some((_, heard)) = &mut self.taken {
-                // The heartbeat is the first frame of its tick.
-                *heard = true;
-            }
         }
         self.deliver(tick);
+    }
+
+    /// Notes when a whole heartbeat tells the companion of a take-over.
+    fn note(&mut self, frame: &[u8]) {
+        if let Some((_, heard)) = &mut self.taken {
+            Framer::default().receive(frame, |_, _, message| {
+                *heard |= matches!(message, Mav::HEARTBEAT(beat) if beat.custom_mode != GUIDED);
+            });
+        }
     }
 
     /// Noise of airspeed, pitch and position, as navigation by a filter has it.
