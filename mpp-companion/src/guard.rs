@@ -155,7 +155,12 @@ impl Guard {
             State::Climb => {
                 let (height, longest) = Self::CLIMB;
                 let over = sight.climbed >= height || lasts >= longest;
-                match Self::abort(sight) {
+                // Nobody obeys the core in a climb, so its trust says nothing.
+                let sight = Sight {
+                    knows: true,
+                    ..*sight
+                };
+                match Self::abort(&sight) {
                     Some((State::GiveBack, reason)) => Some((State::GiveBack, reason)),
                     _ => over.then_some((State::GiveBack, Reason::Climbed)),
                 }

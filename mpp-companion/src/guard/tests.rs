@@ -113,10 +113,10 @@ fn what_the_core_lacks_ends_a_flight() {
     goes(State::Flying, State::Climb, Reason::NoPlan, |s| {
         s.planless = 1.1;
     });
+    goes(State::Flying, State::GiveBack, Reason::Estimate, |s| {
+        s.knows = false;
+    });
     for state in [State::Flying, State::Climb] {
-        goes(state, State::GiveBack, Reason::Estimate, |s| {
-            s.knows = false;
-        });
         goes(state, State::GiveBack, Reason::Late, |s| s.age = 0.2);
         goes(state, State::GiveBack, Reason::Late, |s| s.age = f64::NAN);
         goes(state, State::GiveBack, Reason::Aside, |s| s.bank = 0.6);
@@ -132,6 +132,10 @@ fn a_climb_ends_by_height_or_time_and_the_aircraft_stays_given_back() {
     let long = after(State::Climb, 20.0, |s| s.sees = false);
     assert_eq!(long, (State::GiveBack, Some(Reason::Climbed)));
     assert_eq!(after(State::Climb, 1.0, |s| s.sees = false).0, State::Climb);
+    assert_eq!(
+        after(State::Climb, 1.0, |s| s.knows = false).0,
+        State::Climb
+    );
     assert_eq!(
         after(State::GiveBack, 99.0, |_| {}),
         (State::GiveBack, None)
@@ -151,4 +155,10 @@ fn setpoints_are_sent_in_two_states() {
     ] {
         assert!(!sends(state));
     }
+}
+
+#[test]
+fn a_core_that_has_listened_for_long_does_not_take_over() {
+    let old = after(State::Listening, 9.0, |s| s.fresh = false);
+    assert_eq!(old, (State::Listening, None));
 }
