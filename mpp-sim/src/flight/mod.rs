@@ -78,7 +78,7 @@ pub fn fly_in(
     link: &mut dyn Link,
     ground: &mut dyn Ground,
 ) -> Result<FlightLog, FlyError> {
-    Flight::begin(world, scenario, link, ground)?.to_end(world, link, ground)
+    Flight::begin(world, scenario, link, ground)?.ended(world, link, ground)
 }
 
 /// Flies a scenario as [`fly`] does, and keeps no ticks: the log has everything else. A campaign needs no more.
@@ -96,7 +96,7 @@ pub fn fly_in_brief(
     );
     let mut flight = Flight::begin(&mut world, scenario, link, ground)?;
     flight.is_brief = true;
-    flight.to_end(&mut world, link, ground)
+    flight.ended(&mut world, link, ground)
 }
 
 /// What the aircraft measured in a tick, and the core's reply.
@@ -324,7 +324,7 @@ impl Flight {
     }
 
     /// Flies what is left of the flight.
-    fn to_end(
+    fn ended(
         mut self,
         world: &mut World,
         link: &mut dyn Link,
