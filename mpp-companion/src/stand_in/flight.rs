@@ -30,7 +30,7 @@ pub struct Flight {
     pub dead: usize,
     /// Whether it is told.
     pub told: bool,
-    /// Replanning [Hz].
+    /// Replanning \[Hz\].
     pub replan_hz: f64,
     /// Wind along the course [m/s].
     pub wind: f64,
