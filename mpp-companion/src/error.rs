@@ -7,12 +7,18 @@ use mpp_sim::scenario::ScenarioError;
 /// Why the companion cannot start or go on.
 #[derive(Debug, thiserror::Error)]
 pub enum CompanionError {
+    /// The range of the lidar is no length.
+    #[error("--range {0}: give the longest range of the lidar, more than 0 m")]
+    Range(f32),
     /// The aircraft file makes no sense.
     #[error("{0}")]
     Aircraft(#[from] ScenarioError),
     /// The aircraft is not one that an autopilot flies.
     #[error("the aircraft file lacks `{0}`: a companion needs it")]
     Lacks(&'static str),
+    /// The elevator of the aircraft is no angle of attack, so its command is no pitch.
+    #[error("the aircraft file has moments: a companion needs a `pitch_loop` in their place")]
+    NoPitchLoop,
     /// The core does not answer.
     #[error("the core does not answer: {0}")]
     Core(#[from] LinkError),

@@ -4,7 +4,7 @@ use clap::{Parser, Subcommand};
 use mpp_companion::{Companion, CompanionError, Config, LogWriter, Side, Told, replay, stand_in};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use std::fs::File;
-use std::io::{BufReader, BufWriter};
+use std::io::{BufReader, BufWriter, Write};
 use std::net::UdpSocket;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -184,6 +184,10 @@ fn fly(
             note(Some(side), &bytes).map_err(io("write the log"))?;
             for frame in &sent {
                 note(None, frame).map_err(io("write the log"))?;
+            }
+            if side == Side::Time {
+                // The process ends by a signal, which must not cost the last seconds.
+                log.0.flush().map_err(io("write the log"))?;
             }
         }
         for told in companion.told() {

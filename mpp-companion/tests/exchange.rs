@@ -1,7 +1,8 @@
 //! Flights of the companion with the stand-in: what holds whatever the exchange does.
 
 use mpp_companion::stand_in::{Fault, Flight};
-use mpp_companion::{Reason, State, Told};
+use mpp_companion::{Companion, CompanionError, Config, Reason, State, Told};
+use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 
 #[test]
 fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
@@ -50,4 +51,32 @@ fn a_pilot_who_takes_over_has_the_aircraft() {
     let told = flight.fly(None).unwrap().told;
     let taken = Told::State(State::Off, Reason::TakenOver);
     assert!(told.contains(&taken), "{told:?}");
+}
+
+/// An elevator that is no angle of attack would be sent as a pitch.
+#[test]
+fn an_aircraft_without_a_pitch_loop_and_a_range_that_is_none_are_refused() {
+    let companion = |text: &str, range| {
+        let file = AircraftFile::parse("it", text).unwrap();
+        Companion::new(Config::new(
+            AircraftModel::new(file).unwrap().plane(),
+            range,
+        ))
+    };
+    let (own, moments) = (
+        include_str!("../plane.toml"),
+        include_str!("../../aircraft/example.toml"),
+    );
+    assert!(companion(own, 70.0).is_ok());
+    let refused = companion(moments, 70.0).err();
+    assert!(
+        matches!(refused, Some(CompanionError::NoPitchLoop)),
+        "{refused:?}"
+    );
+    for range in [f32::NAN, 0.0, -1.0, f32::INFINITY] {
+        assert!(matches!(
+            companion(own, range).err(),
+            Some(CompanionError::Range(_))
+        ));
+    }
 }

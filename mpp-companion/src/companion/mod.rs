@@ -149,8 +149,18 @@ impl Companion {
     /// A companion that has heard nothing.
     ///
     /// # Errors
-    /// [`CompanionError::Lacks`] when the aircraft is not one that an autopilot flies.
+    /// [`CompanionError::Lacks`] or [`CompanionError::NoPitchLoop`] when the aircraft is not one that an autopilot flies,
+    /// [`CompanionError::Range`].
     pub fn new(config: Config) -> Result<Self, CompanionError> {
+        if !(config.range > 0.0 && config.range.is_finite()) {
+            return Err(CompanionError::Range(config.range));
+        }
+        // With a pitch loop the command is the angle of attack at which the moments balance.
+        let known = &config.model.known.airframe;
+        let apart = libm::fabs(known.moment_elevator + known.moment_alpha);
+        if apart > 1e-9 * libm::fabs(known.moment_alpha) || known.moment_zero != 0.0 {
+            return Err(CompanionError::NoPitchLoop);
+        }
         let file = &config.model.file;
         let thrust_max = file.thrust.max.ok_or(CompanionError::Lacks("thrust.max"))?;
         if file.elevator.min.is_none() || file.elevator.max.is_none() {
