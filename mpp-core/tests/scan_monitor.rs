@@ -1,6 +1,6 @@
 //! Tests what the monitor of the scans holds against a lidar, and what not.
 
-use mpp_core::map::{ScanMonitor, ScanVerdict};
+use mpp_core::map::{Predictions, ScanMonitor, ScanVerdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::vehicle::Pose;
 
@@ -49,7 +49,7 @@ fn check(
 ) -> (ScanVerdict, LidarScan) {
     let mut scan = seen(&FIELD, &pose(x));
     spoil(&mut scan);
-    let verdict = monitor.check(&mut scan, SIGHT, &pose(x));
+    let verdict = monitor.check(&mut scan, SIGHT, &pose(x), &mut Predictions::new());
     (verdict, scan)
 }
 
@@ -149,7 +149,12 @@ fn a_wire_that_is_not_met_again_is_no_sign() {
     let wires = [0, 1, 2, 3].map(|number| (20.0 + 3.0 * f64::from(number), 48.0, 0.02));
     let mut monitor = ScanMonitor::new();
     for (x, shown) in [(0.0, &wires[..]), (3.0, &[]), (6.0, &wires[..]), (9.0, &[])] {
-        let verdict = monitor.check(&mut seen(shown, &pose(x)), SIGHT, &pose(x));
+        let verdict = monitor.check(
+            &mut seen(shown, &pose(x)),
+            SIGHT,
+            &pose(x),
+            &mut Predictions::new(),
+        );
         assert_eq!(verdict, ScanVerdict::Agrees, "{x}");
     }
 }
@@ -171,7 +176,7 @@ fn a_wrong_pitch_is_not_held_against_the_lidar() {
         let told = pose(3.0);
         let pitch = told.pitch + error.to_radians();
         let mut scan = seen(&FIELD, &Pose { pitch, ..told });
-        let verdict = monitor.check(&mut scan, SIGHT, &told);
+        let verdict = monitor.check(&mut scan, SIGHT, &told, &mut Predictions::new());
         assert_eq!(
             (verdict, scan.bad_beams()),
             (ScanVerdict::Agrees, 0),

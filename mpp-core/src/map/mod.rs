@@ -19,7 +19,7 @@ pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
 pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
-pub use scan_monitor::{ScanMonitor, ScanVerdict};
+pub use scan_monitor::{Prediction, Predictions, ScanMonitor, ScanVerdict};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
 pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
 

@@ -57,7 +57,8 @@ struct Fit {
 }
 
 /// A return of the last scan that is expected again.
-struct Prediction {
+#[derive(Clone, Debug)]
+pub struct Prediction {
     /// Where it is expected, as a number of beams from the first one [-].
     place: f64,
     /// Its range \[m\].
@@ -66,7 +67,8 @@ struct Prediction {
     confirmed: u32,
 }
 
-type Predictions = heapless::Vec<Prediction, MAX_BEAMS>;
+/// What a scan should show again. The caller keeps the room for it, because it is too large for the stack.
+pub type Predictions = heapless::Vec<Prediction, MAX_BEAMS>;
 
 impl ScanMonitor {
     /// A monitor that has seen no scan.
@@ -101,13 +103,20 @@ impl ScanMonitor {
 
     /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
     /// to be believed. A scan without a return says nothing here; [`super::RollingGrid::contradicts`] judges it.
-    pub fn check(&mut self, scan: &mut LidarScan, sight: f64, pose: &Pose) -> ScanVerdict {
+    pub fn check(
+        &mut self,
+        scan: &mut LidarScan,
+        sight: f64,
+        pose: &Pose,
+        predictions: &mut Predictions,
+    ) -> ScanVerdict {
         let (mut before, known) = (false, self.reversed);
         if has_return(scan, sight) {
-            let predictions = self.predict(scan, sight, pose, false);
-            let as_sent = fit(scan, sight, &predictions, 0.0, false);
-            let turned = turned_hits(scan, sight, &predictions, &as_sent);
-            before = self.note_order(scan, sight, pose, &as_sent, turned.unwrap_or(0));
+            self.predict(scan, sight, pose, false, predictions);
+            let as_sent = fit(scan, sight, predictions, 0.0, false);
+            let turned = turned_hits(scan, sight, predictions, &as_sent);
+            let rival = turned.unwrap_or(0);
+            before = self.note_order(scan, sight, pose, &as_sent, rival, predictions);
             if self.reversed || turned.is_some() {
                 self.silent = [false; SECTORS];
             } else {
@@ -152,13 +161,14 @@ impl ScanMonitor {
         pose: &Pose,
         as_sent: &Fit,
         turned: u32,
+        predictions: &mut Predictions,
     ) -> bool {
         if !self.reversed && as_sent.misses < LEAST_MISSES {
             return false;
         }
-        let hits = |before| {
-            let predictions = self.predict(scan, sight, pose, before);
-            fit(scan, sight, &predictions, 0.0, true).hits
+        let mut hits = |before| {
+            self.predict(scan, sight, pose, before, predictions);
+            fit(scan, sight, predictions, 0.0, true).hits
         };
         let (both, now) = (hits(true), hits(false));
         let reversed = both.max(now);
@@ -213,10 +223,15 @@ impl ScanMonitor {
     }
 
     /// What this scan should show of the last one, if the beams of that are taken as sent or in reverse order.
-    // Not inlined, so that the predictions of one order are off the stack before those of the next.
-    #[inline(never)]
-    fn predict(&self, scan: &LidarScan, sight: f64, pose: &Pose, reversed: bool) -> Predictions {
-        let mut predictions = Predictions::new();
+    fn predict(
+        &self,
+        scan: &LidarScan,
+        sight: f64,
+        pose: &Pose,
+        reversed: bool,
+        predictions: &mut Predictions,
+    ) {
+        predictions.clear();
         let step = self.last.angle_increment;
         let last = self.last.ranges.len();
         for (beam, range) in self.last.ranges.iter().enumerate() {
@@ -244,7 +259,6 @@ impl ScanMonitor {
                 });
             }
         }
-        predictions
     }
 
     /// Number of adjacent beams of the last scan that met the same surface as a beam with this range \[m\].

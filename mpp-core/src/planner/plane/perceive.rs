@@ -16,6 +16,7 @@ impl PlanePlanner {
             scan,
             beams,
             isolated,
+            predictions,
         }) = &mut self.workspace
         else {
             return self.end_inconsistent();
@@ -26,7 +27,7 @@ impl PlanePlanner {
             // A lidar that was distrusted once stays so until a beam returns.
             self.lidar_distrusted = !has_return(scan, sight)
                 && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
-            let verdict = self.monitor.check(scan, sight, &pose);
+            let verdict = self.monitor.check(scan, sight, &pose, predictions);
             if verdict == ScanVerdict::ReversedBefore {
                 self.map.clear();
                 self.map.roll(pose.x, self.altitude);

@@ -1,7 +1,7 @@
 //! The memory that the phases of a cycle use one after the other.
 
 use crate::lattice::Lattice;
-use crate::map::IsolatedHits;
+use crate::map::{IsolatedHits, Predictions};
 use crate::qp::Condensed;
 use crate::sense::LidarScan;
 
@@ -25,6 +25,8 @@ pub(super) struct Intake {
     /// Number of beams that the map has taken in.
     pub(super) beams: usize,
     pub(super) isolated: IsolatedHits,
+    /// What the scan should show again.
+    pub(super) predictions: Predictions,
 }
 
 impl Workspace {
@@ -39,6 +41,7 @@ impl Intake {
             scan,
             beams: 0,
             isolated: IsolatedHits::none(),
+            predictions: Predictions::new(),
         }
     }
 }
