@@ -12,17 +12,17 @@ use mpp_sim::scenario::TICK_US;
 
 /// What the core said in a tick.
 #[derive(Clone, Copy, Debug)]
-pub struct Thought {
+pub(crate) struct Thought {
     /// The command.
-    pub command: ActuatorCommand,
+    pub(crate) command: ActuatorCommand,
     /// Estimate and reference.
-    pub step: StepReport,
+    pub(crate) step: StepReport,
 }
 
 impl Thought {
     /// Whether the core trusts air data and positions.
     #[must_use]
-    pub fn knows(&self) -> bool {
+    pub(crate) fn knows(&self) -> bool {
         let sensors = self.step.sensors;
         let trusted = |sensor| sensor != SensorState::Excluded;
         trusted(sensors.airspeed) && trusted(sensors.pitch) && trusted(sensors.position)
@@ -30,26 +30,26 @@ impl Thought {
 
     /// Whether the core trusts the scans.
     #[must_use]
-    pub fn sees(&self) -> bool {
+    pub(crate) fn sees(&self) -> bool {
         self.step.sensors.lidar != SensorState::Excluded
     }
 }
 
 /// A core that flies.
-pub struct Brain {
+pub(crate) struct Brain {
     link: PipeLink,
     /// The next tick.
-    pub next: u32,
+    pub(crate) next: u32,
     /// The last scan that the core got.
-    pub scanned: Option<u32>,
+    pub(crate) scanned: Option<u32>,
     /// Plans that were adopted one after the other.
-    pub plans: u32,
+    pub(crate) plans: u32,
     /// Ticks in trim hold, one after the other.
-    pub planless: u32,
+    pub(crate) planless: u32,
     /// Ticks without trust in air data or positions, one after the other.
-    pub unsure: u32,
+    pub(crate) unsure: u32,
     /// What it said last.
-    pub last: Option<Thought>,
+    pub(crate) last: Option<Thought>,
 }
 
 impl Brain {
@@ -57,7 +57,7 @@ impl Brain {
     ///
     /// # Errors
     /// [`CompanionError`] when the core refuses.
-    pub fn new(configure: &Configure) -> Result<Self, CompanionError> {
+    pub(crate) fn new(configure: &Configure) -> Result<Self, CompanionError> {
         let mut link = PipeLink::new();
         let hello = Hello {
             role: Role::Harness,
@@ -90,7 +90,11 @@ impl Brain {
     ///
     /// # Errors
     /// [`LinkError`] when the core does not answer.
-    pub fn tick(&mut self, frame: SensorFrame, scan: Option<LidarScan>) -> Result<(), LinkError> {
+    pub(crate) fn tick(
+        &mut self,
+        frame: SensorFrame,
+        scan: Option<LidarScan>,
+    ) -> Result<(), LinkError> {
         if let Some(scan) = scan {
             self.scanned = Some(frame.tick);
             self.link.send(&Message::LidarScan(scan))?;

@@ -52,78 +52,78 @@ pub enum Reason {
 
 /// What the guard looks at. Times in s, lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sight {
+pub(crate) struct Sight {
     /// Time.
-    pub now: f64,
+    pub(crate) now: f64,
     /// Time since the last message of the autopilot.
-    pub silence: f64,
+    pub(crate) silence: f64,
     /// Whether parameters and clocks are verified.
-    pub verified: bool,
+    pub(crate) verified: bool,
     /// Whether the autopilot is armed and in the mode that takes setpoints.
-    pub ours: bool,
+    pub(crate) ours: bool,
     /// Whether attitude, climb and speed are those of level cruise.
-    pub level: bool,
+    pub(crate) level: bool,
     /// Whether the core began so lately that it misses no command yet, and has a plan.
-    pub fresh: bool,
+    pub(crate) fresh: bool,
     /// Plans that were adopted one after the other.
-    pub plans: u32,
+    pub(crate) plans: u32,
     /// Time for which the core has held trim.
-    pub planless: f64,
+    pub(crate) planless: f64,
     /// Time since the last scan.
-    pub unseen: f64,
+    pub(crate) unseen: f64,
     /// Whether the core trusts the scans.
-    pub sees: bool,
+    pub(crate) sees: bool,
     /// Whether the core trusts air data and position.
-    pub knows: bool,
+    pub(crate) knows: bool,
     /// Age of the newest attitude.
-    pub age: f64,
+    pub(crate) age: f64,
     /// Bank \[rad\], without sign.
-    pub bank: f64,
+    pub(crate) bank: f64,
     /// Distance from the course, without sign.
-    pub aside: f64,
+    pub(crate) aside: f64,
     /// Height above that of hand-over.
-    pub climbed: f64,
+    pub(crate) climbed: f64,
 }
 
 /// The state, and since when it lasts.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guard {
+pub(crate) struct Guard {
     /// The state.
-    pub state: State,
+    pub(crate) state: State,
     since: f64,
 }
 
 impl Guard {
     /// Silence after which the autopilot is lost \[s\].
-    pub const SILENCE: f64 = 0.2;
+    pub(crate) const SILENCE: f64 = 0.2;
     /// The least time of listening \[s\].
-    pub const LISTEN: f64 = 5.0;
+    pub(crate) const LISTEN: f64 = 5.0;
     /// Time without a plan, or without a scan, after which a climb begins \[s\].
-    pub const PATIENCE: f64 = 1.0;
+    pub(crate) const PATIENCE: f64 = 1.0;
     /// The greatest age of an attitude \[s\].
-    pub const AGE: f64 = 0.15;
+    pub(crate) const AGE: f64 = 0.15;
     /// The greatest bank \[rad\].
-    pub const BANK: f64 = 0.52;
+    pub(crate) const BANK: f64 = 0.52;
     /// The greatest distance from the course \[m\].
-    pub const ASIDE: f64 = 15.0;
+    pub(crate) const ASIDE: f64 = 15.0;
     /// The height of a climb \[m\], and its longest time \[s\].
-    pub const CLIMB: (f64, f64) = (30.0, 20.0);
+    pub(crate) const CLIMB: (f64, f64) = (30.0, 20.0);
 
     /// Before the first message.
     #[must_use]
-    pub fn new(now: f64) -> Self {
+    pub(crate) fn new(now: f64) -> Self {
         let (state, since) = (State::Off, now);
         Self { state, since }
     }
 
     /// Whether a setpoint may be sent now.
     #[must_use]
-    pub fn sends(&self) -> bool {
+    pub(crate) fn sends(&self) -> bool {
         matches!(self.state, State::Flying | State::Climb)
     }
 
     /// Moves on by what is seen. Returns the reason of a change.
-    pub fn look(&mut self, sight: &Sight) -> Option<Reason> {
+    pub(crate) fn look(&mut self, sight: &Sight) -> Option<Reason> {
         let (state, reason) = self.next(sight)?;
         (self.state, self.since) = (state, sight.now);
         Some(reason)

@@ -6,7 +6,7 @@
 mod brain;
 mod checks;
 mod clock;
-pub(crate) mod companion;
+mod companion;
 mod error;
 mod frames;
 mod guard;
@@ -16,10 +16,7 @@ mod setpoint;
 pub mod stand_in;
 mod wire;
 
-pub use brain::{Brain, Thought};
 pub use companion::{Companion, Config, Side, Told};
 pub use error::CompanionError;
-pub use guard::{Guard, Reason, Sight, State};
-pub use log::{LogReader, LogWriter, Record, replay};
-pub use setpoint::{Gate, Setpoint};
-pub use wire::{Framer, Mav};
+pub use guard::{Reason, State};
+pub use log::{LogWriter, replay};

@@ -5,13 +5,13 @@ use std::io::{Read, Write};
 
 /// One record.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Record {
+pub(crate) struct Record {
     /// Time \[us\].
-    pub time: u64,
+    pub(crate) time: u64,
     /// Where it came from; `None` if the companion sent it.
-    pub side: Option<Side>,
+    pub(crate) side: Option<Side>,
     /// The bytes.
-    pub bytes: Vec<u8>,
+    pub(crate) bytes: Vec<u8>,
 }
 
 const SIDES: [Option<Side>; 4] = [
@@ -40,14 +40,14 @@ impl<W: Write> LogWriter<W> {
 }
 
 /// Reads a log.
-pub struct LogReader<R> {
+pub(crate) struct LogReader<R> {
     from: R,
     read: usize,
 }
 
 impl<R: Read> LogReader<R> {
     /// A reader at the first record.
-    pub fn new(from: R) -> Self {
+    pub(crate) fn new(from: R) -> Self {
         Self { from, read: 0 }
     }
 
@@ -55,7 +55,7 @@ impl<R: Read> LogReader<R> {
     ///
     /// # Errors
     /// [`CompanionError::Log`].
-    pub fn record(&mut self) -> Result<Option<Record>, CompanionError> {
+    pub(crate) fn record(&mut self) -> Result<Option<Record>, CompanionError> {
         let mut head = [0; 11];
         if self.from.read_exact(&mut head).is_err() {
             return Ok(None);

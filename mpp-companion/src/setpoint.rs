@@ -2,26 +2,26 @@
 
 /// What the autopilot is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setpoint {
+pub(crate) struct Setpoint {
     /// Pitch, nose-up positive \[rad\].
-    pub pitch: f64,
+    pub(crate) pitch: f64,
     /// Throttle, 0 to 1 [-].
-    pub throttle: f64,
+    pub(crate) throttle: f64,
 }
 
 /// The limits of each setpoint. They are the narrower ones of the autopilot and of the caller.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gate {
+pub(crate) struct Gate {
     /// Least pitch \[rad\].
-    pub pitch_min: f64,
+    pub(crate) pitch_min: f64,
     /// Greatest pitch \[rad\].
-    pub pitch_max: f64,
+    pub(crate) pitch_max: f64,
 }
 
 impl Gate {
     /// The setpoint within the limits; `None` if a number is not finite, or if the limits leave nothing.
     #[must_use]
-    pub fn pass(&self, asked: Setpoint) -> Option<Setpoint> {
+    pub(crate) fn pass(&self, asked: Setpoint) -> Option<Setpoint> {
         let sound = asked.pitch.is_finite() && asked.throttle.is_finite();
         (sound && self.pitch_min <= self.pitch_max).then(|| Setpoint {
             pitch: asked.pitch.clamp(self.pitch_min, self.pitch_max),

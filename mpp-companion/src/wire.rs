@@ -1,6 +1,6 @@
 //! MAVLink 2 frames of the dialect `common`, from bytes and to bytes.
 
-pub use mavlink::dialects::common::MavMessage as Mav;
+pub(crate) use mavlink::dialects::common::MavMessage as Mav;
 use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 const START: u8 = 0xFD;
@@ -8,15 +8,16 @@ const SIGNED: u8 = 1;
 /// Component of an onboard computer.
 pub(crate) const OWN_COMPONENT: u8 = 191;
 
-/// Finds frames in a stream of bytes. What is damaged or of another dialect is skipped.
+/// Finds frames in a stream of bytes. A frame of a message that the dialect lacks is skipped as a whole: bytes within it that
+/// look like a beginning would hold back what follows. In a damaged frame the search goes on behind its first byte.
 #[derive(Debug, Default)]
-pub struct Framer {
+pub(crate) struct Framer {
     bytes: Vec<u8>,
 }
 
 impl Framer {
     /// Takes bytes in, and gives each whole message with the system and component that sent it.
-    pub fn receive(&mut self, bytes: &[u8], mut give: impl FnMut(u32, u8, Mav)) {
+    pub(crate) fn receive(&mut self, bytes: &[u8], mut give: impl FnMut(u32, u8, Mav)) {
         self.bytes.extend_from_slice(bytes);
         let mut at = 0;
         while let Some(start) = self.bytes.iter().skip(at).position(|byte| *byte == START) {
@@ -30,12 +31,14 @@ impl Framer {
             let Some(frame) = rest.get(..size) else {
                 break;
             };
-            match message(frame) {
-                Some((system, component, message)) => {
+            match read(frame) {
+                Ok(message) => {
                     at += size;
-                    give(system, component, message);
+                    if let Some((system, component, message)) = message {
+                        give(system, component, message);
+                    }
                 }
-                None => at += 1,
+                Err(Damaged) => at += 1,
             }
         }
         let known = self.bytes.iter().skip(at).any(|byte| *byte == START);
@@ -44,21 +47,25 @@ impl Framer {
     }
 }
 
-/// The message of one whole frame; `None` if it is damaged or unknown.
-fn message(frame: &[u8]) -> Option<(u32, u8, Mav)> {
-    let flags = *frame.get(2)?;
-    if flags & !SIGNED != 0 {
-        return None;
-    }
+/// The checksum of a frame is wrong, or the frame has flags that nobody knows.
+struct Damaged;
+
+/// The message of a whole frame with its sender; `None` if the dialect lacks it.
+fn read(frame: &[u8]) -> Result<Option<(u32, u8, Mav)>, Damaged> {
     let mut raw = MAVLinkV2MessageRaw::new();
-    raw.as_mut_slice()
-        .get_mut(..frame.len())?
-        .copy_from_slice(frame);
-    if !raw.has_valid_crc::<Mav>() {
-        return None;
+    let room = raw.as_mut_slice().get_mut(..frame.len());
+    let room = room.filter(|_| frame.get(2).is_some_and(|flags| flags & !SIGNED == 0));
+    room.ok_or(Damaged)?.copy_from_slice(frame);
+    if Mav::default_message_from_id(raw.message_id()).is_none() {
+        return Ok(None);
     }
-    let message = Mav::parse(MavlinkVersion::V2, raw.message_id(), raw.payload()).ok()?;
-    Some((raw.system_id(), raw.component_id(), message))
+    if !raw.has_valid_crc::<Mav>() {
+        return Err(Damaged);
+    }
+    let message = Mav::parse(MavlinkVersion::V2, raw.message_id(), raw.payload());
+    // An error is a value that no enumeration of the dialect has.
+    let sender = (raw.system_id(), raw.component_id());
+    Ok(message.ok().map(|message| (sender.0, sender.1, message)))
 }
 
 /// Makes frames of one sender.
@@ -116,5 +123,22 @@ mod tests {
             });
         }
         assert_eq!(found, [hud(1.0), hud(3.0)]);
+    }
+
+    /// ArduPlane sends messages of a dialect of its own beside those that the companion takes.
+    #[test]
+    fn a_message_of_another_dialect_holds_nothing_back() {
+        let mut sender = Sender::new(1, 1);
+        let hud = Mav::VFR_HUD(VFR_HUD_DATA {
+            airspeed: 1.0,
+            ..VFR_HUD_DATA::DEFAULT
+        });
+        // AHRS2 (178) of ardupilotmega, with a byte that begins no frame.
+        let mut stream = vec![START, 24, 0, 0, 0, 1, 1, 178, 0, 0];
+        stream.extend([START, 200, 0].into_iter().cycle().take(24 + 2));
+        stream.extend(sender.frame(&hud));
+        let mut found = Vec::new();
+        Framer::default().receive(&stream, |_, _, message| found.push(message));
+        assert_eq!(found, [hud]);
     }
 }

@@ -18,6 +18,7 @@ const STEP: f64 = 0.01;
 const TOGGLING: f64 = 0.25;
 /// Slowest and fastest rate at which they do \[Hz\].
 const TOGGLE_HZ: (f64, f64) = (0.5, 10.0);
+
 /// The flights of a campaign of pairs.
 #[derive(Clone, Debug)]
 pub struct FaultPairs {

@@ -1,9 +1,10 @@
 //! The core's part of the companion: measurements to its ticks, its command to a setpoint.
 
 use super::{Companion, Flown, Told};
+use crate::brain::Brain;
 use crate::frames::{CourseFrame, true_airspeed};
 use crate::guard::State;
-use crate::{Brain, Setpoint};
+use crate::setpoint::Setpoint;
 use hil_protocol::{AirData, GroundVelocity, LidarScan, Position, SensorFrame};
 use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
 

@@ -3,6 +3,8 @@
 mod core_side;
 mod questions;
 
+use crate::CompanionError;
+use crate::brain::Brain;
 use crate::checks::Checked;
 use crate::clock::Clock;
 use crate::frames::{CourseFrame, Placed};
@@ -10,7 +12,6 @@ use crate::guard::{Guard, Reason, Sight, State};
 use crate::lidar::Lidar;
 use crate::setpoint::{Gate, Setpoint};
 use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
-use crate::{Brain, CompanionError};
 use hil_protocol::{Configure, MAX_BEAMS};
 use mavlink::dialects::common::{
     ATTITUDE_DATA, AttitudeTargetTypemask, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag,
@@ -317,12 +318,12 @@ impl Companion {
             return;
         };
         let asked = match self.guard.state {
-            State::Flying => self.wanted(),
+            _ if !self.guard.sends() => None,
             State::Climb => Some(Setpoint {
                 pitch: self.config.model.trim.state.pitch + 0.2,
                 throttle: 1.0,
             }),
-            _ => None,
+            _ => self.wanted(),
         };
         let gate = Gate {
             pitch_min,

@@ -6,7 +6,7 @@ use mavlink::dialects::common::{
     ATTITUDE_DATA, COMMAND_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavAutopilot, MavCmd,
     MavModeFlag, MavType, PARAM_VALUE_DATA, SET_ATTITUDE_TARGET_DATA, TIMESYNC_DATA, VFR_HUD_DATA,
 };
-use mpp_core::vehicle::{Control, VehicleState};
+use mpp_core::vehicle::{Control, GRAVITY, VehicleState};
 use mpp_sim::aircraft::Aircraft;
 use mpp_sim::plant::{Plant, PlantError};
 use mpp_sim::scenario::Scenario;
@@ -14,7 +14,6 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Time constant of the roll loop \[s\].
 const ROLL: f64 = 0.3;
-const GRAVITY: f64 = 9.80665;
 /// LOITER, for a take-over.
 pub(crate) const LOITER: u32 = 12;
 
@@ -33,6 +32,8 @@ pub struct StandIn {
     trim_thrust: f64,
     thrust_max: f64,
     density: f64,
+    /// Weight \[N\].
+    weight: f64,
     /// Ticks since power was switched on.
     pub(crate) tick: u32,
     /// Ticks at which the clock starts.
@@ -91,6 +92,7 @@ impl StandIn {
             trim_thrust: trim.control.thrust,
             thrust_max: scenario.aircraft.file.thrust.max.unwrap_or(f64::MAX),
             density: scenario.aircraft.file.air_density,
+            weight: GRAVITY * scenario.aircraft.known.airframe.mass,
             plant,
             tick: 0,
             booted: 0,
@@ -231,8 +233,7 @@ impl StandIn {
         let cruise = self.trim.air.airspeed;
         let climb = (0.5 * (self.height - state.z) / cruise).clamp(-0.25, 0.25);
         let pitch = self.trim.air.pitch + climb + 0.5 * (climb - state.air.flight_path);
-        let weight = GRAVITY * 2.0;
-        let thrust = self.trim_thrust + weight * climb + 3.0 * (cruise - state.air.airspeed);
+        let thrust = self.trim_thrust + self.weight * climb + 3.0 * (cruise - state.air.airspeed);
         (pitch, thrust)
     }
 
@@ -262,13 +263,13 @@ impl StandIn {
     }
 
     /// The messages of the streams at 50 Hz: airspeed, position, attitude.
-    pub(crate) fn stream(&mut self, noise: [f64; 5]) -> [Vec<u8>; 3] {
+    pub(crate) fn stream(&mut self, noise: [f64; 4]) -> [Vec<u8>; 3] {
         let (state, wind) = (self.state(), self.plant.wind());
         let [bank, course, aside] = self.lateral;
         let (sin, cos) = libm::sincos(self.course);
         let forward = state.air.airspeed * libm::cos(state.air.flight_path) + self.wind + wind.0;
         let time_boot_ms = self.boot_ms();
-        let [speed, pitch, dx, dz, _] = noise;
+        let [speed, pitch, dx, dz] = noise;
         let x = state.x + dx;
         let equivalent = (state.air.airspeed + speed) * (self.density / 1.225).sqrt();
         let [north, east] = [x * cos - aside * sin, x * sin + aside * cos];

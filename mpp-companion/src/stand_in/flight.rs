@@ -280,11 +280,11 @@ impl Run<'_> {
     }
 
     /// Noise of airspeed, pitch and position, as navigation by a filter has it.
-    fn draw(&mut self) -> [f64; 5] {
+    fn draw(&mut self) -> [f64; 4] {
         let mut draw = |sigma: f64| sigma * gaussian(&mut self.noise);
-        let mut noise = [draw(0.1), draw(0.002), draw(0.05), draw(0.05), 0.0];
+        let mut noise = [draw(0.1), draw(0.002), draw(0.05), draw(0.05)];
         if self.acting() == Some(Fault::NotFinite) && self.autopilot.tick.is_multiple_of(3) {
-            noise = [f64::NAN; 5];
+            noise = [f64::NAN; 4];
         }
         noise
     }

@@ -10,7 +10,7 @@ use crate::config::MAX_BEAMS;
 use crate::sense::LidarScan;
 use crate::tuning::scan_match::{
     ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, OFF, OFF_SHARE,
-    SECTORS, SIGHT_SHARE, TURN_STEP, TURN_STEPS,
+    SECTORS, SIGHT_SHARE, TURN_PART, TURN_STEP, TURN_STEPS,
 };
 use crate::vehicle::Pose;
 
@@ -309,20 +309,22 @@ fn fit(scan: &LidarScan, sight: f64, predictions: &Predictions, turn: f64, rever
     fit
 }
 
-/// The most hits of a scan that is turned, as by a wrong pitch, if a turn makes hits of half of the misses.
+/// The most hits of a scan that is turned, as by a wrong pitch, if a turn makes hits of enough misses. `None` too if the misses
+/// are too few to be held against the lidar.
 fn turned_hits(
     scan: &LidarScan,
     sight: f64,
     predictions: &Predictions,
     as_sent: &Fit,
 ) -> Option<u32> {
-    if as_sent.misses < 2 {
+    // A miss weighs as many adjacent beams as confirmed it, 2 at most.
+    if 2 * as_sent.misses < LEAST_SILENT {
         return None;
     }
     let turns = (1..=TURN_STEPS).flat_map(|it| [it, -it]);
     let hits = |turn| fit(scan, sight, predictions, TURN_STEP * f64::from(turn), false).hits;
     let most = turns.map(hits).max()?;
-    (most >= as_sent.hits + as_sent.misses.div_ceil(2)).then_some(most)
+    (most >= as_sent.hits + as_sent.misses.div_ceil(TURN_PART)).then_some(most)
 }
 
 /// The farthest return of a scan \[m\]; 0 without one.

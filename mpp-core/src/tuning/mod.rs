@@ -143,6 +143,9 @@ pub mod scan_match {
     pub const TURN_STEPS: i32 = 5;
     /// See [`TURN_STEPS`]. Source: derived.
     pub const TURN_STEP: f64 = 3.0;
+    /// A turn explains a scan if it makes hits of one in so many misses [-]. With more, a silent sector is explained by chance.
+    /// Source: chosen.
+    pub const TURN_PART: u32 = 2;
 }
 
 /// Candidates of a cycle.

@@ -4,7 +4,7 @@
 mod error;
 mod exchange;
 mod judge;
-mod noted;
+pub(crate) mod noted;
 mod receiver;
 mod sensing;
 mod session;
@@ -25,8 +25,7 @@ use exchange::Exchange;
 use hil_protocol::{ControlMode, LidarScan, SensorStates};
 use judge::Judge;
 use mpp_core::vehicle::{VehicleState, Wind};
-pub(crate) use noted::plan_entry;
-use noted::{control, counters, logged};
+use noted::{control, counters, logged, plan_entry};
 pub use sensing::Sensing;
 use session::{Session, StepReply, Told};
 pub(crate) use session::{check, entry, own_hello};
@@ -180,7 +179,7 @@ impl Flight {
         }
         let exchanged = self.exchange(world, link)?;
         let (wind, reply) = (world.plant.wind(), &exchanged.reply);
-        let applied = match world.plant.step(control(reply)) {
+        let applied = match world.plant.step(control(&reply.command)) {
             // At an airspeed of zero there is no flight path any more. The flight is lost, and has an outcome.
             Err(PlantError::NonFiniteState | PlantError::Departed) => {
                 self.judge.end = Some(Outcome::FlightPathLimit);

@@ -4,7 +4,7 @@ use super::session::StepReply;
 use crate::entries::{PlanEntry, Tick, finite};
 use crate::scenario::Scenario;
 use crate::sensors::Measurement;
-use hil_protocol::{ControlMode, HealthReport, PlanReport};
+use hil_protocol::{ActuatorCommand, ControlMode, HealthReport, PlanReport, StepReport};
 use mpp_core::vehicle::{AirState, Conditions, Control, VehicleState, Wind};
 use nalgebra::Vector4;
 use std::collections::BTreeMap;
@@ -39,43 +39,52 @@ pub(super) fn logged(
     measured: Measurement,
     reply: &StepReply,
 ) -> Tick {
-    let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
-    let tracking = reply.command.mode == ControlMode::Tracking;
-    let reference = reply.step.filter(|_| tracking).map(|step| {
-        let [x, z, rest @ ..] = step.reference;
-        VehicleState {
-            x,
-            z,
-            air: air(rest),
-        }
-    });
+    let step = reply.step.as_ref();
     Tick {
         t: Scenario::time(number),
         state: *state,
         measured,
-        estimate: reply.step.map_or(*state, |step| VehicleState {
-            x: step.position[0],
-            z: step.position[1],
-            air: air(step.estimate),
-        }),
-        conditions: reply.step.map_or(Conditions::STILL, |step| Conditions {
-            wind: Wind {
-                x: step.wind[0],
-                z: step.wind[1],
-            },
-            lift: step.lift,
-        }),
-        reference,
-        control: control(reply),
-        applied: control(reply),
+        estimate: step.map_or(*state, estimate),
+        conditions: step.map_or(Conditions::STILL, conditions),
+        reference: reference(&reply.command, step),
+        control: control(&reply.command),
+        applied: control(&reply.command),
         wind: (0.0, 0.0),
     }
 }
 
+/// The core's estimate.
+pub(crate) fn estimate(step: &StepReport) -> VehicleState {
+    let [x, z] = step.position;
+    let air = AirState::from_vector(&Vector4::from(step.estimate));
+    VehicleState { x, z, air }
+}
+
+/// Wind and lift as the core estimates them.
+pub(crate) fn conditions(step: &StepReport) -> Conditions {
+    let [x, z] = step.wind;
+    let wind = Wind { x, z };
+    Conditions {
+        wind,
+        lift: step.lift,
+    }
+}
+
+/// The state that the core tracks, if it has a plan.
+pub(crate) fn reference(
+    command: &ActuatorCommand,
+    step: Option<&StepReport>,
+) -> Option<VehicleState> {
+    let step = step.filter(|_| command.mode == ControlMode::Tracking)?;
+    let [x, z, rest @ ..] = step.reference;
+    let air = AirState::from_vector(&Vector4::from(rest));
+    Some(VehicleState { x, z, air })
+}
+
 /// The control that the core commands.
-pub(super) fn control(reply: &StepReply) -> Control {
+pub(crate) fn control(command: &ActuatorCommand) -> Control {
     Control {
-        thrust: reply.command.thrust,
-        elevator: reply.command.elevator,
+        thrust: command.thrust,
+        elevator: command.elevator,
     }
 }

@@ -5,7 +5,8 @@ use super::instruments::{Instruments, Measured};
 use super::{SpaceAircraft, SpacePipe, SpaceScenario, SpaceState, true_path};
 use crate::entries::{LateralTick, PlanEntry, Tick};
 use crate::file_error::ScenarioError;
-use crate::flight::{FlyError, check, entry, own_hello, plan_entry};
+use crate::flight::noted::{conditions, control, estimate, plan_entry, reference};
+use crate::flight::{FlyError, check, entry, own_hello};
 use crate::link::{Link, LinkError};
 use crate::log::{FlightLog, Summary};
 use crate::outcome::{Class, Outcome};
@@ -14,8 +15,7 @@ use hil_protocol::{
     ActuatorCommand, ConfigureVerdict, ControlMode, Message, PlanReport, SpaceReport, StepReport,
     SurfaceCommand,
 };
-use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState, Wind};
-use nalgebra::Vector4;
+use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState};
 
 /// How far beyond the band a flight may stray \[m\].
 const STRAY: f64 = 0.5;
@@ -128,10 +128,7 @@ impl SpaceHost {
             link.send(message)?;
         }
         let reply = self.answer(link)?;
-        let command = Control {
-            thrust: reply.command.thrust,
-            elevator: reply.command.elevator,
-        };
+        let command = control(&reply.command);
         let lateral = LateralControl {
             aileron: reply.surfaces.aileron,
             rudder: reply.surfaces.rudder,
@@ -197,37 +194,17 @@ impl SpaceHost {
             },
             ..state.plane
         };
-        let air = |values: [f64; 4]| AirState::from_vector(&Vector4::from(values));
         let tracks = reply.command.mode == ControlMode::Tracking;
+        let step = reply.step.as_ref();
         let [x, y, z] = wind;
         self.log.ticks.push(&Tick {
             t: Scenario::time(self.flown),
             state: plane,
             measured: measured.air,
-            estimate: reply.step.map_or(plane, |step| VehicleState {
-                x: step.position[0],
-                z: step.position[1],
-                air: air(step.estimate),
-            }),
-            conditions: reply.step.map_or(Conditions::STILL, |step| Conditions {
-                wind: Wind {
-                    x: step.wind[0],
-                    z: step.wind[1],
-                },
-                lift: step.lift,
-            }),
-            reference: reply.step.filter(|_| tracks).map(|step| {
-                let [x, z, rest @ ..] = step.reference;
-                VehicleState {
-                    x,
-                    z,
-                    air: air(rest),
-                }
-            }),
-            control: Control {
-                thrust: reply.command.thrust,
-                elevator: reply.command.elevator,
-            },
+            estimate: step.map_or(plane, estimate),
+            conditions: step.map_or(Conditions::STILL, conditions),
+            reference: reference(&reply.command, step),
+            control: control(&reply.command),
             applied,
             wind: (x, z),
         });
