@@ -12,11 +12,11 @@ use rand_pcg::Pcg64Mcg;
 const BODY: f64 = 0.4;
 const MARGIN: f64 = 0.75;
 
-fn model() -> SpaceModel {
+pub(crate) fn model() -> SpaceModel {
     SpaceModel::new(&Airframe::PAPER, 12.0, 0.45, 20.0, [0.96, 1.57]).unwrap()
 }
 
-const KEEP: Keep = Keep {
+pub(crate) const KEEP: Keep = Keep {
     margin: MARGIN,
     half_span: 0.0,
     heights: [0.9, 14.7],
@@ -24,7 +24,7 @@ const KEEP: Keep = Keep {
     altitude: 7.5,
 };
 
-fn level(model: &SpaceModel) -> SpacePath {
+pub(crate) fn level(model: &SpaceModel) -> SpacePath {
     SpacePath {
         position: [0.0, 0.0, 7.5],
         airspeed: 12.0,
@@ -42,7 +42,10 @@ impl Draw {
 }
 
 /// The workspaces are larger than the stack of a test's thread.
-fn with_planner(keep: Keep, run: impl FnOnce(&mut VoxelGrid, &mut SpacePlanner) + Send + 'static) {
+pub(crate) fn with_planner(
+    keep: Keep,
+    run: impl FnOnce(&mut VoxelGrid, &mut SpacePlanner) + Send + 'static,
+) {
     let body = move || {
         let mut map = Box::new(VoxelGrid::new());
         map.clear(0.0);
@@ -54,7 +57,7 @@ fn with_planner(keep: Keep, run: impl FnOnce(&mut VoxelGrid, &mut SpacePlanner) 
 }
 
 /// Beams over 90 x 30 deg against a range for each direction.
-fn sweep(range: impl Fn(&[f64; 3]) -> f64) -> Vec<SpaceBeam> {
+pub(crate) fn sweep(range: impl Fn(&[f64; 3]) -> f64) -> Vec<SpaceBeam> {
     let mut beams = Vec::new();
     for ring in 0..32 {
         for column in 0..180 {
@@ -71,7 +74,7 @@ fn sweep(range: impl Fn(&[f64; 3]) -> f64) -> Vec<SpaceBeam> {
 }
 
 /// Range of a beam from the start to the nearest trunk `(x, y, radius)`.
-fn to_trunks(trunks: &[[f64; 3]], direction: &[f64; 3]) -> f64 {
+pub(crate) fn to_trunks(trunks: &[[f64; 3]], direction: &[f64; 3]) -> f64 {
     let flat = libm::hypot(direction[0], direction[1]);
     let ranges = trunks.iter().map(|[x, y, radius]| {
         let along = (x * direction[0] + y * direction[1]) / flat;
@@ -84,7 +87,7 @@ fn to_trunks(trunks: &[[f64; 3]], direction: &[f64; 3]) -> f64 {
     ranges.fold(f64::INFINITY, f64::min)
 }
 
-fn plan(
+pub(crate) fn plan(
     planner: &mut SpacePlanner,
     map: &VoxelGrid,
     start: &SpacePath,

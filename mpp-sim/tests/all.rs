@@ -4,6 +4,7 @@
 
 mod again;
 mod bank;
+mod baselines;
 mod common;
 mod faults;
 mod forest;

@@ -23,7 +23,7 @@ fn forest(density: f64, seed: u64) -> SpaceFile {
     }
 }
 
-fn flown(file: SpaceFile, stems: Option<Vec<Body>>) -> Result<FlightLog, String> {
+pub(crate) fn flown(file: SpaceFile, stems: Option<Vec<Body>>) -> Result<FlightLog, String> {
     aside(move || {
         let scenario = file
             .build(stems.as_deref())
@@ -32,7 +32,7 @@ fn flown(file: SpaceFile, stems: Option<Vec<Body>>) -> Result<FlightLog, String>
     })
 }
 
-fn trunk(x: f64, y: f64) -> Body {
+pub(crate) fn trunk(x: f64, y: f64) -> Body {
     Body::Cylinder {
         x,
         y,
@@ -121,7 +121,7 @@ fn a_trunk_in_the_way_is_passed_with_the_lidar_and_hit_without_sight() {
     assert_eq!(seeing.summary.outcome, Outcome::Survived);
     let blind = aside(move || {
         let scenario = file().build(Some(&way())).unwrap();
-        fly_space_with(&scenario, &mut Blind(SpacePipe::new()), || false).unwrap()
+        fly_space_with(&scenario, &mut Blind(SpacePipe::of(&scenario)), || false).unwrap()
     });
     assert_eq!(blind.summary.outcome, Outcome::Collision);
     assert_eq!(blind.summary.replans, 0);
@@ -148,7 +148,12 @@ fn plans_go_on_in_the_map_without_points() {
             ..SpaceFile::default()
         };
         let scenario = file.build(Some(&way())).unwrap();
-        fly_space_with(&scenario, &mut Failing(SpacePipe::new(), 300), || false).unwrap()
+        fly_space_with(
+            &scenario,
+            &mut Failing(SpacePipe::of(&scenario), 300),
+            || false,
+        )
+        .unwrap()
     });
     assert!(log.plans.iter().any(|plan| plan.tick > 500));
     assert_eq!(log.summary.outcome, Outcome::Survived);
@@ -187,7 +192,11 @@ fn packets_that_show_nothing_are_refused_by_name() {
                 self.0.receive(awaited)
             }
         }
-        let log = fly_space_with(&scenario, &mut Odd(SpacePipe::new(), &mut ticks), || false);
+        let log = fly_space_with(
+            &scenario,
+            &mut Odd(SpacePipe::of(&scenario), &mut ticks),
+            || false,
+        );
         log.unwrap().rejections
     });
     let expected = [

@@ -34,7 +34,7 @@ pub(crate) fn fly(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<
     if let Some(scenario) = scenario::in_space(keys)? {
         let flown = aside(py, |stop| {
             let stops = || stop.load(Ordering::Relaxed);
-            fly_space_with(&scenario, &mut SpacePipe::new(), stops)
+            fly_space_with(&scenario, &mut SpacePipe::of(&scenario), stops)
         })?;
         return Flight::new(flown.map_err(errors::flight)?);
     }

@@ -121,6 +121,11 @@ impl SpaceNode {
         Some((&session.planner, &self.map))
     }
 
+    /// The planner, for a host that compares it with others.
+    pub fn planner_mut(&mut self) -> Option<&mut SpacePlanner> {
+        Some(&mut self.session.as_mut()?.planner)
+    }
+
     fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
         match id {
             id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),

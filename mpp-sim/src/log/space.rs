@@ -23,6 +23,9 @@ pub struct SpaceHeader {
     pub exact: bool,
     /// Whether programs improved the candidates.
     pub programs: bool,
+    /// Name of the baseline that planned in place of the planner; not written without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub baseline: Option<String>,
     /// Steady wind ahead, to the right and up [m/s]; not written in still air.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind: Option<[f64; 3]>,

@@ -36,7 +36,7 @@ struct Reply {
 /// # Errors
 /// [`FlyError`] when the flight has no outcome.
 pub fn fly_space(scenario: &SpaceScenario) -> Result<FlightLog, FlyError> {
-    fly_space_with(scenario, &mut SpacePipe::new(), || false)
+    fly_space_with(scenario, &mut SpacePipe::of(scenario), || false)
 }
 
 /// Flies a scenario in space over a link, until `stops` says so.

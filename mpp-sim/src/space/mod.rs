@@ -1,6 +1,7 @@
 //! The plant in six degrees of freedom: an aircraft with a lateral table behind its actuators, in wind on three axes. In
 //! the vertical plane it is the [`Aircraft`](crate::aircraft::Aircraft), bit for bit.
 
+mod baseline;
 mod course;
 mod host;
 mod hull;
@@ -17,6 +18,7 @@ mod tests;
 mod wind;
 pub mod world;
 
+pub use baseline::BaselineName;
 pub use course::CourseHold;
 pub use host::{fly_space, fly_space_with};
 pub use hull::Hull;

@@ -1,5 +1,7 @@
 //! The core in space in the harness's own process, behind a pipe of bytes.
 
+use super::SpaceScenario;
+use super::baseline::Baseline;
 use crate::link::{Link, LinkError};
 use crate::pipe::Inbox;
 use hil_protocol::{MAX_FRAME, Message, encode};
@@ -8,15 +10,17 @@ use mpp_node::SpaceNode;
 /// A core in space in this process. It is built on the stack, of which the thread needs 32 MB, and then lies in a box.
 pub struct SpacePipe {
     node: Box<SpaceNode>,
+    baseline: Option<Baseline>,
     inbox: Inbox,
 }
 
 impl SpacePipe {
-    /// A fresh core.
+    /// A fresh core for a scenario, with its baseline in place of the planner if it has one.
     #[must_use]
-    pub fn new() -> Self {
+    pub fn of(scenario: &SpaceScenario) -> Self {
         Self {
             node: Box::new(SpaceNode::new()),
+            baseline: Baseline::of(scenario),
             inbox: Inbox::new(),
         }
     }
@@ -28,18 +32,15 @@ impl SpacePipe {
     }
 }
 
-impl Default for SpacePipe {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Link for SpacePipe {
     fn send(&mut self, message: &Message) -> Result<(), LinkError> {
         let mut buffer = [0; MAX_FRAME];
         let frame = encode(message, &mut buffer)?;
         let send = |frame: &[u8]| self.inbox.bytes.extend(frame);
         self.node.receive(frame, send);
+        if let Some(baseline) = &mut self.baseline {
+            baseline.follow(message, &mut self.node);
+        }
         Ok(())
     }
 

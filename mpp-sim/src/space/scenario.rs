@@ -2,7 +2,7 @@
 
 use super::lidar::LidarName;
 use super::world::{Body, Extent, World, WorldConfig, WorldName};
-use super::{Hull, SensorErrors, WindConfig, regulator};
+use super::{BaselineName, Hull, SensorErrors, WindConfig, regulator};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::field::ObstacleField;
 use crate::file_error::{ScenarioError, ensure};
@@ -73,6 +73,8 @@ pub struct SpaceFile {
     pub candidates: Option<u8>,
     /// Whether a program improves each candidate; by default `true`.
     pub programs: Option<bool>,
+    /// Name of a baseline that plans in place of the planner; by default none.
+    pub baseline: Option<String>,
     /// Steady wind ahead, to the right and up [m/s]; by default none.
     pub wind: Option<[f64; 3]>,
     /// Standard deviation of the vertical gusts [m/s]; those along and across are 1.6 times as strong; by default 0.
@@ -98,6 +100,8 @@ pub struct SpaceScenario {
     pub wind: WindConfig,
     /// How beams find their poses.
     pub deskew: Deskew,
+    /// What plans in place of the planner.
+    pub(super) baseline: Option<BaselineName>,
     header: SpaceHeader,
     candidates: u8,
 }
@@ -119,6 +123,7 @@ impl SpaceFile {
         let advice = format!("give 1 to {SPACE_CANDIDATES}");
         let sound = (1..=SPACE_CANDIDATES).contains(&usize::from(candidates));
         ensure(sound, "candidates", advice)?;
+        let baseline = self.baseline()?;
         let sphere = self.sphere.is_none_or(|it| it > 0.0 && it <= 10.0);
         ensure(sphere, "sphere", "give more than 0 and at most 10 m")?;
         let preset = self.preset.as_deref().unwrap_or(SPACE);
@@ -160,6 +165,7 @@ impl SpaceFile {
                 active: self.deskew.unwrap_or(true),
                 clock: 0.001 * clock,
             },
+            baseline,
             header: SpaceHeader {
                 world: name.map(|name| name.name().to_owned()),
                 density,
@@ -168,6 +174,7 @@ impl SpaceFile {
                 sphere: self.sphere,
                 exact: self.exact.unwrap_or(false),
                 programs: self.programs.unwrap_or(true),
+                baseline: self.baseline.clone(),
                 wind: self.wind,
                 deskew: self.deskew.filter(|active| !active),
                 lidar_clock: self.lidar_clock,
@@ -176,6 +183,18 @@ impl SpaceFile {
         };
         scenario.check()?;
         Ok(scenario)
+    }
+
+    fn baseline(&self) -> Result<Option<BaselineName>, ScenarioError> {
+        let Some(name) = &self.baseline else {
+            return Ok(None);
+        };
+        let alone = self.candidates.is_none() && self.programs.is_none();
+        let advice = "leave candidates and programs out: they are the planner's";
+        ensure(alone, "baseline", advice)?;
+        let name = name.parse::<BaselineName>();
+        name.map(Some)
+            .map_err(|error| ScenarioError::Value("baseline", error.to_string()))
     }
 
     fn world(

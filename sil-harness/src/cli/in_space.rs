@@ -5,7 +5,7 @@ use super::answer::{Failure, data, print_json, talk};
 use super::fly::{keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
-use super::values::{item, seed, threads, wind, world};
+use super::values::{baseline, item, seed, threads, wind, world};
 use crate::campaign::pool;
 use crate::files::{read_aircraft, read_stems, try_directory};
 use clap::{Parser, Subcommand};
@@ -15,7 +15,7 @@ use mpp_sim::link::LinkError;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::WorldName;
-use mpp_sim::space::{SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_with};
+use mpp_sim::space::{BaselineName, SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_with};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::ffi::OsString;
@@ -88,6 +88,9 @@ struct InSpace {
     /// Fly the best candidate as it is, without a program
     #[arg(long, help_heading = PLANNER)]
     no_programs: bool,
+    /// Fly a simple planner in place of ours, on the same map, estimate, regulator and plant
+    #[arg(long, help_heading = PLANNER, value_parser = baseline(), conflicts_with_all = ["candidates", "no_programs"])]
+    baseline: Option<BaselineName>,
     /// Replanning rate [Hz], 1 to 10 [default: 4]
     #[arg(long, help_heading = PLANNER)]
     replan_hz: Option<f64>,
@@ -173,7 +176,8 @@ impl InSpace {
             sphere: self.sphere,
             exact: Some(self.exact),
             candidates: self.candidates,
-            programs: Some(!self.no_programs),
+            programs: self.no_programs.then_some(false),
+            baseline: self.baseline.map(|it| it.name().to_owned()),
             wind: self.wind,
             gusts: self.gusts,
             deskew: self.no_deskew.then_some(false),
@@ -188,7 +192,7 @@ impl InSpace {
 
 fn flown(scenario: &SpaceScenario, signals: &Signals) -> Result<FlightLog, Failure> {
     let stops = || signals.raised().is_some();
-    fly_space_with(scenario, &mut SpacePipe::new(), stops).map_err(|error| match error {
+    fly_space_with(scenario, &mut SpacePipe::of(scenario), stops).map_err(|error| match error {
         FlyError::Scenario(_) | FlyError::Link(LinkError::Refused(_)) => Failure::usage(error),
         other => Failure::failed(other),
     })

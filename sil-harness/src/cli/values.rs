@@ -5,6 +5,7 @@ use clap::{Arg, Command};
 use mpp_sim::generator::GeneratorName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
+use mpp_sim::space::BaselineName;
 use mpp_sim::space::world::WorldName;
 use std::error::Error;
 use std::ffi::OsStr;
@@ -182,6 +183,16 @@ pub(super) fn world() -> impl TypedValueParser<Value = WorldName> {
         WorldName::Slalom => "Rows of trunks from both sides in turn",
     };
     named(WorldName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
+}
+
+/// Reads a planner in place of ours.
+pub(super) fn baseline() -> impl TypedValueParser<Value = BaselineName> {
+    let help = |name| match name {
+        BaselineName::Straight => "Straight on",
+        BaselineName::Library7 => "Seven manoeuvres by the rule of Barry, Florence and Tedrake",
+        BaselineName::Library105 => "105 primitives with the price and the cost-to-go of our plans",
+    };
+    named(BaselineName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }
 
 /// Reads a challenge scene.

@@ -68,6 +68,14 @@ fn a_campaign_counts_its_cells_and_writes_its_rows() {
 }
 
 #[test]
+fn a_baseline_flies_a_cell_in_place_of_the_planner() {
+    let flags = "campaign --preset space --density 0.02 --trials 2 --seed 5 --baseline straight";
+    let (code, text) = told(flags);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.contains("0 of 2 flights arrived"), "{text}");
+}
+
+#[test]
 fn what_makes_no_sense_is_one_sentence() {
     let stems = std::env::temp_dir().join(format!("mpp-stems-{}.csv", std::process::id()));
     std::fs::write(&stems, "x,y,diameter\n60,NaN,0.4\n").unwrap();
@@ -76,6 +84,8 @@ fn what_makes_no_sense_is_one_sentence() {
         ("--density=-1", "density: give more than 0 and at most 1"),
         ("--density 0", "density: give more than 0 and at most 1"),
         ("--world jungle", "jungle"),
+        ("--baseline library-8", "invalid value 'library-8'"),
+        ("--baseline straight --candidates 3", "cannot be used with"),
         ("--aircraft cessna182", "give this table"),
         ("--candidates 8", "candidates: give 1 to 7"),
         ("--sphere=-1", "sphere: give more than 0"),

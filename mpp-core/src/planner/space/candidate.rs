@@ -49,7 +49,7 @@ impl SpacePlan {
     }
 
     /// The plan that begins at a state, with a control that is chosen at the start of each stage.
-    pub(super) fn fly(
+    pub fn fly(
         &mut self,
         model: &SpaceModel,
         start: &SpacePath,
@@ -207,7 +207,8 @@ impl<'a> Pursuit<'a> {
 
 /// Rates that reach, within `dt` \[s\] and the limits, the bank and the angle of attack of a wanted acceleration across the
 /// flight path, up and to the right [m/s^2].
-pub(super) fn towards(
+#[must_use]
+pub fn towards(
     model: &SpaceModel,
     state: &SpacePath,
     [up, right]: [f64; 2],

@@ -19,11 +19,12 @@ mod faces;
 mod judge;
 mod keep;
 mod lattice;
+mod offered;
 mod paths;
 mod program;
 mod refine;
 
-pub use candidate::SpacePlan;
+pub use candidate::{SpacePlan, towards};
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
 
@@ -34,7 +35,7 @@ use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
-use candidate::{Pursuit, limited, towards};
+use candidate::{Pursuit, limited};
 use judge::judge;
 use lattice::{Lattice, Path, Rules, STATIONS, VIA};
 use program::{Frame, WEIGHTS};
@@ -66,6 +67,8 @@ enum Phase {
     Field,
     Forward(usize),
     Backward(usize),
+    /// The lattice is done, and others bring the plans.
+    Offers,
     Previous,
     Candidate(usize),
     Pose(usize),
@@ -163,7 +166,7 @@ impl SpacePlanner {
     /// Does a slice of the cycle. Returns true when it is done.
     pub fn advance(&mut self, map: &VoxelGrid) -> bool {
         self.phase = match self.phase {
-            Phase::Idle => return true,
+            Phase::Idle | Phase::Offers => return true,
             Phase::Field => {
                 self.field.update(map, &self.start.position);
                 let velocity = self.start.ground_velocity(&self.model.wind);
@@ -178,7 +181,7 @@ impl SpacePlanner {
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
         };
-        self.phase == Phase::Idle
+        matches!(self.phase, Phase::Idle | Phase::Offers)
     }
 
     /// The best plan so far, and its worth.
@@ -227,6 +230,8 @@ impl SpacePlanner {
         self.lattice.retreat(station);
         if station > VIA {
             Phase::Backward(station - 1)
+        } else if self.wanted == 0 {
+            Phase::Offers
         } else {
             Phase::Previous
         }

@@ -1,0 +1,69 @@
+//! Simple planners in the place of the planner in space, on the same sensors, map, regulator and plant.
+
+use crate::forest::{flown, trunk};
+use mpp_sim::outcome::Outcome;
+use mpp_sim::space::world::Body;
+use mpp_sim::space::{BaselineName, SpaceFile};
+
+fn outcome(name: BaselineName, bodies: &[Body]) -> Outcome {
+    let file = SpaceFile {
+        baseline: Some(name.name().to_owned()),
+        ..SpaceFile::default()
+    };
+    let log = flown(file, Some(bodies.to_vec())).unwrap();
+    let space = log.header.space.as_ref().unwrap();
+    assert_eq!(space.baseline.as_deref(), Some(name.name()));
+    assert!(log.plans.len() > 5, "{name}: {}", log.plans.len());
+    log.summary.outcome
+}
+
+#[test]
+fn every_baseline_crosses_an_empty_world() {
+    for name in BaselineName::ALL {
+        let flown = outcome(name, &[trunk(150.0, 30.0)]);
+        assert_eq!(flown, Outcome::Survived, "{name}");
+    }
+}
+
+/// A wall of trunks with a gap to either side of the way.
+#[test]
+fn gaps_beside_the_way_are_found_by_the_libraries_alone() {
+    let places = (-37..=37).map(|place| 0.8 * f64::from(place));
+    let closed = places.filter(|y| !(2.5..10.0).contains(&y.abs()));
+    let mut bodies: Vec<Body> = closed.map(|y| trunk(60.0, y)).collect();
+    bodies.push(trunk(120.0, 30.0));
+    for (name, expected) in [
+        (BaselineName::Straight, Outcome::Collision),
+        (BaselineName::Library7, Outcome::Survived),
+        (BaselineName::Library105, Outcome::Survived),
+    ] {
+        assert_eq!(outcome(name, &bodies), expected, "{name}");
+    }
+}
+
+#[test]
+fn a_baseline_has_no_settings_of_the_planner() {
+    let named = |name: &str| SpaceFile {
+        baseline: Some(name.to_owned()),
+        ..SpaceFile::default()
+    };
+    for (file, hint) in [
+        (
+            named("library-8"),
+            "there is no baseline `library-8`: give straight",
+        ),
+        (
+            SpaceFile {
+                programs: Some(false),
+                ..named("straight")
+            },
+            "leave candidates and programs out",
+        ),
+    ] {
+        let error = flown(file, None).unwrap_err();
+        assert!(
+            error.contains(hint) && error.starts_with("baseline"),
+            "{error}"
+        );
+    }
+}
