@@ -1,9 +1,8 @@
 //! Simple planners beside which the planner in space is measured. They replace only the planner: start state, map, estimate,
 //! regulator and plant are its own, and their plans have its type. They are no flight code.
 
-use super::SpaceScenario;
 use crate::names::by_name;
-use hil_protocol::Message;
+use hil_protocol::{ConfigureSpace, Message};
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
 use mpp_core::map::{MOST_CLEARANCE, VoxelField};
 use mpp_core::planner::space::{SpacePlan, SpacePlanner, towards};
@@ -61,18 +60,17 @@ struct Band {
 }
 
 impl Baseline {
-    /// That of a scenario, if it has one.
-    pub(super) fn of(scenario: &SpaceScenario) -> Option<Self> {
-        let limits = scenario.configure_space();
-        Some(Self {
-            name: scenario.baseline?,
-            altitude: scenario.altitude(),
+    /// A baseline that keeps an altitude \[m\] and limits of plans.
+    pub(super) fn new(name: BaselineName, altitude: f64, limits: &ConfigureSpace) -> Self {
+        Self {
+            name,
+            altitude,
             band: Band {
                 heights: limits.heights,
                 half_width: limits.half_width,
             },
             running: None,
-        })
+        }
     }
 
     /// Takes the place of the planner after a message to its node.

@@ -20,7 +20,7 @@ impl SpacePipe {
     pub fn of(scenario: &SpaceScenario) -> Self {
         Self {
             node: Box::new(SpaceNode::new()),
-            baseline: Baseline::of(scenario),
+            baseline: scenario.baseline(),
             inbox: Inbox::new(),
         }
     }

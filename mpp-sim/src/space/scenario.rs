@@ -1,8 +1,9 @@
 //! The parameters of a flight in space.
 
+use super::baseline::{Baseline, BaselineName};
 use super::lidar::LidarName;
 use super::world::{Body, Extent, World, WorldConfig, WorldName};
-use super::{BaselineName, Hull, SensorErrors, WindConfig, regulator};
+use super::{Hull, SensorErrors, WindConfig, regulator};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::field::ObstacleField;
 use crate::file_error::{ScenarioError, ensure};
@@ -101,7 +102,7 @@ pub struct SpaceScenario {
     /// How beams find their poses.
     pub deskew: Deskew,
     /// What plans in place of the planner.
-    pub(super) baseline: Option<BaselineName>,
+    baseline: Option<BaselineName>,
     header: SpaceHeader,
     candidates: u8,
 }
@@ -296,6 +297,16 @@ impl SpaceScenario {
     #[must_use]
     pub fn altitude(&self) -> f64 {
         ALTITUDE * self.world.extent().ceiling
+    }
+
+    /// What plans in place of the planner, if anything does.
+    pub(super) fn baseline(&self) -> Option<Baseline> {
+        let name = self.baseline?;
+        Some(Baseline::new(
+            name,
+            self.altitude(),
+            &self.configure_space(),
+        ))
     }
 
     /// The lateral part of the aircraft for the core.

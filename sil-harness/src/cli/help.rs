@@ -84,6 +84,7 @@ pub(super) const CAMPAIGN_IN_SPACE: &str = "\
 Examples:
   sil-harness campaign --preset space --density 0.01,0.02,0.04 --trials 100 --seed 900000
   sil-harness campaign --preset space --density 0.04 --sphere 0.4 --out rows.jsonl
+  sil-harness campaign --preset space --density 0.02 --baseline library-7
 
 A flight arrives if neither wing nor fuselage touches anything on its way and it stays in the band.
 Exit codes: 0 flown, 2 usage, 130 and 143 interrupted, 1 anything else";
