@@ -279,9 +279,3 @@ impl PaperPlanner {
             .map(|problem| (self.points.map(place), *problem))
     }
 }
-
-impl Default for PaperPlanner {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -276,9 +276,3 @@ impl Planner {
         (self.chosen == Chosen::Paper).then_some(&self.paper)
     }
 }
-
-impl Default for Planner {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -163,9 +163,3 @@ impl SpaceNode {
         self.emit(&greeting(), send);
     }
 }
-
-impl Default for SpaceNode {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -28,12 +28,6 @@ impl SpacePipe {
     }
 }
 
-impl Default for SpacePipe {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Link for SpacePipe {
     fn send(&mut self, message: &Message) -> Result<(), LinkError> {
         let mut buffer = [0; MAX_FRAME];

@@ -224,7 +224,7 @@ impl PlanePlanner {
         let thrust = self.best.thrust(self.time);
         self.thrust = thrust.map_or(self.trim.control.thrust, |it| it / self.units.force());
         let blind = scan.is_none();
-        let mut scan = scan.cloned().unwrap_or_default();
+        let mut scan = scan.cloned().unwrap_or_else(LidarScan::new);
         for range in &mut scan.ranges {
             *range = (f64::from(*range) / self.units.length) as f32;
         }
@@ -364,11 +364,5 @@ impl PlanePlanner {
             start: PathState::of(&self.state),
             lag: self.lag,
         }
-    }
-}
-
-impl Default for PlanePlanner {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -221,9 +221,3 @@ fn at<const R: usize, const C: usize>(
 ) -> f64 {
     matrix.get((row, column)).copied().unwrap_or(0.0)
 }
-
-impl Default for Condensed {
-    fn default() -> Self {
-        Self::new()
-    }
-}

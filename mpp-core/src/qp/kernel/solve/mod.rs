@@ -361,9 +361,3 @@ impl Solver {
         self.problem.softens(RowKind::of(row))
     }
 }
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self::new()
-    }
-}
