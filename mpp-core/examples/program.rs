@@ -2,16 +2,15 @@
 
 use mpp_core::corridor::Corridor;
 use mpp_core::paper::{Initial, StageModel};
-use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, Status, Weights};
-use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
+use mpp_core::qp::{Condensed, Problem, Solution, Solver, Status, Weights};
+use mpp_core::vehicle::{Airframe, JacobianForm, Trim};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let airframe = Airframe::REFERENCE;
     let trim = Trim::at_speed(&airframe, 12.0, 0.0)?;
-    let linear = linearize(&airframe, &trim.state, trim.control, JacobianForm::Exact);
     // Condensing depends on the model alone: once for all candidates.
     let mut shared = Box::new(Condensed::new());
-    let model = StageModel::new(&trim, &linear, Initial::Estimate)?;
+    let model = StageModel::new(&airframe, &trim, JacobianForm::Exact, Initial::Estimate)?;
     shared.condense(&model.dynamics(), &Weights::PAPER)?;
 
     // At stages 9 to 11 the aircraft must be 2 m above level flight. Direction 4 points down: -z <= -2.
@@ -19,14 +18,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     for stage in 9..=11 {
         corridor.bounds[stage][4] = -2.0;
     }
-    let mut problem = Problem {
-        initial: [0.0; 6],
-        target: [0.0; 6],
-        bounds: Bounds::none(),
-        penalty: None,
-        hard_angle_of_attack: [false; 2],
-        cost_limit: f64::INFINITY,
-    };
+    let mut problem = Problem::EMPTY;
     problem.bounds.set_corridor(&corridor);
     problem
         .bounds

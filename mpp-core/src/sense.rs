@@ -139,12 +139,6 @@ impl LidarScan {
     }
 }
 
-impl Default for LidarScan {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// A scan that cannot be used. The vehicle flies on with the last plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ScanError {

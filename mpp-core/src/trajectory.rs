@@ -271,9 +271,3 @@ fn commanded(at: &PathState, airframe: &Airframe, control: &PathControl, thrust:
     feedforward.thrust = thrust;
     Reference { state, feedforward }
 }
-
-impl Default for Trajectory {
-    fn default() -> Self {
-        Self::new()
-    }
-}

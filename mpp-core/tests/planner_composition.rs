@@ -9,7 +9,7 @@ use mpp_core::paper::{CollocationPoints, Extension, Path, Search, StageModel, re
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, Status};
 use mpp_core::settings::{PlannerSettings, Settings};
-use mpp_core::vehicle::{Conditions, VehicleState, linearize};
+use mpp_core::vehicle::{Conditions, VehicleState};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
@@ -34,10 +34,14 @@ const STARTS: [(f64, f64, f64); 6] = [
 
 /// The planner's model, set up independently of the planner.
 fn model(settings: &Settings, planner: &Planner) -> StageModel {
-    let (airframe, trim) = (&settings.airframe, planner.trim());
     let own = settings.planner.paper().unwrap();
-    let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
-    StageModel::new(trim, &linear, own.initial).unwrap()
+    StageModel::new(
+        &settings.airframe,
+        planner.trim(),
+        own.jacobian,
+        own.initial,
+    )
+    .unwrap()
 }
 
 /// The program of the planner's present candidate.
@@ -65,9 +69,7 @@ fn program(
         initial: model.initial_state(trim, &state.air),
         target: [0.0, settings.planner.altitude - state.z, 0.0, 0.0, 0.0, 0.0],
         bounds,
-        penalty: None,
-        hard_angle_of_attack: [false; 2],
-        cost_limit: f64::INFINITY,
+        ..Problem::EMPTY
     }
 }
 

@@ -94,9 +94,3 @@ impl FlightNode {
         }
     }
 }
-
-impl Default for FlightNode {
-    fn default() -> Self {
-        Self::new()
-    }
-}

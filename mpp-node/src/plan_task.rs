@@ -147,9 +147,3 @@ impl PlanTask {
         })
     }
 }
-
-impl Default for PlanTask {
-    fn default() -> Self {
-        Self::new()
-    }
-}

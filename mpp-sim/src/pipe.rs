@@ -93,12 +93,6 @@ impl PipeLink {
     }
 }
 
-impl Default for PipeLink {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl Link for PipeLink {
     fn send(&mut self, message: &Message) -> Result<(), LinkError> {
         let mut buffer = [0; MAX_FRAME];
@@ -148,12 +142,6 @@ impl DirectLink {
             .is_advised()
             .then(|| Oracle::of(scenario, &scenario.field()))
             .flatten();
-    }
-}
-
-impl Default for DirectLink {
-    fn default() -> Self {
-        Self::new()
     }
 }
 

@@ -28,13 +28,8 @@ pub(crate) struct Aarch64Args {
 pub(crate) fn run(args: &Aarch64Args) -> Result<()> {
     if !args.no_tests {
         // This is not --release: to link each test with the whole of it optimised takes an hour.
-        succeed(cargo(&toolchain()?, "test")?.args([
-            "--locked",
-            "-p",
-            "mpp-core",
-            "-p",
-            "hil-protocol",
-        ]))?;
+        let tests = "--locked -p mpp-core -p hil-protocol";
+        succeed(cargo(&toolchain()?, "test")?.args(tests.split(' ')))?;
     }
     let folder = work("aarch64")?;
     let target = harness(&folder)?;

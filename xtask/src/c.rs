@@ -4,7 +4,7 @@ use crate::flight::{Harness, await_end};
 use crate::folders::{root, work};
 use crate::qemu::{Emulator, Run};
 use crate::release::{cortex_m, lay_out, try_out};
-use crate::toolchain::{install, output, succeed};
+use crate::toolchain::{cargo, install, output, succeed};
 use anyhow::{Context, Result, bail, ensure};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -75,9 +75,7 @@ impl Example {
 
 /// Builds the archive of core and simulated aircraft.
 fn plant(host: &Harness) -> Result<PathBuf> {
-    let mut cargo = Command::new("cargo");
-    cargo.current_dir(root());
-    succeed(cargo.args(["build", "--quiet", "--locked", "-p", "mpp-c-plant"]))?;
+    succeed(&mut cargo("build --quiet --locked -p mpp-c-plant"))?;
     // The harness stands in the folder beside.
     let built = host
         .program()

@@ -87,16 +87,8 @@ fn release() -> Result<PathBuf> {
 pub(crate) fn build_all() -> Result<()> {
     build(&ALL)?;
     let toolchain = Toolchain::find("aarch64-unknown-none")?;
-    succeed(toolchain.cargo("build", "")?.args([
-        "--release",
-        "--locked",
-        "-p",
-        "mpp-core",
-        "-p",
-        "hil-protocol",
-        "-p",
-        "mpp-node",
-    ]))
+    let all = "--release --locked -p mpp-core -p hil-protocol -p mpp-node";
+    succeed(toolchain.cargo("build", "")?.args(all.split(' ')))
 }
 
 /// Builds images. An image links only if nothing in it can panic.

@@ -1,8 +1,7 @@
 //! Flies the harness, with its own core or with an emulated one.
 
-use crate::folders::root;
 use crate::qemu::Emulator;
-use crate::toolchain::succeed;
+use crate::toolchain::{cargo, output, succeed};
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -64,27 +63,13 @@ pub(crate) struct Harness {
 impl Harness {
     /// Builds the harness. Its logs go to a folder.
     pub(crate) fn build(out: &Path) -> Result<Self> {
-        let mut cargo = Command::new("cargo");
-        cargo.current_dir(root());
-        succeed(cargo.args([
-            "build",
-            "--quiet",
-            "--release",
-            "--locked",
-            "-p",
-            "sil-harness",
-        ]))?;
-        let metadata = Command::new("cargo")
-            .current_dir(root())
-            .args([
-                "metadata",
-                "--no-deps",
-                "--format-version",
-                "1",
-                "--offline",
-            ])
-            .output()?;
-        let metadata: Value = serde_json::from_slice(&metadata.stdout)?;
+        succeed(&mut cargo(
+            "build --quiet --release --locked -p sil-harness",
+        ))?;
+        let metadata = output(&mut cargo(
+            "metadata --no-deps --format-version 1 --offline",
+        ))?;
+        let metadata: Value = serde_json::from_str(&metadata)?;
         let target = metadata["target_directory"]
             .as_str()
             .context("no target folder")?;

@@ -123,6 +123,13 @@ pub(crate) fn install(needs: &[(&str, &str)]) -> Result<()> {
         .with_context(|| format!("packages are missing; on Debian 12: {how}"))
 }
 
+/// Cargo for this machine, with arguments.
+pub(crate) fn cargo(arguments: &str) -> Command {
+    let mut cargo = Command::new("cargo");
+    cargo.current_dir(root()).args(arguments.split(' '));
+    cargo
+}
+
 /// Runs a command to its end. Fails if the command fails.
 pub(crate) fn succeed(command: &mut Command) -> Result<()> {
     let status = command

@@ -135,9 +135,3 @@ impl Decoder {
         Ok(id)
     }
 }
-
-impl Default for Decoder {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -9,7 +9,7 @@ use mpp_core::corridor::Corridor;
 use mpp_core::paper::config::SEARCH_ROW;
 use mpp_core::paper::{GridPoint, Initial, ModelError, Padding, Rules, StageModel, resample};
 use mpp_core::qp::{Bounds, Problem, Solution, Solver, Status, Weights};
-use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
+use mpp_core::vehicle::{Airframe, JacobianForm, Trim};
 use nalgebra::{Vector4, Vector6};
 use serde::Deserialize;
 
@@ -124,7 +124,6 @@ fn instances_of(name: &str, file: &CaseFile) -> Result<Vec<Instance>, ModelError
     ];
     let airframe = &Airframe::REFERENCE;
     let trim = Trim::of_authors(airframe);
-    let linear = linearize(airframe, &trim.state, trim.control, JacobianForm::Authors);
     let deviation = Vector4::from(file.state_estimate) - trim.state.to_vector();
     let mut corridor = Corridor::new();
     for (ours, theirs) in corridor.bounds.iter_mut().zip(&file.h) {
@@ -137,15 +136,13 @@ fn instances_of(name: &str, file: &CaseFile) -> Result<Vec<Instance>, ModelError
         file.h_thrust.first().copied().unwrap_or(f64::NAN),
     ]);
     let instance = |(form, initial, margin, recorded): (&str, Initial, f64, &Recorded)| {
-        let model = StageModel::new(&trim, &linear, initial)?;
+        let model = StageModel::new(airframe, &trim, JacobianForm::Authors, initial)?;
         let [v, pitch, pitch_rate, path]: [f64; 4] = deviation.into();
         let problem = Problem {
             initial: (model.initial * Vector6::new(0.0, 0.0, v, pitch, pitch_rate, path)).into(),
             target: file.xgoal,
             bounds,
-            penalty: None,
-            hard_angle_of_attack: [false; 2],
-            cost_limit: f64::INFINITY,
+            ..Problem::EMPTY
         };
         // The recorded objective leaves out the constant w |target|^2 / 2.
         let squared: f64 = file.xgoal.iter().map(|goal| goal * goal).sum();

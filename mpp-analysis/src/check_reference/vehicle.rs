@@ -182,8 +182,8 @@ pub(super) fn check_linearization(text: &str) -> Result<Vec<Comparison>, serde_j
 fn compare_model(recorded: &PlannerModel) -> Comparison {
     const KIND: &str = "planner model";
     let trim = Trim::of_authors(&AIRFRAME);
-    let linear = linearize(&AIRFRAME, &trim.state, trim.control, JacobianForm::Authors);
-    match StageModel::new(&trim, &linear, Initial::ThroughSteadyState) {
+    let (form, initial) = (JacobianForm::Authors, Initial::ThroughSteadyState);
+    match StageModel::new(&AIRFRAME, &trim, form, initial) {
         Ok(model) => {
             let left = Matrix6::from_fn(|row, col| recorded.E[row][col]);
             let (a, b): (Matrix6<f64>, Matrix6x2<f64>) = (left * model.a, left * model.b);

@@ -45,9 +45,3 @@ impl Corridor {
         }
     }
 }
-
-impl Default for Corridor {
-    fn default() -> Self {
-        Self::new()
-    }
-}

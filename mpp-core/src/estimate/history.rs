@@ -126,9 +126,3 @@ impl History {
         self.entries.get(slot)
     }
 }
-
-impl Default for History {
-    fn default() -> Self {
-        Self::new()
-    }
-}

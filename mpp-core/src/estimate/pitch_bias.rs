@@ -84,9 +84,3 @@ impl PitchBias {
         if self.found { self.mean } else { 0.0 }
     }
 }
-
-impl Default for PitchBias {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -150,12 +150,6 @@ impl PitchMonitor {
     }
 }
 
-impl Default for PitchMonitor {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// A high pass with the time [`FADE`].
 #[derive(Clone, Copy, Debug)]
 struct HighPass {

@@ -43,12 +43,6 @@ impl StuckDetector {
     }
 }
 
-impl Default for StuckDetector {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// Detects a steady turn in values that the filter refuses. An aircraft that does not turn as its model gives such
 /// values: the first of them follows steadily on one that the filter used. A sensor that jumps does not.
 #[derive(Clone, Copy, Debug, Default)]

@@ -232,9 +232,3 @@ impl Gate {
         false
     }
 }
-
-impl Default for Gate {
-    fn default() -> Self {
-        Self::new()
-    }
-}

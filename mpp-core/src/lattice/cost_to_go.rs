@@ -54,9 +54,3 @@ impl CostToGo {
         along(height) * (1.0 - up) + along(height + 1) * up
     }
 }
-
-impl Default for CostToGo {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -360,12 +360,6 @@ impl HeightTerms {
     }
 }
 
-impl Default for Lattice {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// The heights between the lowest and the highest that a path reaches.
 fn reached(layer: &Layer) -> Range<usize> {
     let is_reached = |height: &usize| {

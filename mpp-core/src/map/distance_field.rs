@@ -261,12 +261,6 @@ impl Column {
     }
 }
 
-impl Default for DistanceField {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// The number of the cell that holds a coordinate in cells. It is `None` below the first cell.
 fn cell(coordinate: f64) -> Option<usize> {
     (coordinate >= 0.0).then_some(coordinate as usize)

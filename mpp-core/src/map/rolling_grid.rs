@@ -360,12 +360,6 @@ impl RollingGrid {
     }
 }
 
-impl Default for RollingGrid {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// The log-odds of a cell after a beam, within the limits. It is never 0, because 0 means that no beam has seen
 /// the cell.
 pub(super) fn updated(log_odds: i8, change: i8) -> i8 {

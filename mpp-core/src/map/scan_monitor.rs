@@ -362,9 +362,3 @@ fn met(scan: &LidarScan, sight: f64, first: usize, expected: f64, reversed: bool
 fn sector(beam: usize, beams: usize) -> usize {
     (beam * SECTORS / beams.max(1)) % SECTORS
 }
-
-impl Default for ScanMonitor {
-    fn default() -> Self {
-        Self::new()
-    }
-}

@@ -227,12 +227,6 @@ impl VoxelField {
     }
 }
 
-impl Default for VoxelField {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// Occupied and unknown voxels of a column.
 fn bits(evidence: &[i8; HEIGHT]) -> (u32, u32) {
     let (mut occupied, mut unknown) = (0, 0);

@@ -196,12 +196,6 @@ impl VoxelGrid {
     }
 }
 
-impl Default for VoxelGrid {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// Number of the voxel that holds a coordinate \[m\]. Coordinates that make no sense are far away.
 pub(crate) fn voxel(coordinate: f64) -> i64 {
     const FARTHEST: f64 = 1e12;

@@ -171,12 +171,6 @@ impl OccupancyGrid {
     }
 }
 
-impl Default for OccupancyGrid {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// A row in which the left and right neighbours of each occupied cell are occupied too.
 fn widen(cells: &[u64; WORDS]) -> [u64; WORDS] {
     let mut wide = *cells;

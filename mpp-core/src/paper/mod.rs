@@ -37,11 +37,11 @@ mod walk;
 use crate::config::KNOTS;
 use crate::corridor::Corridor;
 use crate::planner::{NO_TRIM, PlanSummary, STILL, SetupError, Verdict, check, check_planner};
-use crate::qp::{Bounds, Condensed, Problem, Solution, Solver};
+use crate::qp::{Condensed, Problem, Solution, Solver};
 use crate::sense::LidarScan;
 use crate::settings::{PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{Airframe, Trim, VehicleState, linearize};
+use crate::vehicle::{Airframe, Trim, VehicleState};
 pub use collocation::{CollocationPoints, GOAL_DISTANCE, GOALS, Path, path_length, resample};
 use grid::MAX_WALK;
 pub use grid::OccupancyGrid;
@@ -81,7 +81,7 @@ pub struct PaperPlanner {
     rules: Rules,
     padding: Padding,
     airframe: Airframe,
-    trim: Trim,
+    pub(crate) trim: Trim,
     model: StageModel,
     shared: Condensed,
     /// Random numbers of the tree; `None` until the planner is set up.
@@ -100,8 +100,8 @@ pub struct PaperPlanner {
     solver: Solver,
     solution: Solution,
     best_length: f64,
-    best: Trajectory,
-    summary: PlanSummary,
+    pub(crate) best: Trajectory,
+    pub(crate) summary: PlanSummary,
 }
 
 impl PaperPlanner {
@@ -132,14 +132,7 @@ impl PaperPlanner {
             path: Path::new(),
             points: [GridPoint::AIRCRAFT; KNOTS],
             corridor: Corridor::new(),
-            problem: Problem {
-                initial: [0.0; 6],
-                target: [0.0; 6],
-                bounds: Bounds::none(),
-                penalty: None,
-                hard_angle_of_attack: [false; 2],
-                cost_limit: f64::INFINITY,
-            },
+            problem: Problem::EMPTY,
             solver: Solver::new(),
             solution: Solution::new(),
             best_length: f64::INFINITY,
@@ -160,8 +153,7 @@ impl PaperPlanner {
         let planner = &settings.planner;
         let airframe = &settings.airframe;
         let trim = check(settings)?;
-        let linear = linearize(airframe, &trim.state, trim.control, own.jacobian);
-        self.model = StageModel::new(&trim, &linear, own.initial)
+        self.model = StageModel::new(airframe, &trim, own.jacobian, own.initial)
             .map_err(|ModelError| SetupError::NoSteadyState)?;
         self.shared
             .condense(&self.model.dynamics(), &planner.weights)
@@ -253,24 +245,6 @@ impl PaperPlanner {
         self.summary.verdict()
     }
 
-    /// The best trajectory of the cycle.
-    #[must_use]
-    pub fn best(&self) -> &Trajectory {
-        &self.best
-    }
-
-    /// The results of the cycle so far.
-    #[must_use]
-    pub fn summary(&self) -> &PlanSummary {
-        &self.summary
-    }
-
-    /// Level trim. Plans are deviations from it.
-    #[must_use]
-    pub fn trim(&self) -> &Trim {
-        &self.trim
-    }
-
     /// The grid of the cycle.
     #[must_use]
     pub fn grid(&self) -> &OccupancyGrid {
@@ -303,11 +277,5 @@ impl PaperPlanner {
         let place = |point: GridPoint| (x + point.col - origin.col, z + point.row - origin.row);
         self.program()
             .map(|problem| (self.points.map(place), *problem))
-    }
-}
-
-impl Default for PaperPlanner {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -4,7 +4,7 @@
 use crate::config::STAGE_PERIOD;
 use crate::inverse::inverse;
 use crate::qp::{Dynamics, MOTION, PITCH, POSITION, STATES, StageControl, StageState};
-use crate::vehicle::{AirState, Linearization, Trim};
+use crate::vehicle::{AirState, Airframe, JacobianForm, Linearization, Trim, linearize};
 use nalgebra::{ArrayStorage, Matrix6, Matrix6x2, Vector6};
 
 /// The rule that gives the plan's first state from the estimate.
@@ -47,14 +47,20 @@ impl StageModel {
         }
     }
 
-    /// Discretises the linearised aircraft about level trim. Pitch and pitch rate are too fast for the stage
+    /// Linearises the aircraft about level trim and discretises it. Pitch and pitch rate are too fast for the stage
     /// period, so they are in steady state (the paper): `(I - A) x_{k+1} = B u_k` holds for both. This makes
     /// the pitch rate zero.
     ///
     /// # Errors
     /// [`ModelError`] if the model has no steady state. The planner then does not start.
-    pub fn new(trim: &Trim, linear: &Linearization, initial: Initial) -> Result<Self, ModelError> {
-        let (a, b) = euler(trim, linear);
+    pub fn new(
+        airframe: &Airframe,
+        trim: &Trim,
+        form: JacobianForm,
+        initial: Initial,
+    ) -> Result<Self, ModelError> {
+        let linear = linearize(airframe, &trim.state, trim.control, form);
+        let (a, b) = euler(trim, &linear);
         let (left, a, b) = zero_pitch_rate(a, b);
         let inverse = inverse(&left).ok_or(ModelError)?;
         let model = Self {

@@ -107,9 +107,3 @@ impl Search {
             .map(|index| index + 1)
     }
 }
-
-impl Default for Search {
-    fn default() -> Self {
-        Self::new()
-    }
-}

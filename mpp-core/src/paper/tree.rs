@@ -251,9 +251,3 @@ fn sort_by_cost(mut neighbours: &mut [Neighbour]) {
         neighbours = others;
     }
 }
-
-impl Default for Tree {
-    fn default() -> Self {
-        Self::new()
-    }
-}

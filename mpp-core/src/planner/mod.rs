@@ -101,13 +101,20 @@ pub struct Planner {
     paper: PaperPlanner,
 }
 
-/// Calls a method of the planner that is set up.
+/// A field, or the value of a method, of the planner that is set up.
 macro_rules! of_chosen {
-    ($planner:expr, $method:ident($($argument:expr),*)) => {
+    (&$planner:ident.$field:ident) => {
         match $planner.chosen {
-            Chosen::Plane => $planner.plane.$method($($argument),*),
+            Chosen::Plane => &$planner.plane.$field,
             #[cfg(feature = "paper")]
-            Chosen::Paper => $planner.paper.$method($($argument),*),
+            Chosen::Paper => &$planner.paper.$field,
+        }
+    };
+    ($planner:expr, $method:ident()) => {
+        match $planner.chosen {
+            Chosen::Plane => $planner.plane.$method(),
+            #[cfg(feature = "paper")]
+            Chosen::Paper => $planner.paper.$method(),
         }
     };
 }
@@ -222,7 +229,7 @@ impl Planner {
     /// The best trajectory of the cycle, if its verdict is not [`Verdict::Nothing`].
     #[must_use]
     pub fn best(&self) -> &Trajectory {
-        of_chosen!(self, best())
+        of_chosen!(&self.best)
     }
 
     /// The [seal](Trajectory::seal) of [`Self::best`] when the gate let it through. The paper's method has no gate: it is
@@ -235,13 +242,13 @@ impl Planner {
     /// The results of the cycle so far.
     #[must_use]
     pub fn summary(&self) -> &PlanSummary {
-        of_chosen!(self, summary())
+        of_chosen!(&self.summary)
     }
 
     /// Level trim. Plans are deviations from it.
     #[must_use]
     pub fn trim(&self) -> &Trim {
-        of_chosen!(self, trim())
+        of_chosen!(&self.trim)
     }
 
     /// The path of the present candidate, `(x, z)` at the stage boundaries in the world \[m\], and its
@@ -267,11 +274,5 @@ impl Planner {
     #[must_use]
     pub fn paper(&self) -> Option<&PaperPlanner> {
         (self.chosen == Chosen::Paper).then_some(&self.paper)
-    }
-}
-
-impl Default for Planner {
-    fn default() -> Self {
-        Self::new()
     }
 }

@@ -3,36 +3,15 @@
 use super::programs::{Draw, Setup, priced, violations};
 use mpp_core::config::DIRECTIONS;
 use mpp_core::corridor::DIRECTION_VECTORS;
-use mpp_core::qp::{
-    Bounds, MAX_ITERATIONS, Penalty, Problem, ROWS, RowKind, Solution, Solver, Status,
-};
+use mpp_core::qp::{MAX_ITERATIONS, Penalty, Problem, ROWS, RowKind, Solution, Solver, Status};
 
 const PENALTY: Penalty = Penalty {
     linear: 1e4,
     quadratic: 1e3,
 };
 
-/// A program at rest: at its target, without motion, without rows.
-fn at_rest() -> Problem {
-    Problem {
-        initial: [0.0; 6],
-        target: [0.0; 6],
-        bounds: Bounds::none(),
-        penalty: None,
-        hard_angle_of_attack: [false; 2],
-        cost_limit: f64::INFINITY,
-    }
-}
-
 fn row(kind: RowKind) -> usize {
     (0..ROWS).find(|row| RowKind::of(*row) == kind).unwrap()
-}
-
-fn optimum(solver: &mut Solver, setup: &Setup, problem: &Problem) -> Option<Solution> {
-    let mut solution = Solution::new();
-    (solver.solve(&setup.shared, problem) == Status::Optimal
-        && solver.solution(&setup.shared, &mut solution) == Status::Optimal)
-        .then_some(solution)
 }
 
 /// Whether a solve stops at its cost limit. An optimum without rows is found before the limit is
@@ -52,7 +31,7 @@ fn a_cost_limit_dominates_exactly_the_optima_above_it() {
     let mut limited = 0;
     for setup in Setup::all().iter().cycle().take(200) {
         let problem = setup.program(&mut draw);
-        let Some(best) = optimum(&mut solver, setup, &problem) else {
+        let Some(best) = setup.optimum(&mut solver, &problem) else {
             continue;
         };
         for share in [0.5, 0.99, 1.0 - 1e-7] {
@@ -68,7 +47,7 @@ fn a_cost_limit_dominates_exactly_the_optima_above_it() {
                 cost_limit: share * best.cost,
                 ..problem
             };
-            assert_eq!(optimum(&mut solver, setup, &above), Some(best));
+            assert_eq!(setup.optimum(&mut solver, &above), Some(best));
         }
     }
     assert!(limited >= 100);
@@ -83,13 +62,13 @@ fn a_cost_limit_never_dominates_a_soft_program_below_it() {
             penalty: Some(PENALTY),
             ..setup.program(&mut draw)
         };
-        let best = optimum(&mut solver, setup, &problem).unwrap();
+        let best = setup.optimum(&mut solver, &problem).unwrap();
         let price = priced(&problem, &best, &PENALTY);
         let above = Problem {
             cost_limit: price * (1.0 + 1e-7),
             ..problem
         };
-        assert_eq!(optimum(&mut solver, setup, &above), Some(best));
+        assert_eq!(setup.optimum(&mut solver, &above), Some(best));
         let below = Problem {
             cost_limit: price * (1.0 - 1e-7),
             ..problem
@@ -130,9 +109,9 @@ fn hard_rows_that_contradict_each_other_have_no_optimum_with_a_price() {
     let mut solver = Box::new(Solver::new());
     let mut solution = Solution::new();
     for setup in Setup::all() {
-        let mut no_thrust = at_rest();
+        let mut no_thrust = Problem::EMPTY;
         no_thrust.bounds.set_thrust([-1.0, -1.0]);
-        let mut no_attack = at_rest();
+        let mut no_attack = Problem::EMPTY;
         (no_attack.bounds).set_attitude([-0.1, f64::INFINITY], [0.1, f64::NEG_INFINITY]);
         no_attack.hard_angle_of_attack = [true; 2];
         for mut problem in [no_thrust, no_attack] {
@@ -157,7 +136,7 @@ fn rows_that_no_control_changes_decide_at_once() {
     let mut solver = Box::new(Solver::new());
     for knot in 0..2 {
         for (direction, [up, forward]) in DIRECTION_VECTORS.iter().enumerate() {
-            let mut problem = at_rest();
+            let mut problem = Problem::EMPTY;
             problem.initial = [0.5, -0.25, 0.0, 0.0, 0.0, 0.0];
             let value = forward * 0.5 - up * 0.25;
             let row = row(RowKind::Position(knot, direction));
@@ -169,7 +148,7 @@ fn rows_that_no_control_changes_decide_at_once() {
             assert_eq!(solver.multipliers().collect::<Vec<_>>(), [(row, 1.0)]);
 
             problem.penalty = Some(PENALTY);
-            let soft = optimum(&mut solver, &setup, &problem).unwrap();
+            let soft = setup.optimum(&mut solver, &problem).unwrap();
             assert!(
                 soft.violation == 0.0,
                 "a constant is not the plan's to violate"
@@ -192,7 +171,7 @@ fn opposite_faces_may_touch_but_not_cross() {
                 Status::Infeasible
             };
             let face = row(RowKind::Position(knot, face));
-            let mut problem = at_rest();
+            let mut problem = Problem::EMPTY;
             problem.bounds.0[face] = 0.4;
             for (gap, expected) in [
                 (1e-3, Status::Optimal),
@@ -207,7 +186,7 @@ fn opposite_faces_may_touch_but_not_cross() {
             problem.bounds.0[opposite] = -0.4;
             problem.bounds.0[face] = -0.2;
             problem.penalty = Some(PENALTY);
-            let soft = optimum(&mut solver, setup, &problem).unwrap();
+            let soft = setup.optimum(&mut solver, &problem).unwrap();
             let violations = violations(&problem, &soft);
             assert!((violations[face] + violations[opposite] - 0.6).abs() < 1e-7);
             assert!(
@@ -257,7 +236,7 @@ fn a_bound_of_minus_infinity_is_never_kept() {
     let setup = Setup::flight();
     let mut solver = Box::new(Solver::new());
     for row in 0..ROWS {
-        let mut problem = at_rest();
+        let mut problem = Problem::EMPTY;
         problem.bounds.0[row] = f64::NEG_INFINITY;
         assert_eq!(
             solver.solve(&setup.shared, &problem),

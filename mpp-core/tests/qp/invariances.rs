@@ -2,6 +2,7 @@
 //! way.
 
 use super::programs::{Draw, Setup, is_constant, violations};
+use super::small_programs::difference;
 use mpp_core::qp::{MAX_ITERATIONS, Penalty, Problem, ROWS, Solution, Solver, Status};
 
 /// Relative error that rounding leaves when the method takes another way to the same optimum.
@@ -9,19 +10,6 @@ const SAME: f64 = 1e-8;
 
 fn same_cost(a: &Solution, b: &Solution) -> bool {
     (a.cost - b.cost).abs() <= SAME * a.cost.abs().max(1.0)
-}
-
-fn largest_difference(a: &Solution, b: &Solution) -> f64 {
-    let pairs = a.controls.iter().flatten().zip(b.controls.iter().flatten());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-/// Solves a hard program. Returns `None` if it is infeasible.
-fn optimum(solver: &mut Solver, setup: &Setup, problem: &Problem) -> Option<Solution> {
-    let mut solution = Solution::new();
-    (solver.solve(&setup.shared, problem) == Status::Optimal
-        && solver.solution(&setup.shared, &mut solution) == Status::Optimal)
-        .then_some(solution)
 }
 
 /// Calls `check` with feasible programs and their optima.
@@ -34,7 +22,7 @@ fn for_each_optimum(
     let mut checked = 0;
     for setup in Setup::all().iter().cycle().take(150) {
         let problem = setup.program(&mut draw);
-        if let Some(best) = optimum(&mut solver, setup, &problem) {
+        if let Some(best) = setup.optimum(&mut solver, &problem) {
             check(&mut solver, setup, &problem, &best, &mut draw);
             checked += 1;
         }
@@ -111,13 +99,13 @@ fn a_program_twice_the_size_has_twice_the_optimum() {
         scaled.initial.iter_mut().for_each(|value| *value *= scale);
         scaled.target.iter_mut().for_each(|value| *value *= scale);
         scaled.bounds.0.iter_mut().for_each(|bound| *bound *= scale);
-        let mut large = optimum(solver, setup, &scaled).unwrap();
+        let mut large = setup.optimum(solver, &scaled).unwrap();
         large
             .controls
             .iter_mut()
             .flatten()
             .for_each(|value| *value /= scale);
-        assert!(largest_difference(&large, best) < 1e-6);
+        assert!(difference(&large.controls, &best.controls) < 1e-6);
         assert!((large.cost / (scale * scale) - best.cost).abs() <= SAME * best.cost.max(1.0));
     });
 }
@@ -132,8 +120,8 @@ fn rows_without_a_say_can_go() {
         for row in (0..ROWS).filter(|row| !needed[*row]) {
             fewer.bounds.0[row] = f64::INFINITY;
         }
-        let again = optimum(solver, setup, &fewer).unwrap();
-        assert!(same_cost(&again, best) && largest_difference(&again, best) < 1e-6);
+        let again = setup.optimum(solver, &fewer).unwrap();
+        assert!(same_cost(&again, best) && difference(&again.controls, &best.controls) < 1e-6);
     });
 }
 
@@ -147,8 +135,8 @@ fn rows_that_just_admit_the_optimum_change_nothing() {
                 tight.bounds.0[row] -= (room[row] - 1e-7).max(0.0);
             }
         }
-        let again = optimum(solver, setup, &tight).unwrap();
-        assert!(same_cost(&again, best) && largest_difference(&again, best) < 1e-5);
+        let again = setup.optimum(solver, &tight).unwrap();
+        assert!(same_cost(&again, best) && difference(&again.controls, &best.controls) < 1e-5);
     });
 }
 
@@ -159,7 +147,7 @@ fn stricter_rows_never_cost_less() {
         for bound in &mut strict.bounds.0 {
             *bound -= draw.between(0.0, 0.3);
         }
-        if let Some(dearer) = optimum(solver, setup, &strict) {
+        if let Some(dearer) = setup.optimum(solver, &strict) {
             assert!(dearer.cost >= best.cost * (1.0 - SAME));
         }
     });
@@ -171,14 +159,14 @@ fn every_row_binds_its_own_output() {
     for_each_optimum(36, |solver, setup, problem, _, draw| {
         let mut bare = *problem;
         bare.bounds = mpp_core::qp::Bounds::none();
-        let free = optimum(solver, setup, &bare).unwrap();
+        let free = setup.optimum(solver, &bare).unwrap();
         let row = (0..)
             .map(|_| draw.below(ROWS))
             .find(|row| !is_constant(*row))
             .unwrap();
         bare.bounds.0[row] = 0.0;
         bare.bounds.0[row] = violations(&bare, &free)[row] - 0.05;
-        let bound = optimum(solver, setup, &bare).unwrap();
+        let bound = setup.optimum(solver, &bare).unwrap();
         assert!(violations(&bare, &bound)[row].abs() < 1e-7 && bound.cost > free.cost);
         assert_eq!(
             solver.multipliers().map(|(row, _)| row).collect::<Vec<_>>(),

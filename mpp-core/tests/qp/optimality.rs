@@ -2,7 +2,7 @@
 
 use super::programs::{Draw, Setup, is_constant, left_hand_side, priced, softens, violations};
 use mpp_core::config::STAGES;
-use mpp_core::qp::{Penalty, Problem, ROWS, Solution, Solver, Status};
+use mpp_core::qp::{Penalty, Problem, ROWS, Solution, Solver};
 
 /// Largest entry of a gradient that should vanish, relative to the largest term of its sum.
 const STATIONARY: f64 = 1e-7;
@@ -42,19 +42,14 @@ fn multipliers(solver: &Solver) -> [f64; ROWS] {
 #[test]
 fn hard_optima_meet_the_optimality_conditions() {
     let mut solver = Box::new(Solver::new());
-    let mut solution = Solution::new();
     let mut draw = Draw::new(10);
     let mut optimal = 0;
     for setup in Setup::all().iter().cycle().take(300) {
         let problem = setup.program(&mut draw);
-        if solver.solve(&setup.shared, &problem) != Status::Optimal {
+        let Some(solution) = setup.optimum(&mut solver, &problem) else {
             continue;
-        }
+        };
         optimal += 1;
-        assert_eq!(
-            solver.solution(&setup.shared, &mut solution),
-            Status::Optimal
-        );
         assert_stationary(setup, &problem, &solution, &solver);
         let multipliers = multipliers(&solver);
         for (row, violation) in violations(&problem, &solution).into_iter().enumerate() {
@@ -78,7 +73,6 @@ fn soft_optima_meet_the_optimality_conditions() {
         quadratic: 200.0,
     };
     let mut solver = Box::new(Solver::new());
-    let mut solution = Solution::new();
     let mut draw = Draw::new(11);
     let (mut tight, mut yielding) = (0, 0);
     for setup in Setup::all().iter().cycle().take(300) {
@@ -86,11 +80,7 @@ fn soft_optima_meet_the_optimality_conditions() {
             penalty: Some(penalty),
             ..setup.program(&mut draw)
         };
-        assert_eq!(solver.solve(&setup.shared, &problem), Status::Optimal);
-        assert_eq!(
-            solver.solution(&setup.shared, &mut solution),
-            Status::Optimal
-        );
+        let solution = setup.optimum(&mut solver, &problem).unwrap();
         assert_stationary(setup, &problem, &solution, &solver);
         let multipliers = multipliers(&solver);
         for (row, violation) in violations(&problem, &solution).into_iter().enumerate() {
@@ -126,18 +116,13 @@ fn soft_optima_meet_the_optimality_conditions() {
 #[test]
 fn the_optimum_without_rows_costs_less_than_any_controls_near_it() {
     let mut solver = Box::new(Solver::new());
-    let mut solution = Solution::new();
     let mut draw = Draw::new(12);
     for setup in &Setup::all() {
         let problem = Problem {
             bounds: mpp_core::qp::Bounds::none(),
             ..setup.program(&mut draw)
         };
-        assert_eq!(solver.solve(&setup.shared, &problem), Status::Optimal);
-        assert_eq!(
-            solver.solution(&setup.shared, &mut solution),
-            Status::Optimal
-        );
+        let solution = setup.optimum(&mut solver, &problem).unwrap();
         assert_eq!(solver.iterations(), 1);
         assert!((setup.cost(&problem, &solution.controls) - solution.cost).abs() < 1e-9);
         for _ in 0..200 {
@@ -151,15 +136,13 @@ fn the_optimum_without_rows_costs_less_than_any_controls_near_it() {
 #[test]
 fn a_price_above_every_multiplier_keeps_the_hard_optimum() {
     let mut solver = Box::new(Solver::new());
-    let (mut hard, mut soft) = (Solution::new(), Solution::new());
     let mut draw = Draw::new(13);
     let mut compared = 0;
     for setup in Setup::all().iter().cycle().take(150) {
         let problem = setup.program(&mut draw);
-        if solver.solve(&setup.shared, &problem) != Status::Optimal {
+        let Some(hard) = setup.optimum(&mut solver, &problem) else {
             continue;
-        }
-        solver.solution(&setup.shared, &mut hard);
+        };
         let dearest = solver
             .multipliers()
             .fold(0.0_f64, |most, (_, y)| most.max(y));
@@ -171,8 +154,7 @@ fn a_price_above_every_multiplier_keeps_the_hard_optimum() {
             penalty: Some(penalty),
             ..problem
         };
-        assert_eq!(solver.solve(&setup.shared, &softened), Status::Optimal);
-        solver.solution(&setup.shared, &mut soft);
+        let soft = setup.optimum(&mut solver, &softened).unwrap();
         assert!((priced(&problem, &soft, &penalty) - hard.cost).abs() <= 1e-8 * hard.cost.max(1.0));
         assert!(soft.violation <= TIGHT);
         compared += 1;

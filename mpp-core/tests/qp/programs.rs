@@ -5,10 +5,10 @@ use mpp_core::config::{KNOTS, STAGES};
 use mpp_core::corridor::{Corridor, DIRECTION_VECTORS};
 use mpp_core::paper::StageModel;
 use mpp_core::qp::{
-    Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, StageControl, StageState, Weights,
+    Bounds, Condensed, Penalty, Problem, ROWS, RowKind, Solution, Solver, StageControl, StageState,
+    Status, Weights,
 };
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::linearize;
 
 /// The model of a preset, and its condensed form.
 pub(crate) struct Setup {
@@ -22,8 +22,7 @@ impl Setup {
     fn new(settings: &Settings, weights: Weights) -> Self {
         let own = settings.planner.paper().unwrap();
         let trim = settings.cruise.trim(&settings.airframe).unwrap();
-        let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
-        let model = StageModel::new(&trim, &linear, own.initial).unwrap();
+        let model = StageModel::new(&settings.airframe, &trim, own.jacobian, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
         shared.condense(&model.dynamics(), &weights).unwrap();
         Self {
@@ -85,10 +84,17 @@ impl Setup {
             initial: spread.map(|spread| draw.between(-spread, spread)),
             target: [0.0, draw.between(-8.0, 8.0), 0.0, 0.0, 0.0, 0.0],
             bounds,
-            penalty: None,
             hard_angle_of_attack: [0; 2].map(|_| draw.unit() < 0.5),
-            cost_limit: f64::INFINITY,
+            ..Problem::EMPTY
         }
+    }
+
+    /// The optimum of a program, if it has one.
+    pub(crate) fn optimum(&self, solver: &mut Solver, problem: &Problem) -> Option<Solution> {
+        let mut solution = Solution::new();
+        (solver.solve(&self.shared, problem) == Status::Optimal
+            && solver.solution(&self.shared, &mut solution) == Status::Optimal)
+            .then_some(solution)
     }
 
     pub(crate) fn roll_out(

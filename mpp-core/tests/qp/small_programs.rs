@@ -94,10 +94,9 @@ fn program(setup: &Setup, most_rows: usize, made: Made, draw: &mut Draw) -> Prob
         initial,
         target: [0.0, draw.between(-8.0, 8.0), 0.0, 0.0, 0.0, 0.0],
         bounds,
-        penalty: None,
         // With both sides two hard rows could contradict each other.
         hard_angle_of_attack: [draw.unit() < 0.5, false],
-        cost_limit: f64::INFINITY,
+        ..Problem::EMPTY
     }
 }
 

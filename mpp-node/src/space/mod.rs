@@ -168,9 +168,3 @@ impl SpaceNode {
         self.emit(&greeting(), send);
     }
 }
-
-impl Default for SpaceNode {
-    fn default() -> Self {
-        Self::new()
-    }
-}

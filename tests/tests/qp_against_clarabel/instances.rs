@@ -9,7 +9,7 @@ use mpp_core::paper::{
 };
 use mpp_core::qp::{Bounds, Condensed, Penalty, Problem, StageState, Weights};
 use mpp_core::settings::{AttitudeLimits, Settings};
-use mpp_core::vehicle::{AirState, Trim, linearize};
+use mpp_core::vehicle::{AirState, Trim};
 use rand_core::{Rng, SeedableRng};
 
 /// Number of paths that are taken from one tree.
@@ -43,8 +43,7 @@ impl Preset {
     fn new(settings: &Settings, weights: Weights, attitude: Option<AttitudeLimits>) -> Self {
         let own = *settings.planner.paper().unwrap();
         let trim = settings.cruise.trim(&settings.airframe).unwrap();
-        let linear = linearize(&settings.airframe, &trim.state, trim.control, own.jacobian);
-        let model = StageModel::new(&trim, &linear, own.initial).unwrap();
+        let model = StageModel::new(&settings.airframe, &trim, own.jacobian, own.initial).unwrap();
         let mut shared = Box::new(Condensed::new());
         shared.condense(&model.dynamics(), &weights).unwrap();
         Self {
@@ -104,7 +103,7 @@ impl Instance {
             bounds,
             penalty,
             hard_angle_of_attack: self.hard_angle_of_attack,
-            cost_limit: f64::INFINITY,
+            ..Problem::EMPTY
         }
     }
 }

@@ -7,7 +7,7 @@ mod tried;
 pub(crate) use c::{cortex_m, lay_out, try_out};
 
 use crate::folders::{VERSION, files, root, work};
-use crate::toolchain::{output, succeed};
+use crate::toolchain::{cargo, output, succeed};
 use crate::{aarch64, deb, wasm};
 use anyhow::{Context, Result, bail};
 use std::fs::{copy, create_dir_all, remove_dir_all};
@@ -61,18 +61,12 @@ pub(crate) fn run(args: &ReleaseArgs) -> Result<()> {
 /// Builds the harness with all formats and without a shared library, so that it runs on any Linux of the processor.
 fn static_harness() -> Result<PathBuf> {
     let target = work("static")?;
-    let mut cargo = Command::new("cargo");
-    cargo.current_dir(root()).env("RUSTFLAGS", flags()?);
-    cargo.args([
-        "build",
-        "--quiet",
-        "--release",
-        "--locked",
-        "--target",
-        HOST,
-    ]);
-    cargo.args(["-p", "sil-harness", "--features", "formats,clarabel"]);
-    succeed(cargo.arg("--target-dir").arg(&target))?;
+    let what = "-p sil-harness --features formats,clarabel";
+    let mut cargo = cargo(&format!(
+        "build --quiet --release --locked --target {HOST} {what}"
+    ));
+    cargo.env("RUSTFLAGS", flags()?).arg("--target-dir");
+    succeed(cargo.arg(&target))?;
     Ok(target.join(HOST).join("release/sil-harness"))
 }
 
@@ -105,16 +99,9 @@ fn harness(program: &Path, machine: &str, place: &Path) -> Result<()> {
 
 /// Packs the C library: for this machine with CMake and pkg-config, and the archives for flight computers.
 fn library(place: &Path) -> Result<()> {
-    let mut cargo = Command::new("cargo");
-    cargo.current_dir(root());
-    succeed(cargo.args([
-        "build",
-        "--quiet",
-        "--release",
-        "--locked",
-        "-p",
-        "mpp-c-plant",
-    ]))?;
+    succeed(&mut cargo(
+        "build --quiet --release --locked -p mpp-c-plant",
+    ))?;
     let name = format!("mpp-c-{VERSION}-x86_64-linux");
     let tree = place.join(&name);
     lay_out(&tree, &root().join("target/release/libmpp_c_plant.a"))?;

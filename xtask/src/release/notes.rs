@@ -1,7 +1,7 @@
 //! What a release says of itself: the packages inside with their licences, a bill of materials, and checksums.
 
-use crate::folders::{VERSION, files, root};
-use crate::toolchain::output;
+use crate::folders::{VERSION, files};
+use crate::toolchain::{cargo, output};
 use anyhow::{Context, Result};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
@@ -33,21 +33,10 @@ pub(super) fn write(place: &Path) -> Result<()> {
 
 /// What cargo knows of each package that the harness and the libraries hold.
 fn packages() -> Result<Vec<Value>> {
-    let mut tree = Command::new("cargo");
-    tree.current_dir(root()).args([
-        "tree",
-        "--locked",
-        "--workspace",
-        "--prefix",
-        "none",
-        "--edges",
-        "normal,build",
-        "--format",
-        "{p}",
-        "--features",
-        "sil-harness/formats,sil-harness/clarabel",
-    ]);
-    let tree = output(&mut tree)?;
+    let tree = output(&mut cargo(
+        "tree --locked --workspace --prefix none --edges normal,build --format {p} \
+         --features sil-harness/formats,sil-harness/clarabel",
+    ))?;
     let held: BTreeSet<(&str, &str)> = tree
         .lines()
         .filter_map(|line| {
@@ -55,15 +44,9 @@ fn packages() -> Result<Vec<Value>> {
             Some((words.next()?, words.next()?.strip_prefix('v')?))
         })
         .collect();
-    let mut metadata = Command::new("cargo");
-    metadata.current_dir(root());
-    let metadata = output(metadata.args([
-        "metadata",
-        "--locked",
-        "--format-version",
-        "1",
-        "--all-features",
-    ]))?;
+    let metadata = output(&mut cargo(
+        "metadata --locked --format-version 1 --all-features",
+    ))?;
     let metadata: Value = serde_json::from_str(&metadata)?;
     let all = metadata["packages"].as_array().context("no packages")?;
     Ok(all

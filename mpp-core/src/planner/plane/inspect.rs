@@ -96,10 +96,9 @@ impl PlanePlanner {
     /// Takes a candidate of the last cycle for the best one: the next cycle then assumes that the aircraft flies it. Gives
     /// its price as [`Self::offer`] does.
     pub fn choose(&mut self, index: usize) -> Option<f64> {
-        let mut chosen = Trajectory::new();
-        let price = self.offer(index, &mut chosen)?;
-        self.best = chosen;
-        Some(price)
+        let chosen = *self.candidates.get(index)?;
+        self.keep(&chosen.flown);
+        Some(chosen.price)
     }
 
     /// The grid, in own units.

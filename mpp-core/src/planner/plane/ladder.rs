@@ -65,14 +65,7 @@ impl PlanePlanner {
         };
         let judgement = self.judge(&candidate.flown);
         (self.summary.cost, self.summary.violation) = (judgement.effort, judgement.lack);
-        self.best.fly_out(
-            &candidate.flown,
-            &self.units,
-            &self.conditions.airframe(&self.si_airframe),
-            &self.conditions.wind,
-            &self.lag,
-            self.time,
-        );
+        self.keep(&candidate.flown);
         true
     }
 

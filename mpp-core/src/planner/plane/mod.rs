@@ -120,7 +120,8 @@ pub struct PlanePlanner {
     thrust: f64,
     wind: Wind,
     airframe: Airframe,
-    trim: Trim,
+    /// Level trim of this airframe.
+    pub(super) trim: Trim,
     limits: Limits,
     workspace: Workspace,
 
@@ -143,12 +144,12 @@ pub struct PlanePlanner {
     solver: Solver,
 
     // Results of the cycle. The best trajectory outlives the cycle; then it is the previous one.
-    best: Trajectory,
+    pub(super) best: Trajectory,
     previous: Trajectory,
     gate: Gate,
     ladder: Ladder,
     best_price: f64,
-    summary: PlanSummary,
+    pub(super) summary: PlanSummary,
 }
 
 impl PlanePlanner {
@@ -223,7 +224,7 @@ impl PlanePlanner {
         let thrust = self.best.thrust(self.time);
         self.thrust = thrust.map_or(self.trim.control.thrust, |it| it / self.units.force());
         let blind = scan.is_none();
-        let mut scan = scan.cloned().unwrap_or_default();
+        let mut scan = scan.cloned().unwrap_or_else(LidarScan::new);
         for range in &mut scan.ranges {
             *range = (f64::from(*range) / self.units.length) as f32;
         }
@@ -355,24 +356,6 @@ impl PlanePlanner {
         self.climb_down();
     }
 
-    /// The best trajectory of the cycle.
-    #[must_use]
-    pub fn best(&self) -> &Trajectory {
-        &self.best
-    }
-
-    /// The results of the cycle so far.
-    #[must_use]
-    pub fn summary(&self) -> &PlanSummary {
-        &self.summary
-    }
-
-    /// Level trim of the present cycle's airframe. Plans are deviations from it.
-    #[must_use]
-    pub fn trim(&self) -> &Trim {
-        &self.trim
-    }
-
     fn frame(&self) -> Frame {
         Frame {
             airframe: self.airframe,
@@ -381,11 +364,5 @@ impl PlanePlanner {
             start: PathState::of(&self.state),
             lag: self.lag,
         }
-    }
-}
-
-impl Default for PlanePlanner {
-    fn default() -> Self {
-        Self::new()
     }
 }

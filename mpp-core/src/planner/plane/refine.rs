@@ -9,6 +9,7 @@ use super::workspace::Workspace;
 use super::{MAX_CANDIDATES, Phase, PlanePlanner};
 use crate::corridor::{Corridor, Keep};
 use crate::qp::{Solution, Status};
+use crate::trajectory::RollOut;
 use crate::tuning::candidates::HOPELESS;
 use crate::tuning::faces::ROUNDING;
 
@@ -128,18 +129,24 @@ impl PlanePlanner {
             self.best_price = judgement.price;
             self.summary.cost = judgement.effort;
             self.summary.violation = judgement.lack;
-            self.best.fly_out(
-                &candidate.flown,
-                &self.units,
-                &self.conditions.airframe(&self.si_airframe),
-                &self.conditions.wind,
-                &self.lag,
-                self.time,
-            );
+            self.keep(&candidate.flown);
         }
         if let Some(place) = self.candidates.get_mut(self.at_hand) {
             *place = candidate;
         }
+    }
+
+    /// Takes a roll-out for the best trajectory.
+    #[inline(never)]
+    pub(super) fn keep(&mut self, flown: &RollOut) {
+        self.best.fly_out(
+            flown,
+            &self.units,
+            &self.conditions.airframe(&self.si_airframe),
+            &self.conditions.wind,
+            &self.lag,
+            self.time,
+        );
     }
 }
 

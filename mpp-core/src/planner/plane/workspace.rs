@@ -72,21 +72,21 @@ mod tests {
         let set_up = planner.set_up(&Settings::flight(), &PlaneSettings::PRESET);
         assert_eq!(set_up, Ok(()));
         for (phase, workspace) in mixed_up {
-            let air = planner.trim().state;
+            let air = planner.trim.state;
             let state = VehicleState {
                 x: 0.0,
                 z: 50.0,
                 air,
             };
             planner.begin(0.0, &Pose::of(&state), &state, &Conditions::STILL, None);
-            assert!(planner.is_working() && !planner.summary().inconsistent);
+            assert!(planner.is_working() && !planner.summary.inconsistent);
             let one = planner.cruising();
             planner.propose(one);
             (planner.phase, planner.workspace) = (phase, workspace);
             while planner.advance() {}
             // The gate still offers the straight path, or the one before.
             assert!(matches!(planner.finish(), Verdict::Pursuit | Verdict::Kept));
-            let summary = planner.summary();
+            let summary = &planner.summary;
             assert!(summary.inconsistent && !summary.complete, "{phase:?}");
         }
     }

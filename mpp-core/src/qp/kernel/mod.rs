@@ -46,12 +46,6 @@ impl Solution {
     }
 }
 
-impl Default for Solution {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 /// Value of `|y|^2` below which a row with the response `y` is constant up to rounding. In the paper's model the
 /// first position rows are constant, because a control changes the position only two stages later.
 const UNCHANGEABLE: f64 = 1e-20;

@@ -1,7 +1,7 @@
 //! Response of the outputs to the normalised controls. A row leaves out the controls that come too late to
 //! change its output.
 
-use super::super::{OUTPUTS, reach};
+use super::super::layout::{OUTPUTS, reach};
 use core::ops::Range;
 
 /// One row for each output, with one entry for each control that can change the output. The length of a

@@ -1,6 +1,6 @@
 //! The left-hand side of a row.
 
-use super::super::{OUTPUTS, TERMS};
+use super::super::layout::{OUTPUTS, TERMS};
 
 /// Left-hand side of a row in the outputs `y`: the sum of `factor y[output]` over the terms `(output, factor)`.
 #[derive(Clone, Copy, Debug, PartialEq)]

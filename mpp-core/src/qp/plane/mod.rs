@@ -18,14 +18,9 @@ pub use kernel::{Condensed, Dynamics, MAX_ITERATIONS, Solution, Solver};
 pub use layout::{INPUTS, MOTION, POSITION, ROWS, RowKind, STATES, StageControl, StageState};
 pub use rows::Bounds;
 
-// What the kernel needs of a shape.
 use super::Penalty;
-pub(super) use excess::{most_violated, worst_excess};
 #[cfg(feature = "paper")]
 pub(crate) use layout::PITCH;
-pub(super) use layout::{LAST_ROWS, OUTPUTS, TERMS, input_outputs, reach, state_outputs};
-pub(super) use outputs::{inverse_root, outputs, respond, write_prices};
-pub(super) use rows::{NO_NORMALS, Normals, pattern, value_at_start};
 
 /// Weights of the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -92,7 +87,7 @@ pub struct Problem {
 
 impl Problem {
     /// A program without rows, from zero to zero.
-    const EMPTY: Self = Self {
+    pub const EMPTY: Self = Self {
         initial: [0.0; STATES],
         target: [0.0; STATES],
         bounds: Bounds::none(),

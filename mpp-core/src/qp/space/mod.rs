@@ -22,12 +22,7 @@ pub use layout::{
 };
 pub use rows::Bounds;
 
-// What the kernel needs of a shape.
 use super::Penalty;
-pub(super) use excess::{most_violated, worst_excess};
-pub(super) use layout::{LAST_ROWS, OUTPUTS, TERMS, input_outputs, reach, state_outputs};
-pub(super) use outputs::{inverse_root, outputs, respond, write_prices};
-pub(super) use rows::{NO_NORMALS, Normals, pattern, value_at_start};
 
 /// Weights of the cost.
 #[derive(Clone, Copy, Debug, PartialEq)]

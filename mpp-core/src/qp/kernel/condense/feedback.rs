@@ -11,9 +11,8 @@
 //! The vector `v` holds the *normalised controls*. In all normalised controls of the horizon the Hessian is
 //! the identity.
 
-use super::super::super::{
-    INPUTS, MOTION, POSITION, STATES, StageControl, StageState, inverse_root,
-};
+use super::super::super::outputs::inverse_root;
+use super::super::super::{INPUTS, MOTION, POSITION, STATES, StageControl, StageState};
 use super::super::{CONTROLS, ControlVector, Dynamics, Weights};
 use crate::config::STAGES;
 use nalgebra::{ArrayStorage, SMatrix, SVector};

@@ -3,10 +3,10 @@
 
 mod feedback;
 
-use super::super::{
-    INPUTS, NO_NORMALS, Normals, OUTPUTS, ROWS, STATES, StageControl, StageState, input_outputs,
-    pattern, respond, state_outputs, write_prices,
-};
+use super::super::layout::{OUTPUTS, input_outputs, state_outputs};
+use super::super::outputs::{respond, write_prices};
+use super::super::rows::{NO_NORMALS, Normals, pattern};
+use super::super::{INPUTS, ROWS, STATES, StageControl, StageState};
 use super::controls::{ControlVector, add_scaled, dot};
 use super::{Dynamics, Response, RowPattern, Solution, Weights};
 use crate::config::{KNOTS, STAGES};
@@ -220,10 +220,4 @@ fn at<const R: usize, const C: usize>(
     column: usize,
 ) -> f64 {
     matrix.get((row, column)).copied().unwrap_or(0.0)
-}
-
-impl Default for Condensed {
-    fn default() -> Self {
-        Self::new()
-    }
 }

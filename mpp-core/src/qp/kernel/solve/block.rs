@@ -1,6 +1,6 @@
 //! Working sets of several rows: a start between faces that cross, and blocks of rows of inputs.
 
-use super::super::super::{LAST_ROWS, ROWS};
+use super::super::super::layout::{LAST_ROWS, ROWS};
 use super::super::controls::add_all;
 use super::super::dot;
 use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver};

@@ -5,7 +5,7 @@
 //! It is also the squared norm of a vector. The vector keeps its digits down to the rounding of the
 //! controls, so this module computes the complement from the vector.
 
-use super::super::super::value_at_start;
+use super::super::super::rows::value_at_start;
 use super::super::dot;
 use super::direction::{Direction, Stand};
 use super::{Active, CAPACITY, CONTROLS, Condensed, ControlVector, Entering, Solver, TOLERANCE};

@@ -17,8 +17,10 @@ mod select;
 mod step;
 mod working_set;
 
-use super::super::{Bounds, RowKind};
-use super::super::{OUTPUTS, Problem, outputs, worst_excess};
+use super::super::excess::worst_excess;
+use super::super::layout::OUTPUTS;
+use super::super::outputs::outputs;
+use super::super::{Bounds, Problem, RowKind};
 use super::factor::{CAPACITY, Direction as Aligned, Factor};
 use super::shortlist::Shortlist;
 use super::{CONTROLS, Condensed, ControlVector, RowPattern, Solution};
@@ -74,27 +76,19 @@ struct Entering {
 /// ```
 /// use mpp_core::corridor::Corridor;
 /// use mpp_core::paper::{Initial, StageModel};
-/// use mpp_core::qp::{Bounds, Condensed, Problem, Solution, Solver, Status, Weights};
-/// use mpp_core::vehicle::{Airframe, JacobianForm, Trim, linearize};
+/// use mpp_core::qp::{Condensed, Problem, Solution, Solver, Status, Weights};
+/// use mpp_core::vehicle::{Airframe, JacobianForm, Trim};
 ///
 /// let airframe = Airframe::REFERENCE;
 /// let trim = Trim::at_speed(&airframe, 12.0, 0.0)?;
-/// let linear = linearize(&airframe, &trim.state, trim.control, JacobianForm::Exact);
 /// let mut shared = Box::new(Condensed::new());
-/// let model = StageModel::new(&trim, &linear, Initial::Estimate)?;
+/// let model = StageModel::new(&airframe, &trim, JacobianForm::Exact, Initial::Estimate)?;
 /// shared.condense(&model.dynamics(), &Weights::PAPER)?;
 ///
 /// let mut corridor = Corridor::new();
 /// // Direction 4 points down: `-z <= -2`.
 /// corridor.bounds[10][4] = -2.0;
-/// let mut problem = Problem {
-///     initial: [0.0; 6],
-///     target: [0.0; 6],
-///     bounds: Bounds::none(),
-///     penalty: None,
-///     hard_angle_of_attack: [false; 2],
-///     cost_limit: f64::INFINITY,
-/// };
+/// let mut problem = Problem::EMPTY;
 /// problem.bounds.set_corridor(&corridor);
 /// problem.bounds.set_thrust([f64::INFINITY, trim.control.thrust]);
 ///
@@ -365,11 +359,5 @@ impl Solver {
 
     pub(super) fn is_soft(&self, row: usize) -> bool {
         self.problem.softens(RowKind::of(row))
-    }
-}
-
-impl Default for Solver {
-    fn default() -> Self {
-        Self::new()
     }
 }

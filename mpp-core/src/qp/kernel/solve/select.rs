@@ -1,6 +1,6 @@
 //! The row that enters next: by a short list while its rows count enough, else by a look at all rows.
 
-use super::super::super::most_violated;
+use super::super::super::excess::most_violated;
 use super::super::dot;
 use super::super::shortlist::{LISTED, count};
 use super::{Active, Aligned, CONTROLS, Condensed, Entering, Solver, TOLERANCE};
