@@ -258,16 +258,11 @@ impl Lattice {
             let heights = self.heights.get(first..last).unwrap_or_default();
             for (cost, terms) in costs.unwrap_or_default().iter_mut().zip(heights) {
                 let is_unknown = column.is_unknown(&terms.height);
-                let is_far = column.is_far(&terms.height) && terms.outside == 0.0;
-                if is_far && !is_end {
+                if !is_end && column.is_far(&terms.height) && terms.outside == 0.0 {
                     *cost = far_costs[usize::from(is_unknown)];
                     continue;
                 }
-                let mut sum = if is_far {
-                    far_cost
-                } else {
-                    clearance_cost(column.distance(&terms.height), terms.outside)
-                };
+                let mut sum = clearance_cost(column.distance(&terms.height), terms.outside);
                 if is_unknown {
                     sum += unknown;
                 }
