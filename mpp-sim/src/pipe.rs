@@ -134,15 +134,26 @@ impl DirectLink {
         }
     }
 
+    /// A fresh core for a scenario, with its oracle if it has one.
+    #[must_use]
+    pub fn of(scenario: &Scenario) -> Self {
+        Self {
+            oracle: advisor(scenario),
+            ..Self::new()
+        }
+    }
+
     /// Puts a fresh core for a scenario, with its oracle if it has one, in place of the core.
     pub fn restart(&mut self, scenario: &Scenario) {
         *self.node = FlightNode::new();
         self.inbox.clear();
-        self.oracle = scenario
-            .is_advised()
-            .then(|| Oracle::of(scenario, &scenario.field()))
-            .flatten();
+        self.oracle = advisor(scenario);
     }
+}
+
+fn advisor(scenario: &Scenario) -> Option<Oracle> {
+    let oracle = || Oracle::of(scenario, &scenario.field());
+    scenario.is_advised().then(oracle).flatten()
 }
 
 impl Link for DirectLink {

@@ -132,8 +132,7 @@ impl Campaign {
 fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let scenario = campaign.scenario(cell, seed).map_err(errors::scenario)?;
     let mut observer = FlightObserver::of(&scenario);
-    let mut link = DirectLink::new();
-    link.restart(&scenario);
+    let mut link = DirectLink::of(&scenario);
     let log = fly(&scenario, &mut link, |record| observer.watch(record)).map_err(errors::flight)?;
     let hash = log.hash().map_err(input)?;
     Ok(Row::new(cell.clone(), &log, &observer, hash, None))

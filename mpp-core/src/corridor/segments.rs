@@ -15,6 +15,9 @@ const UP: usize = 0;
 /// Index of the downward direction in [`DIRECTION_VECTORS`].
 const DOWN: usize = 4;
 
+/// Sine of 45 degrees.
+const DIAGONAL: f64 = core::f64::consts::FRAC_1_SQRT_2;
+
 /// Distances and heights that a trajectory must keep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Keep {
@@ -57,17 +60,25 @@ impl Corridor {
             ) else {
                 continue;
             };
+            let segment = Segment::new(from, to);
             let distance = kept(field, from, to, keep) + keep.body_radius;
+            let flown = cruise * STAGE_PERIOD * stage as f64;
             let range = |a: f64, b: f64| [a.min(b) - REACH, a.max(b) + REACH];
+            let mut least = [f64::INFINITY; DIRECTIONS];
             field.surface(range(from.x, to.x), range(from.z, to.z), |x, z| {
-                let (direction, vector) = farthest_direction(from, to, x, z);
-                let [up, forward] = *vector;
+                let direction = segment.farthest_direction(x, z) % DIRECTIONS;
+                let [up, forward] = DIRECTION_VECTORS[direction];
                 let mut reach = up * (z - start.z) - distance;
-                reach += forward * (x - start.x - cruise * STAGE_PERIOD * stage as f64);
-                before[direction] = before[direction].min(reach);
-                let later = reach - forward * cruise * STAGE_PERIOD;
-                after[direction] = after[direction].min(later);
+                reach += forward * (x - start.x - flown);
+                least[direction] = least[direction].min(reach);
             });
+            let ends = before.iter_mut().zip(after);
+            for ((before, after), (reach, [_, forward])) in
+                ends.zip(least.iter().zip(&DIRECTION_VECTORS))
+            {
+                *before = before.min(*reach);
+                *after = after.min(reach - forward * cruise * STAGE_PERIOD);
+            }
         }
     }
 }
@@ -85,21 +96,73 @@ fn kept(field: &DistanceField, from: &PathState, to: &PathState, keep: &Keep) ->
     (room - GIVE).max(keep.margin)
 }
 
-/// The direction in which a point is farthest beyond both ends of a segment.
-fn farthest_direction<'a>(
-    from: &PathState,
-    to: &PathState,
-    x: f64,
-    z: f64,
-) -> (usize, &'a [f64; 2]) {
-    let mut farthest = (f64::NEG_INFINITY, (0, &DIRECTION_VECTORS[0]));
-    for (direction, vector) in DIRECTION_VECTORS.iter().enumerate() {
-        let [up, forward] = *vector;
-        let beyond = |end: &PathState| up * (z - end.z) + forward * (x - end.x);
-        let distance = beyond(from).min(beyond(to));
-        if distance > farthest.0 {
-            farthest = (distance, (direction % DIRECTIONS, vector));
+/// A segment of a trajectory, for callers that ask for many points.
+struct Segment<'a> {
+    from: &'a PathState,
+    to: &'a PathState,
+    /// Its middle `(x, z)` \[m\].
+    middle: [f64; 2],
+    /// Half its extent along each pair of opposite directions, the first four of [`DIRECTION_VECTORS`] \[m\].
+    half: [f64; AXES],
+    /// How much farther the best direction must be than the others, so that rounding decides nothing \[m\].
+    doubt: f64,
+}
+
+/// Number of pairs of opposite directions.
+const AXES: usize = DIRECTIONS / 2;
+
+impl<'a> Segment<'a> {
+    fn new(from: &'a PathState, to: &'a PathState) -> Self {
+        let (run, rise) = (0.5 * (to.x - from.x), 0.5 * (to.z - from.z));
+        let [first, second] = [rise + run, rise - run].map(|sum| DIAGONAL * sum);
+        Self {
+            from,
+            to,
+            middle: [from.x + run, from.z + rise],
+            half: [rise, first, run, second].map(libm::fabs),
+            doubt: if (run + rise).is_finite() {
+                1e-6
+            } else {
+                f64::INFINITY
+            },
         }
     }
-    farthest.1
+
+    /// The direction in which a point is farthest beyond both ends: that is how far it is beyond the middle, less half the
+    /// extent. Of the two opposite directions of an axis the one towards the point counts.
+    fn farthest_direction(&self, x: f64, z: f64) -> usize {
+        let [ahead, up] = [x - self.middle[0], z - self.middle[1]];
+        let places = [up, DIAGONAL * (up + ahead), ahead, DIAGONAL * (ahead - up)];
+        let (mut farthest, mut second) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        let mut best = (0, 0.0);
+        for (axis, (place, half)) in places.into_iter().zip(&self.half).enumerate() {
+            let distance = libm::fabs(place) - half;
+            if distance > farthest {
+                (second, farthest) = (farthest, distance);
+                best = (axis, place);
+            } else if distance > second {
+                second = distance;
+            }
+        }
+        let (axis, place) = best;
+        if farthest - second > self.doubt && libm::fabs(place) > self.doubt {
+            axis + if place > 0.0 { 0 } else { AXES }
+        } else {
+            self.exactly_farthest_direction(x, z)
+        }
+    }
+
+    /// The same by the definition: the first of the directions in which the point is farthest.
+    #[inline(never)]
+    fn exactly_farthest_direction(&self, x: f64, z: f64) -> usize {
+        let mut farthest = (f64::NEG_INFINITY, 0);
+        for (direction, [up, forward]) in DIRECTION_VECTORS.iter().enumerate() {
+            let beyond = |end: &PathState| up * (z - end.z) + forward * (x - end.x);
+            let distance = beyond(self.from).min(beyond(self.to));
+            if distance > farthest.0 {
+                farthest = (distance, direction);
+            }
+        }
+        farthest.1
+    }
 }

@@ -32,6 +32,29 @@ pub(super) const EDGE_REACH: usize = 18;
 pub(super) type PointCosts = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
 pub(super) const NO_POINT_COSTS: PointCosts = [[0; _]; QUARTERS];
 
+/// The heights between the lowest and the highest that a path reaches.
+pub(super) fn reached(layer: &Layer) -> Range<usize> {
+    let is_reached = |height: &usize| {
+        let mut costs = layer.iter().filter_map(|costs| costs.get(*height));
+        costs.any(|cost| *cost < NEVER)
+    };
+    let mut heights = (0..HEIGHTS).filter(is_reached);
+    let first = heights.next().unwrap_or(0);
+    first..heights.next_back().unwrap_or(first) + 1
+}
+
+/// Sets costs that no path reaches. The compiler would write an array of such values as one store for each of
+/// them.
+#[inline(never)]
+pub(super) fn forbid(layer: &mut Layer) {
+    layer.as_flattened_mut().fill(NEVER);
+}
+
+/// A row of a layer by the number of the slope.
+pub(super) fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
+    layer.get(usize::try_from(slope).ok()?)
+}
+
 /// Number of choices in a byte.
 pub(super) const PER_BYTE: usize = 4;
 

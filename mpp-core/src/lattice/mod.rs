@@ -20,7 +20,7 @@ use core::ops::Range;
 pub use cost_to_go::CostToGo;
 use edges::{
     COST_UNIT, ChoiceBits, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS,
-    NO_POINT_COSTS, PER_BYTE, POINTS, PointCosts, QUARTERS, SLOPES, VIA,
+    NO_POINT_COSTS, PER_BYTE, POINTS, PointCosts, QUARTERS, SLOPES, VIA, forbid, reached, row,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -234,32 +234,42 @@ impl Lattice {
     #[inline(never)]
     fn write_point_costs(&mut self, field: &DistanceField, station: usize, heights: &Range<usize>) {
         let task = self.task;
-        self.point_costs = NO_POINT_COSTS;
         let first = (2 * heights.start).saturating_sub(EDGE_REACH);
         let last = (2 * heights.end + EDGE_REACH).min(POINTS);
         for (quarter, costs) in self.point_costs.iter_mut().enumerate() {
             let share = (quarter + 1) as f64 / QUARTERS as f64;
             let ahead = self.spacing * (station as f64 + share);
-            let column = field.column(task.x + ahead);
             let unknown = if ahead < task.unknown_ahead {
                 UNKNOWN_COST * (1.0 - ahead / task.unknown_ahead)
             } else {
                 0.0
             };
+            let column = field.column(task.x + ahead, unknown > 0.0);
+            let clearance_cost = |distance: f64, outside: f64| {
+                let lack = (MARGIN - distance).max(0.0) + outside;
+                let crowded = (task.room - distance).max(0.0);
+                MARGIN_WEIGHT * lack * lack + task.room_weight * crowded * crowded
+            };
+            let in_units = |cost: f64| (COST_UNIT * cost).min(MOST_POINT_COST) as u32;
+            let far_cost = clearance_cost(column.farthest(), 0.0);
+            let far_costs = [far_cost, far_cost + unknown].map(in_units);
+            let is_end = quarter + 1 == QUARTERS;
             let costs = costs.get_mut(EDGE_REACH + first..EDGE_REACH + last);
             let heights = self.heights.get(first..last).unwrap_or_default();
             for (cost, terms) in costs.unwrap_or_default().iter_mut().zip(heights) {
-                let distance = column.distance(&terms.height);
-                let lack = (MARGIN - distance).max(0.0) + terms.outside;
-                let crowded = (task.room - distance).max(0.0);
-                let mut sum = MARGIN_WEIGHT * lack * lack + task.room_weight * crowded * crowded;
-                if column.is_unknown(&terms.height) {
+                let is_unknown = column.is_unknown(&terms.height);
+                if !is_end && column.is_far(&terms.height) && terms.outside == 0.0 {
+                    *cost = far_costs[usize::from(is_unknown)];
+                    continue;
+                }
+                let mut sum = clearance_cost(column.distance(&terms.height), terms.outside);
+                if is_unknown {
                     sum += unknown;
                 }
-                if quarter + 1 == QUARTERS {
+                if is_end {
                     sum += terms.altitude_cost;
                 }
-                *cost = (COST_UNIT * sum).min(MOST_POINT_COST) as u32;
+                *cost = in_units(sum);
             }
         }
     }
@@ -358,29 +368,6 @@ impl HeightTerms {
             altitude_cost: ALTITUDE_WEIGHT * from_altitude * from_altitude,
         }
     }
-}
-
-/// The heights between the lowest and the highest that a path reaches.
-fn reached(layer: &Layer) -> Range<usize> {
-    let is_reached = |height: &usize| {
-        let mut costs = layer.iter().filter_map(|costs| costs.get(*height));
-        costs.any(|cost| *cost < NEVER)
-    };
-    let mut heights = (0..HEIGHTS).filter(is_reached);
-    let first = heights.next().unwrap_or(0);
-    first..heights.next_back().unwrap_or(first) + 1
-}
-
-/// Sets costs that no path reaches. The compiler would write an array of such values as one store for each of
-/// them.
-#[inline(never)]
-fn forbid(layer: &mut Layer) {
-    layer.as_flattened_mut().fill(NEVER);
-}
-
-/// A row of a layer by the number of the slope.
-fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
-    layer.get(usize::try_from(slope).ok()?)
 }
 
 /// The choice at a height and a slope.

@@ -18,6 +18,8 @@ const ROWS_AT_ONCE: usize = (2 * REACH + 1).next_power_of_two();
 const COLS_AT_ONCE: usize = (REACH + 1).next_power_of_two();
 /// The field stores distances in units of `1 / PARTS` m.
 const PARTS: f64 = 64.0;
+/// [`FAR`] in these units.
+const FAR_PARTS: u8 = part_of_square(REACH * REACH);
 
 /// Rows within 11 m of the middle of the window, and columns ahead, in which cells are open or not.
 const OPEN_ROWS: Range<usize> = 10..54;
@@ -27,7 +29,8 @@ const OPEN_COLS: u128 = ((1 << open::AHEAD) - 1) << BEHIND;
 #[derive(Clone, Debug)]
 pub struct DistanceField {
     distance: [[u8; COLS]; ROWS],
-    occupied: [u128; ROWS],
+    /// The occupied cells while the field is built; then those of them that have a free neighbour.
+    surface: [u128; ROWS],
     unknown: [u128; ROWS],
     /// Number of open cells.
     open: u32,
@@ -43,7 +46,7 @@ impl DistanceField {
     pub const fn new() -> Self {
         Self {
             distance: [[u8::MAX; COLS]; ROWS],
-            occupied: [0; ROWS],
+            surface: [0; ROWS],
             unknown: [0; ROWS],
             open: 0,
             first_x: 0.0,
@@ -58,7 +61,7 @@ impl DistanceField {
         (self.first_x, self.floor) = (map.first_x(), map.floor());
         self.body_radius = body_radius;
         for row in 0..ROWS {
-            (self.occupied[row], self.unknown[row]) = map.row(row);
+            (self.surface[row], self.unknown[row]) = map.row(row);
         }
         self.complete();
         self.open = 0;
@@ -74,6 +77,7 @@ impl DistanceField {
                 self.open += (OPEN_COLS & !known & !self.unknown[row]).count_ones();
             }
         }
+        self.keep_surface();
     }
 
     /// Share of the cells ahead that are open [-]: a beam has passed them, and no occupied cell is within [`FAR`].
@@ -89,13 +93,13 @@ impl DistanceField {
         for diagonally in [false, true] {
             let mut below = 0;
             for row in 0..ROWS {
-                let own = self.occupied[row];
-                let beside = self.occupied_row(Some(row + 1)) | below;
+                let own = self.surface[row];
+                let beside = self.occupied_row(row + 1) | below;
                 let mut near = beside | own << 1 | own >> 1;
                 if diagonally {
                     near |= beside << 1 | beside >> 1;
                 }
-                self.occupied[row] = own | near & self.unknown[row];
+                self.surface[row] = own | near & self.unknown[row];
                 below = own;
             }
         }
@@ -104,7 +108,7 @@ impl DistanceField {
     /// For each number of columns, writes the cells of a row that are so far to the left or right of an occupied cell.
     /// The function shifts whole rows at a time.
     fn write_beside(&self, row: usize, beside: &mut [u128; COLS_AT_ONCE]) {
-        let own = self.occupied_row(Some(row));
+        let own = self.occupied_row(row);
         let (mut left, mut right) = (own, own);
         for cells in beside {
             *cells = left | right;
@@ -113,9 +117,19 @@ impl DistanceField {
         }
     }
 
-    fn occupied_row(&self, row: Option<usize>) -> u128 {
-        row.and_then(|row| self.occupied.get(row).copied())
-            .unwrap_or(0)
+    /// A row of occupied cells while the field is built.
+    fn occupied_row(&self, row: usize) -> u128 {
+        self.surface.get(row).copied().unwrap_or(0)
+    }
+
+    /// Keeps those of the occupied cells that have a free neighbour.
+    fn keep_surface(&mut self) {
+        let mut below = 0;
+        for row in 0..ROWS {
+            let (own, above) = (self.surface[row], self.occupied_row(row + 1));
+            self.surface[row] = own & !(own << 1 & own >> 1 & above & below);
+            below = own;
+        }
     }
 
     /// Distance from the aircraft at a point `(x, z)` \[m\] to the nearest centre of an occupied cell \[m\],
@@ -131,19 +145,30 @@ impl DistanceField {
         (low * (1.0 - up) + high * up) * (1.0 / PARTS) - self.body_radius
     }
 
-    /// The field at one place downrange \[m\].
-    pub(crate) fn column(&self, x: f64) -> Column {
+    /// The field at one place downrange \[m\], and `with_unknown` which cells there are unknown.
+    pub(crate) fn column(&self, x: f64, with_unknown: bool) -> Column {
         let (col, right) = split((x - self.first_x) / CELL - 0.5, COLS);
         let mut column = Column {
             along: [0.0; ROWS],
+            far: [false; ROWS],
             unknown: [false; ROWS],
             body_radius: self.body_radius,
         };
-        for (along, distances) in column.along.iter_mut().zip(&self.distance) {
-            let at = |col: usize| f64::from(distances[col % COLS]);
-            *along = at(col) * (1.0 - right) + at(col + 1) * right;
+        let mut far_above = false;
+        let rows = column.along.iter_mut().zip(&mut column.far);
+        for ((along, is_far), distances) in rows.zip(&self.distance).rev() {
+            let [here, next] = [distances[col % COLS], distances[(col + 1) % COLS]];
+            let far_here = here.min(next) >= FAR_PARTS;
+            *along = if far_here {
+                f64::from(FAR_PARTS)
+            } else {
+                f64::from(here) * (1.0 - right) + f64::from(next) * right
+            };
+            *is_far = far_here && far_above;
+            far_above = far_here;
         }
-        if let Some(col) = cell((x - self.first_x) / CELL).filter(|col| *col < COLS) {
+        let col = cell((x - self.first_x) / CELL).filter(|col| with_unknown && *col < COLS);
+        if let Some(col) = col {
             for (unknown, cells) in column.unknown.iter_mut().zip(&self.unknown) {
                 *unknown = bit(cells, col);
             }
@@ -165,24 +190,22 @@ impl DistanceField {
     /// Whether the cell of a point is in the window and the map knows nothing of it.
     #[must_use]
     pub fn is_unknown(&self, x: f64, z: f64) -> bool {
-        self.is_set(&self.unknown, x, z)
+        let found = self.cell_of(x, z);
+        found.is_some_and(|(row, col)| bit(&self.unknown[row % ROWS], col))
     }
 
     /// Whether the cell of a point is occupied.
     #[must_use]
     pub fn is_occupied(&self, x: f64, z: f64) -> bool {
-        self.is_set(&self.occupied, x, z)
+        let found = self.cell_of(x, z);
+        found.is_some_and(|(row, col)| self.distance[row % ROWS][col % COLS] == 0)
     }
 
-    fn is_set(&self, rows: &[u128; ROWS], x: f64, z: f64) -> bool {
-        let row = cell((z - self.floor) / CELL);
-        let (Some(col), Some(cells)) = (
-            cell((x - self.first_x) / CELL),
-            row.and_then(|row| rows.get(row)),
-        ) else {
-            return false;
-        };
-        col < COLS && bit(cells, col)
+    /// Row and column of the cell of a point, if it lies in the window.
+    fn cell_of(&self, x: f64, z: f64) -> Option<(usize, usize)> {
+        let row = cell((z - self.floor) / CELL)?;
+        let col = cell((x - self.first_x) / CELL)?;
+        (row < ROWS && col < COLS).then_some((row, col))
     }
 
     /// Visits the centres of the occupied cells in a box that have a free neighbour. `x` and `z` are the
@@ -194,24 +217,21 @@ impl DistanceField {
             return;
         };
         let kept = (u128::MAX << first) & (u128::MAX >> (COLS - 1 - last));
-        for row in low..high + 1 {
-            let mut bits = self.surface_row(row) & kept;
-            while bits != 0 {
-                let col = bits.trailing_zeros();
-                bits &= bits - 1;
-                visit(
-                    self.first_x + CELL * (f64::from(col) + 0.5),
-                    self.floor + CELL * (row as f64 + 0.5),
-                );
+        for (row, cells) in self.surface.iter().enumerate().take(high + 1).skip(low) {
+            let cells = cells & kept;
+            if cells == 0 {
+                continue;
+            }
+            let z = self.floor + CELL * (row as f64 + 0.5);
+            let words = [0, 32, 64, 96].map(|first| (cells >> first) as u32);
+            for (first, mut bits) in (0_u32..).step_by(32).zip(words) {
+                while bits != 0 {
+                    let col = first + bits.trailing_zeros();
+                    bits &= bits - 1;
+                    visit(self.first_x + CELL * (f64::from(col) + 0.5), z);
+                }
             }
         }
-    }
-
-    fn surface_row(&self, row: usize) -> u128 {
-        let own = self.occupied_row(Some(row));
-        let above = self.occupied_row(Some(row + 1));
-        let below = self.occupied_row(row.checked_sub(1));
-        own & !(own << 1 & own >> 1 & above & below)
     }
 }
 
@@ -219,6 +239,8 @@ impl DistanceField {
 pub(crate) struct Column {
     /// Distances between the cell centres of a row, by row [1 / PARTS m].
     along: [f64; ROWS],
+    /// Whether everything from the centre of a row to that of the next one is far, by row.
+    far: [bool; ROWS],
     unknown: [bool; ROWS],
     body_radius: f64,
 }
@@ -246,6 +268,16 @@ impl Height {
 }
 
 impl Column {
+    /// The distance at heights that are far \[m\].
+    pub(crate) fn farthest(&self) -> f64 {
+        FAR - self.body_radius
+    }
+
+    /// Whether a height lies between cells that are [`FAR`] from all occupied ones.
+    pub(crate) fn is_far(&self, height: &Height) -> bool {
+        self.far[usize::from(height.below) % ROWS]
+    }
+
     /// The same as [`DistanceField::distance`].
     pub(crate) fn distance(&self, height: &Height) -> f64 {
         let Height { below, up, .. } = *height;
@@ -287,7 +319,7 @@ fn write_distances(
     row: usize,
     distances: &mut [u8; COLS],
 ) -> u128 {
-    distances.fill(part_of_square(REACH * REACH));
+    distances.fill(FAR_PARTS);
     let mut known: u128 = 0;
     for &[rise, along, distance] in &NEAREST_FIRST {
         let at = |row: usize| beside[row % ROWS_AT_ONCE][usize::from(along) % COLS_AT_ONCE];

@@ -26,7 +26,7 @@ pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
 #[cfg(test)]
 mod tests {
     use super::cell::rounded_down;
-    use super::{DistanceField, RollingGrid};
+    use super::{DistanceField, FAR, RollingGrid};
     use rand_core::{Rng, SeedableRng};
     use rand_pcg::Pcg64Mcg;
 
@@ -59,20 +59,20 @@ mod tests {
         map.roll(108.0, 52.0);
         let mut field = DistanceField::new();
         field.build(&map, 0.3);
-        let mut unknown = 0;
+        let (mut unknown, mut distant) = (0, 0);
         for _ in 0..2000 {
             let mut between = |least: f64, most: f64| {
                 least + (most - least) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
             };
             let (x, z) = (between(95.0, 175.0), between(30.0, 75.0));
-            let (column, height) = (field.column(x), field.height(z));
-            assert_eq!(
-                column.distance(&height).to_bits(),
-                field.distance(x, z).to_bits()
-            );
+            let (column, height) = (field.column(x, true), field.height(z));
+            assert!((column.distance(&height) - field.distance(x, z)).abs() < 1e-12);
             assert_eq!(column.is_unknown(&height), field.is_unknown(x, z));
+            assert!(!column.is_far(&height) || (field.distance(x, z) - (FAR - 0.3)).abs() < 1e-12);
+            distant += u32::from(column.is_far(&height));
             unknown += u32::from(column.is_unknown(&height));
         }
         assert!(unknown > 100, "{unknown} points were unknown");
+        assert!(distant > 100, "{distant} points were far");
     }
 }

@@ -256,10 +256,11 @@ impl RollingGrid {
             if col >= COLS {
                 continue;
             }
-            let slot = (first_slot + col) % COLS;
-            // A beam of this scan that ended in a cell that stands alone says more than others that pass.
-            if !bit(isolated, slot) {
-                cells[slot] = updated(cells[slot], -by);
+            let cell = &mut cells[(first_slot + col) % COLS];
+            // Most cells on the way are as free as they can be. A beam of this scan that ended in a cell that stands alone says
+            // more than others that pass.
+            if *cell > -FREE && !bit(isolated, (first_slot + col) % COLS) {
+                *cell = updated(*cell, -by);
             }
         }
     }

@@ -33,6 +33,13 @@ pub trait Field {
     /// vector.
     fn range(&self, from: Point, direction: Point) -> Option<f64>;
 
+    /// What [`Self::range`] gives along each of several rays from one place, up to a distance \[m\]; a ray that meets nothing
+    /// so near may have any greater range, or none.
+    fn ranges(&self, from: Point, directions: &[Point], _within: f64) -> Vec<Option<f64>> {
+        let rays = directions.iter();
+        rays.map(|direction| self.range(from, *direction)).collect()
+    }
+
     /// The obstacles that form the field, or that stand for it. The log, the inquest, the oracle and
     /// the authors' lidar know a field only by these.
     fn obstacles(&self) -> &[Obstacle];
@@ -84,10 +91,26 @@ impl Field for ObstacleField {
             .reduce(f64::min)
     }
 
+    /// Most obstacles of a long field are beyond the reach of a lidar.
+    fn ranges(&self, from: Point, directions: &[Point], within: f64) -> Vec<Option<f64>> {
+        let near = |it: &&Obstacle| it.clearance(from, self.time) <= within + BEYOND;
+        let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
+        let range = |direction: &Point| {
+            let ranges = near
+                .iter()
+                .filter_map(|it| it.range(from, *direction, self.time));
+            ranges.reduce(f64::min)
+        };
+        directions.iter().map(range).collect()
+    }
+
     fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
     }
 }
+
+/// How much farther than asked obstacles count, so that no rounding leaves one out \[m\].
+const BEYOND: f64 = 1e-3;
 
 /// Returns `count` values from `first` to `last`, both included; a single value is `first`.
 pub(crate) fn evenly_spaced(first: f64, last: f64, count: usize) -> impl Iterator<Item = f64> {

@@ -94,9 +94,11 @@ impl LidarConfig {
             (ahead, up)
         });
         match self.rule {
-            LidarRule::Nearest => directions
-                .map(|direction| nearest_range(from, direction, self.range_max, field))
-                .collect(),
+            LidarRule::Nearest => {
+                let directions: Vec<Point> = directions.collect();
+                let ranges = field.ranges(from, &directions, self.range_max);
+                ranges.into_iter().map(|it| self.returned(it)).collect()
+            }
             LidarRule::Authors => {
                 let seen = self.seen_by_authors(state, field);
                 directions
@@ -104,6 +106,12 @@ impl LidarConfig {
                     .collect()
             }
         }
+    }
+
+    /// What a beam reports of the range to the nearest obstacle on it \[m\], 0 = none within `range_max`.
+    fn returned(&self, range: Option<f64>) -> f64 {
+        let range = range.map(|range| range.max(RANGE_MIN));
+        range.filter(|it| *it <= self.range_max).unwrap_or(0.0)
     }
 
     /// The circles that the authors' code passes on to its beams: centre and radius \[m\]. It knows
@@ -139,15 +147,6 @@ impl LidarConfig {
                 .collect(),
         }
     }
-}
-
-/// Range to the nearest obstacle on a beam \[m\], 0 = none within `range_max`.
-fn nearest_range(from: Point, direction: Point, range_max: f64, field: &dyn Field) -> f64 {
-    field
-        .range(from, direction)
-        .map(|range| range.max(RANGE_MIN))
-        .filter(|range| *range <= range_max)
-        .unwrap_or(0.0)
 }
 
 /// Range by the authors' rule \[m\], 0 = none.
