@@ -124,7 +124,7 @@ fn io(action: &'static str) -> impl Fn(std::io::Error) -> CompanionError {
 
 /// The way to the autopilot, and what comes.
 struct Inputs {
-    write: Box<dyn FnMut(&[u8]) -> std::io::Result<()>>,
+    write: port::Writer,
     come: mpsc::Receiver<(Side, Vec<u8>)>,
 }
 

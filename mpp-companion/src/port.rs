@@ -6,7 +6,7 @@ use std::net::{SocketAddr, TcpStream, UdpSocket};
 use std::sync::{Arc, Mutex, PoisonError};
 
 type Reader = Box<dyn FnMut(&mut [u8]) -> std::io::Result<usize> + Send>;
-type Writer = Box<dyn FnMut(&[u8]) -> std::io::Result<()>>;
+pub(crate) type Writer = Box<dyn FnMut(&[u8]) -> std::io::Result<()>>;
 
 /// Both directions of a way to the autopilot.
 pub(crate) struct Port {
