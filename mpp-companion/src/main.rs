@@ -1,8 +1,11 @@
 //! The companion's command line: MAVLink over UDP to the autopilot, scans over UDP from the lidar.
 
+mod port;
+
 use clap::{Parser, Subcommand};
 use mpp_companion::{Companion, CompanionError, Config, LogWriter, Side, Told, replay, stand_in};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+use port::Port;
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Write};
 use std::net::UdpSocket;
@@ -26,7 +29,8 @@ enum Order {
         /// Aircraft file with a `pitch_loop`.
         #[arg(long)]
         aircraft: PathBuf,
-        /// Address of the autopilot: udp:HOST:PORT; the companion speaks first.
+        /// Address of the autopilot: udp:HOST:PORT (the companion speaks first), udpin:HOST:PORT (the autopilot does) or
+        /// tcp:HOST:PORT.
         #[arg(long)]
         autopilot: String,
         /// Port for scans of the lidar: udp:PORT.
@@ -38,6 +42,9 @@ enum Order {
         /// Beams of a scan.
         #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u16).range(2..=128))]
         beams: u16,
+        /// Replanning [Hz].
+        #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u32).range(1..=10))]
+        replan_hz: u32,
         /// Planning work in a tick [slices].
         #[arg(long, default_value_t = u32::MAX, value_parser = clap::value_parser!(u32).range(1..))]
         slices: u32,
@@ -81,6 +88,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
             lidar,
             range,
             beams,
+            replan_hz,
             slices,
             log,
             replay: recorded,
@@ -89,6 +97,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
             let file = AircraftFile::parse(&aircraft.display().to_string(), &text)?;
             let config = Config {
                 beams,
+                replan_ticks: 100 / replan_hz,
                 slices,
                 ..Config::new(AircraftModel::new(file)?.plane(), range)
             };
@@ -99,12 +108,12 @@ fn run(order: Order) -> Result<(), CompanionError> {
                 println!("{same} frames are the same to the last bit");
                 return Ok(());
             }
-            let inputs = inputs(&autopilot, &lidar)?;
+            let mut inputs = inputs(&autopilot, &lidar)?;
             let log = log
                 .map(File::create)
                 .transpose()
                 .map_err(io("create the log"))?;
-            fly(&mut companion, &inputs, log)
+            fly(&mut companion, &mut inputs, log)
         }
     }
 }
@@ -113,52 +122,50 @@ fn io(action: &'static str) -> impl Fn(std::io::Error) -> CompanionError {
     move |error| CompanionError::Io(action.to_owned(), error)
 }
 
-/// The socket to the autopilot, and what comes.
+/// The way to the autopilot, and what comes.
 struct Inputs {
-    socket: UdpSocket,
+    write: port::Writer,
     come: mpsc::Receiver<(Side, Vec<u8>)>,
 }
 
 fn inputs(autopilot: &str, lidar: &str) -> Result<Inputs, CompanionError> {
-    let rest = |address: &str, form| {
-        let rest = address.strip_prefix("udp:").map(str::to_owned);
-        rest.ok_or_else(|| CompanionError::Address(address.to_owned(), form))
-    };
-    let peer = rest(autopilot, "udp:HOST:PORT")?;
-    let form = "udp:PORT";
-    let port = rest(lidar, form)?;
-    let port: u16 = port
-        .parse()
-        .map_err(|_| CompanionError::Address(lidar.to_owned(), form))?;
-    let socket = UdpSocket::bind("0.0.0.0:0").map_err(io("open a socket"))?;
-    socket.connect(&peer).map_err(io("reach the autopilot"))?;
+    let port: Option<u16> = lidar
+        .strip_prefix("udp:")
+        .and_then(|port| port.parse().ok());
+    let port = port.ok_or_else(|| CompanionError::Address(lidar.to_owned(), "udp:PORT"))?;
+    let Port { mut read, write } = Port::open(autopilot)?;
     let scans = UdpSocket::bind(("0.0.0.0", port)).map_err(io("open the lidar's port"))?;
     let (send, come) = mpsc::channel();
-    let own = socket.try_clone().map_err(io("share the socket"))?;
-    for (side, socket) in [(Side::Autopilot, own), (Side::Lidar, scans)] {
-        let send = send.clone();
-        std::thread::spawn(move || {
-            let mut buffer = [0; 4096];
-            loop {
-                match socket.recv(&mut buffer) {
-                    Ok(size) => {
-                        let bytes = buffer.get(..size).unwrap_or_default().to_vec();
-                        if send.send((side, bytes)).is_err() {
-                            return;
-                        }
-                    }
-                    // The autopilot is not there yet.
-                    Err(_) => std::thread::sleep(Duration::from_millis(20)),
+    let hears = send.clone();
+    std::thread::spawn(move || hear(Side::Autopilot, &hears, &mut *read));
+    std::thread::spawn(move || hear(Side::Lidar, &send, &mut |buffer| scans.recv(buffer)));
+    Ok(Inputs { write, come })
+}
+
+/// Hands on what comes from a side.
+fn hear(
+    side: Side,
+    send: &mpsc::Sender<(Side, Vec<u8>)>,
+    read: &mut dyn FnMut(&mut [u8]) -> std::io::Result<usize>,
+) {
+    let mut buffer = [0; 4096];
+    loop {
+        match read(&mut buffer) {
+            Ok(size) if size > 0 => {
+                let bytes = buffer.get(..size).unwrap_or_default().to_vec();
+                if send.send((side, bytes)).is_err() {
+                    return;
                 }
             }
-        });
+            // The autopilot is not there yet, or a stream ended.
+            _ => std::thread::sleep(Duration::from_millis(20)),
+        }
     }
-    Ok(Inputs { socket, come })
 }
 
 fn fly(
     companion: &mut Companion,
-    inputs: &Inputs,
+    inputs: &mut Inputs,
     log: Option<File>,
 ) -> Result<(), CompanionError> {
     let begun = Instant::now();
@@ -177,7 +184,7 @@ fn fly(
         companion.receive(now, side, &bytes, &mut |frame| sent.push(frame.to_vec()));
         for frame in &sent {
             // A frame that does not go out is lost, as on any link.
-            let _ = inputs.socket.send(frame);
+            let _ = (inputs.write)(frame);
         }
         if let Some(log) = &mut log {
             let mut note = |side, bytes: &[u8]| log.write(now, side, bytes);

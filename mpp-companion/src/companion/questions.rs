@@ -114,7 +114,7 @@ impl Companion {
         }
         flown.headed = Some(now);
         let course = flown.frame.course - libm::atan(placed.cross / BACK);
-        let degrees = course.to_degrees().rem_euclid(360.0) as f32;
+        let degrees = degrees(course);
         // Type 0 is a course over ground.
         self.command(
             MavCmd::MAV_CMD_GUIDED_CHANGE_HEADING,
@@ -153,5 +153,22 @@ impl Companion {
             ..COMMAND_INT_DATA::DEFAULT
         };
         self.send(&Mav::COMMAND_INT(command), send);
+    }
+}
+
+/// A course in degrees, 0 to less than 360: the autopilot denies 360, to which a course just left of north would be rounded.
+fn degrees(course: f64) -> f32 {
+    let degrees = course.to_degrees().rem_euclid(360.0) as f32;
+    if degrees < 360.0 { degrees } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn no_course_is_360_degrees() {
+        for course in [-1e-9, 0.0, 1e-9, 6.0, -6.0] {
+            let degrees = super::degrees(course);
+            assert!((0.0..360.0).contains(&degrees), "{course}: {degrees}");
+        }
     }
 }
