@@ -27,8 +27,10 @@ pub mod space_refinement {
     /// Change of the bank in the first round \[rad\]; each further round halves it. More finds other ways, less polishes. Source:
     /// decision 47.
     pub const SIZE: f64 = 0.35;
-    /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 47.
-    pub const ROUNDS: usize = 2;
+    /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 58.
+    pub const ROUNDS: usize = 8;
+    /// Number of sizes of moves [-]. More polish, fewer find other ways. Source: decision 58.
+    pub const SIZES: usize = 4;
 }
 
 /// The lattice in space.

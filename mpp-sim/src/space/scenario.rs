@@ -10,7 +10,7 @@ use crate::file_error::{ScenarioError, ensure};
 use crate::lidar::LidarConfig;
 use crate::log::{Header, SpaceHeader};
 use crate::navigation::NavigationConfig;
-use crate::scenario::{Preset, Scenario, TICKS_PER_SECOND};
+use crate::scenario::{Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
 use crate::sensors::AirDataNoise;
 use hil_protocol::{Configure, ConfigureLateral, ConfigureSpace};
 use mpp_core::planner::space::SPACE_CANDIDATES;
@@ -20,8 +20,8 @@ use serde::{Deserialize, Serialize};
 pub const SPACE: &str = "space";
 /// Greatest bank of plans, and its rate [rad, rad/s]: 60 deg and 90 deg/s. Source: decision 46.
 const BANK: [f64; 2] = [60_f64.to_radians(), 90_f64.to_radians()];
-/// Distance of plans from what hits have shown, beyond the radius of a sphere or the half span \[m\]. Source: decision 47.
-const MARGIN: f64 = 0.35;
+/// Distance of plans from what hits have shown, beyond the radius of a sphere or the half span \[m\]. Source: decision 58.
+const MARGIN: f64 = 0.3;
 /// Part of a fuselage that reaches below its wing, and room to ceiling and sides \[m\].
 const BELOW: f64 = 0.5;
 const ROOM: f64 = 0.3;
@@ -84,8 +84,10 @@ pub struct SpaceFile {
     pub deskew: Option<bool>,
     /// Error of the lidar's clock \[ms\]: beams seem so much older than they are; by default 0.
     pub lidar_clock: Option<f64>,
-    /// Rate of the cycles \[Hz\]; by default 4.
+    /// Rate of the cycles \[Hz\]; by default 10.
     pub replan_hz: Option<f64>,
+    /// Time from the start of a cycle until its plan is flown \[ms\]; by default 50.
+    pub latency_ms: Option<u32>,
     /// Seed of world, measurements and gusts; by default 1.
     pub seed: Option<u64>,
 }
@@ -129,10 +131,13 @@ impl SpaceFile {
         ensure(sphere, "sphere", "give more than 0 and at most 10 m")?;
         let preset = self.preset.as_deref().unwrap_or(SPACE);
         ensure(preset == SPACE, "preset", "give space")?;
-        let period = f64::from(TICKS_PER_SECOND) / self.replan_hz.unwrap_or(4.0);
+        let period = f64::from(TICKS_PER_SECOND) / self.replan_hz.unwrap_or(10.0);
         let whole = (10.0..=100.0).contains(&period) && (period - period.round()).abs() < 0.01;
         let advice = "give a rate from 1 to 10 Hz of which 100 Hz is a whole multiple";
         ensure(whole, "replan_hz", advice)?;
+        let latency = self.latency_ms.unwrap_or(50);
+        let whole = latency.is_multiple_of(TICK_MS) && (TICK_MS..=1000).contains(&latency);
+        ensure(whole, "latency_ms", "give a multiple of 10 up to 1000 ms")?;
         let (steady, gusts) = (self.wind.unwrap_or_default(), self.gusts.unwrap_or(0.0));
         let weak = steady.iter().all(|it| it.abs() <= 30.0);
         ensure(weak, "wind", "give three speeds of at most 30 m/s")?;
@@ -149,7 +154,7 @@ impl SpaceFile {
         let mut plane = Scenario {
             aircraft: AircraftModel::new(file)?,
             replan_ticks: period.round() as u32,
-            latency_ticks: TICKS_PER_SECOND / 10,
+            latency_ticks: latency / TICK_MS,
             ticks: MOST_TICKS,
             ..Scenario::new(Preset::Flight, seed)
         };

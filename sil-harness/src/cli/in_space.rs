@@ -91,9 +91,12 @@ struct InSpace {
     /// Fly a simple planner in place of ours, on the same map, estimate, regulator and plant
     #[arg(long, help_heading = PLANNER, value_parser = baseline(), conflicts_with_all = ["candidates", "no_programs"])]
     baseline: Option<BaselineName>,
-    /// Replanning rate [Hz], 1 to 10 [default: 4]
+    /// Replanning rate [Hz], 1 to 10 [default: 10]
     #[arg(long, help_heading = PLANNER)]
     replan_hz: Option<f64>,
+    /// Time from the start of a cycle until its plan is flown [ms], a multiple of 10 [default: 50]
+    #[arg(long, help_heading = PLANNER, value_name = "MS")]
+    latency_ms: Option<u32>,
     /// Seed of world and measurements; the next flights of a campaign take the next seeds [default: 1]
     #[arg(long, help_heading = WORLD, value_parser = seed)]
     seed: Option<u64>,
@@ -183,6 +186,7 @@ impl InSpace {
             deskew: self.no_deskew.then_some(false),
             lidar_clock: self.lidar_clock,
             replan_hz: self.replan_hz,
+            latency_ms: self.latency_ms,
             seed: Some(seed),
         };
         let stems = stems.transpose().map_err(Failure::usage)?;

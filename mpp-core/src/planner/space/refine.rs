@@ -4,7 +4,7 @@
 
 use super::candidate::{SpacePlan, limited};
 use crate::config::{KNOTS, STAGE_PERIOD};
-use crate::tuning::space_refinement::{ROUNDS, SIZE};
+use crate::tuning::space_refinement::{ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
 /// First knots and numbers of knots of the moves.
@@ -21,9 +21,9 @@ pub(super) struct Move([f64; KNOTS]);
 
 impl Move {
     /// The move of a number: the bank goes to one side for some knots, and where the track shall only be displaced as far to
-    /// the other side for the next ones. Each round halves the moves.
+    /// the other side for the next ones. Each round halves the moves; after [`SIZES`] rounds they are as large as at first.
     pub(super) fn of(number: usize) -> Self {
-        let size = SIZE / f64::from(1_u32 << (number / MOVES).min(16));
+        let size = SIZE / f64::from(1_u32 << (number / MOVES % SIZES));
         let side = if number.is_multiple_of(2) {
             size
         } else {
