@@ -34,7 +34,7 @@ pub enum CampaignError {
     #[error("cannot open {0}: {1}; give a path that can be read and written")]
     Open(String, #[source] std::io::Error),
     /// A row file cannot be read.
-    #[error("cannot read {0}: {1}")]
+    #[error("cannot read {0}: {1}; give a row file that can be read")]
     Read(String, #[source] std::io::Error),
     /// A row cannot be written: file, rows that it holds, why.
     #[error(

@@ -4,7 +4,7 @@ use super::answer::{Failure, data, print_json};
 use super::campaign::failure;
 use super::loudness::progress_bar;
 use super::signals::Signals;
-use super::values::{item, navigation, seed, threads};
+use super::values::{Item, navigation, seed, threads, whole};
 use crate::campaign::{CampaignError, Extras, run as fly_all};
 use crate::files::read_aircraft;
 use mpp_analysis::aircraft::{AircraftReport, Variant, flown_cells, in_sizes, in_units};
@@ -21,10 +21,10 @@ pub(super) struct AircraftArgs {
     #[arg(value_name = "NAME|FILE")]
     aircraft: String,
     /// Fly this number of flights in each cell, past obstacles that are scaled to the aircraft
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, default_value_t = 0, value_parser = whole::<u32>())]
     flights: u32,
     /// Numbers of obstacles to fly past, a list
-    #[arg(long, value_delimiter = ',', default_values_t = [20, 40], value_parser = item::<usize>())]
+    #[arg(long, value_delimiter = ',', default_values_t = [20, 40], value_parser = Item(whole::<usize>()))]
     obstacles: Vec<usize>,
     /// Fly the aircraft with its elevator's command in five units
     #[arg(long, conflicts_with = "sizes", requires = "flights")]
@@ -71,7 +71,7 @@ struct AircraftOutput {
 }
 
 pub(super) fn run(args: &AircraftArgs) -> Result<u8, Failure> {
-    let file = read_aircraft(&args.aircraft).map_err(Failure::usage)?;
+    let file = read_aircraft(&args.aircraft)?;
     let model = AircraftModel::new(file.clone()).map_err(Failure::usage)?;
     let variants = if args.units {
         in_units(&file)

@@ -1,5 +1,6 @@
 //! The answers of the command line: data on stdout, messages on stderr, an exit code.
 
+use crate::files::FileError;
 use std::io::{ErrorKind, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -81,6 +82,13 @@ pub(super) fn data_bytes(bytes: &[u8]) -> Result<(), Failure> {
 pub(super) struct Failure {
     pub(super) code: u8,
     pub(super) message: String,
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        let code = if error.is_failure() { FAILURE } else { USAGE };
+        Self::new(code, error)
+    }
 }
 
 impl Failure {

@@ -1,11 +1,12 @@
 //! `campaign`: flies many flights over a grid, in parallel; a stopped campaign can be continued.
 
 use super::answer::{FAILURE, Failure, USAGE, data, print_json, talk};
+use super::fly::exit_code;
 use super::help::{OUTPUT, PLANNER, RUN};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
-use super::values::{Item, item, preset, seed, threads, whole, width};
+use super::values::{Item, number, preset, seed, threads, whole, width, within};
 use crate::campaign::{CampaignError, Extras, RowFile, decide_all, header, read, run as fly_all};
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Sequential, Shard, Taxonomy, merge,
@@ -13,6 +14,7 @@ use mpp_analysis::campaign::{
 use mpp_analysis::rows::Header;
 use mpp_sim::scenario::{Preset, ScenarioFile};
 use std::collections::HashSet;
+use std::convert::Infallible;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -49,7 +51,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(preset()))]
     pub(super) preset: Vec<Preset>,
     /// Replanning rates [Hz], a list [default: the scenario's]
-    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = item::<f64>())]
+    #[arg(long, help_heading = PLANNER, value_delimiter = ',', value_parser = Item(number))]
     replan_hz: Vec<f64>,
     /// Let an oracle fly the same fields too, and give success as a share of the fields that it
     /// flies. With --faults it flies with the faults
@@ -67,7 +69,7 @@ pub(super) struct CampaignArgs {
         help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
-        value_parser = item::<String>(),
+        value_parser = Item(|name: &str| Ok::<_, Infallible>(name.to_owned())),
         conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,
@@ -76,7 +78,7 @@ pub(super) struct CampaignArgs {
     #[arg(long, help_heading = RUN, requires = "faults", conflicts_with = "oracle")]
     pub(super) pairs: bool,
     /// Number of flights in each cell
-    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = within(1, u32::MAX))]
     pub(super) trials: u32,
     /// Fly each cell until the 95 % interval of its strict successes is at most so wide [percentage points], or --trials is
     /// reached. Every 20 flights decide
@@ -154,10 +156,10 @@ pub(super) fn run(args: &CampaignArgs) -> Result<u8, Failure> {
 
 pub(super) fn failure(error: &CampaignError) -> Failure {
     let code = match error {
-        CampaignError::Flight(..)
-        | CampaignError::Faulty(..)
-        | CampaignError::Pair(..)
-        | CampaignError::Stopped
+        CampaignError::Flight(.., why)
+        | CampaignError::Faulty(.., why)
+        | CampaignError::Pair(.., why) => exit_code(why),
+        CampaignError::Stopped
         | CampaignError::Log(..)
         | CampaignError::Full(..)
         | CampaignError::Open(..)

@@ -6,7 +6,7 @@ use super::help::{OUTPUT, RUN, WORLD};
 use super::loudness::progress_bar;
 use super::scenario::{FieldArgs, ScenarioArgs};
 use super::signals::Signals;
-use super::values::{item, seed, threads};
+use super::values::{Item, number, seed, threads, within};
 use crate::campaign::{CampaignError, decide_all};
 use mpp_analysis::campaign::Campaign;
 use mpp_analysis::ceiling::{CeilingCell, CeilingReport};
@@ -19,10 +19,10 @@ pub(super) struct CeilingArgs {
     #[command(flatten)]
     field: FieldArgs,
     /// Margins that a flight keeps beside the body's radius [m], a list
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', default_values_t = [0.0], value_parser = item::<f64>())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', default_values_t = [0.0], value_parser = Item(number))]
     margin: Vec<f64>,
     /// Number of fields in each cell
-    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = within(1, u32::MAX))]
     fields: u32,
     /// Seed of the first field; the next fields take the next seeds [default: the scenario's]
     #[arg(long, help_heading = RUN, value_parser = seed)]

@@ -14,7 +14,7 @@ pub(super) struct CheckArgs {
 }
 
 pub(super) fn run(args: &CheckArgs) -> Result<u8, Failure> {
-    let report = check_directory(&args.directory).map_err(Failure::usage)?;
+    let report = check_directory(&args.directory)?;
     print(&report, args.json)?;
     Ok(if report.passed() { 0 } else { FAILURE })
 }

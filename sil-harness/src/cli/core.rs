@@ -29,7 +29,7 @@ pub(super) struct CoreArgs {
 pub(super) fn run(args: &CoreArgs) -> Result<u8, Failure> {
     let oracle = match &args.oracle {
         Some(path) => {
-            let field = read_field(path).map_err(Failure::usage)?;
+            let field = read_field(path)?;
             Some(Oracle::new(&field.obstacles()))
         }
         None => None,

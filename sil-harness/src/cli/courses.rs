@@ -34,7 +34,7 @@ pub(super) fn courses(
     first_seed: u64,
     gusts: f64,
 ) -> Result<u8, Failure> {
-    let file = read_aircraft(aircraft).map_err(usage)?;
+    let file = read_aircraft(aircraft)?;
     let model = AircraftModel::new(file.clone()).map_err(usage)?;
     for (obstacles, replan_hz) in flown_cells(&[20, 40], model.units().time) {
         let mut strict = [0; 2];

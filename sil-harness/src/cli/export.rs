@@ -90,18 +90,14 @@ pub(super) fn run(args: &ExportArgs) -> Result<u8, Failure> {
         (None, Format::Mcap) => args.file.with_extension("mcap"),
         (None, Format::Parquet) => args.file.with_extension("parquet"),
     };
-    if let Some(directory) = out.parent() {
-        let failed = |error| Failure::failed(format!("cannot write {}: {error}", out.display()));
-        std::fs::create_dir_all(directory).map_err(failed)?;
-    }
-    write_whole(&out, &bytes).map_err(Failure::failed)?;
+    write_whole(&out, &bytes)?;
     talk(format_args!("{} bytes in {}", bytes.len(), out.display()));
     Ok(0)
 }
 
 fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
     let usage = |why: &str| Failure::usage(format!("{}: {why}", args.file.display()));
-    let text = read_recorded(&args.file).map_err(Failure::usage)?;
+    let text = read_recorded(&args.file)?;
     if is_row_file(&text) {
         if args.table.is_some() {
             return Err(usage("a row file has one table: leave --table out"));
@@ -113,7 +109,7 @@ fn bytes(args: &ExportArgs, format: Format) -> Result<Vec<u8>, Failure> {
         }
         return of_table(&row_table(&args.file, &text)?, format);
     }
-    let log = parse_log(&args.file, &text).map_err(Failure::usage)?;
+    let log = parse_log(&args.file, &text)?;
     match (format, args.table) {
         (Format::Mcap, Some(_)) => Err(usage("MCAP holds every table: leave --table out")),
         (Format::Mcap, None) => mcap(&log).map_err(|error| failed(&error)),

@@ -45,7 +45,7 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
         // Who cannot have it is told before anything is flown.
         pdf("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1\" height=\"1\"/>")?;
     }
-    try_directory(&args.out).map_err(Failure::failed)?;
+    try_directory(&args.out)?;
     let rows = (!args.rows.is_empty()).then(|| rows_of(&args.rows));
     let rows = rows.transpose().map_err(Failure::usage)?;
     let drawing = |error: FigureError| Failure::failed(error);
@@ -78,9 +78,9 @@ pub(super) fn run(args: &FiguresArgs) -> Result<u8, Failure> {
     for (name, svg) in pictures {
         let path = args.out.join(name).with_extension("svg");
         let write = |path: &Path, bytes: &[u8]| {
-            write_whole(path, bytes).map_err(Failure::failed)?;
+            write_whole(path, bytes)?;
             talk(path.display());
-            Ok(())
+            Ok::<(), Failure>(())
         };
         write(&path, svg.as_bytes())?;
         if args.pdf {

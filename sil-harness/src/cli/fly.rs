@@ -8,7 +8,7 @@ use super::help::{CORE, OUTPUT, PLANNER, WORLD};
 use super::loudness::{Loudness, progress_bar};
 use super::scenario::{ScenarioArgs, other, replace};
 use super::signals::Signals;
-use super::values::{generator, place, preset, seconds, seed, whole};
+use super::values::{generator, number, place, preset, seconds, seed, whole};
 use crate::files::{read_field, try_directory, write_field, write_log, write_whole};
 use crate::link::{FifoLink, PATIENCE, TcpLink};
 use mpp_analysis::figure::flight_svg;
@@ -53,7 +53,7 @@ pub(super) struct FlyArgs {
     #[arg(long, help_heading = PLANNER, value_parser = preset())]
     preset: Option<Preset>,
     /// Replanning rate [Hz]; 100 must be a whole multiple of it [default: 1]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, value_parser = number)]
     replan_hz: Option<f64>,
     /// Let an oracle fly, which knows the true field and state and replans at 10 Hz of the reference aircraft
     #[arg(long, help_heading = CORE, conflicts_with = "link")]
@@ -85,7 +85,7 @@ impl FlyArgs {
         let mut file = self.scenario.file()?;
         replace(&mut file.seed, self.seed);
         if let Some(path) = &self.field {
-            file.field = read_field(path).map_err(Failure::usage)?;
+            file.field = read_field(path)?;
         }
         replace(&mut file.generator.name, self.generator);
         replace(&mut file.obstacles, self.obstacles);
@@ -103,7 +103,7 @@ impl FlyArgs {
         let Some(path) = &self.field else {
             return Ok(false);
         };
-        let asked = read_field(path).map_err(Failure::usage)?;
+        let asked = read_field(path)?;
         Ok(asked != FieldFile::of(&flown.placed))
     }
 
@@ -194,11 +194,11 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
         None => args.scenario()?,
     };
     let signals = Signals::heed()?;
-    try_directory(&args.out).map_err(Failure::failed)?;
+    try_directory(&args.out)?;
     let mut link = args.connect(&scenario)?;
     if let Some(path) = &args.save_field {
         let field = FieldFile::of(&scenario.field().obstacles);
-        write_field(path, &field).map_err(Failure::failed)?;
+        write_field(path, &field)?;
     }
     let progress = progress_bar(u64::from(scenario.ticks), "ticks");
     let mut crew = args.ground.open(&scenario, recorded, progress, signals)?;
@@ -236,7 +236,8 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, Failure> {
     Ok(interrupted.filter(|_| was).unwrap_or(code))
 }
 
-fn exit_code(error: &FlyError) -> u8 {
+/// The exit code of a command whose flight has no outcome.
+pub(super) fn exit_code(error: &FlyError) -> u8 {
     match error {
         FlyError::Scenario(_) | FlyError::Link(LinkError::Refused(_)) => USAGE,
         FlyError::Link(_) => LINK,
@@ -277,7 +278,7 @@ impl Kept {
                 let what = format!("cannot write {}: {error}", path.display());
                 Failure::failed(what)
             })?;
-            write_whole(&path, svg.as_bytes()).map_err(Failure::failed)?;
+            write_whole(&path, svg.as_bytes())?;
             self.figure = Some(path);
         }
         Ok(())

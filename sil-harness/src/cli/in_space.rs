@@ -2,16 +2,14 @@
 //! Their flags are others than those of the vertical plane, so they are commands of their own behind the same names.
 
 use super::answer::{Failure, data, print_json, talk};
-use super::fly::{keep, told};
+use super::fly::{exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
-use super::values::{baseline, item, seed, threads, wind, world};
+use super::values::{Item, baseline, number, seed, threads, whole, wind, within, world};
 use crate::campaign::pool;
 use crate::files::{read_aircraft, read_stems, try_directory};
 use clap::{Parser, Subcommand};
 use mpp_analysis::campaign::wilson;
-use mpp_sim::flight::FlyError;
-use mpp_sim::link::LinkError;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::WorldName;
@@ -55,7 +53,7 @@ struct InSpace {
     #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
     aircraft: Option<String>,
     /// Airspeed of level flight [m/s] [default: that of the aircraft's file]
-    #[arg(long, help_heading = WORLD, value_name = "M/S")]
+    #[arg(long, help_heading = WORLD, value_name = "M/S", value_parser = number)]
     airspeed: Option<f64>,
     /// World of 240 m, drawn from the seed [default: forest]
     #[arg(long, help_heading = WORLD, value_parser = world())]
@@ -64,7 +62,7 @@ struct InSpace {
     #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
     stems: Option<PathBuf>,
     /// Radius of a sphere that stands for wing and fuselage \[m\]
-    #[arg(long, help_heading = WORLD, value_name = "M")]
+    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
     sphere: Option<f64>,
     /// Measurements without errors
     #[arg(long, help_heading = WORLD)]
@@ -74,16 +72,16 @@ struct InSpace {
     wind: Option<[f64; 3]>,
     /// Standard deviation of the vertical gusts [m/s], 0 to 5; those along and across are 1.6 times as strong. Light turbulence of
     /// MIL-F-8785C has 0.77
-    #[arg(long, help_heading = WORLD, value_name = "M/S")]
+    #[arg(long, help_heading = WORLD, value_name = "M/S", value_parser = number)]
     gusts: Option<f64>,
     /// Let all beams of a sweep bear the time of its end, and not their own
     #[arg(long, help_heading = WORLD)]
     no_deskew: bool,
     /// Error of the lidar's clock \[ms\], -20 to 100: beams seem so much older than they are
-    #[arg(long, help_heading = WORLD, value_name = "MS")]
+    #[arg(long, help_heading = WORLD, value_name = "MS", value_parser = number)]
     lidar_clock: Option<f64>,
     /// Candidates of a cycle, the previous plan included [default: 3]
-    #[arg(long, help_heading = PLANNER, value_name = "N")]
+    #[arg(long, help_heading = PLANNER, value_name = "N", value_parser = within(0, u8::MAX))]
     candidates: Option<u8>,
     /// Fly the best candidate as it is, without a program
     #[arg(long, help_heading = PLANNER)]
@@ -92,10 +90,10 @@ struct InSpace {
     #[arg(long, help_heading = PLANNER, value_parser = baseline(), conflicts_with_all = ["candidates", "no_programs"])]
     baseline: Option<BaselineName>,
     /// Replanning rate [Hz], 1 to 10 [default: 10]
-    #[arg(long, help_heading = PLANNER)]
+    #[arg(long, help_heading = PLANNER, value_parser = number)]
     replan_hz: Option<f64>,
     /// Time from the start of a cycle until its plan is flown [ms], a multiple of 10 [default: 50]
-    #[arg(long, help_heading = PLANNER, value_name = "MS")]
+    #[arg(long, help_heading = PLANNER, value_name = "MS", value_parser = whole::<u32>())]
     latency_ms: Option<u32>,
     /// Seed of world and measurements; the next flights of a campaign take the next seeds [default: 1]
     #[arg(long, help_heading = WORLD, value_parser = seed)]
@@ -111,7 +109,7 @@ pub(super) struct FlyInSpace {
     #[command(flatten)]
     flown: InSpace,
     /// Density of the world: trunks/m^2, walls or rows per m, or the spheres' share of the volume
-    #[arg(long, help_heading = WORLD, value_name = "DENSITY")]
+    #[arg(long, help_heading = WORLD, value_name = "DENSITY", value_parser = number)]
     density: Option<f64>,
     /// Directory for the log and the picture
     #[arg(long, help_heading = OUTPUT, default_value = "out")]
@@ -124,10 +122,10 @@ pub(super) struct CampaignInSpace {
     #[command(flatten)]
     flown: InSpace,
     /// Densities of the world, a list: each is a cell
-    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = item::<f64>())]
+    #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(number))]
     density: Vec<f64>,
     /// Number of flights in each cell
-    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = within(1, u32::MAX))]
     trials: u32,
     /// Number of threads, at most 1024 and no more than there is work for; 0 takes every core
     #[arg(long, help_heading = RUN, default_value_t = 0, value_parser = threads())]
@@ -196,17 +194,15 @@ impl InSpace {
 
 fn flown(scenario: &SpaceScenario, signals: &Signals) -> Result<FlightLog, Failure> {
     let stops = || signals.raised().is_some();
-    fly_space_with(scenario, &mut SpacePipe::of(scenario), stops).map_err(|error| match error {
-        FlyError::Scenario(_) | FlyError::Link(LinkError::Refused(_)) => Failure::usage(error),
-        other => Failure::failed(other),
-    })
+    fly_space_with(scenario, &mut SpacePipe::of(scenario), stops)
+        .map_err(|error| Failure::new(exit_code(&error), error))
 }
 
 fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     let seed = args.flown.seed.unwrap_or(1);
     let scenario = args.flown.scenario(args.density, seed)?;
     let signals = Signals::heed()?;
-    try_directory(&args.out).map_err(Failure::failed)?;
+    try_directory(&args.out)?;
     talk(format_args!(
         "flying seed {seed} through {} bodies, preset {SPACE}, core in this process",
         scenario.world.bodies().len()

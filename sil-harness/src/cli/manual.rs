@@ -38,8 +38,6 @@ pub(super) fn man(args: &ManArgs, command: Command) -> Result<u8, Failure> {
         data(page(command)?.trim_end())?;
         return Ok(0);
     };
-    let failed = |error| Failure::failed(format!("cannot write {}: {error}", directory.display()));
-    std::fs::create_dir_all(directory).map_err(failed)?;
     let name = command.get_name().to_owned();
     write_pages(directory, command, &name)
 }
@@ -56,7 +54,7 @@ fn write_pages(directory: &Path, mut command: Command, name: &str) -> Result<u8,
     }
     let path = directory.join(format!("{name}.1"));
     let named = command.display_name(name.to_owned());
-    write_whole(&path, page(named)?.as_bytes()).map_err(Failure::failed)?;
+    write_whole(&path, page(named)?.as_bytes())?;
     talk(path.display());
     Ok(0)
 }

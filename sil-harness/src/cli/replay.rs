@@ -20,7 +20,7 @@ pub(super) struct ReplayArgs {
 
 pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
     let read = |path: &PathBuf| {
-        let log = read_log(path).map_err(Failure::usage)?;
+        let log = read_log(path)?;
         if log.header.space.is_some() {
             let why = "a page shows flights in the vertical plane: export this flight in space";
             return Err(Failure::usage(format!("{}: {why}", path.display())));
@@ -37,11 +37,7 @@ pub(super) fn run(args: &ReplayArgs) -> Result<u8, Failure> {
              same (another version, or settings that its log does not hold)",
         );
     }
-    let failed = |error| Failure::failed(format!("cannot write {}: {error}", args.out.display()));
-    if let Some(directory) = args.out.parent() {
-        std::fs::create_dir_all(directory).map_err(failed)?;
-    }
-    write_whole(&args.out, page.as_bytes()).map_err(Failure::failed)?;
+    write_whole(&args.out, page.as_bytes())?;
     talk(format_args!("page {}", args.out.display()));
     Ok(0)
 }

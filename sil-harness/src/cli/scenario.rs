@@ -3,7 +3,7 @@
 
 use super::answer::Failure;
 use super::help::{PLANNER, WORLD};
-use super::values::{Item, generator, navigation, scene, whole};
+use super::values::{Item, generator, navigation, number, scene, whole};
 use crate::files::{read_aircraft, read_field, read_lidar, read_scenario};
 use mpp_analysis::campaign::{Lists, NamedField};
 use mpp_sim::aircraft_file::AircraftModel;
@@ -26,7 +26,7 @@ pub(super) struct ScenarioArgs {
     aircraft: Option<String>,
     /// Factor on the lengths of random field, scene, lidar and strict band [default: that of the aircraft's
     /// speed squared]
-    #[arg(long, help_heading = WORLD, value_name = "FACTOR")]
+    #[arg(long, help_heading = WORLD, value_name = "FACTOR", value_parser = number)]
     world_scale: Option<f64>,
     /// Lidar (TOML, as docs/lidars/example.toml); its keys take precedence over the scenario's
     #[arg(long, help_heading = WORLD, value_name = "FILE")]
@@ -41,7 +41,7 @@ pub(super) struct ScenarioArgs {
     #[arg(long, help_heading = PLANNER, value_parser = whole::<u32>())]
     slices_per_tick: Option<u32>,
     /// Length of the flight [s], a multiple of 0.01 [default: 20]
-    #[arg(long, help_heading = WORLD)]
+    #[arg(long, help_heading = WORLD, value_parser = number)]
     duration: Option<f64>,
 }
 
@@ -49,7 +49,7 @@ impl ScenarioArgs {
     /// Reads the scenario file. The flags replace its values.
     pub(super) fn file(&self) -> Result<ScenarioFile, Failure> {
         let mut file = match &self.scenario {
-            Some(path) => read_scenario(path).map_err(Failure::usage)?,
+            Some(path) => read_scenario(path)?,
             None => ScenarioFile::default(),
         };
         if let Some(lidar) = self.lidar()? {
@@ -57,7 +57,7 @@ impl ScenarioArgs {
         }
         replace(&mut file.scene, self.scene);
         if let Some(aircraft) = &self.aircraft {
-            file.aircraft = Some(read_aircraft(aircraft).map_err(Failure::usage)?);
+            file.aircraft = Some(read_aircraft(aircraft)?);
         }
         replace(&mut file.world_scale, self.world_scale);
         replace(&mut file.navigation.source, self.navigation);
@@ -69,7 +69,7 @@ impl ScenarioArgs {
 
     /// Reads the lidar's file, if there is one.
     fn lidar(&self) -> Result<Option<LidarTable>, Failure> {
-        let read = |path: &PathBuf| read_lidar(path).map_err(Failure::usage);
+        let read = |path: &PathBuf| Ok(read_lidar(path)?);
         self.lidar.as_ref().map(read).transpose()
     }
 
@@ -132,9 +132,9 @@ impl FieldArgs {
     /// The lists of a campaign that has no others.
     pub(super) fn lists(&self) -> Result<Lists, Failure> {
         let named = |path: &PathBuf| {
-            Ok(NamedField {
+            Ok::<_, Failure>(NamedField {
                 name: path.display().to_string(),
-                content: read_field(path).map_err(Failure::usage)?,
+                content: read_field(path)?,
             })
         };
         Ok(Lists {

@@ -2,7 +2,7 @@
 
 use super::answer::{Failure, print};
 use super::courses::courses;
-use super::values::{bank, seed, wind};
+use super::values::{bank, seed, whole, wind};
 use super::worlds::{Flown, WorldArgs};
 use crate::files::{read_aircraft, write_whole};
 use mpp_core::config::TICK_PERIOD;
@@ -33,7 +33,7 @@ pub(super) struct SpaceArgs {
     #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Let the planner fly this number of flights in its vertical plane, with the course held, past 20 and 40 scaled obstacles
-    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "json", "out"])]
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "json", "out"], value_parser = whole::<u32>())]
     flights: u32,
     #[command(flatten)]
     world: WorldArgs,
@@ -128,7 +128,7 @@ pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
         ..Turned::of(args, &states)
     };
     if let Some(out) = &args.out {
-        write_whole(out, table(&states).as_bytes()).map_err(Failure::failed)?;
+        write_whole(out, table(&states).as_bytes())?;
     }
     print(&turned, args.json)?;
     Ok(0)
@@ -136,7 +136,7 @@ pub(super) fn run(args: &SpaceArgs) -> Result<u8, Failure> {
 
 /// The states of the flight after each tick, and the span. Elevator and thrust stay those of level flight.
 fn fly(args: &SpaceArgs) -> Result<(Vec<SpaceState>, f64), Failure> {
-    let file = read_aircraft(&args.aircraft).map_err(Failure::usage)?;
+    let file = read_aircraft(&args.aircraft)?;
     let aircraft = AircraftModel::new(file).map_err(Failure::usage)?;
     let mut scenario = Scenario {
         aircraft,

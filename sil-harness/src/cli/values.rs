@@ -3,12 +3,14 @@
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Command};
 use mpp_sim::generator::GeneratorName;
+use mpp_sim::names::UnknownName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
-use mpp_sim::space::BaselineName;
 use mpp_sim::space::world::WorldName;
+use mpp_sim::space::{BaselineName, SPACE};
 use std::error::Error;
 use std::ffi::OsStr;
+use std::fmt::Display;
 use std::str::FromStr;
 use std::time::Duration;
 
@@ -42,12 +44,9 @@ impl<P: TypedValueParser> TypedValueParser for Item<P> {
     }
 }
 
-/// Reads an item of a list.
-pub(super) fn item<T>() -> impl TypedValueParser<Value = T>
-where
-    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
-{
-    Item(|text: &str| text.parse::<T>())
+/// Reads a number.
+pub(super) fn number(text: &str) -> Result<f64, &'static str> {
+    text.parse().map_err(|_| "give a number, such as 1.5")
 }
 
 /// Reads a whole number that is not negative.
@@ -60,6 +59,17 @@ where
             Ok(_) => "give a smaller number",
             Err(_) => "give a whole number of 0 or more",
         })
+    }
+}
+
+/// Reads a whole number in a range.
+pub(super) fn within<T>(least: T, most: T) -> impl TypedValueParser<Value = T>
+where
+    T: FromStr + PartialOrd + Display + Copy + Send + Sync + 'static,
+{
+    move |text: &str| {
+        let found = text.parse().ok().filter(|it| (least..=most).contains(it));
+        found.ok_or_else(|| format!("give a whole number from {least} to {most}"))
     }
 }
 
@@ -87,13 +97,11 @@ pub(super) fn datagrams(text: &str) -> Result<String, String> {
 }
 
 /// Most threads that a command starts. Each has a stack of 8 MB.
-const MOST_THREADS: i64 = 1024;
+const MOST_THREADS: usize = 1024;
 
 /// Reads a number of threads.
 pub(super) fn threads() -> impl TypedValueParser<Value = usize> {
-    clap::value_parser!(u16)
-        .range(..=MOST_THREADS)
-        .map(usize::from)
+    within(0, MOST_THREADS)
 }
 
 /// Reads a seed.
@@ -141,7 +149,15 @@ pub(super) fn preset() -> impl TypedValueParser<Value = Preset> {
         Preset::Paper => "The paper's text, with its slips corrected",
         Preset::Flight => "The best parameters and rules that we know",
     };
-    named(Preset::ALL.map(|preset| PossibleValue::new(preset.name()).help(help(preset))))
+    // The command line of this preset is another one, which is chosen before flags are read.
+    let space = PossibleValue::new(SPACE).help("The planner in space: it has other flags");
+    let here = Preset::ALL.map(|preset| PossibleValue::new(preset.name()).help(help(preset)));
+    PossibleValuesParser::new(here.into_iter().chain([space])).try_map(|name| {
+        if name == SPACE {
+            return Err("give `--preset space` alone, after fly or campaign".to_owned());
+        }
+        name.parse().map_err(|error: UnknownName| error.to_string())
+    })
 }
 
 /// Reads a navigation source.

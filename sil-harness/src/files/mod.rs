@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file cannot be read.
-    #[error("cannot read {path}: {1}", path = .0.display())]
+    #[error("cannot read {path}: {why}", path = .0.display(), why = with_advice(.1, "give a file that can be read"))]
     Read(PathBuf, #[source] io::Error),
     /// There is no aircraft with this name, and no file that can be read.
     #[error(
@@ -23,7 +23,7 @@ pub enum FileError {
     )]
     Aircraft(String, #[source] io::Error),
     /// The file cannot be written.
-    #[error("cannot write {path}: {1}", path = .0.display())]
+    #[error("cannot write {path}: {why}", path = .0.display(), why = with_advice(.1, "give a path that can be written"))]
     Write(PathBuf, #[source] io::Error),
     /// The file is no scenario; the error names the file.
     #[error("{0}")]
@@ -57,6 +57,36 @@ pub enum FileError {
     NoRecords(PathBuf),
 }
 
+/// What went wrong, and what to give instead if a path is at fault. The errors of this module say it themselves.
+fn with_advice(error: &io::Error, advice: &str) -> String {
+    match error.raw_os_error() {
+        Some(_) if is_of_path(error) => format!("{error}: {advice}"),
+        _ => error.to_string(),
+    }
+}
+
+/// Whether another path would do, because this one leads nowhere, to the wrong kind of thing, or where nobody may write.
+fn is_of_path(error: &io::Error) -> bool {
+    use io::ErrorKind as Kind;
+    matches!(
+        error.kind(),
+        Kind::NotFound
+            | Kind::IsADirectory
+            | Kind::NotADirectory
+            | Kind::AlreadyExists
+            | Kind::PermissionDenied
+            | Kind::ReadOnlyFilesystem
+    )
+}
+
+impl FileError {
+    /// Whether the file could not be written: the command was sound, the machine was not.
+    #[must_use]
+    pub fn is_failure(&self) -> bool {
+        matches!(self, Self::Write(..))
+    }
+}
+
 /// Greatest size of a file that people write: scenarios, parameters, keys \[bytes\].
 pub const MOST_WRITTEN: u64 = 1 << 20;
 /// Greatest size of a field, which has at most 10,000 points \[bytes\].
@@ -84,8 +114,12 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
         let why = format!("it has more than {most} bytes: give another file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, why));
     }
-    let text = String::from_utf8(bytes).map_err(|_| {
-        let why = "it is no UTF-8 text: give another file";
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let why = match error.as_bytes() {
+            [0x1f, 0x8b, ..] | [b'P', b'K', 3, 4, ..] => "it is compressed: unpack it",
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it is UTF-16 text: save it as UTF-8",
+            _ => "it is no UTF-8 text: give another file",
+        };
         io::Error::new(io::ErrorKind::InvalidData, why)
     })?;
     Ok(match text.strip_prefix('\u{feff}') {
@@ -239,7 +273,7 @@ pub fn write_log(path: &Path, log: &FlightLog) -> Result<(), FileError> {
     write_whole(path, &bytes)
 }
 
-/// Writes a file whole or not at all: beside its place first, and then into it. What was there
+/// Writes a file, and the directories above it, whole or not at all: beside its place first, and then into it. What was there
 /// stays until then. A device or a pipe is written to as it is.
 ///
 /// # Errors
@@ -264,6 +298,9 @@ fn write_beside(
     let failed = |error| FileError::Write(path.to_owned(), error);
     if path.metadata().is_ok_and(|found| !found.is_file()) {
         return std::fs::write(path, bytes).map_err(failed);
+    }
+    if let Some(directory) = path.parent() {
+        std::fs::create_dir_all(directory).map_err(failed)?;
     }
     // A link stays one: what it leads to is written.
     let place = path.canonicalize().unwrap_or_else(|_| path.to_owned());

@@ -78,7 +78,11 @@ fn a_flight_is_not_begun_if_something_about_it_cannot_be() {
             "--mavlink",
         ),
         (format!("--params {file}"), 2, "is not NAME,VALUE"),
-        (format!("--out {}", below.display()), 1, "cannot write"),
+        (
+            format!("--out {}", below.display()),
+            1,
+            "give a path that can be written",
+        ),
     ] {
         let out = folder.join("out");
         let output = answer(&format!("fly --duration 1 --out {} {flags}", out.display()));

@@ -21,7 +21,10 @@ fn more_threads_than_a_machine_can_have_are_refused() {
         "aircraft zagi --flights 1 --threads 1025",
     ] {
         let talk = refused(command);
-        assert!(talk.contains("is not in 0..=1024"), "{talk}");
+        assert!(
+            talk.contains("give a whole number from 0 to 1024"),
+            "{talk}"
+        );
     }
     // One flight takes one thread, however many are allowed.
     let command = "campaign --trials 1 --duration 1 --threads 1024";
@@ -225,4 +228,53 @@ fn a_bench_takes_the_obstacles_of_its_scenario() {
     assert_eq!(obstacles("obstacles = 7", " --obstacles 9"), 9);
     assert_eq!(obstacles("scene = \"flytrap\"", ""), 0);
     std::fs::remove_file(scenario).unwrap();
+}
+
+#[test]
+fn every_flag_that_takes_a_number_says_what_to_give() {
+    for (command, hint) in [
+        ("fly --replan-hz x", "give a number, such as 1.5"),
+        ("fly --instance 400", "give a whole number from 0 to 253"),
+        ("bench cycle --flights 0", "give a whole number from 1 to"),
+        (
+            "aircraft zagi --flights 1.5",
+            "give a whole number of 0 or more",
+        ),
+        ("ceiling --margin 0,a", "give a number, such as 1.5"),
+        (
+            "campaign --preset space --gusts x",
+            "give a number, such as 1.5",
+        ),
+        (
+            "campaign --preset space --candidates 300",
+            "give a whole number from 0 to 255",
+        ),
+        ("campaign --paths 0 --trials 1", "always refines its paths"),
+        (
+            "campaign --preset flight,space",
+            "give `--preset space` alone",
+        ),
+    ] {
+        let talk = refused(command);
+        assert!(talk.contains(hint), "{command}: {talk}");
+    }
+}
+
+#[test]
+fn a_file_of_another_form_is_named_by_its_form() {
+    for (name, text, form) in [
+        ("a.xml", "<aircraft><mass/></aircraft>\n", "XML"),
+        ("a.json", "{\"mass\": 1}\n", "JSON"),
+        ("a.csv", "x,z,radius\n1,2,3\n", "CSV"),
+        ("a.wkt", "POLYGON ((0 0, 1 0, 1 1, 0 0))\n", "WKT"),
+    ] {
+        let path = std::env::temp_dir().join(format!("{}-{name}", std::process::id()));
+        std::fs::write(&path, text).unwrap();
+        for command in ["fly --field", "fly --scenario", "fly --lidar", "aircraft"] {
+            let talk = refused(&format!("{command} {}", path.display()));
+            let said = format!("it is {form}, and this file has to be TOML");
+            assert!(talk.contains(&said), "{command} {name}: {talk}");
+        }
+        std::fs::remove_file(path).unwrap();
+    }
 }

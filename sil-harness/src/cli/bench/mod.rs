@@ -4,7 +4,7 @@ mod authors;
 
 use super::answer::{Failure, print, talk};
 use super::scenario::{ScenarioArgs, replace};
-use super::values::{preset, seed};
+use super::values::{number, preset, seed, whole, within};
 use crate::files::{read_instances, write_instances};
 use indicatif::ProgressBar;
 use mpp_analysis::bench::{CycleBench, DENSE, SPARSE, generate, run_cycle};
@@ -37,19 +37,19 @@ struct CycleArgs {
     #[arg(long)]
     obstacles: Option<usize>,
     /// Number of candidate paths of a cycle [default: 25]
-    #[arg(long)]
+    #[arg(long, value_parser = whole::<u16>())]
     paths: Option<u16>,
     /// Replanning rate [Hz] [default: 1]
-    #[arg(long)]
+    #[arg(long, value_parser = number)]
     replan_hz: Option<f64>,
     /// Number of flights to record
-    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 20, value_parser = within(1, u32::MAX))]
     flights: u32,
     /// Seed of the first flight; the next flights take the next seeds [default: 1]
     #[arg(long, value_parser = seed)]
     seed: Option<u64>,
     /// Number of times that each cycle is planned; the fastest counts
-    #[arg(long, default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, default_value_t = 5, value_parser = within(1, u32::MAX))]
     runs: u32,
     /// Plan with the authors' own code too, five flights from the same seed: the Python of the environment
     /// that bench/authors/README.md sets up. The command then runs in the root of the repository
@@ -67,7 +67,7 @@ struct QpArgs {
     #[arg(long)]
     instances: Option<PathBuf>,
     /// Number of programs to generate from flights
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_parser = within(1_u32, 1_000_000))]
     generate: Option<u32>,
     /// Generate them from flights past 120 to 240 obstacles, and not 20 to 60
     #[arg(long, requires = "generate")]
@@ -128,7 +128,7 @@ fn run_qp_bench(args: &QpArgs) -> Result<u8, Failure> {
     }
     let instances = instances(args)?;
     if let Some(path) = &args.export {
-        write_instances(path, &instances).map_err(Failure::failed)?;
+        write_instances(path, &instances)?;
         talk(format_args!(
             "{} programs in {}",
             instances.len(),
@@ -157,7 +157,7 @@ fn compare(_: &[Instance], _: bool) -> Result<(), Failure> {
 fn instances(args: &QpArgs) -> Result<Vec<Instance>, Failure> {
     let mut instances = Vec::new();
     if let Some(path) = &args.instances {
-        instances.extend(read_instances(path).map_err(Failure::usage)?);
+        instances.extend(read_instances(path)?);
     }
     if let Some(count) = args.generate {
         let obstacles = if args.dense { DENSE } else { SPARSE };

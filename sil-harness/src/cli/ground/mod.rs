@@ -5,7 +5,7 @@ mod pacer;
 
 use super::answer::{Failure, LINK, USAGE, talk};
 use super::signals::Signals;
-use super::values::{datagrams, place};
+use super::values::{datagrams, place, within};
 use crate::files::{MOST_WRITTEN, read_log, read_text};
 use crate::ground::home::Home;
 use crate::ground::param_file;
@@ -36,7 +36,7 @@ pub(super) struct GroundArgs {
     #[arg(long, num_args = 0..=1, default_missing_value = "usual", value_name = "UDP", value_delimiter = ',', value_parser = datagrams)]
     mavlink: Vec<String>,
     /// Number N of this vehicle among several: system N + 1, program port 14540 + N
-    #[arg(long, default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=253))]
+    #[arg(long, default_value_t = 0, value_parser = within(0_u8, 253))]
     instance: u8,
     /// Place below the start, metres above the sea, and heading [default: 47.397742,8.545594,488,0, where PX4 starts]
     #[arg(long, value_name = "LAT,LON,ALT,HEADING", allow_hyphen_values = true)]
@@ -221,7 +221,8 @@ impl GroundArgs {
             return Ok(Vec::new());
         };
         let usage = |why: String| unusable("--params", path, why);
-        let text = read_text(path, MOST_WRITTEN).map_err(|error| usage(error.to_string()))?;
+        let text = read_text(path, MOST_WRITTEN)
+            .map_err(|error| usage(format!("{error}: give a file of NAME,VALUE lines")))?;
         let mut tuning =
             Tuning::new(&scenario.configure()).map_err(|why| usage(why.to_string()))?;
         let mut orders = Vec::new();
