@@ -75,6 +75,15 @@ fn the_elevator_of_a_slow_aircraft_is_not_suspected() {
     }
 }
 
+/// Its greatest lift is 1.29 times that of level flight, and climbs make it slow.
+#[test]
+fn a_wing_with_little_lift_in_hand_does_not_creep_into_the_stall() {
+    let stol = brought("stol", include_str!("../aircraft/stol.toml"));
+    let strict = |seed| flown(&stol, 20, seed).summary.strict;
+    let passed = (780_030..780_050).filter(|seed| strict(*seed)).count();
+    assert!(passed >= 19, "{passed} of 20");
+}
+
 /// The wing pitches up half way to the stall, fast enough to swing through, and the elevator is asked for all it has.
 #[test]
 fn the_guard_stops_a_wing_that_swings_up_before_the_stall() {

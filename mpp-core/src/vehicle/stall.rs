@@ -25,6 +25,11 @@ pub struct StallGuard {
     limits: [f64; 2],
     /// Angle of attack in the turn that a unit of the command gives \[rad\].
     per_unit: f64,
+    /// Share of the moments by which a turn damps the pitch [-].
+    damped: f64,
+    /// Angle of attack above that of no lift that carries the weight at an airspeed of 1 m/s [rad m^2/s^2], and at the trim's
+    /// airspeed \[rad\].
+    carries: [f64; 2],
     /// Path rate of an angle of attack above level flight [1/s].
     path_rate: f64,
     /// Time that the angle of attack takes to follow the elevator \[s\].
@@ -47,6 +52,8 @@ impl StallGuard {
             trim: [trim.control.elevator, level],
             limits: [level - below, level + above],
             per_unit: -a.moment_elevator / moment,
+            damped: 1.0 - a.moment_alpha / moment,
+            carries: [1.0, speed].map(|speed| a.level_lift(speed) / a.lift_alpha),
             path_rate: flow * a.lift_alpha / a.mass,
             lead: 1.0 / libm::sqrt(stiffness),
         }
@@ -57,17 +64,22 @@ impl StallGuard {
     pub fn within(&self, mut command: Control, air: &AirState) -> Control {
         let [elevator, level] = self.trim;
         let there = air.angle_of_attack();
-        let rate = air.pitch_rate - self.path_rate * (there - level);
-        let soon = there + self.lead * rate;
-        let balanced = level + self.per_unit * (command.elevator - elevator);
-        // The rate may only tighten a limit.
+        // The slower the aircraft, the less an angle turns it, and the less the turn damps the pitch.
+        let [carries, at_trim] = self.carries;
+        // Beyond the greatest angle nothing carries it.
         let [least, most] = self.limits;
+        let slower = (carries / (air.airspeed * air.airspeed) - at_trim).min(most - level);
+        let rate = air.pitch_rate - self.path_rate * (there - level - slower);
+        let soon = there + self.lead * rate;
+        let still = level + self.damped * slower;
+        let balanced = still + self.per_unit * (command.elevator - elevator);
+        // The rate may only tighten a limit.
         let least = least + STALL_LEAD * (least - there.min(soon));
         let most = most + STALL_LEAD * (most - there.max(soon));
         let kept = balanced.min(most).max(least);
         // A command within the limits keeps its bits.
         if libm::fabs(kept - balanced) > 0.0 {
-            command.elevator = elevator + (kept - level) / self.per_unit;
+            command.elevator = elevator + (kept - still) / self.per_unit;
         }
         command
     }
