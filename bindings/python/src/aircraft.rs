@@ -1,8 +1,9 @@
 //! Aircraft.
 
 use crate::errors::{input, scenario};
-use crate::input::{table, text};
+use crate::input::text;
 use crate::output::plain;
+use crate::typed::{typed, unlike};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::scenario::ScenarioError;
 use pyo3::prelude::*;
@@ -25,15 +26,16 @@ impl Aircraft {
             return Ok(Self { model });
         };
         let (name, file) = if let Ok(keys) = source.cast::<PyDict>() {
-            (None, table("aircraft", keys)?)
+            (None, typed("aircraft", keys)?)
         } else {
-            let name = source.str()?.to_string();
+            let name = source.str()?.to_string_lossy().into_owned();
             match AircraftFile::known(&name) {
                 Some(known) => (None, known),
                 None if is_name(source) => return Err(unknown(&name)),
                 None => {
-                    let file = AircraftFile::parse(&name, &text(source)?).map_err(scenario)?;
-                    (Some(name), file)
+                    let (path, text) = text("aircraft", source)?;
+                    let file = AircraftFile::parse(&path, &text).map_err(scenario)?;
+                    (Some(path), file)
                 }
             }
         };
@@ -103,8 +105,7 @@ fn is_name(source: &Bound<'_, PyAny>) -> bool {
 }
 
 fn unknown(name: &str) -> PyErr {
-    let known = AircraftFile::KNOWN.map(|(known, _)| known).join(", ");
-    input(format!(
-        "aircraft: there is no `{name}`: give {known}, a file, or a dict of its keys"
-    ))
+    let known = AircraftFile::KNOWN.map(|(known, _)| known);
+    let advice = unlike(&format!("`{name}`"), name, &known);
+    input(format!("aircraft: {advice}, a file, or a dict of its keys"))
 }

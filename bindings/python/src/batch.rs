@@ -2,7 +2,7 @@
 
 use crate::episode::{Episode, controls, seen};
 use crate::errors::{self, alone, input, state};
-use crate::input::{rows, vector};
+use crate::input::{argument, rows, vector};
 use crate::output::flat;
 use crate::scenario;
 use mpp_core::vehicle::Control;
@@ -14,7 +14,7 @@ use pyo3::types::{PyDict, PyTuple};
 use std::sync::{Arc, Mutex};
 
 /// Greatest number of flights side by side. Each takes some 10 kB, and 16 bytes a tick.
-const MOST_FLIGHTS: i128 = 100_000;
+const MOST_FLIGHTS: usize = 100_000;
 
 /// Flights of one scenario with different seeds. `python/mppflight/environments.py` makes environments of them.
 #[pyclass(frozen, module = "mppflight._native")]
@@ -59,12 +59,15 @@ impl Batch {
     /// `count` flights of the scenario with these keys, each with a scan `lidar_hz` times a second.
     #[new]
     #[pyo3(signature = (keys, count, lidar_hz = 10.0))]
-    fn new(keys: &Bound<'_, PyDict>, count: i128, lidar_hz: f64) -> PyResult<Self> {
-        if !(1..=MOST_FLIGHTS).contains(&count) {
-            return Err(input(format!(
-                "num_envs: give 1 to {MOST_FLIGHTS} flights, not {count}"
-            )));
-        }
+    fn new(
+        keys: &Bound<'_, PyDict>,
+        count: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = argument)] lidar_hz: f64,
+    ) -> PyResult<Self> {
+        let some = argument(count).ok();
+        let some = some.filter(|count| (1..=MOST_FLIGHTS).contains(count));
+        let wrong = || format!("num_envs: give 1 to {MOST_FLIGHTS} flights, not {count}");
+        let count = some.ok_or_else(|| input(wrong()))?;
         let plan = Arc::new(Flights::new(scenario::file(keys)?, lidar_hz)?);
         let runs = (0..count).map(|_| None).collect();
         let guarded = Mutex::new(runs);

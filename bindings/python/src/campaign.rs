@@ -3,7 +3,7 @@
 use crate::aside::aside;
 use crate::errors::{self, input};
 use crate::field::Field;
-use crate::input::whole;
+use crate::input::argument;
 use crate::scenario;
 use crate::typed::typed;
 use mpp_analysis::campaign::{self, Campaign as Grid, Cell, Lists, NamedField, Row, Shard};
@@ -47,7 +47,7 @@ impl Campaign {
     )]
     fn new(
         py: Python<'_>,
-        keys: &Bound<'_, PyDict>,
+        keys: &Bound<'_, PyAny>,
         trials: &Bound<'_, PyAny>,
         seed: Option<&Bound<'_, PyAny>>,
         preset: Vec<Bound<'_, PyAny>>,
@@ -55,10 +55,15 @@ impl Campaign {
         obstacles: Vec<Bound<'_, PyAny>>,
         paths: Vec<Bound<'_, PyAny>>,
         replan_hz: Vec<Bound<'_, PyAny>>,
-        fields: Option<BTreeMap<String, Py<Field>>>,
+        fields: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let keys = keys.cast::<PyDict>();
+        let keys = keys.map_err(|_| input("keys: give a dict of the keys of a scenario"))?;
         let scenario = scenario::file(keys)?;
+        let fields = fields.map(|it| it.extract::<BTreeMap<String, Py<Field>>>());
+        let fields = fields.transpose();
         let field = fields
+            .map_err(|_| input("fields: give a dict of Fields by name"))?
             .unwrap_or_default()
             .into_iter()
             .map(|(name, field)| NamedField {
@@ -84,8 +89,10 @@ impl Campaign {
 
     /// The campaign of a text that `to_json` gave.
     #[staticmethod]
-    fn from_json(text: &str) -> PyResult<Self> {
-        serde_json::from_str(text).map(Self::of).map_err(input)
+    fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
+        serde_json::from_str(&typed::<String>("text", text)?)
+            .map(Self::of)
+            .map_err(input)
     }
 
     /// The campaign as it stands in the header of a row file.
@@ -102,8 +109,11 @@ impl Campaign {
 
     /// Flies one flight: cells one after the other, each seed by seed. Gives its row: the line that
     /// `sil-harness campaign --out` writes, without its end.
-    fn fly(&self, py: Python<'_>, index: i128) -> PyResult<String> {
-        let index = whole::<usize>("index", index)?;
+    fn fly(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = argument)] index: usize,
+    ) -> PyResult<String> {
         let trials = (self.campaign.trials as usize).max(1);
         let Some(cell) = self.cells.get(index / trials) else {
             let last = self.__len__().saturating_sub(1);

@@ -2,7 +2,7 @@
 
 use crate::aside::aside;
 use crate::errors::{self, FlightError, alone, input, state};
-use crate::input::{finite, whole};
+use crate::input::{argument, finite};
 use crate::planner::scan;
 use crate::{look, scenario};
 use hil_protocol::{
@@ -72,14 +72,14 @@ impl Core {
     fn step(
         &self,
         py: Python<'_>,
-        airspeed: Option<f64>,
-        pitch: Option<f64>,
-        air_age: i128,
-        x: Option<f64>,
-        z: Option<f64>,
-        sigma: f64,
-        position_age: i128,
-        velocity: Option<(f64, f64, f64)>,
+        #[pyo3(from_py_with = argument)] airspeed: Option<f64>,
+        #[pyo3(from_py_with = argument)] pitch: Option<f64>,
+        #[pyo3(from_py_with = argument)] air_age: u32,
+        #[pyo3(from_py_with = argument)] x: Option<f64>,
+        #[pyo3(from_py_with = argument)] z: Option<f64>,
+        #[pyo3(from_py_with = argument)] sigma: f64,
+        #[pyo3(from_py_with = argument)] position_age: u32,
+        #[pyo3(from_py_with = argument)] velocity: Option<(f64, f64, f64)>,
         scan: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<(f64, f64)> {
         let mut core = alone(&self.guarded, "core")?;
@@ -98,8 +98,6 @@ impl Core {
                 "velocity: give a sigma of 0 or more, not {sigma}"
             )));
         }
-        let air_age = whole("air_age", air_age)?;
-        let position_age = whole("position_age", position_age)?;
         let frame = SensorFrame {
             tick,
             air: air.map(|(airspeed, pitch)| AirData {

@@ -1,8 +1,9 @@
 //! Fields of obstacles.
 
 use crate::errors::{input, scenario};
-use crate::input::{finite, rows, table, text, vector, whole};
+use crate::input::{argument, finite, rows, text, vector};
 use crate::output::plain;
+use crate::typed::typed;
 use mpp_sim::field::{Circle, Field as _, FieldFile, Line, ObstacleField, Polygon, Shape};
 use mpp_sim::scenario::ScenarioFile;
 use numpy::{PyArray1, PyArray2};
@@ -31,10 +32,10 @@ impl Field {
     #[new]
     fn new(source: &Bound<'_, PyAny>) -> PyResult<Self> {
         if let Ok(keys) = source.cast::<PyDict>() {
-            return Self::checked(table("field", keys)?);
+            return Self::checked(typed("field", keys)?);
         }
-        let name = source.str()?.to_string();
-        let file = FieldFile::parse(&name, &text(source)?).map_err(input)?;
+        let (path, text) = text("field", source)?;
+        let file = FieldFile::parse(&path, &text).map_err(input)?;
         Self::checked(file)
     }
 
@@ -43,24 +44,25 @@ impl Field {
     /// generator takes. The flight lasts for `duration` [s]; lengths are `world_scale` times as long.
     #[staticmethod]
     #[pyo3(signature = (
-        generator = "paper", *, obstacles = 20, seed = 1, duration = None, world_scale = 1.0, **parameters
-    ))]
+        generator = None, *, obstacles = 20, seed = 1, duration = None, world_scale = 1.0, **parameters
+    ), text_signature = "(generator=\"paper\", *, obstacles=20, seed=1, duration=None, world_scale=1.0, \
+        **parameters)")]
     fn generate(
         py: Python<'_>,
-        generator: &str,
-        obstacles: i128,
-        seed: i128,
-        duration: Option<i128>,
-        world_scale: f64,
+        generator: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = argument)] obstacles: usize,
+        #[pyo3(from_py_with = argument)] seed: u64,
+        #[pyo3(from_py_with = argument)] duration: Option<f64>,
+        #[pyo3(from_py_with = argument)] world_scale: f64,
         parameters: Option<&Bound<'_, PyDict>>,
     ) -> PyResult<Self> {
         let keys = parameters.map_or_else(|| Ok(PyDict::new(py)), Bound::copy)?;
         keys.set_item("name", generator)?;
         let file = ScenarioFile {
-            generator: table("generator", &keys)?,
-            obstacles: Some(whole("obstacles", obstacles)?),
-            seed: Some(whole("seed", seed)?),
-            duration: duration.map(|value| value as f64),
+            generator: typed("generator", &keys)?,
+            obstacles: Some(obstacles),
+            seed: Some(seed),
+            duration,
             world_scale: Some(world_scale),
             ..ScenarioFile::default()
         };
@@ -74,7 +76,7 @@ impl Field {
     #[pyo3(signature = (circles = None, polygons = None, ground = None, ceiling = None))]
     fn of_arrays(
         circles: Option<&Bound<'_, PyAny>>,
-        polygons: Option<Vec<Bound<'_, PyAny>>>,
+        polygons: Option<&Bound<'_, PyAny>>,
         ground: Option<&Bound<'_, PyAny>>,
         ceiling: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
@@ -95,6 +97,9 @@ impl Field {
             radius,
             velocity: (0.0, 0.0),
         };
+        let rings = polygons.map(|all| all.try_iter()?.collect::<PyResult<Vec<_>>>());
+        let rings = rings.transpose();
+        let rings = rings.map_err(|_| input("polygons: give a list of arrays of corners"))?;
         let polygon = |array: Bound<'_, PyAny>| points("polygons", &array).map(Polygon::of_ring);
         Self::checked(FieldFile {
             circle: circles
@@ -102,7 +107,7 @@ impl Field {
                 .into_iter()
                 .map(circle)
                 .collect(),
-            polygon: (polygons.unwrap_or_default().into_iter())
+            polygon: (rings.unwrap_or_default().into_iter())
                 .map(polygon)
                 .collect::<PyResult<_>>()?,
             ground: line("ground", ground)?,
@@ -143,7 +148,7 @@ impl Field {
     fn clearance<'py>(
         &self,
         points: &Bound<'py, PyAny>,
-        time: f64,
+        #[pyo3(from_py_with = argument)] time: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (py, time) = (points.py(), finite("time", time)?);
         let points = rows::<2>("points", points)?;
@@ -169,10 +174,10 @@ impl Field {
     #[pyo3(signature = (x, z, angles, time = 0.0))]
     fn ranges<'py>(
         &self,
-        x: f64,
-        z: f64,
+        #[pyo3(from_py_with = argument)] x: f64,
+        #[pyo3(from_py_with = argument)] z: f64,
         angles: &Bound<'py, PyAny>,
-        time: f64,
+        #[pyo3(from_py_with = argument)] time: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let mut field = self.field.clone();
         field.move_to(finite("time", time)?);

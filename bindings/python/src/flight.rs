@@ -69,8 +69,10 @@ impl Flight {
 impl Flight {
     /// The flight of a log's bytes, as `to_json` gives them and `sil-harness fly` writes them.
     #[staticmethod]
-    fn from_json(log: &[u8]) -> PyResult<Self> {
-        Self::new(FlightLog::from_json(log).map_err(input)?)
+    fn from_json(log: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let log = log.cast::<PyBytes>();
+        let log = log.map_err(|_| input("log: give the bytes of a log"))?;
+        Self::new(FlightLog::from_json(log.as_bytes()).map_err(input)?)
     }
 
     /// The log as JSON, byte for byte what `sil-harness fly` writes.

@@ -4,25 +4,23 @@ use crate::errors::input;
 use crate::typed::typed;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 use serde::de::DeserializeOwned;
 
-/// What a dict with the keys of a file says. An error names the key.
-pub(crate) fn table<T: DeserializeOwned>(what: &str, keys: &Bound<'_, PyDict>) -> PyResult<T> {
-    let own = PyDict::new(keys.py());
-    for (key, value) in keys {
-        if !value.is_none() {
-            own.set_item(key, value)?;
-        }
-    }
-    typed(what, &own)
+/// What an argument says. `InputError` puts its name in front of an error.
+pub(crate) fn argument<T: DeserializeOwned>(value: &Bound<'_, PyAny>) -> PyResult<T> {
+    typed("", value)
 }
 
-/// The text of a file.
-pub(crate) fn text(path: &Bound<'_, PyAny>) -> PyResult<String> {
-    let paths = path.py().import("pathlib")?;
-    let path = paths.call_method1("Path", (path,))?;
-    path.call_method1("read_text", ("utf-8-sig",))?.extract()
+/// The path of the file of an aircraft, a field, a lidar or a scenario, and its text.
+pub(crate) fn text(name: &str, path: &Bound<'_, PyAny>) -> PyResult<(String, String)> {
+    let path = (path.py().import("pathlib")?).call_method1("Path", (path,));
+    let path = path.map_err(|error| input(format!("{name}: give a file: {error}")))?;
+    let shown = path.str()?.to_string_lossy().into_owned();
+    if shown.contains('\0') {
+        return Err(input(format!("{name}: give a file, not {}", path.repr()?)));
+    }
+    let text = path.call_method1("read_text", ("utf-8-sig",))?;
+    Ok((shown, text.extract()?))
 }
 
 /// An array of numbers with this many axes, as `f64`.
@@ -71,15 +69,6 @@ pub(crate) fn rows<const COLUMNS: usize>(
     Ok((array.rows().into_iter())
         .map(|row| std::array::from_fn(|column| row[column]))
         .collect())
-}
-
-/// A whole number that is not negative and fits.
-pub(crate) fn whole<T: TryFrom<i128>>(name: &str, value: i128) -> PyResult<T> {
-    T::try_from(value).map_err(|_| {
-        let bits = 8 * size_of::<T>();
-        let advice = format!("{name}: give a whole number from 0 to 2**{bits} - 1, not {value}");
-        input(advice)
-    })
 }
 
 /// A finite number.

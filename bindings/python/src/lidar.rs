@@ -1,9 +1,10 @@
 //! Lidars.
 
-use crate::errors::scenario;
+use crate::errors::{input, scenario};
 use crate::field::Field;
-use crate::input::{finite, table, text, whole};
+use crate::input::{argument, finite, text};
 use crate::output::plain;
+use crate::typed::typed;
 use mpp_core::vehicle::VehicleState;
 use mpp_sim::lidar::{FanLidar, Lidar as _, LidarConfig};
 use mpp_sim::scenario::{LidarTable, ScenarioFile};
@@ -26,12 +27,12 @@ impl Lidar {
     fn new(path: Option<&Bound<'_, PyAny>>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let below = match path {
             Some(path) => {
-                let name = path.str()?.to_string();
-                LidarTable::parse(&name, &text(path)?).map_err(scenario)?
+                let (path, text) = text("lidar", path)?;
+                LidarTable::parse(&path, &text).map_err(scenario)?
             }
             None => LidarTable::default(),
         };
-        let keys: Option<LidarTable> = keys.map(|keys| table("lidar", keys)).transpose()?;
+        let keys: Option<LidarTable> = keys.map(|keys| typed("lidar", keys)).transpose()?;
         let lidar = keys.unwrap_or_default().before(&below);
         // A scenario checks its lidar.
         let file = ScenarioFile {
@@ -65,17 +66,18 @@ impl Lidar {
     #[pyo3(signature = (field, x, z, pitch = 0.0, seed = None))]
     fn scan<'py>(
         &self,
-        py: Python<'py>,
-        field: &Field,
-        x: f64,
-        z: f64,
-        pitch: f64,
-        seed: Option<i128>,
+        field: &Bound<'py, PyAny>,
+        #[pyo3(from_py_with = argument)] x: f64,
+        #[pyo3(from_py_with = argument)] z: f64,
+        #[pyo3(from_py_with = argument)] pitch: f64,
+        #[pyo3(from_py_with = argument)] seed: Option<u64>,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         for (name, value) in [("x", x), ("z", z), ("pitch", pitch)] {
             finite(name, value)?;
         }
-        let seed = seed.map(|seed| whole("seed", seed)).transpose()?;
+        let py = field.py();
+        let field = field.cast::<Field>();
+        let field = field.map_err(|_| input("field: give a Field"))?.get();
         let mut state = VehicleState {
             x,
             z,
@@ -89,6 +91,11 @@ impl Lidar {
         let mut lidar = FanLidar::new(seed.unwrap_or(0), config);
         let ranges = py.detach(|| lidar.scan(&state, &field.field));
         Ok(PyArray1::from_vec(py, ranges))
+    }
+
+    /// For pickle and copy: no arguments, and the keys.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyAny>)> {
+        Ok(((), self.numbers(py)?))
     }
 
     fn __repr__(&self) -> String {

@@ -2,7 +2,7 @@
 
 use crate::aside::aside;
 use crate::errors::{self, alone, input};
-use crate::input::{finite, vector};
+use crate::input::{argument, finite, vector};
 use crate::{look, scenario};
 use mpp_analysis::recording;
 use mpp_core::planner::Verdict;
@@ -52,14 +52,14 @@ impl Planner {
     fn plan<'py>(
         &self,
         ranges: &Bound<'py, PyAny>,
-        time: f64,
-        x: f64,
-        z: f64,
-        airspeed: Option<f64>,
-        pitch: Option<f64>,
-        pitch_rate: f64,
-        flight_path: f64,
-        wind: (f64, f64),
+        #[pyo3(from_py_with = argument)] time: f64,
+        #[pyo3(from_py_with = argument)] x: f64,
+        #[pyo3(from_py_with = argument)] z: f64,
+        #[pyo3(from_py_with = argument)] airspeed: Option<f64>,
+        #[pyo3(from_py_with = argument)] pitch: Option<f64>,
+        #[pyo3(from_py_with = argument)] pitch_rate: f64,
+        #[pyo3(from_py_with = argument)] flight_path: f64,
+        #[pyo3(from_py_with = argument)] wind: (f64, f64),
     ) -> PyResult<Bound<'py, PyDict>> {
         let py = ranges.py();
         let mut planner = alone(&self.guarded, "planner")?;

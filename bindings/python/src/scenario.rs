@@ -29,9 +29,7 @@ pub(crate) fn in_space(keys: &Bound<'_, PyDict>) -> PyResult<Option<SpaceScenari
     let all = PyDict::new(keys.py());
     for (key, value) in keys {
         let name = key.str()?.to_string();
-        if !value.is_none() {
-            all.set_item(key, table_of(&name, &value)?)?;
-        }
+        all.set_item(key, table_of(&name, &value)?)?;
     }
     let file: SpaceFile = typed("", &all)?;
     keys.py()
@@ -63,15 +61,15 @@ pub(crate) fn file(keys: &Bound<'_, PyDict>) -> PyResult<ScenarioFile> {
     let py = keys.py();
     let all = match keys.get_item("scenario")? {
         Some(path) if !path.is_none() => {
-            let name = path.str()?.to_string();
-            let below = ScenarioFile::parse(&name, &text(&path)?).map_err(scenario)?;
+            let (path, text) = text("scenario", &path)?;
+            let below = ScenarioFile::parse(&path, &text).map_err(scenario)?;
             output::plain(py, &below)?.cast_into::<PyDict>()?
         }
         _ => PyDict::new(py),
     };
     for (key, value) in keys {
         let name = key.str()?.to_string();
-        if name != "scenario" && !value.is_none() {
+        if name != "scenario" && !(value.is_none() && all.contains(&key)?) {
             all.set_item(key, table_of(&name, &value)?)?;
         }
     }
@@ -81,14 +79,23 @@ pub(crate) fn file(keys: &Bound<'_, PyDict>) -> PyResult<ScenarioFile> {
 /// The value of a key as it stands in a scenario file.
 fn table_of<'py>(key: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     let py = value.py();
-    if let Ok(aircraft) = value.cast::<Aircraft>() {
-        return output::plain(py, &aircraft.get().model.file);
-    }
-    if let Ok(field) = value.cast::<Field>() {
-        return output::plain(py, &field.get().file);
-    }
-    if let Ok(lidar) = value.cast::<Lidar>() {
-        return output::plain(py, &lidar.get().table);
+    match key {
+        "aircraft" => {
+            if let Ok(own) = value.cast::<Aircraft>() {
+                return output::plain(py, &own.get().model.file);
+            }
+        }
+        "field" => {
+            if let Ok(own) = value.cast::<Field>() {
+                return output::plain(py, &own.get().file);
+            }
+        }
+        "lidar" => {
+            if let Ok(own) = value.cast::<Lidar>() {
+                return output::plain(py, &own.get().table);
+            }
+        }
+        _ => {}
     }
     let named = |name: &str| {
         let table = PyDict::new(py);
@@ -99,7 +106,7 @@ fn table_of<'py>(key: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, Py
     match key {
         "generator" if is_text => named("name"),
         "navigation" if is_text => named("source"),
-        "aircraft" if is_text && AircraftFile::known(&value.str()?.to_cow()?).is_none() => {
+        "aircraft" if is_text && AircraftFile::known(&value.str()?.to_string_lossy()).is_none() => {
             let aircraft = py.get_type::<Aircraft>().call1((value,))?;
             table_of(key, &aircraft)
         }

@@ -76,6 +76,10 @@ impl Wrong {
             "a string" => "a text",
             "a sequence" => "a list",
             table if table.starts_with("struct ") => "a dict of its keys",
+            pair if pair.ends_with("of size 2") => "a list of 2",
+            triple if triple.ends_with("of size 3") || triple.ends_with("of length 3") => {
+                "a list of 3"
+            }
             name if name.starts_with("enum ") || name == "variant identifier" => "a name",
             other => other,
         };
@@ -120,6 +124,30 @@ impl de::Error for Wrong {
     fn invalid_value(_: Unexpected<'_>, expected: &dyn Expected) -> Self {
         Self::wanted(expected)
     }
+
+    fn invalid_length(_: usize, expected: &dyn Expected) -> Self {
+        Self::wanted(expected)
+    }
+
+    fn unknown_field(key: &str, known: &'static [&'static str]) -> Self {
+        de::Error::custom(unlike(&format!("key `{key}`"), key, known))
+    }
+
+    fn unknown_variant(name: &str, known: &'static [&'static str]) -> Self {
+        de::Error::custom(unlike(&format!("`{name}`"), name, known))
+    }
+}
+
+/// What to say of a name that nobody knows.
+pub(crate) fn unlike(told: &str, name: &str, known: &[&str]) -> String {
+    let close = Python::attach(|py| {
+        let texts = py.import("difflib")?;
+        let close = texts.call_method1("get_close_matches", (name, known.to_vec(), 1))?;
+        close.extract::<Vec<String>>()
+    });
+    let close = close.unwrap_or_default();
+    let guess: String = (close.iter().map(|it| format!(" (did you mean `{it}`?)"))).collect();
+    format!("there is no {told}{guess}: give {}", known.join(", "))
 }
 
 /// A value, without NumPy's types.
@@ -153,19 +181,25 @@ impl<'py> Value<'py> {
         }
         if value.is_instance_of::<PyList>() || value.is_instance_of::<PyTuple>() {
             let items = value.try_iter()?.collect::<PyResult<Vec<_>>>()?;
-            return visitor.visit_seq(Items(items.into_iter().enumerate()));
+            let mut items = Items(items.into_iter().enumerate());
+            let fewer = Wrong::wanted(&visitor);
+            let read = visitor.visit_seq(&mut items)?;
+            // What takes a pair would leave the rest.
+            return items.0.next().map_or(Ok(read), |_| Err(fewer));
         }
         if let Ok(table) = value.cast::<PyMapping>() {
-            let items = table
-                .items()?
-                .iter()
-                .map(|item| item.extract())
-                .collect::<PyResult<Vec<_>>>()?;
-            let items = items.into_iter();
+            let items = entries(table)?.into_iter();
             return visitor.visit_map(Entries { items, open: None });
         }
         Err(Wrong::wanted(&visitor))
     }
+}
+
+/// A key and its value.
+type Entry<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>);
+
+fn entries<'py>(table: &Bound<'py, PyMapping>) -> PyResult<Vec<Entry<'py>>> {
+    table.items()?.iter().map(|item| item.extract()).collect()
 }
 
 impl<'de> de::Deserializer<'de> for Value<'_> {
@@ -180,6 +214,25 @@ impl<'de> de::Deserializer<'de> for Value<'_> {
             return visitor.visit_none();
         }
         visitor.visit_some(self)
+    }
+
+    /// A key that is None is as one that is not given, if there is such a key. A list has no keys.
+    fn deserialize_struct<V: Visitor<'de>>(
+        self,
+        _: &'static str,
+        keys: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Wrong> {
+        let all = match self.0.cast::<PyMapping>() {
+            Ok(table) => entries(table)?,
+            Err(_) if self.0.is_none() => Vec::new(),
+            Err(_) => return Err(Wrong::wanted(&visitor).shown(&self.0)),
+        };
+        let absent = |(key, value): &Entry<'_>| {
+            value.is_none() && (key.extract::<String>()).is_ok_and(|it| keys.contains(&&*it))
+        };
+        let items = all.into_iter().filter(|entry| !absent(entry));
+        visitor.visit_map(Entries { items, open: None })
     }
 
     fn deserialize_newtype_struct<V: Visitor<'de>>(
@@ -204,7 +257,7 @@ impl<'de> de::Deserializer<'de> for Value<'_> {
 
     serde::forward_to_deserialize_any! {
         bool i8 i16 i32 i64 u8 u16 u32 u64 f32 f64 char str string bytes byte_buf unit unit_struct seq tuple
-        tuple_struct map struct identifier ignored_any
+        tuple_struct map identifier ignored_any
     }
 }
 

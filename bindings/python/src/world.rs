@@ -2,7 +2,7 @@
 
 use crate::episode::Episode;
 use crate::errors::{alone, state};
-use crate::input::finite;
+use crate::input::{argument, finite};
 use crate::scenario;
 use mpp_core::vehicle::Control;
 use numpy::PyArray1;
@@ -70,7 +70,12 @@ impl World {
     }
 
     /// Flies one tick with this thrust [N] and elevator [-]. Gives true while the flight goes on.
-    fn step(&self, py: Python<'_>, thrust: f64, elevator: f64) -> PyResult<bool> {
+    fn step(
+        &self,
+        py: Python<'_>,
+        #[pyo3(from_py_with = argument)] thrust: f64,
+        #[pyo3(from_py_with = argument)] elevator: f64,
+    ) -> PyResult<bool> {
         let mut stage = alone(&self.guarded, "world")?;
         stage.open()?;
         let command = Control {

@@ -18,7 +18,16 @@ def planner():
 @pytest.mark.parametrize(
     ("keys", "message"),
     [
-        ({"sed": 1}, "unknown field `sed`"),
+        ({"sede": 1}, r"^there is no key `sede` \(did you mean `seed`\?\): give preset, .*, field$"),
+        ({"sed": None}, "there is no key `sed`"),
+        ({"lidar": {"bems": None}}, r"^lidar: there is no key `bems` \(did you mean `beams`\?\): give beams, "),
+        ({"lidar": (64, 90.0)}, r"^lidar: give a dict of its keys, not \(64, 90.0\)$"),
+        ({"lidar": []}, "^lidar: give a dict of its keys, not "),
+        ({"lidar": mppflight.Aircraft()}, "^lidar: give a dict of its keys, not Aircraft"),
+        ({"field": mppflight.Lidar()}, "^field: give a dict of its keys, not Lidar"),
+        ({"field": {"polygon": [{"points": [[0.0, 1.0, 2.0]]}]}}, "^field.polygon.0.points.0: give a list of 2, not "),
+        ({"scenario": 1.5}, "^scenario: give a file: .* not float"),
+        ({"scenario": "a\0b"}, "^scenario: give a file, not "),
         ({"seed": -1}, r"^seed: give a whole number from 0 to 2\*\*64 - 1, not -1$"),
         ({"seed": 10**30}, "^seed: give a whole number from 0"),
         ({"obstacles": 20.5}, "^obstacles: give a whole number from 0 .*, not 20.5$"),
@@ -32,11 +41,12 @@ def planner():
         ({"lidar": {3: 4}}, "^lidar: give texts for keys, not 3$"),
         ({"field": {"polygon": [{"points": [[0.0, "a"]]}]}}, r"^field\.polygon\.0\.points\.0\.1: give a number, not 'a'$"),
         ({"aircraft": "f16"}, "^aircraft: there is no `f16`: give reference, .*delta, a file"),
+        ({"aircraft": "zagy"}, r"`zagy` \(did you mean `zagi`\?\): give reference"),
         ({"obstacles": 10**9}, "at most 1000"),
         ({"duration": 0}, "give 0.01 to 3600 s"),
         ({"replan_hz": NAN}, "replan_hz"),
-        ({"preset": "best"}, "unknown variant `best`"),
-        ({"generator": "maze"}, "unknown variant `maze`"),
+        ({"preset": "best"}, "preset: there is no `best`: give reference, "),
+        ({"generator": "forrest"}, r"generator.name: there is no `forrest` \(did you mean `forest`\?\)"),
         ({"generator": {"name": "paper", "gap": 3.0}}, "generator.gap: leave it out"),
         ({"lidar": 3}, "^lidar: give a dict of its keys, not 3$"),
         ({"lidar": {"beams": 1000}}, "lidar.beams"),
@@ -158,6 +168,70 @@ def test_what_has_sensors_alone_has_no_truth():
         for key in ("oracle", "known_map"):
             with pytest.raises(mppflight.InputError, match=f"{key}: it needs the"):
                 use(**{key: True})
+
+
+NO_NUMBERS = [True, "1", b"1", None, [1.0], {"a": 1.0}, 1j, np.array([1.0, 2.0]), np.bool_(True), object(), float]
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+def test_an_argument_that_is_no_number_is_named(planner, value):
+    """Also those that Python would take for a number, as True."""
+    field, lidar, core, world = mppflight.Field.generate(), mppflight.Lidar(), mppflight.Core(), mppflight.World()
+    numbers = {
+        "thrust": [lambda it: world.step(it, 3.7)],
+        "elevator": [lambda it: world.step(4.4, elevator=it)],
+        "sigma": [lambda it: core.step(x=0.0, z=50.0, sigma=it)],
+        "x": [lambda it: planner.plan(np.zeros(100), x=it), lambda it: lidar.scan(field, it, 50.0), lambda it: field.ranges(it, 50.0, [0.0])],
+        "pitch_rate": [lambda it: planner.plan(np.zeros(100), pitch_rate=it)],
+        "time": [lambda it: field.clearance([[0.0, 50.0]], it)],
+        "world_scale": [lambda it: mppflight.Field.generate(world_scale=it)],
+    }
+    wholes = {
+        "position_age": [lambda it: core.step(position_age=it)],
+        "obstacles": [lambda it: mppflight.Field.generate(obstacles=it)],
+        "index": [mppflight.Campaign({}, trials=1).fly],
+        "trials": [lambda it: mppflight.campaign(trials=it)],
+    }
+    for told, uses in (("a number", numbers), ("a whole number from 0", wholes)):
+        for name, calls in uses.items():
+            for call in calls:
+                with pytest.raises(mppflight.InputError, match=f"^{name}: give {told}.*, not "):
+                    call(value)
+    for name, call in (("wind", lambda it: planner.plan(np.zeros(100), wind=it)), ("velocity", lambda it: core.step(x=0.0, z=50.0, velocity=it))):
+        # Without a velocity a step is sound, and two numbers are a wind.
+        if not (value is None and name == "velocity" or isinstance(value, np.ndarray) and name == "wind"):
+            with pytest.raises(mppflight.InputError, match=f"^{name}.*: give a "):
+                call(value)
+
+
+def test_an_argument_that_is_no_object_of_its_kind_is_named():
+    lidar, field = mppflight.Lidar(), mppflight.Field.generate()
+    for name, call in {
+        "field": lambda it: lidar.scan(it, 0.0, 50.0),
+        "log": mppflight.Flight.from_json,
+        "aircraft": mppflight.Aircraft,
+        "lidar": mppflight.Lidar,
+        "polygons": lambda it: mppflight.Field.of_arrays(polygons=it),
+        "keys": lambda it: mppflight.Campaign(it, trials=1),
+        "fields": lambda it: mppflight.campaign(trials=1, fields=it),
+        "workers": lambda it: mppflight.campaign(trials=1, workers=it),
+        "progress": lambda it: mppflight.campaign(trials=1, progress=it),
+        "client": lambda it: mppflight.campaign(trials=1, client=it),
+    }.items():
+        for value in (0, 2.5, [7], True, 10**30) if name != "workers" else (0, -1, 2.5, True, "2", 10**30):
+            with pytest.raises(mppflight.InputError, match=f"^{name}: give "):
+                call(value)
+    with pytest.raises(mppflight.InputError, match="^generator.name: give a name, not 3$"):
+        mppflight.Field.generate(3)
+    with pytest.raises(mppflight.InputError, match="^polygons: give 2 columns"):
+        mppflight.Field.of_arrays(polygons=[np.zeros((3, 3))])
+    assert (mppflight.Lidar().scan(field, 0, np.int64(50)) == lidar.scan(field, 0.0, 50.0)).all()
+
+
+def test_notes_of_others_stay_notes():
+    error = mppflight.InputError("give more")
+    error.add_note("in line 3")
+    assert str(error) == "give more" and error.__notes__ == ["in line 3"]
 
 
 def test_a_core_keeps_the_last_inputs_that_it_refused():

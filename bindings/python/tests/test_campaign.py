@@ -98,8 +98,10 @@ def test_a_campaign_that_makes_no_sense():
     with pytest.raises(mppflight.InputError, match="replan_hz"):
         mppflight.campaign(trials=1, replan_hz=3.0)
     for key, value, message in (
-        ("preset", "best", "preset: unknown variant `best`"),
+        ("preset", "best", "preset: there is no `best`"),
         ("obstacles", "x", "obstacles: give a whole number from 0 .*, not 'x'"),
+        ("obstacles", b"x", "obstacles: give a whole number from 0 .*, not b'x'"),
+        ("obstacles", {1: 2}, "obstacles: give a whole number from 0 "),
         ("obstacles", [20, 20.5], "obstacles: give a whole number from 0 .*, not 20.5"),
         ("replan_hz", "fast", "replan_hz: give a number, not 'fast'"),
         ("seed", "x", "seed: give a whole number from 0 .*, not 'x'"),
@@ -108,7 +110,7 @@ def test_a_campaign_that_makes_no_sense():
     ):
         with pytest.raises(mppflight.InputError, match=f"^{message}"):
             mppflight.campaign(**{"trials": 1, key: value})
-    with pytest.raises(mppflight.InputError, match="workers: give 1 or more"):
+    with pytest.raises(mppflight.InputError, match="workers: give 1 to"):
         mppflight.campaign(trials=1, workers=-1)
     with pytest.raises(mppflight.InputError, match="index: give"):
         mppflight.Campaign({}, trials=1).fly(-1)

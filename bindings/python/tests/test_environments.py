@@ -65,6 +65,9 @@ def test_options_that_mean_nothing_are_refused(name):
     env.reset(seed=1, options={})
     with pytest.raises(mppflight.InputError, match="options: give none, not {'obstacles': 3}"):
         env.reset(options={"obstacles": 3})
+    for nothing in (0, "", [], False, np.zeros(0)):
+        with pytest.raises(mppflight.InputError, match="options: give none, not"):
+            env.reset(options=nothing)
     with pytest.raises(mppflight.InputError, match="options: give none"):
         gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(options={"obstacles": 3})
 
@@ -124,6 +127,12 @@ def test_a_state_is_restored_bit_for_bit_also_in_another_process(name):
     other.reset(seed=8)
     with pytest.raises(mppflight.InputError, match="other keys"):
         other.restore(state)
+    for wrong in (None, 3, state.flight, gymnasium.make(NAMES[name == NAMES[0]]).unwrapped):
+        if isinstance(wrong, gymnasium.Env):
+            wrong.reset(seed=8)
+            wrong = wrong.save()
+        with pytest.raises(mppflight.InputError, match="^state: give what save"):
+            env.restore(wrong)
 
 
 def test_the_commands_of_a_flight_fly_the_flight():
@@ -218,7 +227,7 @@ def test_actions_that_make_no_sense():
     with pytest.raises(mppflight.InputError, match="give -1 to 1"):
         many.step(np.array([[0.0, 0.0], [0.0, 0.0], [0.0, 2.0]]))
     assert many.unwrapped._batch.truth(0) == before
-    for count in (-1, 0, 10**12):
+    for count in (-1, 0, 10**12, 1.5, True, "2", None):
         with pytest.raises(mppflight.InputError, match="num_envs: give 1 to"):
             gymnasium.make_vec("mpp/Control-v0", num_envs=count)
     with pytest.raises(mppflight.InputError, match="lidar_hz"):
@@ -230,7 +239,7 @@ def test_actions_that_make_no_sense():
     env = gymnasium.make("mpp/Choice-v0").unwrapped
     env.reset(seed=np.int64(1))
     most = env.action_space.n - 1
-    for action in (-1, most + 1, 2**70, 0.5, "a", None, [1]):
+    for action in (-1, most + 1, 2**70, 0.5, "a", None, [1], True, np.True_):
         with pytest.raises(mppflight.InputError, match=f"action: give 0 to {most}, not"):
             env.step(action)
     env.step(np.int64(most))
@@ -279,14 +288,26 @@ def test_a_seed_or_a_list_of_seeds_also_gives_the_flights_that_start_anew():
     assert starts(one, [None, 5], 1)[0][1] == 5
 
 
-@pytest.mark.parametrize("seed", [[], [1], [1, 2, 3], [1, -2], -1, 2**64, 2**64 - 1, 1.5, "ab", [1, 2.5]])
+@pytest.mark.parametrize("seed", [[], [1], [1, 2, 3], [1, -2], -1, 2**64, 2**64 - 1, 1.5, "ab", [1, 2.5], True, [True, False], np.array([1.0, 2.0])])
 def test_seeds_that_make_no_sense(seed):
     with pytest.raises(mppflight.InputError, match="seed: give a whole number"):
         gymnasium.make_vec("mpp/Control-v0", num_envs=2).reset(seed=seed)
     for name in NAMES:
-        if seed != 2**64 - 1:
+        if not np.array_equal(seed, 2**64 - 1):
             with pytest.raises(mppflight.InputError, match="seed: give a whole number"):
                 gymnasium.make(name).reset(seed=seed)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_seed_among_the_keys_is_that_of_the_first_flight(name):
+    """So an environment with the keys of the benchmark flies its field."""
+    keyed, plain = gymnasium.make(name, seed=7), gymnasium.make(name)
+    assert equal(keyed.reset()[0], plain.reset(seed=7)[0])
+    assert keyed.reset()[1]["seed"] == plain.reset()[1]["seed"] != 7
+    assert gymnasium.make(name, seed=7).reset(seed=8)[1]["seed"] == 8
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=2, seed=7)
+    many.reset()
+    assert [many.unwrapped._batch.truth(index)["seed"] for index in range(2)] == [7, 8]
 
 
 @pytest.mark.parametrize("name", NAMES)

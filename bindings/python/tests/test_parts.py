@@ -1,5 +1,6 @@
 """Aircraft, fields, lidars, planner and core by themselves."""
 
+import copy
 import pickle
 
 import mppflight
@@ -70,6 +71,12 @@ def test_a_lidar_scans_a_field():
     # A pitch turns the fan.
     pitched = lidar.scan(field, 0.0, 50.0, pitch=float(angles[26]))
     assert pitched[24] == pytest.approx(19.0, abs=1e-5)
+
+
+def test_a_lidar_is_copied_and_pickled():
+    lidar = mppflight.Lidar(beams=51, range_max=40.0)
+    for other in (copy.copy(lidar), copy.deepcopy(lidar), pickle.loads(pickle.dumps(lidar))):
+        assert other.numbers == lidar.numbers
 
 
 def test_a_planner_plans_around_what_a_scan_shows():

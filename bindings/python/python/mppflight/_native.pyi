@@ -52,7 +52,7 @@ class Field:
         *,
         obstacles: int = 20,
         seed: int = 1,
-        duration: int | None = None,
+        duration: float | None = None,
         world_scale: float = 1.0,
         **parameters: Any,
     ) -> Field: ...
@@ -79,6 +79,7 @@ class Lidar:
     def numbers(self) -> dict[str, Any]: ...
     @property
     def angles(self) -> _Floats: ...
+    def __getnewargs_ex__(self) -> tuple[tuple[()], dict[str, Any]]: ...
     def scan(
         self, field: Field, x: float, z: float, pitch: float = 0.0, seed: int | None = None
     ) -> NDArray[numpy.float32]:

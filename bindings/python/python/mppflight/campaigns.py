@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Generator, Iterable, Sequence
+from collections.abc import Callable, Generator, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from functools import lru_cache
 from itertools import islice
@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 from ._native import Campaign, Field, wilson
-from .errors import InputError, Interrupted
+from .errors import InputError, Interrupted, whole
 
 if TYPE_CHECKING:
     import pandas
@@ -97,8 +97,11 @@ def campaign(
     if isinstance(generator, dict):
         # A generator with parameters is that of every cell.
         scenario["generator"], generator = generator, ()
-    if workers is not None and workers < 0:
-        raise InputError(f"workers: give 1 or more, not {workers}")
+    workers = os.cpu_count() or 1 if workers is None else whole("workers", workers, 1, 1000)
+    if progress is not None and not callable(progress):
+        raise InputError(f"progress: give a function of two numbers, not {progress!r}")
+    if client is not None and not hasattr(client, "map"):
+        raise InputError(f"client: give a Dask client, not {client!r}")
     flights = Campaign(
         scenario,
         trials=trials,
@@ -110,12 +113,12 @@ def campaign(
         replan_hz=_listed(replan_hz),
         fields=fields,
     )
-    flown = _on_cluster(flights, client) if client else _on_threads(flights, workers)
+    flown = _on_cluster(flights, client) if client is not None else _on_threads(flights, workers)
     lines: dict[int, str] = {}
     try:
         for done in flown:
             lines.update(done)
-            if progress:
+            if progress is not None:
                 progress(len(lines), len(flights))
     except KeyboardInterrupt as signal:
         raise Interrupted(_sorted(lines, flights)) from signal
@@ -125,16 +128,16 @@ def campaign(
 
 
 def _listed(value: Any) -> list[Any]:
-    # NumPy's numbers are single values too.
-    return [value] if isinstance(value, str) or not isinstance(value, Iterable) else list(value)
+    # A text, a dict and a number of NumPy are single values too.
+    several = isinstance(value, Iterable) and getattr(value, "ndim", 1)
+    return list(value) if several and not isinstance(value, (str, bytes, Mapping)) else [value]
 
 
 def _sorted(lines: dict[int, str], flights: Campaign) -> Rows:
     return Rows((lines[index] for index in sorted(lines)), flights)
 
 
-def _on_threads(flights: Campaign, workers: int | None) -> Flown:
-    count = workers or os.cpu_count() or 1
+def _on_threads(flights: Campaign, count: int) -> Flown:
     waiting = iter(range(len(flights)))
     running: dict[Future[str], int] = {}
     pool = ThreadPoolExecutor(count)

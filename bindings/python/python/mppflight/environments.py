@@ -4,14 +4,12 @@
 - `mpp/Choice-v0`: the agent chooses among the planner's candidates, once a cycle.
 
 Further arguments of `gymnasium.make` are keys of a scenario, for example `obstacles=40`. A flight has the seed that
-`reset` gets; without one it is drawn from the environment's generator. Its obstacles, noise and gusts are those of
-`mppflight.fly` with this seed.
+`reset` gets, the first one without it that of the key `seed`; otherwise it is drawn from the environment's generator.
+Its obstacles, noise and gusts are those of `mppflight.fly` with this seed.
 """
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Sized
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
@@ -23,7 +21,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from ._native import Batch, Choice, Fork, Moment
-from .errors import InputError, StateError
+from .errors import InputError, StateError, whole
 
 # Arrays by name.
 Observation = dict[str, Any]
@@ -39,6 +37,12 @@ class State(Generic[Saved]):
     random: dict[str, Any]
 
 
+def _saved(state: State[Saved], kind: type[Saved]) -> Saved:
+    if not isinstance(state, State) or not isinstance(state.flight, kind):
+        raise InputError(f"state: give what save() of such an environment gave, not {state!r}")
+    return state.flight
+
+
 def _box(shape: tuple[int, ...], low: float = -numpy.inf, high: float = numpy.inf) -> spaces.Box:
     return spaces.Box(low, high, shape, numpy.float32)
 
@@ -49,30 +53,27 @@ def _drawn(random: numpy.random.Generator) -> int:
 
 def _seed(value: Any) -> int:
     """A seed, also one of NumPy's integers."""
-    try:
-        seed = operator.index(value)
-    except TypeError:
-        seed = -1
-    if not 0 <= seed < 2**64:
-        raise InputError(f"seed: give a whole number from 0 to 2**64 - 1, not {value!r}")
-    return seed
+    return whole("seed", value, 0, 2**64 - 1, "a whole number from 0 to 2**64 - 1")
 
 
 def _refuse(options: dict[str, Any] | None) -> None:
-    if options:
+    if options is not None and not (isinstance(options, dict) and not options):
         raise InputError(f"options: give none, not {options!r}: keys of a scenario go to gymnasium.make")
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, (list, tuple, numpy.ndarray)) and numpy.shape(value) != ()
 
 
 def _seeds(value: Any, count: int) -> list[int | None]:
     """A seed for each flight: numbers from a first one on, or those of a list."""
     if value is None:
         return [None] * count
-    try:
-        first = operator.index(value)
-    except TypeError:
-        if not isinstance(value, (list, tuple, numpy.ndarray)) or len(value) != count:
-            raise InputError(f"seed: give a whole number or a list of {count}, not {value!r}") from None
+    if _is_list(value):
+        if len(value) != count:
+            raise InputError(f"seed: give a whole number or a list of {count}, not {value!r}")
         return [None if one is None else _seed(one) for one in value]
+    first = _seed(value)
     return [_seed(first + index) for index in range(count)]
 
 
@@ -104,14 +105,16 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
 
     def __init__(self, lidar_hz: float = 10.0, **scenario: Any) -> None:
         self._batch: Batch | None = Batch(scenario, 1, lidar_hz)
+        self._first = scenario.get("seed")
         self.controls = self._batch.controls
         self.observation_space, self.action_space = _control_spaces(self._batch)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        seed = None if seed is None else _seed(seed)
         _refuse(options)
+        seed, self._first = self._first if seed is None else seed, None
+        seed = None if seed is None else _seed(seed)
         super().reset(seed=seed)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if seed is None else seed])
@@ -127,7 +130,7 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
     def restore(self, state: State[Moment]) -> Observation:
         """Goes on from a saved state, bit for bit."""
         batch = _of(self._batch)
-        batch.restore(0, state.flight)
+        batch.restore(0, _saved(state, Moment))
         self.np_random.bit_generator.state = state.random
         return batch.observe_one()
 
@@ -143,6 +146,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
     def __init__(self, num_envs: int = 1, lidar_hz: float = 10.0, **scenario: Any) -> None:
         self.num_envs = num_envs
         self._batch: Batch | None = Batch(scenario, num_envs, lidar_hz)
+        self._first = scenario.get("seed")
         self.single_observation_space, self.single_action_space = _control_spaces(self._batch)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
@@ -154,9 +158,10 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         """With a seed, flight k gets the k-th number from it on; with a list, each gets its own, or a drawn one for
         None. Flights that start anew later draw theirs from a generator that a seed, or a list without None, sets.
         """
-        seeds = _seeds(seed, self.num_envs)
         _refuse(options)
-        listed = isinstance(seed, Sized)
+        seed, self._first = self._first if seed is None else seed, None
+        seeds = _seeds(seed, self.num_envs)
+        listed = _is_list(seed)
         super().reset(seed=None if listed else seeds[0])
         given = [one for one in seeds if one is not None]
         if listed and len(given) == self.num_envs:
@@ -195,6 +200,7 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
 
     def __init__(self, **scenario: Any) -> None:
         self._choice: Choice | None = Choice(scenario)
+        self._first = scenario.get("seed")
         beams, range_max = self._choice.lidar
         most, knots = Choice.SHAPE
         observation: spaces.Dict[Any] = spaces.Dict(
@@ -212,8 +218,9 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        seed = None if seed is None else _seed(seed)
         _refuse(options)
+        seed, self._first = self._first if seed is None else seed, None
+        seed = None if seed is None else _seed(seed)
         super().reset(seed=seed)
         choice = _of(self._choice)
         choice.reset(_drawn(self.np_random) if seed is None else seed)
@@ -221,13 +228,7 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
 
     def step(self, action: numpy.int64) -> Step:
         choice, (most, _) = _of(self._choice), Choice.SHAPE
-        try:
-            number = operator.index(action)
-        except TypeError:
-            number = -1
-        if not 0 <= number <= most:
-            raise InputError(f"action: give 0 to {most}, not {action!r}")
-        reward, failed, ended = choice.step(number)
+        reward, failed, ended = choice.step(whole("action", action, 0, most))
         return choice.observe(), reward, failed, ended, choice.truth()
 
     def action_masks(self) -> NDArray[numpy.bool_]:
@@ -241,7 +242,7 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
 
     def restore(self, state: State[Fork]) -> Observation:
         """Goes on from a saved state, bit for bit."""
-        _of(self._choice).restore(state.flight)
+        _of(self._choice).restore(_saved(state, Fork))
         self.np_random.bit_generator.state = state.random
         return _of(self._choice).observe()
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import operator
+import re
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .campaigns import Rows
@@ -14,6 +16,24 @@ class MppError(Exception):
 
 class InputError(MppError, ValueError):
     """A number, an array, a key or a file makes no sense; the message says what to give instead."""
+
+    def add_note(self, note: str, /) -> None:
+        """The native half notes so which argument it could not read: its name goes in front."""
+        if found := re.fullmatch("while processing '(.+)'", note):
+            self.args = (f"{found[1]}: {self}",)
+        else:
+            super().add_note(note)
+
+
+def whole(name: str, value: Any, least: int, most: int, wanted: str = "") -> int:
+    """A whole number within bounds, also one of NumPy's. True is none."""
+    try:
+        number = -1 if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        number = -1
+    if not least <= number <= most:
+        raise InputError(f"{name}: give {wanted or f'{least} to {most}'}, not {value!r}")
+    return number
 
 
 class SetUpError(MppError):
