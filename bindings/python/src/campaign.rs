@@ -155,6 +155,14 @@ fn all<T: DeserializeOwned>(name: &str, values: &[Bound<'_, PyAny>]) -> PyResult
 
 /// The Wilson interval of a share of successes, 95 %.
 #[pyfunction]
-pub(crate) fn wilson(successes: u32, trials: u32) -> (f64, f64) {
-    campaign::wilson(successes, trials)
+pub(crate) fn wilson(
+    #[pyo3(from_py_with = argument)] successes: u32,
+    #[pyo3(from_py_with = argument)] trials: u32,
+) -> PyResult<(f64, f64)> {
+    if successes > trials {
+        return Err(input(format!(
+            "successes: give at most {trials}, the trials"
+        )));
+    }
+    Ok(campaign::wilson(successes, trials))
 }

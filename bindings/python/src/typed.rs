@@ -71,6 +71,7 @@ impl Wrong {
             "u64" | "usize" => "a whole number from 0 to 2**64 - 1",
             "u32" => "a whole number from 0 to 2**32 - 1",
             "u16" => "a whole number from 0 to 2**16 - 1",
+            "u8" => "a whole number from 0 to 2**8 - 1",
             "f64" | "f32" => "a number",
             "a boolean" => "True or False",
             "a string" => "a text",

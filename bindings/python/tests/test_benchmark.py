@@ -46,6 +46,9 @@ def test_more_obstacles_are_harder():
 def test_intervals_are_wilsons():
     # Agresti and Coull 1998: 0 and 10 of 10.
     assert benchmark.wilson(0, 10) == pytest.approx((0.0, 0.2775), abs=1e-4)
+    for successes, trials in ((4, 3), (-1, 3), (1.5, 3), (1, "3")):
+        with pytest.raises(mppflight.InputError, match="^(successes|trials): give"):
+            mppflight.wilson(successes, trials)
     low, high = benchmark.wilson(264, 300)
     assert math.isclose(low, 0.838, abs_tol=5e-4) and math.isclose(high, 0.912, abs_tol=5e-4)
 

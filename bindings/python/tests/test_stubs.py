@@ -1,18 +1,81 @@
-"""The typed stubs say what the module has."""
+"""The typed stubs say what the module has, and what a scenario takes."""
 
+import re
 import subprocess
 import sys
 from importlib.resources import files
 
+import keys_of_scenarios
+import mppflight
+import nbformat
+import pytest
+
+
+def mypy(*arguments):
+    done = subprocess.run([sys.executable, "-m", *arguments], capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
 
 def test_stubs_and_module_agree():
     assert (files("mppflight") / "py.typed").is_file()
-    command = [sys.executable, "-m", "mypy.stubtest", "mppflight._native"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    code, told = mypy("mypy.stubtest", "mppflight._native")
+    assert code == 0, told
 
 
 def test_the_python_half_is_typed():
-    command = [sys.executable, "-m", "mypy", "--strict", "-p", "mppflight"]
-    done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
+    code, told = mypy("mypy", "--strict", "-p", "mppflight")
+    assert code == 0, told
+
+
+def test_the_types_of_keys_are_those_that_the_package_takes():
+    """`keys_of_scenarios.py` writes the file anew."""
+    assert (files("mppflight") / "keys.py").read_text() == keys_of_scenarios.text()
+
+
+def test_the_examples_are_typed(root, tmp_path):
+    """Notebook and page, as a reader puts them together."""
+    notebook = nbformat.read(root / "bindings/python/examples/figure8.ipynb", as_version=4)
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    page = re.findall(r"^```python\n(.*?)^```", (root / "docs/python.md").read_text(), re.DOTALL | re.MULTILINE)
+    assert cells and len(page) > 4
+    sources = {"notebook.py": cells, "page.py": page}
+    for name, blocks in sources.items():
+        (tmp_path / name).write_text("\n".join(blocks))
+    foreign = "--untyped-calls-exclude=distributed"
+    code, told = mypy("mypy", "--strict", foreign, *(str(tmp_path / name) for name in sources))
+    assert code == 0, told
+
+
+WRONG = """
+import mppflight
+mppflight.fly(sede=7)  # type: ignore[call-overload]
+mppflight.fly(seed="7")  # type: ignore[call-overload]
+mppflight.fly(obstacles=7, density=0.1)  # type: ignore[call-overload]
+mppflight.fly(preset="space", obstacles=7)  # type: ignore[call-overload]
+mppflight.fly(lidar={"bems": 7})  # type: ignore[call-overload]
+mppflight.fly(faults={"gusts": {"strength": 1.0}})  # type: ignore[call-overload]
+mppflight.World(sede=7)  # type: ignore[call-arg]
+mppflight.Planner(scene="flytrip")  # type: ignore[arg-type]
+mppflight.Core(lidar=mppflight.Field.generate())  # type: ignore[arg-type]
+mppflight.Lidar(bems=7)  # type: ignore[call-arg]
+mppflight.campaign(trials=1, obstacle=[20])  # type: ignore[call-arg]
+mppflight.campaign(trials=1, preset=["flihgt"])  # type: ignore[list-item]
+mppflight.fly(seed=7, preset="flight", aircraft=mppflight.Aircraft("zagi"), generator={"name": "forest", "gap": 3.0})
+mppflight.fly(preset="space", density=0.1, wind=[1.0, 0.0, 0.0])
+mppflight.campaign(trials=1, preset=["paper", "flight"], obstacles=20, faults={"lidar": {"dropouts": 0.1}})
+"""
+
+
+def test_a_wrong_key_is_an_error_of_types(tmp_path):
+    """An ignored line without an error is an error itself."""
+    (tmp_path / "wrong.py").write_text(WRONG)
+    code, told = mypy("mypy", "--strict", str(tmp_path / "wrong.py"))
+    assert code == 0, told
+
+
+@pytest.mark.parametrize("use", [mppflight.fly, mppflight.World, mppflight.Planner, mppflight.Core])
+def test_a_wrong_key_has_a_suggestion(use):
+    with pytest.raises(mppflight.InputError, match=r"there is no key `sede` \(did you mean `seed`\?\)"):
+        use(sede=7)
+    with pytest.raises(mppflight.InputError, match=r"there is no key `obstacle` \(did you mean `obstacles`\?\)"):
+        mppflight.campaign(trials=1, obstacle=[20])

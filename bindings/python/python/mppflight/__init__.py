@@ -1,7 +1,7 @@
 """The MPP flight planner, its simulation and its campaigns. docs/python.md of the project describes this package."""
 
 from . import errors
-from ._native import Aircraft, Campaign, Core, Field, Flight, Lidar, Planner, World, __version__, fly
+from ._native import Aircraft, Campaign, Core, Field, Flight, Lidar, Planner, World, __version__, fly, wilson
 from .campaigns import Rows, campaign
 from .errors import BusyError, FlightError, InputError, Interrupted, MppError, SetUpError, StateError
 
@@ -26,4 +26,5 @@ __all__ = [
     "campaign",
     "errors",
     "fly",
+    "wilson",
 ]

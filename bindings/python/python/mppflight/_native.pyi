@@ -1,10 +1,12 @@
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any, ClassVar, final
+from typing import Any, ClassVar, Unpack, final, overload
 
 import numpy
 import pandas
 from numpy.typing import ArrayLike, NDArray
+
+from .keys import LidarKeys, ScenarioKeys, SpaceKeys
 
 __all__ = [
     "Aircraft",
@@ -74,7 +76,7 @@ class Field:
 
 @final
 class Lidar:
-    def __new__(cls, path: _Path | None = None, **keys: Any) -> Lidar: ...
+    def __new__(cls, path: _Path | None = None, **keys: Unpack[LidarKeys]) -> Lidar: ...
     @property
     def numbers(self) -> dict[str, Any]: ...
     @property
@@ -107,7 +109,10 @@ class Flight:
     def field(self) -> Field: ...
     def __len__(self) -> int: ...
 
-def fly(**keys: Any) -> Flight: ...
+@overload
+def fly(**keys: Unpack[ScenarioKeys]) -> Flight: ...
+@overload
+def fly(**keys: Unpack[SpaceKeys]) -> Flight: ...
 def wilson(successes: int, trials: int) -> tuple[float, float]: ...
 @final
 class Campaign:
@@ -133,7 +138,7 @@ class Campaign:
 
 @final
 class Core:
-    def __new__(cls, **keys: Any) -> Core: ...
+    def __new__(cls, **keys: Unpack[ScenarioKeys]) -> Core: ...
     def step(
         self,
         airspeed: float | None = None,
@@ -170,7 +175,7 @@ class Core:
 
 @final
 class Planner:
-    def __new__(cls, **keys: Any) -> Planner: ...
+    def __new__(cls, **keys: Unpack[ScenarioKeys]) -> Planner: ...
     def plan(
         self,
         ranges: ArrayLike,
@@ -195,7 +200,7 @@ class Planner:
 
 @final
 class World:
-    def __new__(cls, **keys: Any) -> World: ...
+    def __new__(cls, **keys: Unpack[ScenarioKeys]) -> World: ...
     def measure(self) -> dict[str, Any]: ...
     def step(self, thrust: float, elevator: float) -> bool: ...
     @property

@@ -9,10 +9,11 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Unpack, overload
 
 from ._native import Campaign, Field, wilson
 from .errors import InputError, Interrupted, whole
+from .keys import CommonKeys, GeneratorKeys, GeneratorName, Preset
 
 if TYPE_CHECKING:
     import pandas
@@ -76,8 +77,8 @@ def campaign(
     *,
     trials: int,
     seed: int | None = None,
-    preset: str | Sequence[str] = (),
-    generator: str | Sequence[str] | dict[str, Any] = (),
+    preset: Preset | Sequence[Preset] = (),
+    generator: GeneratorName | Sequence[GeneratorName] | GeneratorKeys = (),
     obstacles: int | Sequence[int] = (),
     paths: int | Sequence[int] = (),
     replan_hz: float | Sequence[float] = (),
@@ -85,7 +86,7 @@ def campaign(
     workers: int | None = None,
     progress: Callable[[int, int], object] | None = None,
     client: Client | None = None,
-    **scenario: Any,
+    **scenario: Unpack[CommonKeys],
 ) -> Rows:
     """Flies `trials` seeds from `seed` on in each cell of a grid. The lists vary the presets, generators, numbers of
     obstacles and paths, replanning rates and fields; `scenario` holds the other keys of a scenario, for all.
@@ -94,16 +95,17 @@ def campaign(
     are the same for any of them. `progress` is called with the number of rows so far and of all. Ctrl-C raises
     `Interrupted`, which holds the rows so far.
     """
+    keys: dict[str, Any] = {**scenario}
     if isinstance(generator, dict):
         # A generator with parameters is that of every cell.
-        scenario["generator"], generator = generator, ()
+        keys["generator"], generator = generator, ()
     workers = os.cpu_count() or 1 if workers is None else whole("workers", workers, 1, 1000)
     if progress is not None and not callable(progress):
         raise InputError(f"progress: give a function of two numbers, not {progress!r}")
     if client is not None and not hasattr(client, "map"):
         raise InputError(f"client: give a Dask client, not {client!r}")
     flights = Campaign(
-        scenario,
+        keys,
         trials=trials,
         seed=seed,
         preset=_listed(preset),
@@ -129,7 +131,7 @@ def campaign(
 
 def _listed(value: Any) -> list[Any]:
     # A text, a dict and a number of NumPy are single values too.
-    several = isinstance(value, Iterable) and getattr(value, "ndim", 1)
+    several = isinstance(value, Iterable) and getattr(value, "ndim", 1) > 0
     return list(value) if several and not isinstance(value, (str, bytes, Mapping)) else [value]
 
 

@@ -11,7 +11,7 @@ Its obstacles, noise and gusts are those of `mppflight.fly` with this seed.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeVar, Unpack
 
 import gymnasium
 import numpy
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from ._native import Batch, Choice, Fork, Moment
 from .errors import InputError, StateError, whole
+from .keys import ScenarioKeys
 
 # Arrays by name.
 Observation = dict[str, Any]
@@ -103,8 +104,8 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
 
     metadata = {"render_modes": []}
 
-    def __init__(self, lidar_hz: float = 10.0, **scenario: Any) -> None:
-        self._batch: Batch | None = Batch(scenario, 1, lidar_hz)
+    def __init__(self, lidar_hz: float = 10.0, **scenario: Unpack[ScenarioKeys]) -> None:
+        self._batch: Batch | None = Batch({**scenario}, 1, lidar_hz)
         self._first = scenario.get("seed")
         self.controls = self._batch.controls
         self.observation_space, self.action_space = _control_spaces(self._batch)
@@ -143,9 +144,9 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    def __init__(self, num_envs: int = 1, lidar_hz: float = 10.0, **scenario: Any) -> None:
+    def __init__(self, num_envs: int = 1, lidar_hz: float = 10.0, **scenario: Unpack[ScenarioKeys]) -> None:
         self.num_envs = num_envs
-        self._batch: Batch | None = Batch(scenario, num_envs, lidar_hz)
+        self._batch: Batch | None = Batch({**scenario}, num_envs, lidar_hz)
         self._first = scenario.get("seed")
         self.single_observation_space, self.single_action_space = _control_spaces(self._batch)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
@@ -198,8 +199,8 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
 
     metadata = {"render_modes": []}
 
-    def __init__(self, **scenario: Any) -> None:
-        self._choice: Choice | None = Choice(scenario)
+    def __init__(self, **scenario: Unpack[ScenarioKeys]) -> None:
+        self._choice: Choice | None = Choice({**scenario})
         self._first = scenario.get("seed")
         beams, range_max = self._choice.lidar
         most, knots = Choice.SHAPE
