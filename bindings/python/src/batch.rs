@@ -2,10 +2,12 @@
 
 use crate::episode::{Episode, controls, seen};
 use crate::errors::{self, alone, input, state};
+use crate::field::Field;
 use crate::input::{argument, rows, vector};
 use crate::output::flat;
 use crate::scenario;
 use mpp_core::vehicle::Control;
+use mpp_sim::field::FieldFile;
 use mpp_sim::scenario::{Scenario, ScenarioFile, TICKS_PER_SECOND};
 use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::intern;
@@ -74,11 +76,18 @@ impl Batch {
         Ok(Self { plan, guarded })
     }
 
-    /// Number of beams and their greatest range [m].
+    /// Number of beams, their greatest range [m], and the field of view [rad].
     #[getter]
-    fn lidar(&self) -> (usize, f64) {
+    fn lidar(&self) -> (usize, f64, f64) {
         let lidar = &self.plan.base.lidar;
-        (lidar.beams, lidar.range_max)
+        (lidar.beams, lidar.range_max, lidar.field_of_view)
+    }
+
+    /// The obstacles of a flight, where they are at its start.
+    fn field(&self, index: usize) -> PyResult<Field> {
+        let runs = alone(&self.guarded, "environment")?;
+        let run = runs.get(index).and_then(Option::as_ref).ok_or_else(unset)?;
+        Field::checked(FieldFile::of(&run.episode.scenario.field().obstacles))
     }
 
     /// Elevator for the actions -1 and 1, and thrust likewise [N].

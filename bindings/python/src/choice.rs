@@ -3,6 +3,7 @@
 use crate::aside::aside;
 use crate::episode::{Episode, seen};
 use crate::errors::{self, FlightError, alone, input, state};
+use crate::field::Field;
 use crate::output::flat;
 use crate::scenario;
 use mpp_analysis::recording;
@@ -12,8 +13,9 @@ use mpp_core::planner::plane::MAX_CANDIDATES;
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::settings::Settings;
 use mpp_core::trajectory::Trajectory;
+use mpp_sim::field::FieldFile;
 use mpp_sim::inspector::core_scan;
-use mpp_sim::scenario::{ALTITUDE, Scenario, ScenarioFile};
+use mpp_sim::scenario::{ALTITUDE, Scenario, ScenarioFile, TICKS_PER_SECOND};
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -70,11 +72,24 @@ impl Choice {
     #[classattr]
     const SHAPE: (usize, usize) = (MAX_CANDIDATES, KNOTS);
 
-    /// Number of beams and their greatest range [m].
+    /// Number of beams, their greatest range [m], and the field of view [rad].
     #[getter]
-    fn lidar(&self) -> (usize, f64) {
+    fn lidar(&self) -> (usize, f64, f64) {
         let lidar = &self.plan.base.lidar;
-        (lidar.beams, lidar.range_max)
+        (lidar.beams, lidar.range_max, lidar.field_of_view)
+    }
+
+    /// Cycles a second.
+    #[getter]
+    fn rate(&self) -> f64 {
+        f64::from(TICKS_PER_SECOND) / f64::from(self.plan.base.replan_ticks)
+    }
+
+    /// The obstacles of the flight, where they are at its start.
+    fn field(&self) -> PyResult<Field> {
+        let run = alone(&self.guarded, "environment")?;
+        let run = run.as_ref().ok_or_else(unset)?;
+        Field::checked(FieldFile::of(&run.episode.scenario.field().obstacles))
     }
 
     /// Starts a flight, and plans its first cycle.

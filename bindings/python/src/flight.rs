@@ -96,6 +96,24 @@ impl Flight {
         columns(py, all)
     }
 
+    /// Draws field, way and tracked plan with matplotlib, into `axes` if they are given. Gives the axes.
+    #[pyo3(signature = (axes = None))]
+    fn plot<'py>(
+        slf: &Bound<'py, Self>,
+        axes: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("mppflight.plots")?
+            .call_method1("flight", (slf, axes))
+    }
+
+    /// What a notebook shows.
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py()
+            .import("mppflight.plots")?
+            .call_method1("flight_html", (slf,))
+    }
+
     /// The columns as a `pandas.DataFrame`.
     fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let pandas = py.import("pandas")?;

@@ -11,6 +11,7 @@ from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack, overload
 
+from . import plots
 from ._native import Campaign, Field, wilson
 from .errors import InputError, Interrupted, whole
 from .keys import CommonKeys, GeneratorKeys, GeneratorName, Preset
@@ -18,6 +19,7 @@ from .keys import CommonKeys, GeneratorKeys, GeneratorName, Preset
 if TYPE_CHECKING:
     import pandas
     from distributed import Client
+    from matplotlib.axes import Axes
 
 # Flights in one task of a worker: a flight takes about 20 ms, the scheduler about 1 ms for a task.
 CHUNK = 10
@@ -58,6 +60,13 @@ class Rows(Sequence[dict[str, Any]]):
         low, high = (100.0 * share for share in wilson(strict, flown))
         share = 100.0 * strict / flown
         return f"<Rows: {flown} flights, {strict} strict successes, {share:.1f} % [{low:.1f}, {high:.1f}]>"
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draws strict successes over obstacles with their intervals, a line for each other cell. Gives the axes."""
+        return plots.rows(self, axes)
+
+    def _repr_html_(self) -> str:
+        return plots.rows_html(self)
 
     def to_pandas(self) -> pandas.DataFrame:
         """The rows as a `pandas.DataFrame`."""

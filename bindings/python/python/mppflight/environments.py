@@ -20,9 +20,10 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ._native import Batch, Choice, Fork, Moment
+from ._native import Batch, Choice, Field, Fork, Moment
 from .errors import InputError, StateError, whole
 from .keys import ScenarioKeys
+from .plots import Window
 
 # Arrays by name.
 Observation = dict[str, Any]
@@ -78,8 +79,51 @@ def _seeds(value: Any, count: int) -> list[int | None]:
     return [_seed(first + index) for index in range(count)]
 
 
+class _Drawn:
+    """What both environments draw: obstacles, the way so far, what the beams met, and candidates."""
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "human"], "render_fps": 100}
+
+    def _view(self, mode: str | None, lidar: tuple[int, float, float]) -> None:
+        if mode not in (None, *self.metadata["render_modes"]):
+            raise InputError(f"render_mode: give rgb_array, human or None, not {mode!r}")
+        beams, self._sight, view = lidar
+        self._angles = numpy.linspace(-0.5 * view, 0.5 * view, beams) if beams > 1 else numpy.zeros(1)
+        self.render_mode, self._window = mode, Window(mode == "human") if mode else None
+        self._way: list[tuple[float, float]] = []
+
+    def _at(self, truth: dict[str, Any], fresh: bool = False) -> None:
+        """The aircraft came to a place."""
+        if self.render_mode:
+            self._way = [] if fresh else self._way
+            self._way.append((truth["x"], truth["z"]))
+            # A person sees 25 pictures a second.
+            if self.render_mode == "human" and (fresh or self.metadata["render_fps"] < 25 or len(self._way) % 4 == 0):
+                self.render()
+
+    def render(self) -> NDArray[numpy.uint8] | None:
+        """The picture of the flight as it is now, or its window."""
+        field, seen, truth = self._shown()
+        if self._window is None:
+            gymnasium.logger.warn("nothing is drawn: give gymnasium.make a render_mode, rgb_array or human")
+            return None
+        ranges, (x, z) = seen["lidar"], self._way[-1]
+        met, pitch = ranges < self._sight, (seen["air"] if "air" in seen else seen["state"])[1]
+        angles = self._angles[met] + pitch
+        hits = numpy.column_stack([x + ranges[met] * numpy.cos(angles), z + ranges[met] * numpy.sin(angles)])
+        plans = seen["candidates"][seen["mask"][1:] > 0] + (x, z) if "candidates" in seen else numpy.zeros((0, 2, 2))
+        return self._window.draw(field, truth["t"], self._way, hits, self._sight, plans)
+
+    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
+        raise NotImplementedError
+
+    def _shut(self) -> None:
+        if self._window is not None:
+            self._window.close()
+
+
 def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
-    beams, range_max = batch.lidar
+    beams, range_max, _ = batch.lidar
     observation: spaces.Dict[Any] = spaces.Dict(
         {
             "lidar": _box((beams,), 0.0, range_max),
@@ -91,7 +135,7 @@ def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
     return observation, spaces.Box(-1.0, 1.0, (2,), numpy.float64)
 
 
-class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
+class ControlEnv(_Drawn, gymnasium.Env[Observation, NDArray[Any]]):
     """Elevator and thrust, one step a tick of 10 ms.
 
     Observation: `lidar`, ranges of the last scan [m], the greatest where nothing came back; `air`, measured airspeed [m/s] and
@@ -102,13 +146,14 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
     strict rule: collision, extreme attitude, or out of the band.
     """
 
-    metadata = {"render_modes": []}
-
-    def __init__(self, lidar_hz: float = 10.0, **scenario: Unpack[ScenarioKeys]) -> None:
+    def __init__(
+        self, lidar_hz: float = 10.0, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]
+    ) -> None:
         self._batch: Batch | None = Batch({**scenario}, 1, lidar_hz)
         self._first = scenario.get("seed")
         self.controls = self._batch.controls
         self.observation_space, self.action_space = _control_spaces(self._batch)
+        self._view(render_mode, self._batch.lidar)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -119,10 +164,17 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
         super().reset(seed=seed)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if seed is None else seed])
+        self._at(batch.truth(0), fresh=True)
         return batch.observe_one(), batch.truth(0)
 
     def step(self, action: NDArray[Any]) -> Step:
-        return _of(self._batch).step_one(action)
+        step = _of(self._batch).step_one(action)
+        self._at(step[4])
+        return step
+
+    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
+        batch = _of(self._batch)
+        return batch.field(0), batch.observe_one(), batch.truth(0)
 
     def save(self) -> State[Moment]:
         """The state of the environment, to go on from it any number of times."""
@@ -133,10 +185,12 @@ class ControlEnv(gymnasium.Env[Observation, NDArray[Any]]):
         batch = _of(self._batch)
         batch.restore(0, _saved(state, Moment))
         self.np_random.bit_generator.state = state.random
+        self._at(batch.truth(0), fresh=True)
         return batch.observe_one()
 
     def close(self) -> None:
         self._batch = None
+        self._shut()
 
 
 class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
@@ -144,7 +198,15 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
 
     metadata = {"render_modes": [], "autoreset_mode": AutoresetMode.NEXT_STEP}
 
-    def __init__(self, num_envs: int = 1, lidar_hz: float = 10.0, **scenario: Unpack[ScenarioKeys]) -> None:
+    def __init__(
+        self,
+        num_envs: int = 1,
+        lidar_hz: float = 10.0,
+        render_mode: str | None = None,
+        **scenario: Unpack[ScenarioKeys],
+    ) -> None:
+        if render_mode is not None:
+            raise InputError("render_mode: give it to gymnasium.make, flights side by side are not drawn")
         self.num_envs = num_envs
         self._batch: Batch | None = Batch({**scenario}, num_envs, lidar_hz)
         self._first = scenario.get("seed")
@@ -186,7 +248,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         self._batch = None
 
 
-class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
+class ChoiceEnv(_Drawn, gymnasium.Env[Observation, numpy.int64]):
     """A choice among the candidates of the planner, one step a planning cycle.
 
     Observation: `lidar`, as that of `ControlEnv`; `state`, estimated airspeed [m/s], pitch and flight path angle [rad]
@@ -197,12 +259,10 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
     Reward: as that of `ControlEnv`.
     """
 
-    metadata = {"render_modes": []}
-
-    def __init__(self, **scenario: Unpack[ScenarioKeys]) -> None:
+    def __init__(self, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]) -> None:
         self._choice: Choice | None = Choice({**scenario})
         self._first = scenario.get("seed")
-        beams, range_max = self._choice.lidar
+        beams, range_max, _ = self._choice.lidar
         most, knots = Choice.SHAPE
         observation: spaces.Dict[Any] = spaces.Dict(
             {
@@ -215,6 +275,8 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
         )
         self.observation_space = observation
         self.action_space = spaces.Discrete(1 + most)
+        self.metadata = {**self.metadata, "render_fps": self._choice.rate}
+        self._view(render_mode, self._choice.lidar)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -225,12 +287,19 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
         super().reset(seed=seed)
         choice = _of(self._choice)
         choice.reset(_drawn(self.np_random) if seed is None else seed)
+        self._at(choice.truth(), fresh=True)
         return choice.observe(), choice.truth()
+
+    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
+        choice = _of(self._choice)
+        return choice.field(), choice.observe(), choice.truth()
 
     def step(self, action: numpy.int64) -> Step:
         choice, (most, _) = _of(self._choice), Choice.SHAPE
         reward, failed, ended = choice.step(whole("action", action, 0, most))
-        return choice.observe(), reward, failed, ended, choice.truth()
+        truth = choice.truth()
+        self._at(truth)
+        return choice.observe(), reward, failed, ended, truth
 
     def action_masks(self) -> NDArray[numpy.bool_]:
         """Which actions there are: the mask of the observation, as agents with masks ask for it."""
@@ -245,10 +314,12 @@ class ChoiceEnv(gymnasium.Env[Observation, numpy.int64]):
         """Goes on from a saved state, bit for bit."""
         _of(self._choice).restore(_saved(state, Fork))
         self.np_random.bit_generator.state = state.random
+        self._at(_of(self._choice).truth(), fresh=True)
         return _of(self._choice).observe()
 
     def close(self) -> None:
         self._choice = None
+        self._shut()
 
 
 Native = TypeVar("Native", Batch, Choice)
