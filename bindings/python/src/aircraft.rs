@@ -2,8 +2,9 @@
 
 use crate::errors::{input, scenario};
 use crate::input::text;
-use crate::output::plain;
+use crate::output::{flat, plain};
 use crate::typed::{typed, unlike};
+use mpp_core::vehicle::{JacobianForm, linearize};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::scenario::ScenarioError;
 use pyo3::prelude::*;
@@ -77,6 +78,24 @@ impl Aircraft {
         dict.set_item("pitch", trim.state.pitch)?;
         dict.set_item("thrust", trim.control.thrust)?;
         dict.set_item("elevator", trim.control.elevator)?;
+        Ok(dict)
+    }
+
+    /// The motion about level flight to first order, dx/dt = A x + B u, without actuators: a dict of A and B, and of
+    /// the names and units of states and inputs, which are deviations from `trim`. The elevator's unit is that of its file.
+    fn linearize<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (model, trim) = (&self.model, &self.model.trim);
+        let exact = JacobianForm::Exact;
+        let linear = linearize(&model.known.airframe, &trim.state, trim.control, exact);
+        let dict = PyDict::new(py);
+        let (a, b) = (linear.a.transpose(), linear.b.transpose());
+        dict.set_item("A", flat(py, a.iter().copied(), [4, 4])?)?;
+        dict.set_item("B", flat(py, b.iter().copied(), [4, 2])?)?;
+        dict.set_item("states", ["airspeed", "pitch", "pitch_rate", "flight_path"])?;
+        dict.set_item("state_units", ["m/s", "rad", "rad/s", "rad"])?;
+        dict.set_item("inputs", ["thrust", "elevator"])?;
+        let elevator = plain(py, &model.file.elevator.unit)?;
+        dict.set_item("input_units", ("N", elevator))?;
         Ok(dict)
     }
 

@@ -1,15 +1,15 @@
 //! Many flights side by side, for learning: the agent is the regulator.
 
-use crate::episode::{Episode, controls, seen};
+use crate::episode::{Episode, controls, pair, seen};
 use crate::errors::{self, alone, input, state};
 use crate::field::Field;
-use crate::input::{argument, rows, vector};
+use crate::input::{argument, rows};
 use crate::output::flat;
 use crate::scenario;
 use mpp_core::vehicle::Control;
 use mpp_sim::field::FieldFile;
 use mpp_sim::scenario::{Scenario, ScenarioFile, TICKS_PER_SECOND};
-use numpy::{PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray1, PyReadonlyArray2};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -100,11 +100,7 @@ impl Batch {
     fn reset(&self, seeds: Vec<Option<u64>>) -> PyResult<()> {
         let mut runs = alone(&self.guarded, "environment")?;
         if seeds.len() != runs.len() {
-            let advice = format!(
-                "seeds: give one for each of the {} flights, or None",
-                runs.len()
-            );
-            return Err(input(advice));
+            return Err(input("seeds: give one for each flight, or None"));
         }
         for (run, seed) in runs.iter_mut().zip(seeds) {
             if let Some(seed) = seed {
@@ -178,8 +174,8 @@ impl Batch {
         run.known(py)
     }
 
-    /// What the agents know, a row a flight: ranges of the last scan [m], the greatest where nothing came back; airspeed [m/s] and pitch [rad]; place
-    /// [m]; ages of place and scan [s].
+    /// What the agents know, a row a flight: ranges of the last scan [m], the greatest where nothing came back; airspeed
+    /// [m/s] and pitch [rad]; place [m]; ages of place and scan [s].
     fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let runs = alone(&self.guarded, "environment")?;
         let runs = runs.iter().map(|run| run.as_ref().ok_or_else(unset));
@@ -266,15 +262,6 @@ impl SavedFlight {
 
 fn single(values: [f64; 2]) -> [f32; 2] {
     values.map(|value| value as f32)
-}
-
-/// Elevator and thrust of one action.
-fn pair(action: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
-    let wrong = |_| input("actions: give elevator and thrust");
-    match action.extract::<PyReadonlyArray1<'_, f64>>() {
-        Ok(array) => <[f64; 2]>::try_from(array.as_array().to_vec()).map_err(wrong),
-        Err(_) => <[f64; 2]>::try_from(vector("actions", action)?).map_err(wrong),
-    }
 }
 
 fn unset() -> PyErr {

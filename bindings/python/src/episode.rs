@@ -2,6 +2,7 @@
 //! `mpp_sim::flight::fly`, and the loop is the caller's.
 
 use crate::errors::{self, FlightError, input};
+use crate::input::vector;
 use mpp_analysis::recording;
 use mpp_core::vehicle::{Control, VehicleState, Wind};
 use mpp_sim::aircraft::Aircraft;
@@ -12,6 +13,7 @@ use mpp_sim::lidar::Lidar as _;
 use mpp_sim::outcome::{Outcome, Score};
 use mpp_sim::plant::Plant as _;
 use mpp_sim::scenario::{ALTITUDE, Scenario};
+use numpy::PyReadonlyArray1;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -50,6 +52,15 @@ pub(crate) fn controls(base: &Scenario) -> PyResult<[[f64; 2]; 2]> {
         ],
         [0.0, limits.thrust_max.map_or(most, |limit| limit.min(most))],
     ])
+}
+
+/// Elevator and thrust of one action.
+pub(crate) fn pair(action: &Bound<'_, PyAny>) -> PyResult<[f64; 2]> {
+    let wrong = |_| input("actions: give elevator and thrust");
+    match action.extract::<PyReadonlyArray1<'_, f64>>() {
+        Ok(array) => <[f64; 2]>::try_from(array.as_array().to_vec()).map_err(wrong),
+        Err(_) => <[f64; 2]>::try_from(vector("actions", action)?).map_err(wrong),
+    }
 }
 
 /// Ranges of a scan as an agent gets them: where nothing came back they are the greatest range, which is next to what

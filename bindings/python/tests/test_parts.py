@@ -19,6 +19,28 @@ def test_an_aircraft_comes_by_name_by_file_and_by_numbers(root):
     assert mppflight.Aircraft().world_scale == 1.0 < known.world_scale
 
 
+@pytest.mark.parametrize("name", ["reference", "cessna182"])
+def test_the_linear_model_flies_as_the_aircraft_does_near_trim(name):
+    aircraft = mppflight.Aircraft(name)
+    model, trim = aircraft.linearize(), aircraft.trim
+    assert model["A"].shape == (4, 4) and model["B"].shape == (4, 2)
+    assert model["states"] == ["airspeed", "pitch", "pitch_rate", "flight_path"] and model["inputs"] == ["thrust", "elevator"]
+    assert model["input_units"] == ("N", "deg" if name == "cessna182" else "command")
+    still = np.array([trim["airspeed"], trim["pitch"], 0.0, 0.0])
+    for push in ([0.01 * trim["thrust"], 0.0], [0.0, 0.01]):
+        # With an elevator and a motor that follow at once.
+        elevator = {key: aircraft.numbers["elevator"][key] for key in ("unit", "moment", "lift")}
+        world = mppflight.World(aircraft={**aircraft.numbers, "elevator": elevator, "thrust": {}}, obstacles=0)
+        x = np.zeros(4)
+        for _ in range(40):
+            world.measure()
+            world.step(trim["thrust"] + push[0], trim["elevator"] + push[1])
+            for _ in range(100):
+                x = x + 1e-4 * (model["A"] @ x + model["B"] @ push)
+        flown = np.array([world.state[key] for key in model["states"]]) - still
+        assert np.allclose(flown, x, rtol=0.05, atol=0.02 * np.abs(x).max()), (flown, x)
+
+
 def test_a_generated_field_is_that_of_the_flight_with_its_seed():
     field = mppflight.Field.generate("forest", obstacles=40, seed=9, radius=1.5)
     flight = mppflight.fly(generator={"name": "forest", "radius": 1.5}, obstacles=40, seed=9, duration=1)
