@@ -85,12 +85,12 @@ class Written:
         if text not in self.tables:
             name = "".join(part.title().replace("_", "") for part in path) + "Keys"
             self.tables[text] = name
-            self.line(f'{name} = TypedDict("{name}", {{{text}}}, total=False)')
+            self.record(name, own)
         return self.tables[text]
 
-    def record(self, name, base, text, members):
-        self.lines += ["", "", f"class {name}({base}, total=False):", f'    """{text}"""', ""]
-        self.lines += [f"    {key}: {kind}" for key, kind in members.items()]
+    def record(self, name, members):
+        text = ", ".join(f'"{key}": {kind}' for key, kind in members.items())
+        self.line(f'{name} = TypedDict("{name}", {{{text}}}, total=False)')
 
 
 def text():
@@ -101,12 +101,14 @@ def text():
         written.table([table], plane)
     every = {"scenario": BESIDES["scenario"]} | {key: written.kind([key], plane) for key in keys([], plane)}
     common = {key: kind for key, kind in every.items() if key not in LISTS}
-    written.record("CommonKeys", "TypedDict", "What all cells of a campaign have in common.", common)
-    lists = {key: every[key] for key in LISTS}
-    written.record("ScenarioKeys", "CommonKeys", "The keys of a scenario: docs/scenarios/example.toml.", lists)
+    written.lines += ["# What all cells of a campaign have in common."]
+    written.record("CommonKeys", common)
+    written.lines += ["# The keys of a flight in space."]
     of_space = {key: written.kind([key], space) for key in keys([], space) if key != "preset"}
-    of_space = {"preset": 'Required[Literal["space"]]', **of_space}
-    written.record("SpaceKeys", "TypedDict", "The keys of a flight in space.", of_space)
+    written.record("SpaceKeys", {"preset": 'Required[Literal["space"]]', **of_space})
+    written.lines += ["", "", "class ScenarioKeys(CommonKeys, total=False):"]
+    written.lines += ['    """The keys of a scenario: docs/scenarios/example.toml."""', ""]
+    written.lines += [f"    {key}: {every[key]}" for key in LISTS]
     return HEAD + "\n".join(written.lines) + "\n"
 
 

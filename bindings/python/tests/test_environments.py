@@ -197,6 +197,26 @@ def test_flights_side_by_side_are_those_of_single_ones():
     assert not all(alive) and many.observation_space.contains(observations)
 
 
+def test_a_flight_may_end_after_some_steps():
+    """Side by side as alone, where Gymnasium counts them."""
+    many = gymnasium.make_vec("mpp/Control-v0", num_envs=2, max_episode_steps=3)
+    one = gymnasium.make("mpp/Control-v0", max_episode_steps=3)
+    many.reset(seed=4)
+    one.reset(seed=4)
+    ends = []
+    for _ in range(8):
+        observations, _, failed, ended, _ = many.step(np.zeros((2, 2)))
+        ends.append(ended.tolist())
+        if len(ends) <= 3:
+            observation, _, _, cut, _ = one.step(np.zeros(2))
+            assert cut == ended[0] and equal({key: rows[0] for key, rows in observations.items()}, observation)
+    # The fourth step starts anew.
+    assert ends == [[False] * 2, [False] * 2, [True] * 2, [False] * 2] * 2
+    for most in (0, -1, 2.5, True, "3"):
+        with pytest.raises(mppflight.InputError, match="max_episode_steps: give 1 to"):
+            gymnasium.make_vec("mpp/Control-v0", num_envs=2, max_episode_steps=most)
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_too_early_and_too_late(name):
     env = gymnasium.make(name, duration=1).unwrapped

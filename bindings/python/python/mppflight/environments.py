@@ -203,17 +203,20 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         num_envs: int = 1,
         lidar_hz: float = 10.0,
         render_mode: str | None = None,
+        max_episode_steps: int | None = None,
         **scenario: Unpack[ScenarioKeys],
     ) -> None:
         if render_mode is not None:
             raise InputError("render_mode: give it to gymnasium.make, flights side by side are not drawn")
+        most = 2**62 if max_episode_steps is None else max_episode_steps
+        self._most = whole("max_episode_steps", most, 1, 2**62)
         self.num_envs = num_envs
         self._batch: Batch | None = Batch({**scenario}, num_envs, lidar_hz)
         self._first = scenario.get("seed")
         self.single_observation_space, self.single_action_space = _control_spaces(self._batch)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-        self._done = numpy.zeros(num_envs, bool)
+        self._done, self._steps = numpy.zeros(num_envs, bool), numpy.zeros(num_envs, numpy.int64)
 
     def reset(
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
@@ -231,7 +234,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
             self.np_random = numpy.random.default_rng(given)
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if one is None else one for one in seeds])
-        self._done[:] = False
+        self._done[:], self._steps[:] = False, 0
         return dict(batch.observe()), {}
 
     def step(
@@ -241,6 +244,8 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         if self._done.any():
             fresh = [_drawn(self.np_random) if done else None for done in self._done]
         rewards, failed, ended = batch.step(actions, fresh)
+        self._steps = numpy.where(self._done, 0, self._steps + 1)
+        ended |= self._steps >= self._most
         self._done = failed | ended
         return dict(batch.observe()), rewards, failed, ended, {}
 

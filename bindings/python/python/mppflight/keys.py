@@ -42,26 +42,17 @@ FaultsKeys = TypedDict("FaultsKeys", {"actuators": FaultsActuatorsKeys, "gusts":
     "pitch": FaultsAirspeedKeys, "air": FaultsAirKeys, "x": FaultsAirspeedKeys, "z": FaultsAirspeedKeys,
     "position": FaultsAirKeys, "scan": FaultsScanKeys, "elevator": FaultsAirspeedKeys, "thrust": FaultsAirspeedKeys,
     "link": FaultsLinkKeys, "clock": FaultsClockKeys}, total=False)
-
-
-class CommonKeys(TypedDict, total=False):
-    """What all cells of a campaign have in common."""
-
-    scenario: Path
-    aircraft: Aircraft | Path | Mapping[str, Any]
-    world_scale: float
-    body_radius: float
-    scene: Literal["flytrap", "dynamics", "long-way"]
-    latency_ms: int
-    slices_per_tick: int
-    duration: float
-    oracle: bool
-    known_map: bool
-    lidar: Lidar | Path | LidarKeys
-    air_data: AirDataKeys
-    navigation: NavigationSource | NavigationKeys
-    faults: FaultsKeys
-    field: Field | Path | Mapping[str, Any]
+# What all cells of a campaign have in common.
+CommonKeys = TypedDict("CommonKeys", {"scenario": Path, "aircraft": Aircraft | Path | Mapping[str, Any],
+    "world_scale": float, "body_radius": float, "scene": Literal["flytrap", "dynamics", "long-way"],
+    "latency_ms": int, "slices_per_tick": int, "duration": float, "oracle": bool, "known_map": bool, "lidar": Lidar |
+    Path | LidarKeys, "air_data": AirDataKeys, "navigation": NavigationSource | NavigationKeys, "faults": FaultsKeys,
+    "field": Field | Path | Mapping[str, Any]}, total=False)
+# The keys of a flight in space.
+SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
+    Any], "airspeed": float, "world": str, "density": float, "sphere": float, "exact": bool, "candidates": int,
+    "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool, "lidar_clock": float,
+    "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 
 class ScenarioKeys(CommonKeys, total=False):
@@ -73,25 +64,3 @@ class ScenarioKeys(CommonKeys, total=False):
     paths: int
     replan_hz: float
     generator: GeneratorName | GeneratorKeys
-
-
-class SpaceKeys(TypedDict, total=False):
-    """The keys of a flight in space."""
-
-    preset: Required[Literal["space"]]
-    aircraft: Aircraft | Path | Mapping[str, Any]
-    airspeed: float
-    world: str
-    density: float
-    sphere: float
-    exact: bool
-    candidates: int
-    programs: bool
-    baseline: str
-    wind: Sequence[float]
-    gusts: float
-    deskew: bool
-    lidar_clock: float
-    replan_hz: float
-    latency_ms: int
-    seed: int

@@ -17,7 +17,7 @@ from .errors import InputError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
 
     from ._native import Field, Flight
     from .campaigns import Rows
@@ -36,14 +36,14 @@ def pyplot() -> Any:
     return pyplot
 
 
-def _blank(width: float, height: float) -> tuple[FigureCanvasAgg, Axes]:
+def _blank(width: float, height: float) -> tuple[Figure, Axes]:
     """A figure beside those of `pyplot`, so that no notebook shows it twice."""
     pyplot()
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width, height))
-    return FigureCanvasAgg(figure), figure.add_axes((0.07, 0.2, 0.91, 0.66))
+    figure = FigureCanvasAgg(Figure(figsize=(width, height))).figure
+    return figure, figure.add_axes((0.07, 0.2, 0.91, 0.66))
 
 
 def _field(axes: Axes, field: Field, time: float, x: tuple[float, float], z: tuple[float, float]) -> None:
@@ -84,12 +84,12 @@ def flight_html(flown: Flight) -> str:
     """The picture, or the text where there is no matplotlib."""
     text = f"<p>{html.escape(repr(flown))}</p>"
     try:
-        canvas, axes = _blank(10.0, 2.5)
+        figure, axes = _blank(10.0, 2.5)
     except ImportError:
         return text
     flight(flown, axes)
     png = io.BytesIO()
-    canvas.print_png(png)  # type: ignore[no-untyped-call]
+    figure.savefig(png)
     return f'<img alt="{html.escape(repr(flown))}" src="data:image/png;base64,{b64encode(png.getvalue()).decode()}">'
 
 
@@ -147,13 +147,8 @@ class Window:
         self._human = human
         if human and pyplot().get_backend().lower() in WINDOWLESS:
             raise InputError("render_mode: give rgb_array, matplotlib has no window here; or set MPLBACKEND")
-        self._canvas: FigureCanvasAgg
-        self._axes: Axes
-        if human:
-            figure, self._axes = pyplot().subplots(figsize=(8, 3.2))
-            self._canvas = figure.canvas
-        else:
-            self._canvas, self._axes = _blank(8.0, 3.2)
+        drawn: tuple[Figure, Axes] = pyplot().subplots(figsize=(8, 3.2)) if human else _blank(8.0, 3.2)
+        self._figure, self._axes = drawn
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Window:
         return Window(self._human)
@@ -175,10 +170,11 @@ class Window:
         if self._human:
             pyplot().pause(1e-3)
             return None
-        self._canvas.draw()  # type: ignore[no-untyped-call]
-        return numpy.array(self._canvas.buffer_rgba(), numpy.uint8)[:, :, :3]  # type: ignore[no-untyped-call]
+        canvas: Any = self._figure.canvas
+        canvas.draw()
+        return numpy.array(canvas.buffer_rgba(), numpy.uint8)[:, :, :3]
 
     def close(self) -> None:
         """Closes the window."""
         if self._human:
-            pyplot().close(self._canvas.figure)
+            pyplot().close(self._figure)
