@@ -102,16 +102,14 @@ impl Flight {
         slf: &Bound<'py, Self>,
         axes: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
-        slf.py()
-            .import("mppflight.plots")?
-            .call_method1("flight", (slf, axes))
+        let plots = slf.py().import("mppflight.plots")?;
+        plots.call_method1("flight", (slf, axes))
     }
 
     /// What a notebook shows.
     fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
-        slf.py()
-            .import("mppflight.plots")?
-            .call_method1("flight_html", (slf,))
+        let plots = slf.py().import("mppflight.plots")?;
+        plots.call_method1("flight_html", (slf,))
     }
 
     /// The columns as a `pandas.DataFrame`.

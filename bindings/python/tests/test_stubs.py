@@ -32,20 +32,6 @@ def test_the_types_of_keys_are_those_that_the_package_takes():
     assert (files("mppflight") / "keys.py").read_text() == keys_of_scenarios.text()
 
 
-def test_the_examples_are_typed(root, tmp_path):
-    """Notebook and page, as a reader puts them together."""
-    notebook = nbformat.read(root / "bindings/python/examples/figure8.ipynb", as_version=4)
-    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
-    page = re.findall(r"^```python\n(.*?)^```", (root / "docs/python.md").read_text(), re.DOTALL | re.MULTILINE)
-    assert cells and len(page) > 4
-    sources = {"notebook.py": cells, "page.py": page}
-    for name, blocks in sources.items():
-        (tmp_path / name).write_text("\n".join(blocks))
-    foreign = "--untyped-calls-exclude=distributed"
-    code, told = mypy("mypy", "--strict", foreign, *(str(tmp_path / name) for name in sources))
-    assert code == 0, told
-
-
 WRONG = """
 import mppflight
 mppflight.fly(sede=7)  # type: ignore[call-overload]
@@ -66,10 +52,17 @@ mppflight.campaign(trials=1, preset=["paper", "flight"], obstacles=20, faults={"
 """
 
 
-def test_a_wrong_key_is_an_error_of_types(tmp_path):
-    """An ignored line without an error is an error itself."""
-    (tmp_path / "wrong.py").write_text(WRONG)
-    code, told = mypy("mypy", "--strict", str(tmp_path / "wrong.py"))
+def test_the_examples_are_typed_and_wrong_keys_are_errors(root, tmp_path):
+    """Notebook and page, as a reader puts them together. An ignored line without an error is an error itself."""
+    notebook = nbformat.read(root / "bindings/python/examples/figure8.ipynb", as_version=4)
+    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    page = re.findall(r"^```python\n(.*?)^```", (root / "docs/python.md").read_text(), re.DOTALL | re.MULTILINE)
+    assert cells and len(page) > 4
+    sources = {"notebook.py": cells, "page.py": page, "wrong.py": [WRONG]}
+    for name, blocks in sources.items():
+        (tmp_path / name).write_text("\n".join(blocks))
+    foreign = "--untyped-calls-exclude=distributed"
+    code, told = mypy("mypy", "--strict", foreign, *(str(tmp_path / name) for name in sources))
     assert code == 0, told
 
 
