@@ -112,7 +112,7 @@ impl Choice {
     /// What the agent knows: the scan [m], the greatest range where nothing came back; airspeed [m/s], pitch and flight path angle [rad] and height above the
     /// altitude [m] as estimated; the candidates by price, as places from the aircraft [m]; their prices; and which
     /// actions there are: the planner's own plan always, and the candidates.
-    fn observe<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    fn observe_one<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let run = alone(&self.guarded, "environment")?;
         let run = run.as_ref().ok_or_else(unset)?;
         let at = run.flight.state();

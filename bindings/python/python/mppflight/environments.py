@@ -20,7 +20,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from ._native import Batch, Choice, Field, Fork, Moment
+from ._native import Batch, Choice, Fork, Moment
 from .errors import InputError, StateError, whole
 from .keys import ScenarioKeys
 from .plots import Window
@@ -37,12 +37,6 @@ class State(Generic[Saved]):
 
     flight: Saved
     random: dict[str, Any]
-
-
-def _saved(state: State[Saved], kind: type[Saved]) -> Saved:
-    if not isinstance(state, State) or not isinstance(state.flight, kind):
-        raise InputError(f"state: give what save() of such an environment gave, not {state!r}")
-    return state.flight
 
 
 def _box(shape: tuple[int, ...], low: float = -numpy.inf, high: float = numpy.inf) -> spaces.Box:
@@ -79,31 +73,52 @@ def _seeds(value: Any, count: int) -> list[int | None]:
     return [_seed(first + index) for index in range(count)]
 
 
-class _Drawn:
-    """What both environments draw: obstacles, the way so far, what the beams met, and candidates."""
+class _Single(gymnasium.Env[Observation, Any], Generic[Saved]):
+    """What both environments have in common: seeds, states and pictures of one flight."""
 
-    metadata: dict[str, Any] = {"render_modes": ["rgb_array", "human"], "render_fps": 100}
+    metadata = {"render_modes": ["rgb_array", "human"], "render_fps": 100}
+    # The place of the flight among those of a batch.
+    _place: tuple[int, ...] = ()
+    _kind: type[Saved]
 
-    def _view(self, mode: str | None, lidar: tuple[int, float, float]) -> None:
+    def _open(self, native: Batch | Choice, first: int | None, mode: str | None) -> None:
         if mode not in (None, *self.metadata["render_modes"]):
             raise InputError(f"render_mode: give rgb_array, human or None, not {mode!r}")
-        beams, self._sight, view = lidar
+        self._native: Any = native
+        self._first = first
+        beams, self._sight, view = native.lidar
         self._angles = numpy.linspace(-0.5 * view, 0.5 * view, beams) if beams > 1 else numpy.zeros(1)
         self.render_mode, self._window = mode, Window(mode == "human") if mode else None
         self._way: list[tuple[float, float]] = []
 
-    def _at(self, truth: dict[str, Any], fresh: bool = False) -> None:
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        _refuse(options)
+        seed, self._first = self._first if seed is None else seed, None
+        seed = None if seed is None else _seed(seed)
+        super().reset(seed=seed)
+        native, seed = _of(self._native), _drawn(self.np_random) if seed is None else seed
+        native.reset([seed] if self._place else seed)
+        return self._start()
+
+    def _start(self) -> tuple[Observation, dict[str, Any]]:
+        self._way, truth = [], self._native.truth(*self._place)
+        self._at(truth)
+        return self._native.observe_one(), truth
+
+    def _at(self, truth: dict[str, Any]) -> None:
         """The aircraft came to a place."""
         if self.render_mode:
-            self._way = [] if fresh else self._way
             self._way.append((truth["x"], truth["z"]))
             # A person sees 25 pictures a second.
-            if self.render_mode == "human" and (fresh or self.metadata["render_fps"] < 25 or len(self._way) % 4 == 0):
+            if self.render_mode == "human" and (self.metadata["render_fps"] < 25 or len(self._way) % 4 == 1):
                 self.render()
 
     def render(self) -> NDArray[numpy.uint8] | None:
         """The picture of the flight as it is now, or its window."""
-        field, seen, truth = self._shown()
+        native = _of(self._native)
+        seen, truth = native.observe_one(), native.truth(*self._place)
         if self._window is None:
             gymnasium.logger.warn("nothing is drawn: give gymnasium.make a render_mode, rgb_array or human")
             return None
@@ -112,12 +127,24 @@ class _Drawn:
         angles = self._angles[met] + pitch
         hits = numpy.column_stack([x + ranges[met] * numpy.cos(angles), z + ranges[met] * numpy.sin(angles)])
         plans = seen["candidates"][seen["mask"][1:] > 0] + (x, z) if "candidates" in seen else numpy.zeros((0, 2, 2))
-        return self._window.draw(field, truth["t"], self._way, hits, self._sight, plans)
+        return self._window.draw(native.field(*self._place), truth["t"], self._way, hits, self._sight, plans)
 
-    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
-        raise NotImplementedError
+    def save(self) -> State[Saved]:
+        """The state of the environment, to go on from it any number of times."""
+        flight = _of(self._native).save(*self._place)
+        return State(flight, self.np_random.bit_generator.state)  # type: ignore[arg-type]
 
-    def _shut(self) -> None:
+    def restore(self, state: State[Saved]) -> Observation:
+        """Goes on from a saved state, bit for bit."""
+        native = _of(self._native)
+        if not isinstance(state, State) or not isinstance(state.flight, self._kind):
+            raise InputError(f"state: give what save() of such an environment gave, not {state!r}")
+        native.restore(*self._place, state.flight)
+        self.np_random.bit_generator.state = state.random
+        return self._start()[0]
+
+    def close(self) -> None:
+        self._native = None
         if self._window is not None:
             self._window.close()
 
@@ -135,7 +162,7 @@ def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
     return observation, spaces.Box(-1.0, 1.0, (2,), numpy.float64)
 
 
-class ControlEnv(_Drawn, gymnasium.Env[Observation, NDArray[Any]]):
+class ControlEnv(_Single[Moment]):
     """Elevator and thrust, one step a tick of 10 ms.
 
     Observation: `lidar`, ranges of the last scan [m], the greatest where nothing came back; `air`, measured airspeed [m/s] and
@@ -146,51 +173,20 @@ class ControlEnv(_Drawn, gymnasium.Env[Observation, NDArray[Any]]):
     strict rule: collision, extreme attitude, or out of the band.
     """
 
+    _place, _kind = (0,), Moment
+
     def __init__(
         self, lidar_hz: float = 10.0, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]
     ) -> None:
-        self._batch: Batch | None = Batch({**scenario}, 1, lidar_hz)
-        self._first = scenario.get("seed")
-        self.controls = self._batch.controls
-        self.observation_space, self.action_space = _control_spaces(self._batch)
-        self._view(render_mode, self._batch.lidar)
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
-        _refuse(options)
-        seed, self._first = self._first if seed is None else seed, None
-        seed = None if seed is None else _seed(seed)
-        super().reset(seed=seed)
-        batch = _of(self._batch)
-        batch.reset([_drawn(self.np_random) if seed is None else seed])
-        self._at(batch.truth(0), fresh=True)
-        return batch.observe_one(), batch.truth(0)
+        batch = Batch({**scenario}, 1, lidar_hz)
+        self.controls = batch.controls
+        self.observation_space, self.action_space = _control_spaces(batch)
+        self._open(batch, scenario.get("seed"), render_mode)
 
     def step(self, action: NDArray[Any]) -> Step:
-        step = _of(self._batch).step_one(action)
+        step: Step = _of(self._native).step_one(action)
         self._at(step[4])
         return step
-
-    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
-        batch = _of(self._batch)
-        return batch.field(0), batch.observe_one(), batch.truth(0)
-
-    def save(self) -> State[Moment]:
-        """The state of the environment, to go on from it any number of times."""
-        return State(_of(self._batch).save(0), self.np_random.bit_generator.state)  # type: ignore[arg-type]
-
-    def restore(self, state: State[Moment]) -> Observation:
-        """Goes on from a saved state, bit for bit."""
-        batch = _of(self._batch)
-        batch.restore(0, _saved(state, Moment))
-        self.np_random.bit_generator.state = state.random
-        self._at(batch.truth(0), fresh=True)
-        return batch.observe_one()
-
-    def close(self) -> None:
-        self._batch = None
-        self._shut()
 
 
 class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
@@ -253,7 +249,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         self._batch = None
 
 
-class ChoiceEnv(_Drawn, gymnasium.Env[Observation, numpy.int64]):
+class ChoiceEnv(_Single[Fork]):
     """A choice among the candidates of the planner, one step a planning cycle.
 
     Observation: `lidar`, as that of `ControlEnv`; `state`, estimated airspeed [m/s], pitch and flight path angle [rad]
@@ -264,10 +260,11 @@ class ChoiceEnv(_Drawn, gymnasium.Env[Observation, numpy.int64]):
     Reward: as that of `ControlEnv`.
     """
 
+    _kind = Fork
+
     def __init__(self, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]) -> None:
-        self._choice: Choice | None = Choice({**scenario})
-        self._first = scenario.get("seed")
-        beams, range_max, _ = self._choice.lidar
+        choice = Choice({**scenario})
+        beams, range_max, _ = choice.lidar
         most, knots = Choice.SHAPE
         observation: spaces.Dict[Any] = spaces.Dict(
             {
@@ -280,54 +277,23 @@ class ChoiceEnv(_Drawn, gymnasium.Env[Observation, numpy.int64]):
         )
         self.observation_space = observation
         self.action_space = spaces.Discrete(1 + most)
-        self.metadata = {**self.metadata, "render_fps": self._choice.rate}
-        self._view(render_mode, self._choice.lidar)
-
-    def reset(
-        self, *, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Observation, dict[str, Any]]:
-        _refuse(options)
-        seed, self._first = self._first if seed is None else seed, None
-        seed = None if seed is None else _seed(seed)
-        super().reset(seed=seed)
-        choice = _of(self._choice)
-        choice.reset(_drawn(self.np_random) if seed is None else seed)
-        self._at(choice.truth(), fresh=True)
-        return choice.observe(), choice.truth()
-
-    def _shown(self) -> tuple[Field, Observation, dict[str, Any]]:
-        choice = _of(self._choice)
-        return choice.field(), choice.observe(), choice.truth()
+        self.metadata = {**self.metadata, "render_fps": choice.rate}
+        self._open(choice, scenario.get("seed"), render_mode)
 
     def step(self, action: numpy.int64) -> Step:
-        choice, (most, _) = _of(self._choice), Choice.SHAPE
+        choice, (most, _) = _of(self._native), Choice.SHAPE
         reward, failed, ended = choice.step(whole("action", action, 0, most))
         truth = choice.truth()
         self._at(truth)
-        return choice.observe(), reward, failed, ended, truth
+        return choice.observe_one(), reward, failed, ended, truth
 
     def action_masks(self) -> NDArray[numpy.bool_]:
         """Which actions there are: the mask of the observation, as agents with masks ask for it."""
-        mask: NDArray[numpy.bool_] = _of(self._choice).observe()["mask"].astype(bool)
+        mask: NDArray[numpy.bool_] = _of(self._native).observe_one()["mask"].astype(bool)
         return mask
 
-    def save(self) -> State[Fork]:
-        """The state of the environment, to go on from it any number of times."""
-        return State(_of(self._choice).save(), self.np_random.bit_generator.state)  # type: ignore[arg-type]
 
-    def restore(self, state: State[Fork]) -> Observation:
-        """Goes on from a saved state, bit for bit."""
-        _of(self._choice).restore(_saved(state, Fork))
-        self.np_random.bit_generator.state = state.random
-        self._at(_of(self._choice).truth(), fresh=True)
-        return _of(self._choice).observe()
-
-    def close(self) -> None:
-        self._choice = None
-        self._shut()
-
-
-Native = TypeVar("Native", Batch, Choice)
+Native = TypeVar("Native")
 
 
 def _of(native: Native | None) -> Native:
