@@ -23,6 +23,21 @@ fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
     assert!(other.replay(&log).is_err());
 }
 
+/// In a head wind the damping of the pitch loop looked like an airspeed that reads too much.
+#[test]
+fn it_flies_past_obstacles_in_wind_and_gusts() {
+    for seed in [910_021, 910_036] {
+        let flight = Flight {
+            wind: -4.33,
+            gusts: 0.5,
+            ..Flight::new(seed)
+        };
+        let outcome = flight.fly(None).unwrap();
+        let scenario = flight.scenario().unwrap();
+        assert!(outcome.is_strict(&scenario), "{seed}: {outcome:?}");
+    }
+}
+
 #[test]
 fn no_fault_of_the_exchange_brings_a_setpoint_that_must_not_be() {
     for fault in Fault::ALL {

@@ -156,10 +156,7 @@ impl Companion {
         if !(config.range > 0.0 && config.range.is_finite()) {
             return Err(CompanionError::Range(config.range));
         }
-        // With a pitch loop the command is the angle of attack at which the moments balance.
-        let known = &config.model.known.airframe;
-        let apart = libm::fabs(known.moment_elevator + known.moment_alpha);
-        if apart > 1e-9 * libm::fabs(known.moment_alpha) || known.moment_zero != 0.0 {
+        if !config.model.known.airframe.commands_angle_of_attack() {
             return Err(CompanionError::NoPitchLoop);
         }
         let file = &config.model.file;

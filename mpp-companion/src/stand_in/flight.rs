@@ -45,7 +45,7 @@ pub struct Flight {
 pub struct Outcome {
     /// Least distance to an obstacle, less the body \[m\].
     pub clearance: f64,
-    /// Greatest distance from the height at the start \[m\].
+    /// Greatest distance from the height at which the core took over \[m\].
     pub off: f64,
     /// Whether the core had the aircraft to the end of the field.
     pub flown: bool,
@@ -193,7 +193,7 @@ impl Run<'_> {
         }
         let field = mpp_sim::field::ObstacleField::new(obstacles);
         let end = shift + 242.0 * scenario.world_scale;
-        let start = self.autopilot.state().z;
+        let mut start = None;
         while self.autopilot.state().x < end && self.autopilot.tick < 9000 {
             let before = self.autopilot.state();
             self.tick(scenario, &field);
@@ -206,7 +206,11 @@ impl Run<'_> {
                 field.clearance_of_motion((before.x, before.z), (after.x, after.z), 0.01);
             let clear = clearance - scenario.body_radius;
             self.outcome.clearance = self.outcome.clearance.min(clear);
-            self.outcome.off = self.outcome.off.max((after.z - start).abs());
+            if self.outcome.setpoints > 0 {
+                // The core keeps to the height at which it took over, which gusts have moved.
+                let off = after.z - *start.get_or_insert(before.z);
+                self.outcome.off = self.outcome.off.max(off.abs());
+            }
         }
         self.outcome.flown = self.companion.state() == State::Flying;
         self.outcome.told = self.companion.told();

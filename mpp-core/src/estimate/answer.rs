@@ -16,6 +16,9 @@ pub(super) struct Answer {
 impl Answer {
     /// The answer of an airframe at an airspeed [m/s]. `None` if the elevator alone tells the angle of attack: the turn does not
     /// damp the pitch, or the answer is over soon.
+    ///
+    /// A pitch loop is always followed. Its damping holds back the angle of attack for as long as a turn lasts: of a command
+    /// the loop of ArduPlane's plane gives a quarter.
     pub(super) fn of(airframe: &Airframe, airspeed: f64) -> Option<Self> {
         let a = airframe;
         let flow = 0.5 * a.air_density * airspeed * a.wing_area;
@@ -27,7 +30,8 @@ impl Answer {
             -flow * airspeed * a.moment_length * a.turn_stiffness(airspeed) / a.pitch_inertia;
         // Both roots of the motion are slower than this rate.
         let rate = damping.max(libm::sqrt(stiffness));
-        (rate < SLOW_ANSWER && a.moment_pitch_rate < 0.0).then_some(Self {
+        let follows = rate < SLOW_ANSWER || a.commands_angle_of_attack();
+        (follows && a.moment_pitch_rate < 0.0).then_some(Self {
             airframe: *airframe,
             motion: None,
         })
