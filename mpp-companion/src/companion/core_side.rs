@@ -45,6 +45,14 @@ impl Companion {
         Some(true_airspeed(self.heard.airspeed?, density))
     }
 
+    /// The airspeed that the core has not got yet, and for how many ticks it is old. Airspeed and attitude of one period of
+    /// the stream count as measured at once.
+    fn fresh_airspeed(&mut self, now: u64) -> Option<(u32, f64)> {
+        let came = self.heard.fresh.take()?;
+        let ticks = now.saturating_sub(came) / (1000 * u64::from(TICK_MS));
+        Some((if ticks > 2 { ticks as u32 } else { 0 }, self.airspeed()?))
+    }
+
     /// Begins a flight of the core at this attitude.
     fn begin(&mut self, attitude: &ATTITUDE_DATA) -> Option<Flown> {
         let position = self.heard.position.as_ref()?;
@@ -83,7 +91,7 @@ impl Companion {
                 flown.brain.plans = plans;
             }
         }
-        let airspeed = self.airspeed();
+        let fresh = self.fresh_airspeed(now);
         let Some(flown) = &mut self.flown else {
             return;
         };
@@ -95,6 +103,8 @@ impl Companion {
             self.flown = None;
             return;
         }
+        let first = flown.brain.next;
+        let measured = fresh.map(|(ago, airspeed)| (tick.saturating_sub(ago).max(first), airspeed));
         while flown.brain.next <= tick {
             let next = flown.brain.next;
             let mut frame = SensorFrame {
@@ -103,15 +113,15 @@ impl Companion {
                 position: None,
             };
             let mut scan: Option<LidarScan> = None;
+            let airspeed = measured.filter(|(own, _)| *own == next);
+            let pitch = Some(f64::from(attitude.pitch)).filter(|it| next == tick && it.is_finite());
+            // A value that is not a number is none.
+            frame.air = (airspeed.is_some() || pitch.is_some()).then(|| AirData {
+                tick: next,
+                airspeed: airspeed.map_or(f64::NAN, |(_, airspeed)| airspeed),
+                pitch: pitch.unwrap_or(f64::NAN),
+            });
             if next == tick {
-                let pitch = f64::from(attitude.pitch);
-                frame.air = airspeed
-                    .filter(|_| pitch.is_finite())
-                    .map(|airspeed| AirData {
-                        tick,
-                        airspeed,
-                        pitch,
-                    });
                 frame.position = position(flown, tick);
                 let due = |scanned| next - scanned >= self.config.replan_ticks;
                 if flown.brain.scanned.is_none_or(due) {
@@ -157,4 +167,30 @@ fn position(flown: &mut Flown, tick: u32) -> Option<Position> {
             sigma: 0.3,
         }),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::companion::Config;
+    use crate::wire::Mav;
+    use mavlink::dialects::common::VFR_HUD_DATA;
+    use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+
+    #[test]
+    fn the_core_gets_an_airspeed_once_and_with_its_age() {
+        let file = AircraftFile::parse("it", crate::stand_in::AIRCRAFT).unwrap();
+        let config = Config::new(AircraftModel::new(file).unwrap().plane(), 70.0);
+        let mut companion = Companion::new(config).unwrap();
+        let hud = Mav::VFR_HUD(VFR_HUD_DATA {
+            airspeed: 14.0,
+            ..VFR_HUD_DATA::DEFAULT
+        });
+        for (wait, age) in [(0, 0), (20_000, 0), (70_000, 7)] {
+            companion.hear(1_000_000, &hud, &mut |_| {});
+            let fresh = companion.fresh_airspeed(1_000_000 + wait);
+            assert_eq!(fresh, companion.airspeed().map(|airspeed| (age, airspeed)));
+            assert_eq!(companion.fresh_airspeed(1_020_000 + wait), None);
+        }
+    }
 }

@@ -115,6 +115,8 @@ struct Heard {
     attitude: Option<ATTITUDE_DATA>,
     position: Option<LOCAL_POSITION_NED_DATA>,
     airspeed: Option<f64>,
+    /// When an airspeed came that the core has not got yet \[us\].
+    fresh: Option<u64>,
 }
 
 /// A flight by the core.
@@ -230,6 +232,7 @@ impl Companion {
             Mav::VFR_HUD(hud) => {
                 self.heard.airspeed =
                     Some(f64::from(hud.airspeed)).filter(|speed| speed.is_finite());
+                self.heard.fresh = self.heard.airspeed.map(|_| now);
             }
             Mav::LOCAL_POSITION_NED(position) => self.hear_position(position),
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),

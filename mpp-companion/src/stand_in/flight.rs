@@ -3,9 +3,10 @@
 use super::autopilot::StandIn;
 use super::faults::Fault;
 use crate::companion::GUIDED;
-use crate::wire::{Framer, Mav};
+use crate::wire::{self, Framer, Mav};
 use crate::{Companion, CompanionError, Config, LogWriter, Side, State, Told};
 use hil_protocol::{MAX_FRAME, Message, encode};
+use mavlink::dialects::common::VFR_HUD_DATA;
 use mpp_sim::field::Field;
 use mpp_sim::lidar::{FanLidar, Lidar};
 use mpp_sim::random::{Draws, Stream, gaussian, generator};
@@ -300,6 +301,11 @@ impl Run<'_> {
         match self.acting() {
             Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => return,
             Some(Fault::Silent(ticks)) if self.since().is_some_and(|since| since < ticks) => return,
+            Some(Fault::AirspeedEach(ticks))
+                if wire::is::<VFR_HUD_DATA>(&frame) && !due.is_multiple_of(ticks) =>
+            {
+                return;
+            }
             Some(Fault::Late(ticks)) => due += ticks as u32,
             Some(Fault::Doubled) => self.up.push_back((due, frame.clone())),
             Some(Fault::Damaged) if self.count.is_multiple_of(3) => {
