@@ -68,6 +68,19 @@ fn a_pilot_who_takes_over_has_the_aircraft() {
     assert!(told.contains(&taken), "{told:?}");
 }
 
+/// The autopilot counts heights above home, and its estimate above another place.
+#[test]
+fn an_aircraft_that_is_given_back_keeps_its_height() {
+    let flight = Flight {
+        fault: Some(Fault::LidarSilent),
+        ..Flight::new(6)
+    };
+    let outcome = flight.fly(None).unwrap();
+    let back = Told::State(State::GiveBack, Reason::Climbed);
+    assert!(outcome.told.contains(&back), "{:?}", outcome.told);
+    assert!(outcome.asked.unwrap().abs() < 0.5, "{:?}", outcome.asked);
+}
+
 /// An elevator that is no angle of attack would be sent as a pitch.
 #[test]
 fn an_aircraft_without_a_pitch_loop_and_a_range_that_is_none_are_refused() {

@@ -114,6 +114,8 @@ struct Heard {
     ours: bool,
     attitude: Option<ATTITUDE_DATA>,
     position: Option<LOCAL_POSITION_NED_DATA>,
+    /// Height of the estimator's origin above home \[m\].
+    origin: Option<f32>,
     airspeed: Option<f64>,
     /// When an airspeed came that the core has not got yet \[us\].
     fresh: Option<u64>,
@@ -235,6 +237,12 @@ impl Companion {
                 self.heard.fresh = self.heard.airspeed.map(|_| now);
             }
             Mav::LOCAL_POSITION_NED(position) => self.hear_position(position),
+            Mav::GLOBAL_POSITION_INT(global) => {
+                let position = self.heard.position.as_ref();
+                let origin = position.map(|it| global.relative_alt as f32 * 1e-3 + it.z);
+                let sound = origin.filter(|origin| origin.is_finite());
+                self.heard.origin = sound.or(self.heard.origin);
+            }
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
             _ => {}
         }
@@ -280,6 +288,13 @@ impl Companion {
         }
     }
 
+    /// What keeps the companion on the ground; `None` if all is well.
+    fn flaw(&self) -> Option<String> {
+        let unknown = || "GLOBAL_POSITION_INT is not told".to_owned();
+        let height = self.heard.origin.is_none().then(unknown);
+        self.checked.flaw().or(height)
+    }
+
     fn sight(&self, now: u64) -> Sight {
         let seconds =
             |at: Option<u64>| at.map_or(f64::INFINITY, |at| now.saturating_sub(at) as f64 * 1e-6);
@@ -292,7 +307,7 @@ impl Companion {
         Sight {
             now: now as f64 * 1e-6,
             silence: seconds(self.heard.at),
-            verified: self.checked.flaw().is_none() && self.clock.is_in_step(),
+            verified: self.flaw().is_none() && self.clock.is_in_step(),
             ours: self.heard.ours,
             level: self.is_level(),
             fresh: brain.is_some_and(|brain| brain.next <= core_side::FRESH && brain.planless == 0),

@@ -10,8 +10,13 @@ use mavlink::dialects::common::{
 
 /// Time between two questions \[us\].
 const SECOND: u64 = 1_000_000;
-/// Messages that are asked for at 50 Hz: ATTITUDE, LOCAL_POSITION_NED, VFR_HUD.
-const STREAMS: [f32; 3] = [30.0, 32.0, 74.0];
+/// Messages that are asked for, and their periods \[us\]: ATTITUDE, LOCAL_POSITION_NED, VFR_HUD, GLOBAL_POSITION_INT.
+const STREAMS: [[f32; 2]; 4] = [
+    [30.0, 20_000.0],
+    [32.0, 20_000.0],
+    [74.0, 20_000.0],
+    [33.0, 200_000.0],
+];
 /// Distance over which the course leads back to the line \[m\].
 const BACK: f64 = 60.0;
 
@@ -70,10 +75,10 @@ impl Companion {
             self.send(&Mav::PARAM_REQUEST_READ(request), send);
         }
         if self.guard.state == State::Off {
-            for id in STREAMS {
+            for [param1, param2] in STREAMS {
                 let command = COMMAND_LONG_DATA {
-                    param1: id,
-                    param2: 20_000.0,
+                    param1,
+                    param2,
                     command: MavCmd::MAV_CMD_SET_MESSAGE_INTERVAL,
                     target_system: SYSTEM,
                     target_component: AUTOPILOT,
@@ -82,7 +87,7 @@ impl Companion {
                 self.send(&Mav::COMMAND_LONG(command), send);
             }
         }
-        let flaw = self.checked.flaw();
+        let flaw = self.flaw();
         if flaw.is_some() && flaw != self.asked.flaw {
             let text = format!("not ready: {}", flaw.as_deref().unwrap_or_default());
             self.told.push(Told::Verified(text));
@@ -126,15 +131,20 @@ impl Companion {
 
     /// Sets the autopilot's own targets. The companion falls silent after that.
     pub(super) fn give_back(&mut self, send: &mut dyn FnMut(&[u8])) {
-        let here = self
-            .heard
-            .position
-            .as_ref()
-            .map_or(0.0, |position| -position.z);
+        let heard = &self.heard;
+        let here = heard.position.as_ref().zip(heard.origin);
+        let height = here.map(|(position, origin)| origin - position.z);
         let cruise = self.config.model.file.cruise;
         let equivalent =
             cruise / crate::frames::true_airspeed(1.0, self.config.model.file.air_density);
-        self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE, [0.0; 3], here, send);
+        if let Some(height) = height.filter(|height| height.is_finite()) {
+            self.command(
+                MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE,
+                [0.0; 3],
+                height,
+                send,
+            );
+        }
         let speed = [0.0, equivalent as f32, 0.0];
         self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_SPEED, speed, 0.0, send);
     }

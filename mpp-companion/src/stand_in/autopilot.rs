@@ -3,8 +3,9 @@
 use crate::companion::{AUTOPILOT, GUIDED, MASK, SYSTEM};
 use crate::wire::{Framer, Mav, Sender};
 use mavlink::dialects::common::{
-    ATTITUDE_DATA, COMMAND_INT_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavAutopilot, MavCmd,
-    MavModeFlag, MavType, PARAM_VALUE_DATA, SET_ATTITUDE_TARGET_DATA, TIMESYNC_DATA, VFR_HUD_DATA,
+    ATTITUDE_DATA, COMMAND_INT_DATA, GLOBAL_POSITION_INT_DATA, HEARTBEAT_DATA,
+    LOCAL_POSITION_NED_DATA, MavAutopilot, MavCmd, MavModeFlag, MavType, PARAM_VALUE_DATA,
+    SET_ATTITUDE_TARGET_DATA, TIMESYNC_DATA, VFR_HUD_DATA,
 };
 use mpp_core::vehicle::{Control, GRAVITY, VehicleState};
 use mpp_sim::aircraft::Aircraft;
@@ -14,6 +15,8 @@ use std::collections::{BTreeMap, VecDeque};
 
 /// Time constant of the roll loop \[s\].
 const ROLL: f64 = 0.3;
+/// Height of the estimator's origin above home \[m\].
+const ORIGIN: f64 = 12.0;
 /// LOITER, for a take-over.
 pub(crate) const LOITER: u32 = 12;
 
@@ -51,6 +54,8 @@ pub struct StandIn {
     pub(crate) obeyed: Option<Obeyed>,
     /// Height that it holds by itself \[m\].
     pub(crate) height: f64,
+    /// Height that it was asked to hold, above that of this moment \[m\].
+    pub(crate) asked: Option<f64>,
     /// Wind along the course [m/s], and how far it has carried the aircraft \[m\].
     wind: f64,
     carried: f64,
@@ -104,6 +109,7 @@ impl StandIn {
             demands: VecDeque::new(),
             obeyed: None,
             height: state.z,
+            asked: None,
             wind,
             carried: 0.0,
             parameters: BTreeMap::from(parameters),
@@ -182,7 +188,10 @@ impl StandIn {
             MavCmd::MAV_CMD_GUIDED_CHANGE_HEADING => {
                 self.heading = f64::from(command.param2).to_radians();
             }
-            MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE => self.height = f64::from(command.z),
+            MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE => {
+                self.height = f64::from(command.z) - ORIGIN;
+                self.asked = Some(self.height - self.plant.state().z);
+            }
             _ => {}
         }
     }
@@ -262,8 +271,8 @@ impl StandIn {
         }))
     }
 
-    /// The messages of the streams at 50 Hz: airspeed, position, attitude.
-    pub(crate) fn stream(&mut self, noise: [f64; 4]) -> [Vec<u8>; 3] {
+    /// The messages of the streams: airspeed, position, attitude, height above home.
+    pub(crate) fn stream(&mut self, noise: [f64; 4]) -> [Vec<u8>; 4] {
         let (state, wind) = (self.state(), self.plant.wind());
         let [bank, course, aside] = self.lateral;
         let (sin, cos) = libm::sincos(self.course);
@@ -295,6 +304,12 @@ impl StandIn {
                 yaw: course as f32,
                 ..ATTITUDE_DATA::DEFAULT
             })),
+            self.sender
+                .frame(&Mav::GLOBAL_POSITION_INT(GLOBAL_POSITION_INT_DATA {
+                    time_boot_ms,
+                    relative_alt: (1000.0 * (state.z + dz + ORIGIN)) as i32,
+                    ..GLOBAL_POSITION_INT_DATA::DEFAULT
+                })),
         ]
     }
 }

@@ -1,15 +1,16 @@
 //! One flight of companion and stand-in, in lockstep and in simulated time.
 
+mod exchange;
+
 use super::autopilot::StandIn;
 use super::faults::Fault;
 use crate::companion::GUIDED;
-use crate::wire::{self, Framer, Mav};
+use crate::wire::Framer;
 use crate::{Companion, CompanionError, Config, LogWriter, Side, State, Told};
 use hil_protocol::{MAX_FRAME, Message, encode};
-use mavlink::dialects::common::VFR_HUD_DATA;
 use mpp_sim::field::Field;
 use mpp_sim::lidar::{FanLidar, Lidar};
-use mpp_sim::random::{Draws, Stream, gaussian, generator};
+use mpp_sim::random::{Draws, Stream, generator};
 use mpp_sim::scenario::{Scenario, ScenarioFile};
 use std::collections::VecDeque;
 
@@ -56,6 +57,8 @@ pub struct Outcome {
     pub unsound: u32,
     /// Setpoints after the companion heard of a take-over.
     pub late: u32,
+    /// Height that the companion asked for at the end, above that of this moment \[m\].
+    pub asked: Option<f64>,
     /// Time from a take-over to the last setpoint \[ms\].
     pub last_after: u32,
     /// What the companion told.
@@ -215,6 +218,7 @@ impl Run<'_> {
         }
         self.outcome.flown = self.companion.state() == State::Flying;
         self.outcome.told = self.companion.told();
+        self.outcome.asked = self.autopilot.asked;
         Ok(self.outcome)
     }
 
@@ -275,60 +279,6 @@ impl Run<'_> {
         self.deliver(tick);
     }
 
-    /// Notes when a whole heartbeat tells the companion of a take-over.
-    fn note(&mut self, frame: &[u8]) {
-        if let Some((_, heard)) = &mut self.taken {
-            Framer::default().receive(frame, |_, _, message| {
-                *heard |= matches!(message, Mav::HEARTBEAT(beat) if beat.custom_mode != GUIDED);
-            });
-        }
-    }
-
-    /// Noise of airspeed, pitch and position, as navigation by a filter has it.
-    fn draw(&mut self) -> [f64; 4] {
-        let mut draw = |sigma: f64| sigma * gaussian(&mut self.noise);
-        let mut noise = [draw(0.1), draw(0.002), draw(0.05), draw(0.05)];
-        if self.acting() == Some(Fault::NotFinite) && self.autopilot.tick.is_multiple_of(3) {
-            noise = [f64::NAN; 4];
-        }
-        noise
-    }
-
-    /// Puts a frame of the autopilot on its way.
-    fn post_up(&mut self, mut frame: Vec<u8>) {
-        self.count = self.count.wrapping_add(1);
-        let mut due = self.autopilot.tick;
-        match self.acting() {
-            Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => return,
-            Some(Fault::Silent(ticks)) if self.since().is_some_and(|since| since < ticks) => return,
-            Some(Fault::AirspeedEach(ticks))
-                if wire::is::<VFR_HUD_DATA>(&frame) && !due.is_multiple_of(ticks) =>
-            {
-                return;
-            }
-            Some(Fault::Late(ticks)) => due += ticks as u32,
-            Some(Fault::Doubled) => self.up.push_back((due, frame.clone())),
-            Some(Fault::Damaged) if self.count.is_multiple_of(3) => {
-                let at = self.count as usize % frame.len();
-                if let Some(byte) = frame.get_mut(at) {
-                    *byte ^= 0x55;
-                }
-            }
-            Some(Fault::Reordered) => match self.held.take() {
-                None => {
-                    self.held = Some(frame);
-                    return;
-                }
-                Some(held) => {
-                    self.up.push_back((due, frame));
-                    frame = held;
-                }
-            },
-            _ => {}
-        }
-        self.up.push_back((due, frame));
-    }
-
     fn scan(&mut self, scenario: &Scenario, field: &dyn Field) {
         let ranges = self.lidar.scan(&self.autopilot.state(), field);
         let scan = scenario.lidar.wire_scan(0, &ranges);
@@ -342,66 +292,5 @@ impl Run<'_> {
             _ => frame.to_vec(),
         };
         self.input(Side::Lidar, &frame);
-    }
-
-    /// Gives the companion an input, and puts what it sends on its way.
-    fn input(&mut self, side: Side, bytes: &[u8]) {
-        let now = self.now();
-        let mut sent = Vec::new();
-        self.companion
-            .receive(now, side, bytes, &mut |frame| sent.push(frame.to_vec()));
-        if let Some(log) = &mut self.log {
-            // A vector takes all bytes.
-            let _ = log.write(now, Some(side), bytes);
-            for frame in &sent {
-                let _ = log.write(now, None, frame);
-            }
-        }
-        for frame in sent {
-            self.watch(&frame);
-            self.count = self.count.wrapping_add(1);
-            let late = match self.acting() {
-                Some(Fault::SetpointsLate(ticks)) => ticks as u32,
-                Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => continue,
-                _ => 0,
-            };
-            self.down.push_back((self.autopilot.tick + late, frame));
-        }
-    }
-
-    /// Judges a frame of the companion.
-    fn watch(&mut self, frame: &[u8]) {
-        let (taken, tick, outcome) = (self.taken, self.autopilot.tick, &mut self.outcome);
-        self.framer.receive(frame, |_, _, message| {
-            let Mav::SET_ATTITUDE_TARGET(target) = message else {
-                return;
-            };
-            outcome.setpoints += 1;
-            let [w, _, y, _] = target.q.map(f64::from);
-            let pitch = 2.0 * libm::atan2(y, w);
-            let within = pitch.abs() <= 35_f64.to_radians() + 1e-5;
-            // Not a number is not within.
-            if !(within && (0.0..=1.0).contains(&target.thrust)) {
-                outcome.unsound += 1;
-            }
-            if let Some((since, heard)) = taken {
-                outcome.late += u32::from(heard);
-                outcome.last_after = outcome.last_after.max(10 * (tick - since) + 10);
-            }
-        });
-    }
-
-    fn deliver(&mut self, tick: u32) {
-        while self.down.front().is_some_and(|(due, _)| *due <= tick) {
-            let Some((_, frame)) = self.down.pop_front() else {
-                break;
-            };
-            let mut answers = Vec::new();
-            self.autopilot
-                .receive(&frame, &mut |answer| answers.push(answer));
-            for answer in answers {
-                self.post_up(answer);
-            }
-        }
     }
 }
