@@ -1,6 +1,7 @@
 //! The companion's command line: MAVLink over UDP to the autopilot, scans over UDP from the lidar.
 
 mod port;
+mod stream;
 
 use clap::{Parser, Subcommand};
 use mpp_companion::{Companion, CompanionError, Config, LogWriter, Side, Told, replay, stand_in};
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
+use stream::Tries;
 
 /// The flight core beside an autopilot.
 #[derive(Parser)]
@@ -122,10 +124,13 @@ fn io(action: &'static str) -> impl Fn(std::io::Error) -> CompanionError {
     move |error| CompanionError::Io(action.to_owned(), error)
 }
 
+/// What came from a side, or why nothing comes any more.
+type Input = Result<(Side, Vec<u8>), CompanionError>;
+
 /// The way to the autopilot, and what comes.
 struct Inputs {
     write: port::Writer,
-    come: mpsc::Receiver<(Side, Vec<u8>)>,
+    come: mpsc::Receiver<Input>,
 }
 
 fn inputs(autopilot: &str, lidar: &str) -> Result<Inputs, CompanionError> {
@@ -133,19 +138,20 @@ fn inputs(autopilot: &str, lidar: &str) -> Result<Inputs, CompanionError> {
         .strip_prefix("udp:")
         .and_then(|port| port.parse().ok());
     let port = port.ok_or_else(|| CompanionError::Address(lidar.to_owned(), "udp:PORT"))?;
-    let Port { mut read, write } = Port::open(autopilot)?;
+    let Port { mut read, write } = Port::open(autopilot, Tries::USUAL)?;
     let scans = UdpSocket::bind(("0.0.0.0", port)).map_err(io("open the lidar's port"))?;
     let (send, come) = mpsc::channel();
     let hears = send.clone();
     std::thread::spawn(move || hear(Side::Autopilot, &hears, &mut *read));
-    std::thread::spawn(move || hear(Side::Lidar, &send, &mut |buffer| scans.recv(buffer)));
+    let mut listens = move |buffer: &mut [u8]| Ok(scans.recv(buffer).unwrap_or(0));
+    std::thread::spawn(move || hear(Side::Lidar, &send, &mut listens));
     Ok(Inputs { write, come })
 }
 
 /// Hands on what comes from a side.
 fn hear(
     side: Side,
-    send: &mpsc::Sender<(Side, Vec<u8>)>,
+    send: &mpsc::Sender<Input>,
     read: &mut dyn FnMut(&mut [u8]) -> std::io::Result<usize>,
 ) {
     let mut buffer = [0; 4096];
@@ -153,12 +159,18 @@ fn hear(
         match read(&mut buffer) {
             Ok(size) if size > 0 => {
                 let bytes = buffer.get(..size).unwrap_or_default().to_vec();
-                if send.send((side, bytes)).is_err() {
+                if send.send(Ok((side, bytes))).is_err() {
                     return;
                 }
             }
-            // The autopilot is not there yet, or a stream ended.
-            _ => std::thread::sleep(Duration::from_millis(20)),
+            Ok(_) => std::thread::sleep(Duration::from_millis(20)),
+            Err(error) => {
+                // Nobody listens once the companion has ended.
+                let _ = send.send(Err(io(
+                    "reach the autopilot again: start anew when it is there",
+                )(error)));
+                return;
+            }
         }
     }
 }
@@ -174,7 +186,7 @@ fn fly(
     let mut due = begun;
     loop {
         let wait = due.saturating_duration_since(Instant::now());
-        let input = inputs.come.recv_timeout(wait).ok();
+        let input = inputs.come.recv_timeout(wait).ok().transpose()?;
         let (side, bytes) = input.unwrap_or((Side::Time, Vec::new()));
         if side == Side::Time {
             due = Instant::now() + period;

@@ -1,8 +1,8 @@
-//! The way to the autopilot: UDP, whoever speaks first, or TCP.
+//! The way to the autopilot: UDP, whoever speaks first, or a stream.
 
+use crate::stream::{self, Tries};
 use mpp_companion::CompanionError;
-use std::io::{Read, Write};
-use std::net::{SocketAddr, TcpStream, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex, PoisonError};
 
 type Reader = Box<dyn FnMut(&mut [u8]) -> std::io::Result<usize> + Send>;
@@ -10,7 +10,7 @@ pub(crate) type Writer = Box<dyn FnMut(&[u8]) -> std::io::Result<()>>;
 
 /// Both directions of a way to the autopilot.
 pub(crate) struct Port {
-    /// Reads what came; nothing read is the end of a stream.
+    /// Reads what came, which may be nothing. An error is the end.
     pub(crate) read: Reader,
     /// Sends a frame.
     pub(crate) write: Writer,
@@ -24,12 +24,15 @@ impl Port {
     ///
     /// # Errors
     /// [`CompanionError::Address`], [`CompanionError::Io`].
-    pub(crate) fn open(address: &str) -> Result<Self, CompanionError> {
+    pub(crate) fn open(address: &str, tries: Tries) -> Result<Self, CompanionError> {
         let failed = |error| CompanionError::Io(format!("open {address}"), error);
         match address.split_once(':') {
             Some(("udp", peer)) => Self::speaks(peer).map_err(failed),
             Some(("udpin", own)) => Self::listens(own).map_err(failed),
-            Some(("tcp", peer)) => Self::stream(peer).map_err(failed),
+            Some(("tcp", peer)) => {
+                let peer = peer.to_owned();
+                stream::lasting(address, tries, move || stream::tcp(&peer)).map_err(failed)
+            }
             _ => Err(CompanionError::Address(address.to_owned(), Self::FORM)),
         }
     }
@@ -39,7 +42,8 @@ impl Port {
         socket.connect(peer)?;
         let own = socket.try_clone()?;
         Ok(Self {
-            read: Box::new(move |buffer| own.recv(buffer)),
+            // An error tells that the autopilot is not there yet.
+            read: Box::new(move |buffer| Ok(own.recv(buffer).unwrap_or(0))),
             write: Box::new(move |frame| socket.send(frame).map(drop)),
         })
     }
@@ -52,7 +56,9 @@ impl Port {
         let peer = Arc::clone(&spoke);
         Ok(Self {
             read: Box::new(move |buffer| {
-                let (size, from) = hears.recv_from(buffer)?;
+                let Ok((size, from)) = hears.recv_from(buffer) else {
+                    return Ok(0);
+                };
                 *spoke.lock().unwrap_or_else(PoisonError::into_inner) = Some(from);
                 Ok(size)
             }),
@@ -62,30 +68,19 @@ impl Port {
             }),
         })
     }
-
-    fn stream(peer: &str) -> std::io::Result<Self> {
-        let mut stream = TcpStream::connect(peer)?;
-        stream.set_nodelay(true)?;
-        let mut own = stream.try_clone()?;
-        Ok(Self {
-            read: Box::new(move |buffer| own.read(buffer)),
-            write: Box::new(move |frame| stream.write_all(frame)),
-        })
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::net::TcpListener;
 
-    /// ArduPlane's simulation speaks first over UDP, and waits for a client over TCP.
+    /// ArduPlane's simulation speaks first over UDP.
     #[test]
-    fn a_peer_that_speaks_first_and_one_that_waits_are_reached() {
+    fn a_peer_that_speaks_first_is_reached() {
         let free = UdpSocket::bind("127.0.0.1:0").unwrap();
         let own = free.local_addr().unwrap();
         drop(free);
-        let mut port = Port::open(&format!("udpin:{own}")).unwrap();
+        let mut port = Port::open(&format!("udpin:{own}"), Tries::USUAL).unwrap();
         assert!((port.write)(b"nobody").is_ok());
         let peer = UdpSocket::bind("127.0.0.1:0").unwrap();
         peer.send_to(b"beat", own).unwrap();
@@ -94,16 +89,8 @@ mod tests {
         (port.write)(b"set").unwrap();
         assert_eq!(peer.recv(&mut buffer).unwrap(), 3);
 
-        let waits = TcpListener::bind("127.0.0.1:0").unwrap();
-        let address = format!("tcp:{}", waits.local_addr().unwrap());
-        let mut port = Port::open(&address).unwrap();
-        let (mut peer, _) = waits.accept().unwrap();
-        peer.write_all(b"beat").unwrap();
-        assert_eq!((port.read)(&mut buffer).unwrap(), 4);
-        (port.write)(b"set").unwrap();
-        assert_eq!(peer.read(&mut buffer).unwrap(), 3);
         assert!(matches!(
-            Port::open("14550"),
+            Port::open("14550", Tries::USUAL),
             Err(CompanionError::Address(..))
         ));
     }
