@@ -1,4 +1,4 @@
-//! The companion's command line: MAVLink over UDP to the autopilot, scans over UDP from the lidar.
+//! The companion's command line: MAVLink to the autopilot, scans over UDP from the lidar.
 
 mod port;
 mod stream;
@@ -31,8 +31,8 @@ enum Order {
         /// Aircraft file with a `pitch_loop`.
         #[arg(long)]
         aircraft: PathBuf,
-        /// Address of the autopilot: udp:HOST:PORT (the companion speaks first), udpin:HOST:PORT (the autopilot does) or
-        /// tcp:HOST:PORT.
+        /// Address of the autopilot: udp:HOST:PORT (the companion speaks first), udpin:HOST:PORT (the autopilot does),
+        /// tcp:HOST:PORT or serial:DEVICE:BAUD.
         #[arg(long)]
         autopilot: String,
         /// Port for scans of the lidar: udp:PORT.

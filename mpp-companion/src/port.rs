@@ -18,7 +18,7 @@ pub(crate) struct Port {
 
 impl Port {
     /// The forms of an address.
-    const FORM: &str = "udp:HOST:PORT, udpin:HOST:PORT or tcp:HOST:PORT";
+    const FORM: &str = "udp:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD with 1200 to 4000000 baud";
 
     /// Opens an address.
     ///
@@ -32,6 +32,20 @@ impl Port {
             Some(("tcp", peer)) => {
                 let peer = peer.to_owned();
                 stream::lasting(address, tries, move || stream::tcp(&peer)).map_err(failed)
+            }
+            Some(("serial", line)) => {
+                let unknown = || CompanionError::Address(address.to_owned(), Self::FORM);
+                let (device, baud) = line.rsplit_once(':').ok_or_else(unknown)?;
+                let baud = baud
+                    .parse()
+                    .ok()
+                    .filter(|baud| (1200..=4_000_000).contains(baud));
+                let (device, baud) = (device.to_owned(), baud.ok_or_else(unknown)?);
+                let opened = stream::lasting(address, tries, move || stream::serial(&device, baud));
+                let action = format!(
+                    "open {address} (find its name in /dev/serial/by-id, and join the group dialout)"
+                );
+                opened.map_err(|error| CompanionError::Io(action, error))
             }
             _ => Err(CompanionError::Address(address.to_owned(), Self::FORM)),
         }

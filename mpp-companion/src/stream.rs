@@ -88,6 +88,38 @@ pub(crate) fn tcp(peer: &str) -> Result<Ends> {
     Ok((Box::new(stream.try_clone()?), Box::new(stream)))
 }
 
+/// A serial port that passes each byte as it is: 8 bits, no parity, no control of the flow.
+#[cfg(unix)]
+pub(crate) fn serial(device: &str, baud: u32) -> Result<Ends> {
+    use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
+    use rustix::termios::{ControlModes, OptionalActions, tcgetattr, tcsetattr};
+    // A port with the lines of a modem would wait for its carrier.
+    let flags = OFlags::RDWR | OFlags::NOCTTY | OFlags::CLOEXEC;
+    let port = open(device, flags | OFlags::NONBLOCK, Mode::empty())?;
+    let mut line = tcgetattr(&port)?;
+    line.make_raw();
+    line.control_modes |= ControlModes::CLOCAL | ControlModes::CREAD;
+    line.control_modes -= ControlModes::CRTSCTS | ControlModes::CSTOPB;
+    line.set_speed(baud)?;
+    tcsetattr(&port, OptionalActions::Now, &line)?;
+    let given = tcgetattr(&port)?.output_speed();
+    // A receiver bears 3 %.
+    if given.abs_diff(baud) > baud / 33 {
+        let text = format!("the port makes {given} of {baud} baud: give a speed that it has");
+        return Err(Error::new(ErrorKind::InvalidInput, text));
+    }
+    fcntl_setfl(&port, OFlags::RDWR)?;
+    let port = std::fs::File::from(port);
+    Ok((Box::new(port.try_clone()?), Box::new(port)))
+}
+
+/// There is none.
+#[cfg(not(unix))]
+pub(crate) fn serial(_: &str, _: u32) -> Result<Ends> {
+    let text = "serial ports are there on Linux and macOS: give a way by UDP or TCP";
+    Err(Error::new(ErrorKind::Unsupported, text))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -120,5 +152,51 @@ mod tests {
         drop(waits);
         assert!(read(&mut buffer).is_err());
         assert!(write(b"lost").is_ok());
+    }
+
+    /// A pseudo terminal is a serial port whose other end a program holds.
+    #[cfg(unix)]
+    #[test]
+    fn a_serial_port_passes_each_byte_as_it_is_and_its_loss_is_bounded_too() {
+        use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+        let end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&end).unwrap();
+        unlockpt(&end).unwrap();
+        let name = ptsname(&end, Vec::new()).unwrap();
+        let address = format!("serial:{}:57600", name.to_str().unwrap());
+        let Port {
+            mut read,
+            mut write,
+        } = Port::open(&address, BRIEF).unwrap();
+        let mut autopilot = std::fs::File::from(end);
+        let all: Vec<u8> = (0..=255).collect();
+        autopilot.write_all(&all).unwrap();
+        let (mut buffer, mut come) = ([0; 300], Vec::new());
+        while come.len() < all.len() {
+            let size = read(&mut buffer).unwrap();
+            come.extend_from_slice(&buffer[..size]);
+        }
+        assert_eq!(come, all);
+        write(&all).unwrap();
+        let mut sent = [0; 256];
+        autopilot.read_exact(&mut sent).unwrap();
+        assert_eq!(sent.to_vec(), all);
+        drop(autopilot);
+        assert!(read(&mut buffer).is_err());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_bad_speed_and_a_device_that_is_not_there_are_refused_with_advice() {
+        for (address, advice) in [
+            ("serial:/dev/none:57600", "/dev/serial/by-id"),
+            ("serial:/dev/null:57600", "/dev/serial/by-id"),
+            ("serial:/dev/none:57k", "serial:DEVICE:BAUD"),
+            ("serial:/dev/none:0", "1200 to 4000000 baud"),
+            ("serial:/dev/none", "serial:DEVICE:BAUD"),
+        ] {
+            let refused = Port::open(address, BRIEF).err().unwrap().to_string();
+            assert!(refused.contains(advice), "{refused}");
+        }
     }
 }

@@ -290,9 +290,10 @@ impl Companion {
 
     /// What keeps the companion on the ground; `None` if all is well.
     fn flaw(&self) -> Option<String> {
-        let unknown = || "GLOBAL_POSITION_INT is not told".to_owned();
-        let height = self.heard.origin.is_none().then(unknown);
-        self.checked.flaw().or(height)
+        let lack = |lacks: bool, name| lacks.then(|| format!("{name} is not told"));
+        (self.checked.flaw())
+            .or_else(|| lack(!self.clock.is_in_step(), "TIMESYNC"))
+            .or_else(|| lack(self.heard.origin.is_none(), "GLOBAL_POSITION_INT"))
     }
 
     fn sight(&self, now: u64) -> Sight {
@@ -307,7 +308,7 @@ impl Companion {
         Sight {
             now: now as f64 * 1e-6,
             silence: seconds(self.heard.at),
-            verified: self.flaw().is_none() && self.clock.is_in_step(),
+            verified: self.flaw().is_none(),
             ours: self.heard.ours,
             level: self.is_level(),
             fresh: brain.is_some_and(|brain| brain.next <= core_side::FRESH && brain.planless == 0),
