@@ -19,4 +19,4 @@ mod wire;
 pub use companion::{Companion, Config, Side, Told};
 pub use error::CompanionError;
 pub use guard::{Reason, State};
-pub use log::{LogWriter, replay};
+pub use log::{LogWriter, Replayed, replay};

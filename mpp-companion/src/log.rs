@@ -1,7 +1,11 @@
 //! The log of both sides: each record is time \[us\], kind, length and bytes, little-endian. It replays to the last bit.
 
+use crate::wire;
 use crate::{Companion, CompanionError, Side};
+use mavlink::dialects::common::SET_ATTITUDE_TARGET_DATA;
+use std::fmt;
 use std::io::{Read, Write};
+use std::time::{Duration, Instant};
 
 /// One record.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -73,18 +77,57 @@ impl<R: Read> LogReader<R> {
     }
 }
 
-/// Flies a log again, and compares each frame that the companion sends. Returns the number of frames.
+/// What a replay showed.
+#[derive(Clone, Debug, Default)]
+pub struct Replayed {
+    /// Frames that are the same to the last bit.
+    pub same: usize,
+    /// Time from each measurement to the setpoint that follows from it, on this machine, in order of its length.
+    pub times: Vec<Duration>,
+}
+
+impl Replayed {
+    /// Adds another replay.
+    pub fn add(&mut self, other: Self) {
+        self.same += other.same;
+        self.times.extend(other.times);
+        self.times.sort_unstable();
+    }
+}
+
+impl fmt::Display for Replayed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} frames are the same to the last bit", self.same)?;
+        let last = self.times.len().saturating_sub(1);
+        for (name, share) in [("median", 50), ("95 %", 95), ("99 %", 99), ("most", 100)] {
+            if let Some(time) = self.times.get(last * share / 100) {
+                write!(f, "; {name} {:.3} ms", 1e3 * time.as_secs_f64())?;
+            }
+        }
+        write!(
+            f,
+            " from measurement to setpoint, {} times",
+            self.times.len()
+        )
+    }
+}
+
+/// Flies a log again, compares each frame that the companion sends, and takes the time to each setpoint.
 ///
 /// # Errors
 /// [`CompanionError::Differs`] at the first frame that is another.
-pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, CompanionError> {
+pub fn replay(companion: &mut Companion, from: impl Read) -> Result<Replayed, CompanionError> {
     let mut reader = LogReader::new(from);
     let mut sent = std::collections::VecDeque::new();
-    let mut same = 0;
+    let (mut same, mut times) = (0, Vec::new());
     while let Some(Record { time, side, bytes }) = reader.record()? {
         match side {
             Some(side) => {
+                let begun = Instant::now();
                 companion.receive(time, side, &bytes, &mut |frame| {
+                    if wire::is::<SET_ATTITUDE_TARGET_DATA>(frame) {
+                        times.push(begun.elapsed());
+                    }
                     sent.push_back(frame.to_vec());
                 });
             }
@@ -92,5 +135,6 @@ pub fn replay(companion: &mut Companion, from: impl Read) -> Result<usize, Compa
             None => return Err(CompanionError::Differs(same)),
         }
     }
-    Ok(same)
+    times.sort_unstable();
+    Ok(Replayed { same, times })
 }

@@ -66,6 +66,15 @@ enum Order {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Replays exchanges with the stand-in, and prints the time from measurement to setpoint on this machine.
+    Latency {
+        /// Flights of each of the two sets.
+        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
+        flights: u64,
+        /// First seed.
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
 }
 
 fn main() -> ExitCode {
@@ -82,6 +91,10 @@ fn run(order: Order) -> Result<(), CompanionError> {
     match order {
         Order::StandIn { flights, seed } => {
             println!("{}", stand_in::figures(flights, seed)?);
+            Ok(())
+        }
+        Order::Latency { flights, seed } => {
+            print!("{}", stand_in::latency(flights, seed)?);
             Ok(())
         }
         Order::Fly {
@@ -106,8 +119,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
             let mut companion = Companion::new(config)?;
             if let Some(path) = recorded {
                 let file = File::open(path).map_err(io("open the log"))?;
-                let same = replay(&mut companion, BufReader::new(file))?;
-                println!("{same} frames are the same to the last bit");
+                println!("{}", replay(&mut companion, BufReader::new(file))?);
                 return Ok(());
             }
             let mut inputs = inputs(&autopilot, &lidar)?;

@@ -13,8 +13,10 @@ fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
         outcome.is_strict(&flight.scenario().unwrap()),
         "{outcome:?}"
     );
-    let same = flight.replay(&log).unwrap();
-    assert!(same > 900 && outcome.setpoints > 500, "{same} frames");
+    let replayed = flight.replay(&log).unwrap();
+    assert!(replayed.same > 900 && outcome.setpoints > 500, "{replayed}");
+    assert_eq!(replayed.times.len(), outcome.setpoints as usize);
+    assert!(replayed.times.is_sorted());
     // A flight with another aircraft file sends something else.
     let other = Flight {
         told: false,

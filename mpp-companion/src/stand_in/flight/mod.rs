@@ -6,7 +6,7 @@ use super::autopilot::StandIn;
 use super::faults::Fault;
 use crate::companion::GUIDED;
 use crate::wire::Framer;
-use crate::{Companion, CompanionError, Config, LogWriter, Side, State, Told};
+use crate::{Companion, CompanionError, Config, LogWriter, Replayed, Side, State, Told};
 use hil_protocol::{MAX_FRAME, Message, encode};
 use mpp_sim::field::Field;
 use mpp_sim::lidar::{FanLidar, Lidar};
@@ -158,11 +158,11 @@ impl Flight {
         run.fly(&scenario)
     }
 
-    /// Flies a log again: the number of frames that are the same.
+    /// Flies a log again.
     ///
     /// # Errors
     /// [`CompanionError::Differs`].
-    pub fn replay(&self, log: &[u8]) -> Result<usize, CompanionError> {
+    pub fn replay(&self, log: &[u8]) -> Result<Replayed, CompanionError> {
         let mut companion = Companion::new(self.config(&self.scenario()?))?;
         crate::replay(&mut companion, log)
     }
