@@ -14,7 +14,6 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
-use stream::Tries;
 
 /// The flight core beside an autopilot.
 #[derive(Parser)]
@@ -66,15 +65,8 @@ enum Order {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
-    /// Replays exchanges with the stand-in, and prints the time from measurement to setpoint on this machine.
-    Latency {
-        /// Flights of each of the two sets.
-        #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..))]
-        flights: u64,
-        /// First seed.
-        #[arg(long, default_value_t = 1)]
-        seed: u64,
-    },
+    /// Replays an exchange with the stand-in past 40 obstacles at 4 Hz, and prints the time to a setpoint on this machine.
+    Latency,
 }
 
 fn main() -> ExitCode {
@@ -93,8 +85,10 @@ fn run(order: Order) -> Result<(), CompanionError> {
             println!("{}", stand_in::figures(flights, seed)?);
             Ok(())
         }
-        Order::Latency { flights, seed } => {
-            print!("{}", stand_in::latency(flights, seed)?);
+        Order::Latency => {
+            let (flight, mut log) = (stand_in::Flight::forty(1), Vec::new());
+            flight.fly(Some(&mut log))?;
+            println!("{}", flight.replay(&log)?);
             Ok(())
         }
         Order::Fly {
@@ -150,7 +144,7 @@ fn inputs(autopilot: &str, lidar: &str) -> Result<Inputs, CompanionError> {
         .strip_prefix("udp:")
         .and_then(|port| port.parse().ok());
     let port = port.ok_or_else(|| CompanionError::Address(lidar.to_owned(), "udp:PORT"))?;
-    let Port { mut read, write } = Port::open(autopilot, Tries::USUAL)?;
+    let Port { mut read, write } = Port::open(autopilot, stream::USUAL)?;
     let scans = UdpSocket::bind(("0.0.0.0", port)).map_err(io("open the lidar's port"))?;
     let (send, come) = mpsc::channel();
     let hears = send.clone();
@@ -178,9 +172,7 @@ fn hear(
             Ok(_) => std::thread::sleep(Duration::from_millis(20)),
             Err(error) => {
                 // Nobody listens once the companion has ended.
-                let _ = send.send(Err(io(
-                    "reach the autopilot again: start anew when it is there",
-                )(error)));
+                let _ = send.send(Err(io("reach the autopilot; start anew")(error)));
                 return;
             }
         }

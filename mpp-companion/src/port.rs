@@ -18,7 +18,7 @@ pub(crate) struct Port {
 
 impl Port {
     /// The forms of an address.
-    const FORM: &str = "udp:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD with 1200 to 4000000 baud";
+    const FORM: &str = "udp:HOST:PORT, udpin:HOST:PORT, tcp:HOST:PORT or serial:DEVICE:BAUD";
 
     /// Opens an address.
     ///
@@ -29,24 +29,9 @@ impl Port {
         match address.split_once(':') {
             Some(("udp", peer)) => Self::speaks(peer).map_err(failed),
             Some(("udpin", own)) => Self::listens(own).map_err(failed),
-            Some(("tcp", peer)) => {
-                let peer = peer.to_owned();
-                stream::lasting(address, tries, move || stream::tcp(&peer)).map_err(failed)
-            }
-            Some(("serial", line)) => {
-                let unknown = || CompanionError::Address(address.to_owned(), Self::FORM);
-                let (device, baud) = line.rsplit_once(':').ok_or_else(unknown)?;
-                let baud = baud
-                    .parse()
-                    .ok()
-                    .filter(|baud| (1200..=4_000_000).contains(baud));
-                let (device, baud) = (device.to_owned(), baud.ok_or_else(unknown)?);
-                let opened = stream::lasting(address, tries, move || stream::serial(&device, baud));
-                let action = format!(
-                    "open {address} (find its name in /dev/serial/by-id, and join the group dialout)"
-                );
-                opened.map_err(|error| CompanionError::Io(action, error))
-            }
+            Some(("tcp", peer)) => stream::lasting(peer, tries, stream::tcp).map_err(failed),
+            #[cfg(unix)]
+            Some(("serial", line)) => stream::lasting(line, tries, stream::serial).map_err(failed),
             _ => Err(CompanionError::Address(address.to_owned(), Self::FORM)),
         }
     }
@@ -94,7 +79,7 @@ mod tests {
         let free = UdpSocket::bind("127.0.0.1:0").unwrap();
         let own = free.local_addr().unwrap();
         drop(free);
-        let mut port = Port::open(&format!("udpin:{own}"), Tries::USUAL).unwrap();
+        let mut port = Port::open(&format!("udpin:{own}"), stream::USUAL).unwrap();
         assert!((port.write)(b"nobody").is_ok());
         let peer = UdpSocket::bind("127.0.0.1:0").unwrap();
         peer.send_to(b"beat", own).unwrap();
@@ -104,7 +89,7 @@ mod tests {
         assert_eq!(peer.recv(&mut buffer).unwrap(), 3);
 
         assert!(matches!(
-            Port::open("14550", Tries::USUAL),
+            Port::open("14550", stream::USUAL),
             Err(CompanionError::Address(..))
         ));
     }

@@ -1,7 +1,7 @@
 //! MAVLink 2 frames of the dialect `common`, from bytes and to bytes.
 
 pub(crate) use mavlink::dialects::common::MavMessage as Mav;
-use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message, MessageData};
+use mavlink::{MAVLinkV2MessageRaw, MavHeader, MavlinkVersion, Message};
 
 const START: u8 = 0xFD;
 const SIGNED: u8 = 1;
@@ -45,11 +45,6 @@ impl Framer {
         self.bytes
             .drain(..if known { at } else { self.bytes.len() });
     }
-}
-
-/// Whether a frame is one of this message.
-pub(crate) fn is<M: MessageData>(frame: &[u8]) -> bool {
-    frame.get(7..10) == M::ID.to_le_bytes().get(..3)
 }
 
 /// The checksum of a frame is wrong, or the frame has flags that nobody knows.

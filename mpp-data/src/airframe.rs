@@ -145,9 +145,8 @@ impl Airframe {
     /// Whether the elevator is a commanded angle of attack, as of an aircraft behind the pitch loop of an autopilot.
     #[must_use]
     pub fn commands_angle_of_attack(&self) -> bool {
-        let rounding = 1e-9 * self.moment_alpha;
-        let apart = self.moment_elevator + self.moment_alpha;
-        self.moment_zero == 0.0 && apart * apart <= rounding * rounding
+        let apart = (self.moment_elevator + self.moment_alpha) / self.moment_alpha;
+        self.moment_zero == 0.0 && apart * apart < 1e-18
     }
 
     /// The airframe whose lift is that with the elevator in balance at each angle of attack and each rate, and

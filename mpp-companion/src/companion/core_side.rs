@@ -173,8 +173,6 @@ fn position(flown: &mut Flown, tick: u32) -> Option<Position> {
 mod tests {
     use super::*;
     use crate::companion::Config;
-    use crate::wire::Mav;
-    use mavlink::dialects::common::VFR_HUD_DATA;
     use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 
     #[test]
@@ -182,12 +180,9 @@ mod tests {
         let file = AircraftFile::parse("it", crate::stand_in::AIRCRAFT).unwrap();
         let config = Config::new(AircraftModel::new(file).unwrap().plane(), 70.0);
         let mut companion = Companion::new(config).unwrap();
-        let hud = Mav::VFR_HUD(VFR_HUD_DATA {
-            airspeed: 14.0,
-            ..VFR_HUD_DATA::DEFAULT
-        });
+        companion.heard.airspeed = Some(14.0);
         for (wait, age) in [(0, 0), (20_000, 0), (70_000, 7)] {
-            companion.hear(1_000_000, &hud, &mut |_| {});
+            companion.heard.fresh = Some(1_000_000);
             let fresh = companion.fresh_airspeed(1_000_000 + wait);
             assert_eq!(fresh, companion.airspeed().map(|airspeed| (age, airspeed)));
             assert_eq!(companion.fresh_airspeed(1_020_000 + wait), None);

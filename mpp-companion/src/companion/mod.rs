@@ -238,10 +238,10 @@ impl Companion {
             }
             Mav::LOCAL_POSITION_NED(position) => self.hear_position(position),
             Mav::GLOBAL_POSITION_INT(global) => {
-                let position = self.heard.position.as_ref();
-                let origin = position.map(|it| global.relative_alt as f32 * 1e-3 + it.z);
-                let sound = origin.filter(|origin| origin.is_finite());
-                self.heard.origin = sound.or(self.heard.origin);
+                let z = self.heard.position.as_ref().map(|position| position.z);
+                let origin = z.map(|z| global.relative_alt as f32 * 1e-3 + z);
+                let origin = origin.filter(|origin| origin.is_finite());
+                self.heard.origin = origin.or(self.heard.origin);
             }
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
             _ => {}

@@ -11,12 +11,7 @@ use mavlink::dialects::common::{
 /// Time between two questions \[us\].
 const SECOND: u64 = 1_000_000;
 /// Messages that are asked for, and their periods \[us\]: ATTITUDE, LOCAL_POSITION_NED, VFR_HUD, GLOBAL_POSITION_INT.
-const STREAMS: [[f32; 2]; 4] = [
-    [30.0, 20_000.0],
-    [32.0, 20_000.0],
-    [74.0, 20_000.0],
-    [33.0, 200_000.0],
-];
+const STREAMS: [[f32; 2]; 4] = [[30.0, 2e4], [32.0, 2e4], [74.0, 2e4], [33.0, 2e5]];
 /// Distance over which the course leads back to the line \[m\].
 const BACK: f64 = 60.0;
 
@@ -131,8 +126,7 @@ impl Companion {
 
     /// Sets the autopilot's own targets. The companion falls silent after that.
     pub(super) fn give_back(&mut self, send: &mut dyn FnMut(&[u8])) {
-        let heard = &self.heard;
-        let here = heard.position.as_ref().zip(heard.origin);
+        let here = self.heard.position.as_ref().zip(self.heard.origin);
         let height = here.map(|(position, origin)| origin - position.z);
         let cruise = self.config.model.file.cruise;
         let equivalent =

@@ -54,8 +54,6 @@ pub struct StandIn {
     pub(crate) obeyed: Option<Obeyed>,
     /// Height that it holds by itself \[m\].
     pub(crate) height: f64,
-    /// Height that it was asked to hold, above that of this moment \[m\].
-    pub(crate) asked: Option<f64>,
     /// Wind along the course [m/s], and how far it has carried the aircraft \[m\].
     wind: f64,
     carried: f64,
@@ -109,7 +107,6 @@ impl StandIn {
             demands: VecDeque::new(),
             obeyed: None,
             height: state.z,
-            asked: None,
             wind,
             carried: 0.0,
             parameters: BTreeMap::from(parameters),
@@ -190,7 +187,6 @@ impl StandIn {
             }
             MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE => {
                 self.height = f64::from(command.z) - ORIGIN;
-                self.asked = Some(self.height - self.plant.state().z);
             }
             _ => {}
         }

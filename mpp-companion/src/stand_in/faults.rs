@@ -31,8 +31,6 @@ pub enum Fault {
     LidarSilent,
     /// The autopilot restarts.
     Reboot,
-    /// The airspeed comes only each so many ticks.
-    AirspeedEach(u32),
     /// Bytes are damaged.
     Damaged,
     /// Numbers of the attitude are not finite.
@@ -41,7 +39,7 @@ pub enum Fault {
 
 impl Fault {
     /// The kinds that are flown.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 20] = [
         Self::Late(3),
         Self::Late(20),
         Self::SetpointsLate(5),
@@ -60,7 +58,6 @@ impl Fault {
         Self::LidarFrozen,
         Self::LidarSilent,
         Self::Reboot,
-        Self::AirspeedEach(10),
         Self::Damaged,
         Self::NotFinite,
     ];

@@ -3,7 +3,7 @@
 use super::autopilot::Obeyed;
 use super::{Fault, Flight, StandIn};
 use crate::companion::GUIDED;
-use crate::{CompanionError, Replayed, State, Told};
+use crate::{CompanionError, State, Told};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -17,11 +17,7 @@ pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
         told: false,
         ..base.clone()
     };
-    let forty = Flight {
-        obstacles: 40,
-        replan_hz: 4.0,
-        ..base.clone()
-    };
+    let forty = Flight::forty(seed);
     let windy = Flight {
         wind: -4.33,
         gusts: 0.5,
@@ -62,29 +58,6 @@ pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
         "\nCompanion dies at -15 deg of pitch and 10 % of throttle: {:.1} m lost\n",
         lost()?
     );
-    Ok(text)
-}
-
-/// The time from measurement to setpoint on this machine, over the recorded exchanges of flights from a first seed on.
-///
-/// # Errors
-/// [`CompanionError`].
-pub fn latency(flights: u64, seed: u64) -> Result<String, CompanionError> {
-    let mut text = String::new();
-    for (obstacles, replan_hz) in [(20, 2.0), (40, 4.0)] {
-        let mut all = Replayed::default();
-        for seed in seed..seed + flights {
-            let flight = Flight {
-                obstacles,
-                replan_hz,
-                ..Flight::new(seed)
-            };
-            let mut log = Vec::new();
-            flight.fly(Some(&mut log))?;
-            all.add(flight.replay(&log)?);
-        }
-        text += &format!("{obstacles} obstacles at {replan_hz} Hz: {all}\n");
-    }
     Ok(text)
 }
 

@@ -8,7 +8,7 @@ mod flight;
 
 pub use autopilot::StandIn;
 pub use faults::Fault;
-pub use figures::{figures, latency};
+pub use figures::figures;
 pub use flight::{Flight, Outcome};
 
 /// ArduPlane's simulated plane behind its pitch loop. The numbers of the loop were fitted to its steps.

@@ -3,8 +3,7 @@
 use super::{GUIDED, Run};
 use crate::Side;
 use crate::stand_in::Fault;
-use crate::wire::{self, Framer, Mav};
-use mavlink::dialects::common::VFR_HUD_DATA;
+use crate::wire::{Framer, Mav};
 use mpp_sim::random::gaussian;
 
 impl Run<'_> {
@@ -34,11 +33,6 @@ impl Run<'_> {
         match self.acting() {
             Some(Fault::Lost(n)) if self.count.is_multiple_of(n) => return,
             Some(Fault::Silent(ticks)) if self.since().is_some_and(|since| since < ticks) => return,
-            Some(Fault::AirspeedEach(ticks))
-                if wire::is::<VFR_HUD_DATA>(&frame) && !due.is_multiple_of(ticks) =>
-            {
-                return;
-            }
             Some(Fault::Late(ticks)) => due += ticks as u32,
             Some(Fault::Doubled) => self.up.push_back((due, frame.clone())),
             Some(Fault::Damaged) if self.count.is_multiple_of(3) => {

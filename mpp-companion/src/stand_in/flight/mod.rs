@@ -57,8 +57,8 @@ pub struct Outcome {
     pub unsound: u32,
     /// Setpoints after the companion heard of a take-over.
     pub late: u32,
-    /// Height that the companion asked for at the end, above that of this moment \[m\].
-    pub asked: Option<f64>,
+    /// Height at the end above that at which the core took over \[m\].
+    pub end: f64,
     /// Time from a take-over to the last setpoint \[ms\].
     pub last_after: u32,
     /// What the companion told.
@@ -86,6 +86,16 @@ impl Flight {
             wind: 0.0,
             gusts: 0.0,
             fault: None,
+        }
+    }
+
+    /// 40 obstacles, 4 Hz.
+    #[must_use]
+    pub fn forty(seed: u64) -> Self {
+        Self {
+            obstacles: 40,
+            replan_hz: 4.0,
+            ..Self::new(seed)
         }
     }
 
@@ -214,11 +224,11 @@ impl Run<'_> {
                 // The core keeps to the height at which it took over, which gusts have moved.
                 let off = after.z - *start.get_or_insert(before.z);
                 self.outcome.off = self.outcome.off.max(off.abs());
+                self.outcome.end = off;
             }
         }
         self.outcome.flown = self.companion.state() == State::Flying;
         self.outcome.told = self.companion.told();
-        self.outcome.asked = self.autopilot.asked;
         Ok(self.outcome)
     }
 
