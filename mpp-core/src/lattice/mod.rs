@@ -48,8 +48,8 @@ pub struct LatticeTask {
     pub slope: f64,
     /// Height to which the paths return \[m\].
     pub altitude: f64,
-    /// Greatest distance of a path from `altitude` \[m\].
-    pub band: f64,
+    /// Middle of the altitude band, and its reach to either side \[m\].
+    pub band: [f64; 2],
     /// Greatest curvature of a path [1/m].
     pub curvature: f64,
     /// Clearance that a path should have where there is room \[m\].
@@ -93,7 +93,7 @@ impl Lattice {
                 z: 0.0,
                 slope: 0.0,
                 altitude: 0.0,
-                band: 0.0,
+                band: [0.0; 2],
                 curvature: 0.0,
                 room: 0.0,
                 room_weight: 0.0,
@@ -362,9 +362,10 @@ impl HeightTerms {
     fn new(task: &LatticeTask, field: &DistanceField, place: usize) -> Self {
         let z = task.z + 0.5 * RISE * (place as f64 - f64::from(2 * MIDDLE));
         let from_altitude = z - task.altitude;
+        let [middle, half] = task.band;
         Self {
             height: field.height(z),
-            outside: (from_altitude.abs() - task.band + BAND_MARGIN).max(0.0),
+            outside: ((z - middle).abs() - half + BAND_MARGIN).max(0.0),
             altitude_cost: ALTITUDE_WEIGHT * from_altitude * from_altitude,
         }
     }

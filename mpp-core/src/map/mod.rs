@@ -10,6 +10,7 @@
 pub(crate) mod cell;
 mod distance_field;
 mod extent;
+mod fan;
 mod rolling_grid;
 mod scan_monitor;
 pub(crate) mod voxel_field;
@@ -17,6 +18,7 @@ pub(crate) mod voxels;
 
 pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
+pub(crate) use fan::sees_below;
 pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
 pub use scan_monitor::{Prediction, Predictions, ScanMonitor, ScanVerdict};

@@ -197,7 +197,7 @@ impl RollingGrid {
     /// show free space: the lidar is blind.
     #[must_use]
     pub fn contradicts(&self, scan: &LidarScan, sight: f64, pose: &Pose) -> bool {
-        if has_return(scan, sight) {
+        if !self.started || has_return(scan, sight) {
             return false;
         }
         let middle = 0.5 * (scan.ranges.len().saturating_sub(1)) as f64;

@@ -5,12 +5,13 @@
 //! comes nearer than predicted hides the rest and says nothing; what comes from farther, or not at all, is a *miss*. If most
 //! misses are hits when the scan is turned, the pitch is wrong and not the lidar: the scan says nothing.
 
+use super::fan::{answers, farthest, met, sector};
 use super::rolling_grid::{has_return, is_return};
 use crate::config::MAX_BEAMS;
 use crate::sense::LidarScan;
 use crate::tuning::scan_match::{
-    ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, OFF, OFF_SHARE,
-    SECTORS, SIGHT_SHARE, TURN_PART, TURN_STEP, TURN_STEPS,
+    ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, SECTORS,
+    SIGHT_SHARE, TURN_PART, TURN_STEP, TURN_STEPS,
 };
 use crate::vehicle::Pose;
 
@@ -36,6 +37,9 @@ pub struct ScanMonitor {
     pose: Pose,
     /// Sectors that went silent, and from which no beam has returned since.
     silent: [bool; SECTORS],
+    /// Sectors in which returns were missing that fog may hide, or a lidar that is silent altogether, and from which no beam
+    /// has returned since.
+    suspected: [bool; SECTORS],
     /// Whether the beams came in reverse order, and nothing has spoken against it since.
     reversed: bool,
     /// Range beyond which returns that were predicted did not come \[m\].
@@ -43,7 +47,7 @@ pub struct ScanMonitor {
 }
 
 /// How well a scan fits the last one.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Fit {
     /// Numbers of predicted returns that came and that did not.
     hits: u32,
@@ -51,9 +55,25 @@ struct Fit {
     /// Missed returns of each sector that are no farther than the farthest return, each counted once for every adjacent beam
     /// that confirmed it.
     missed: [u32; SECTORS],
-    /// The same sum for those that are farther, and the least range of these \[m\].
-    beyond: u32,
+    /// The same sums for those that are farther, and the least range of these \[m\].
+    beyond: [u32; SECTORS],
     first_beyond: f64,
+}
+
+impl Fit {
+    /// Nothing was predicted.
+    const NOTHING: Self = Self {
+        hits: 0,
+        misses: 0,
+        missed: [0; SECTORS],
+        beyond: [0; SECTORS],
+        first_beyond: f64::INFINITY,
+    };
+
+    /// Whether so much is missing beyond the farthest return that the sight is short.
+    fn is_short(&self) -> bool {
+        self.beyond.iter().sum::<u32>() >= LEAST_SILENT
+    }
 }
 
 /// A return of the last scan that is expected again.
@@ -82,6 +102,7 @@ impl ScanMonitor {
                 pitch: 0.0,
             },
             silent: [false; SECTORS],
+            suspected: [false; SECTORS],
             reversed: false,
             sight: f64::INFINITY,
         }
@@ -91,6 +112,7 @@ impl ScanMonitor {
     pub fn clear(&mut self) {
         self.last.ranges.clear();
         self.silent = [false; SECTORS];
+        self.suspected = [false; SECTORS];
         self.reversed = false;
         self.sight = f64::INFINITY;
     }
@@ -99,6 +121,13 @@ impl ScanMonitor {
     #[must_use]
     pub fn sight(&self, sight: f64) -> f64 {
         sight.min(self.sight)
+    }
+
+    /// Whether a silent sector of a scan begins beneath the body axis.
+    #[must_use]
+    pub fn hides_below(&self, scan: &LidarScan) -> bool {
+        let beams = scan.ranges.len();
+        (0..beams).any(|beam| self.silent[sector(beam, beams)] && scan.beam_angle(beam) < 0.0)
     }
 
     /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
@@ -111,23 +140,28 @@ impl ScanMonitor {
         predictions: &mut Predictions,
     ) -> ScanVerdict {
         let (mut before, known) = (false, self.reversed);
+        self.predict(scan, sight, pose, false, predictions);
+        let as_sent = fit(scan, sight, predictions, 0.0, false);
         if has_return(scan, sight) {
-            self.predict(scan, sight, pose, false, predictions);
-            let as_sent = fit(scan, sight, predictions, 0.0, false);
             let turned = turned_hits(scan, sight, predictions, &as_sent);
             let rival = turned.unwrap_or(0);
             before = self.note_order(scan, sight, pose, &as_sent, rival, predictions);
-            if self.reversed || turned.is_some() {
+            if self.reversed {
                 self.silent = [false; SECTORS];
+                self.suspected = [false; SECTORS];
             } else {
-                self.note_sight(scan, sight, &as_sent);
-                self.note_silence(scan, sight, &as_sent);
+                let held = turned.map_or(as_sent, |_| Fit::NOTHING);
+                self.note_sight(scan, sight, &held);
+                self.note_silence(&held, &answers(scan, sight));
             }
             // In short sight the last scan that saw farther tells more, as long as something is predicted by it.
             if self.sight >= sight || as_sent.hits + as_sent.misses == 0 {
                 self.last.clone_from(scan);
                 self.pose = *pose;
             }
+        } else if !known && as_sent.is_short() {
+            self.suspect(&as_sent);
+            return ScanVerdict::Silent;
         }
         if self.reversed {
             // A wrong pitch may make one scan fit so; the next one decides.
@@ -185,38 +219,46 @@ impl ScanMonitor {
         if farthest(scan, sight) > self.sight {
             self.sight = f64::INFINITY;
         }
-        if fit.beyond >= LEAST_SILENT {
+        if fit.is_short() {
             self.sight = self.sight.min(fit.first_beyond);
+            self.suspect(fit);
         }
     }
 
-    /// Notes the sectors in which predicted returns are missing and no beam returns. A sector stays silent until one does.
-    fn note_silence(&mut self, scan: &LidarScan, sight: f64, fit: &Fit) {
-        let beams = scan.ranges.len();
-        let mut answers = [false; SECTORS];
-        for (beam, range) in scan.ranges.iter().enumerate() {
-            if is_return(f64::from(*range), sight) {
-                answers[sector(beam, beams)] = true;
-            }
-        }
-        let missed = |at: usize| {
-            if answers[at % SECTORS] {
-                0
-            } else {
-                fit.missed[at % SECTORS]
-            }
-        };
-        let told = (0..SECTORS).map(missed).sum::<u32>() >= LEAST_SILENT;
-        for (at, silent) in self.silent.iter_mut().enumerate() {
-            *silent = !answers[at % SECTORS] && (*silent || told && missed(at) > 0);
+    /// Suspects the sectors in which returns are missing beyond the farthest one.
+    fn suspect(&mut self, fit: &Fit) {
+        for (suspected, beyond) in self.suspected.iter_mut().zip(fit.beyond) {
+            *suspected |= beyond > 0;
         }
     }
 
-    /// Marks the beams of silent sectors as bad, so that they show no free space.
+    /// Notes the sectors in which predicted returns are missing and no beam returns. A sector stays silent until one does. What
+    /// fog might hide counts once a beam has returned from farther.
+    fn note_silence(&mut self, fit: &Fit, answers: &[bool; SECTORS]) {
+        let missed = fit.missed.iter().zip(answers);
+        let missed = missed.map(|(missed, answers)| if *answers { 0 } else { *missed });
+        let told = missed.sum::<u32>() >= LEAST_SILENT;
+        let clear = self.sight == f64::INFINITY;
+        let held = self.silent.iter_mut().zip(&mut self.suspected);
+        for ((silent, suspected), (answers, missed)) in held.zip(answers.iter().zip(fit.missed)) {
+            *suspected &= !answers;
+            *silent |= told && missed > 0 || clear && *suspected;
+            *silent &= !answers;
+        }
+    }
+
+    /// Marks the beams of silent sectors as bad, so that they show no free space, and those of adjacent sectors up to the next
+    /// one with a return.
     fn mute(&self, scan: &mut LidarScan, sight: f64) {
+        let answers = answers(scan, sight);
+        let mut silent = self.silent;
+        for at in (1..SECTORS).chain((0..SECTORS - 1).rev()) {
+            let near = [at.wrapping_sub(1), at + 1].map(|it| silent.get(it) == Some(&true));
+            silent[at] |= near.contains(&true) && !answers[at];
+        }
         let beams = scan.ranges.len();
         for (beam, range) in scan.ranges.iter_mut().enumerate() {
-            if self.silent[sector(beam, beams)] && !is_return(f64::from(*range), sight) {
+            if silent[sector(beam, beams)] && !is_return(f64::from(*range), sight) {
                 *range = -1.0;
             }
         }
@@ -280,10 +322,7 @@ impl ScanMonitor {
 
 /// How well a scan fits predictions that are moved by so many beams, if its own beams are taken as sent or in reverse order.
 fn fit(scan: &LidarScan, sight: f64, predictions: &Predictions, turn: f64, reversed: bool) -> Fit {
-    let mut fit = Fit {
-        first_beyond: f64::INFINITY,
-        ..Fit::default()
-    };
+    let mut fit = Fit::NOTHING;
     let far = farthest(scan, sight);
     let beams = scan.ranges.len();
     for it in predictions {
@@ -297,7 +336,7 @@ fn fit(scan: &LidarScan, sight: f64, predictions: &Predictions, turn: f64, rever
             Some(false) => {
                 fit.misses += 1;
                 if it.range > far {
-                    fit.beyond += it.confirmed;
+                    fit.beyond[sector(first, beams)] += it.confirmed;
                     fit.first_beyond = fit.first_beyond.min(it.range);
                 } else {
                     fit.missed[sector(first, beams)] += it.confirmed;
@@ -325,40 +364,4 @@ fn turned_hits(
     let hits = |turn| fit(scan, sight, predictions, TURN_STEP * f64::from(turn), false).hits;
     let most = turns.map(hits).max()?;
     (most >= as_sent.hits + as_sent.misses.div_ceil(TURN_PART)).then_some(most)
-}
-
-/// The farthest return of a scan \[m\]; 0 without one.
-fn farthest(scan: &LidarScan, sight: f64) -> f64 {
-    let ranges = scan.ranges.iter().map(|range| f64::from(*range));
-    ranges
-        .filter(|range| is_return(*range, sight))
-        .fold(0.0, f64::max)
-}
-
-/// Whether a beam from `first - 1` to `first + 2` returns from an expected range \[m\]. It is `None` if none does and something
-/// nearer hides what was expected, or a beam is bad.
-fn met(scan: &LidarScan, sight: f64, first: usize, expected: f64, reversed: bool) -> Option<bool> {
-    let off = OFF + OFF_SHARE * expected;
-    let mut hidden = false;
-    for beam in first.saturating_sub(1)..first + 3 {
-        let sent = if reversed {
-            scan.ranges.len().wrapping_sub(beam + 1)
-        } else {
-            beam
-        };
-        let range = scan.ranges.get(sent).map_or(0.0, |range| f64::from(*range));
-        if is_return(range, sight) {
-            if libm::fabs(range - expected) < off {
-                return Some(true);
-            }
-            hidden |= range < expected;
-        }
-        hidden |= range < 0.0;
-    }
-    (!hidden).then_some(false)
-}
-
-/// The sector of a beam among so many.
-fn sector(beam: usize, beams: usize) -> usize {
-    (beam * SECTORS / beams.max(1)) % SECTORS
 }

@@ -63,6 +63,7 @@ impl PlanePlanner {
     fn add_up(&self, flown: &RollOut, mut note: impl FnMut(Part, f64)) -> Judgement {
         let (field, cost_to_go, own) = (&self.field, &self.cost_to_go, &self.settings);
         let via = cost_to_go.via();
+        let [middle, half] = self.band;
         let unknown_ahead = self.limits.unknown_ahead;
         let (mut lack, mut price) = (0.0_f64, 0.0);
         let mut add = |part, summand: f64| {
@@ -82,7 +83,7 @@ impl PlanePlanner {
                 let share = sample as f64 / SAMPLES as f64;
                 let (x, z) = (from.x + run * share, from.z + rise * share);
                 let weight = if x > via { FAR_SHARE } else { 1.0 };
-                let outside = ((z - self.altitude).abs() - own.band).max(0.0);
+                let outside = ((z - middle).abs() - half).max(0.0);
                 let distance = field.distance(x, z);
                 let missing = (own.margin - distance).max(0.0) + outside;
                 let crowded = (self.limits.wanted_room - distance).max(0.0);

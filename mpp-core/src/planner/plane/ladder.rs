@@ -6,7 +6,7 @@
 use super::pursuit::Course;
 use super::rungs::{Ladder, Reserve, Rung};
 use super::{Candidate, Phase, PlanePlanner};
-use crate::gate::{Cause, GateVerdict};
+use crate::gate::{Cause, GateVerdict, Space};
 use crate::planner::summary::Verdict;
 
 impl PlanePlanner {
@@ -34,7 +34,12 @@ impl PlanePlanner {
     pub(super) fn offer_next(&mut self) {
         let rung = self.ladder.rung;
         if self.write_rung(rung) {
-            match self.gate.check(&self.map, &self.best, rung.space()) {
+            // A plan that leaves the band upwards may do what a climb may.
+            let space = match rung.space() {
+                Space::NotOccupied if self.leaves => Space::Above,
+                space => space,
+            };
+            match self.gate.check(&self.map, &self.best, space) {
                 GateVerdict::Passes => return self.take(rung),
                 GateVerdict::Refused(cause, after) => self.refuse(rung, cause, after),
             }

@@ -98,6 +98,12 @@ pub struct PlanePlanner {
     /// The height that the settings ask for, and the height to which this cycle plans \[m\].
     destination: f64,
     altitude: f64,
+    /// Middle of the altitude band of this cycle, and its reach to either side \[m\].
+    band: [f64; 2],
+    /// Whether this cycle leaves the band upwards, because the lidar does not show what lies beneath.
+    leaves: bool,
+    /// Time of the last cycle that was not in the dark \[s\].
+    seen: f64,
     weights: Weights,
     units: Units,
     /// Airframe and trim of the set-up in own units, and the airframe in SI units.
@@ -161,6 +167,9 @@ impl PlanePlanner {
             paths: 0,
             destination: 0.0,
             altitude: 0.0,
+            band: [0.0; 2],
+            leaves: false,
+            seen: f64::INFINITY,
             weights: Weights::PAPER,
             units: Units::SI,
             known: (Airframe::REFERENCE, NO_TRIM),
@@ -233,6 +242,8 @@ impl PlanePlanner {
         self.altitude = (self.destination)
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
+        self.band = [self.altitude, self.settings.band];
+        self.leaves = false;
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.bound_thrust();
@@ -347,6 +358,7 @@ impl PlanePlanner {
         self.map.clear();
         self.lidar_distrusted = false;
         self.monitor.clear();
+        self.seen = f64::INFINITY;
         self.best.clear();
     }
 

@@ -2,9 +2,10 @@
 
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
-use crate::lattice::{Lattice, LatticeTask};
-use crate::map::{ScanVerdict, has_return};
+use crate::lattice::{CLIMB, Lattice, LatticeTask};
+use crate::map::{ScanVerdict, has_return, sees_below};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
+use crate::tuning::leave::{CEILING, DARK, DIP, HEIGHT, LOOK_UP};
 use crate::vehicle::Trim;
 
 impl PlanePlanner {
@@ -12,40 +13,27 @@ impl PlanePlanner {
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
+        if let Workspace::Scan(Intake { beams: 0, .. }) = self.workspace {
+            self.judge_scan();
+        }
         let Workspace::Scan(Intake {
             scan,
             beams,
             isolated,
-            predictions,
+            ..
         }) = &mut self.workspace
         else {
             return self.end_inconsistent();
         };
-        let (pose, sight) = (self.pose, self.settings.sight);
-        if *beams == 0 {
-            self.map.roll(pose.x, self.altitude);
-            // A lidar that was distrusted once stays so until a beam returns.
-            self.lidar_distrusted = !has_return(scan, sight)
-                && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
-            let verdict = self.monitor.check(scan, sight, &pose, predictions);
-            if verdict == ScanVerdict::ReversedBefore {
-                self.map.clear();
-                self.map.roll(pose.x, self.altitude);
-            }
-            self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
-            if self.lidar_distrusted {
-                scan.ranges.clear();
-            }
-            self.map.write_isolated_hits(scan, sight, &pose, isolated);
-        }
         if *beams < scan.ranges.len() {
             let next = *beams..*beams + BEAMS_PER_SLICE;
             *beams = next.end;
-            let sight = self.monitor.sight(sight);
-            self.map.insert_beams(scan, next, sight, &pose, isolated);
+            let sight = self.monitor.sight(self.settings.sight);
+            (self.map).insert_beams(scan, next, sight, &self.pose, isolated);
             return;
         }
-        if self.summary.blind {
+        // Slowly the nose is high, and a climb needs the lift.
+        if self.summary.blind && !self.leaves {
             self.slow_down();
         }
         self.field.build(&self.map, self.settings.body_radius);
@@ -58,7 +46,7 @@ impl PlanePlanner {
             z: self.state.z,
             slope: rise / run.max(1.0),
             altitude: self.altitude,
-            band: self.settings.band,
+            band: self.band,
             curvature: self.limits.curvature,
             room: self.limits.wanted_room,
             room_weight: self.limits.room_weight,
@@ -69,6 +57,51 @@ impl PlanePlanner {
             lattice.start(&task, &self.field);
         }
         self.phase = Phase::Lattice;
+    }
+
+    /// Decides what of the scan is believed, and moves the map along with the aircraft.
+    fn judge_scan(&mut self) {
+        let Workspace::Scan(Intake {
+            scan,
+            isolated,
+            predictions,
+            ..
+        }) = &mut self.workspace
+        else {
+            return;
+        };
+        let (pose, sight) = (self.pose, self.settings.sight);
+        // A lidar that was distrusted once stays so until a beam returns.
+        let empty = !has_return(scan, sight);
+        self.lidar_distrusted =
+            empty && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
+        let verdict = self.monitor.check(scan, sight, &pose, predictions);
+        self.lidar_distrusted |= empty && verdict == ScanVerdict::Silent;
+        if verdict == ScanVerdict::ReversedBefore {
+            self.map.clear();
+        }
+        self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
+        if !self.summary.blind || sees_below(scan, sight) {
+            self.seen = self.time;
+        }
+        self.leaves = verdict == ScanVerdict::Silent && self.monitor.hides_below(scan)
+            || self.time - self.seen > DARK * self.units.time;
+        let [middle, half] = self.band;
+        let mut window = middle;
+        if self.leaves {
+            let above = self.destination + self.settings.band + HEIGHT;
+            let (ceiling, dip) = (above + CEILING, (self.state.z - DIP).min(above));
+            let floor = dip.max(middle - half);
+            self.band = [0.5 * (ceiling + floor), 0.5 * (ceiling - floor)];
+            self.altitude = above.min(self.state.z + CLIMB);
+            self.solver.problem.target[1] = self.altitude - self.state.z;
+            window = middle.max(self.state.z + LOOK_UP);
+        }
+        self.map.roll(pose.x, window);
+        if self.lidar_distrusted {
+            scan.ranges.clear();
+        }
+        self.map.write_isolated_hits(scan, sight, &pose, isolated);
     }
 
     /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what

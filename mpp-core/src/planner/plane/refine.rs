@@ -26,12 +26,13 @@ impl PlanePlanner {
             return self.climb_down();
         };
         let own = &self.settings;
+        let [middle, half] = self.band;
         let keep = Keep {
             margin: own.margin + ROUNDING,
             room: self.limits.room,
             body_radius: own.body_radius,
-            floor: self.altitude - own.band,
-            ceiling: self.altitude + own.band,
+            floor: middle - half,
+            ceiling: middle + half,
         };
         let cruise = self.trim.state.airspeed;
         let mut corridor = Corridor::new();

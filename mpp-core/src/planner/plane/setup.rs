@@ -45,6 +45,7 @@ impl PlanePlanner {
         self.map.clear();
         self.lidar_distrusted = false;
         self.monitor.clear();
+        self.seen = f64::INFINITY;
         self.best.clear();
         self.ladder = Ladder::NEW;
         Ok(())
