@@ -20,7 +20,7 @@ const TASK: LatticeTask = LatticeTask {
     z: 50.0,
     slope: 0.0,
     altitude: 50.0,
-    band: 10.3,
+    band: [50.0, 10.3],
     curvature: 1.0 / 18.0,
     room: 2.0,
     room_weight: 0.0,
@@ -90,7 +90,7 @@ impl Costs<'_> {
             let x = self.task.x + ahead;
             let z = self.task.z + 0.5 * RISE * f64::from(halves);
             let off = z - self.task.altitude;
-            let outside = (off.abs() - self.task.band + 0.5).max(0.0);
+            let outside = (off.abs() - self.task.band[1] + 0.5).max(0.0);
             let distance = self.field.distance(x, z);
             let lack = (1.2 - distance).max(0.0) + outside;
             let crowded = (self.task.room - distance).max(0.0);
@@ -256,7 +256,7 @@ fn nothing_in_the_way_is_flown_straight_on_and_back_to_the_altitude() {
             .iter()
             .map(|z| (z - 50.0).abs())
             .fold(0.0, f64::max);
-        assert!(most <= TASK.band - 0.5, "{most} m from the altitude");
+        assert!(most <= TASK.band[1] - 0.5, "{most} m from the altitude");
         let end = paths[0][STATIONS - 1] - 50.0;
         assert!(end * off < 0.5 * off * off, "{end}");
     }
@@ -284,7 +284,11 @@ fn a_wall_is_passed_through_its_gap_and_within_the_band() {
         let through = &paths[0];
         // Station 9 is 21.6 m ahead.
         assert!((through[9] - gap).abs() < 2.0, "{gap}: {through:?}");
-        assert!(through.iter().all(|z| (z - 50.0).abs() <= TASK.band - 0.5));
+        assert!(
+            through
+                .iter()
+                .all(|z| (z - 50.0).abs() <= TASK.band[1] - 0.5)
+        );
     }
 }
 

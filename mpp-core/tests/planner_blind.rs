@@ -116,6 +116,50 @@ fn a_lidar_that_has_lied_is_not_believed_until_a_beam_returns() {
     assert!(!planner.summary().blind, "nothing is known ahead");
 }
 
+/// The greatest height of the best plan \[m\].
+fn highest(planner: &Planner) -> f64 {
+    let knots = planner.best().knots.iter();
+    knots.fold(0.0, |most: f64, knot| most.max(knot.state.z))
+}
+
+/// A plan climbs while the half beneath the body axis is silent, and while the whole fan is for long, but not while the upper half is.
+#[test]
+fn what_lies_beneath_a_silent_half_is_flown_over() {
+    let discs: [Disc; 2] = [(128.0, 42.0, 2.0), (128.0, 66.0, 2.0)];
+    for (lower, climbs) in [(true, true), (false, false)] {
+        let mut planner = planner(&Settings::flight());
+        let state = level(&planner);
+        plan(&mut planner, &state, &discs);
+        assert!(highest(&planner) < 53.0);
+        let mut half = scan(&discs, &state);
+        let beams = half.ranges.len() / 2;
+        let ranges = half.ranges.iter_mut();
+        if lower {
+            ranges.take(beams).for_each(|it| *it = 0.0);
+        } else {
+            ranges.skip(beams).for_each(|it| *it = 0.0);
+        }
+        plan_from(&mut planner, &state, Some(&half));
+        assert!(planner.summary().blind);
+        let most = highest(&planner);
+        assert_eq!(most > 55.0, climbs, "{most} m");
+    }
+}
+
+#[test]
+fn an_aircraft_that_has_been_in_the_dark_for_long_climbs_above_the_band() {
+    let mut planner = planner(&Settings::flight());
+    let state = level(&planner);
+    plan(&mut planner, &state, &[(130.0, 42.0, 2.0)]);
+    for (time, climbs) in [(5.0, false), (6.5, true)] {
+        planner.begin_from(time, &Pose::of(&state), &state, &Conditions::STILL, None);
+        while planner.advance() {}
+        planner.finish();
+        let most = highest(&planner);
+        assert_eq!(most > 55.0, climbs, "{time} s: {most} m");
+    }
+}
+
 /// A new flight does not inherit the doubt about the lidar.
 #[test]
 fn a_lie_is_forgotten_with_the_map() {

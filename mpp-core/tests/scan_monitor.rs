@@ -97,6 +97,35 @@ fn a_silent_half_is_found_at_once_and_shows_nothing_until_it_returns() {
     assert_eq!((verdict, scan.bad_beams()), (ScanVerdict::Agrees, 0));
 }
 
+/// An empty scan may come from a lidar that is silent altogether, one that sees near things alone from fog. The next scan decides.
+#[test]
+fn a_silent_half_is_told_from_a_silent_lidar_and_from_fog_by_what_returns_later() {
+    let field = [(15.0, 54.5, 1.0), (31.0, 46.0, 1.0), (36.0, 60.0, 1.0)];
+    let empty = |scan: &mut LidarScan| scan.ranges.fill(0.0);
+    let fog = |scan: &mut LidarScan| {
+        for range in scan.ranges.iter_mut().filter(|range| **range > 20.0) {
+            *range = 0.0;
+        }
+    };
+    let firsts: [(fn(&mut LidarScan), _); 2] =
+        [(empty, ScanVerdict::Silent), (fog, ScanVerdict::Short)];
+    for (first, verdict) in firsts {
+        for (then, hidden) in [(darken as fn(&mut LidarScan), true), (|_| {}, false)] {
+            let mut monitor = ScanMonitor::new();
+            let mut check = |x: f64, spoil: fn(&mut LidarScan)| {
+                let mut scan = seen(&field, &pose(x));
+                spoil(&mut scan);
+                let verdict = monitor.check(&mut scan, SIGHT, &pose(x), &mut Predictions::new());
+                (verdict, monitor.hides_below(&scan))
+            };
+            check(0.0, |_| {});
+            assert_eq!(check(3.0, first), (verdict, false));
+            let (verdict, below) = check(6.0, then);
+            assert_eq!((verdict == ScanVerdict::Silent, below), (hidden, hidden));
+        }
+    }
+}
+
 #[test]
 fn beams_in_reverse_order_are_put_right_until_they_come_as_sent() {
     let mut monitor = ScanMonitor::new();

@@ -37,8 +37,8 @@ pub struct ScanMonitor {
     pose: Pose,
     /// Sectors that went silent, and from which no beam has returned since.
     silent: [bool; SECTORS],
-    /// Sectors in which returns were missing that fog may hide, or a lidar that is silent altogether, and from which no beam
-    /// has returned since.
+    /// Sectors in which returns were missing that fog may hide, or a lidar that is silent altogether. No beam has returned since
+    /// from the same half of the fan.
     suspected: [bool; SECTORS],
     /// Whether the beams came in reverse order, and nothing has spoken against it since.
     reversed: bool,
@@ -239,9 +239,15 @@ impl ScanMonitor {
         let missed = missed.map(|(missed, answers)| if *answers { 0 } else { *missed });
         let told = missed.sum::<u32>() >= LEAST_SILENT;
         let clear = self.sight == f64::INFINITY;
-        let held = self.silent.iter_mut().zip(&mut self.suspected);
+        // Fog, and a lidar that was silent altogether, spare no half of the fan; a half that returns was not silent.
+        let halves = self.suspected.chunks_mut(SECTORS / 2);
+        for (suspected, answers) in halves.zip(answers.chunks(SECTORS / 2)) {
+            if answers.contains(&true) {
+                suspected.fill(false);
+            }
+        }
+        let held = self.silent.iter_mut().zip(&self.suspected);
         for ((silent, suspected), (answers, missed)) in held.zip(answers.iter().zip(fit.missed)) {
-            *suspected &= !answers;
             *silent |= told && missed > 0 || clear && *suspected;
             *silent &= !answers;
         }
