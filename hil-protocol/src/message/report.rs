@@ -215,6 +215,12 @@ pub enum RejectionCause {
         "after several faults in a row the core flies without its planner: land, and switch the power off"
     )]
     PlannerOff,
+    /// Nothing returns from beneath the body axis where obstacles are known, or for long to a lidar that is not believed. The
+    /// aircraft goes above the altitude band.
+    #[error(
+        "the lidar is silent beneath: the aircraft climbs out of the altitude band, check the lidar"
+    )]
+    ScanSilentBelow,
 }
 
 /// A task of the core. The order goes over the wire: append only.

@@ -139,6 +139,7 @@ fn rejection_and_every_cause() {
             "124d500209ac020f0101f0a20402a8b8eefb00",
         ),
         (rejection(PlannerOff), "0c4d500209ac02103809154c00"),
+        (rejection(ScanSilentBelow), "0c4d500209ac0211ae39123b00"),
     ]);
 }
 

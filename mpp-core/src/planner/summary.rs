@@ -25,6 +25,8 @@ pub struct PlanSummary {
     /// in the fan of this scan, or of an earlier one since which no beam has returned. The map did not use it. Or
     /// the scan disagrees with the one before it. Plans fly slowly.
     pub blind: bool,
+    /// Whether plans leave the altitude band upwards, because a blind lidar does not show what lies beneath.
+    pub leaves: bool,
     /// Whether the planner ended the cycle early, because its phase and its workspace did not belong together. This is a
     /// defect of the planner; [`FlightLoop::count_cycle`](crate::flight::FlightLoop::count_cycle) counts it.
     pub inconsistent: bool,
@@ -46,6 +48,7 @@ impl PlanSummary {
         solver_steps: 0,
         complete: false,
         blind: false,
+        leaves: false,
         inconsistent: false,
         refused: None,
         cost: f64::INFINITY,

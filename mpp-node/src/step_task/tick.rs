@@ -67,6 +67,7 @@ impl StepTask {
             slices,
             complete,
             blind,
+            leaves,
             cost,
             violation,
             ..
@@ -88,7 +89,14 @@ impl StepTask {
         });
         self.plan = None;
         if blind && !cycle.without_scan {
-            self.reject(RejectionCause::ScanBlind, send);
+            self.reject(
+                if leaves {
+                    RejectionCause::ScanSilentBelow
+                } else {
+                    RejectionCause::ScanBlind
+                },
+                send,
+            );
         }
     }
 

@@ -37,6 +37,11 @@ impl Vehicle {
         let what = match name {
             "Trapped" => "Core trapped and recovered",
             "PlannerRestarted" => "Planner restarted",
+            // Each scan tells it.
+            "ScanSilentBelow" if !self.climbs => {
+                self.climbs = true;
+                "Lidar silent beneath: climbing"
+            }
             "PlannerOff" => "Planner stays off: land",
             "CoreRestarted" => "Core restarted in flight",
             _ => return,

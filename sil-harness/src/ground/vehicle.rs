@@ -95,6 +95,8 @@ pub struct Vehicle {
     pub(super) last: Last,
     /// Whether another vehicle with this number was told of.
     pub(super) twin: bool,
+    /// Whether it was told that the aircraft climbs because the lidar is silent beneath.
+    pub(super) climbs: bool,
 }
 
 impl Vehicle {
@@ -132,6 +134,7 @@ impl Vehicle {
             navigation: config.navigation,
             last: Last::default(),
             twin: false,
+            climbs: false,
         }
     }
 

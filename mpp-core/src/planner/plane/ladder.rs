@@ -36,7 +36,7 @@ impl PlanePlanner {
         if self.write_rung(rung) {
             // A plan that leaves the band upwards may do what a climb may.
             let space = match rung.space() {
-                Space::NotOccupied if self.leaves => Space::Above,
+                Space::NotOccupied if self.summary.leaves => Space::Above,
                 space => space,
             };
             match self.gate.check(&self.map, &self.best, space) {

@@ -100,9 +100,7 @@ pub struct PlanePlanner {
     altitude: f64,
     /// Middle of the altitude band of this cycle, and its reach to either side \[m\].
     band: [f64; 2],
-    /// Whether this cycle leaves the band upwards, because the lidar does not show what lies beneath.
-    leaves: bool,
-    /// Time of the last cycle that was not in the dark \[s\].
+    /// Time of the last cycle with a lidar that was believed, or that saw something beneath \[s\].
     seen: f64,
     weights: Weights,
     units: Units,
@@ -168,7 +166,6 @@ impl PlanePlanner {
             destination: 0.0,
             altitude: 0.0,
             band: [0.0; 2],
-            leaves: false,
             seen: f64::INFINITY,
             weights: Weights::PAPER,
             units: Units::SI,
@@ -243,7 +240,6 @@ impl PlanePlanner {
             .max(self.state.z - CLIMB)
             .min(self.state.z + CLIMB);
         self.band = [self.altitude, self.settings.band];
-        self.leaves = false;
         self.solver.problem.target = [0.0, self.altitude - self.state.z, 0.0, 0.0, 0.0, 0.0];
         self.solver.problem.penalty = Some(self.settings.penalty);
         self.bound_thrust();

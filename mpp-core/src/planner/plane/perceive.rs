@@ -33,7 +33,7 @@ impl PlanePlanner {
             return;
         }
         // Slowly the nose is high, and a climb needs the lift.
-        if self.summary.blind && !self.leaves {
+        if self.summary.blind && !self.summary.leaves {
             self.slow_down();
         }
         self.field.build(&self.map, self.settings.body_radius);
@@ -84,11 +84,11 @@ impl PlanePlanner {
         if !self.summary.blind || sees_below(scan, sight) {
             self.seen = self.time;
         }
-        self.leaves = verdict == ScanVerdict::Silent && self.monitor.hides_below(scan)
+        self.summary.leaves = verdict == ScanVerdict::Silent && self.monitor.hides_below(scan)
             || self.time - self.seen > DARK * self.units.time;
         let [middle, half] = self.band;
         let mut window = middle;
-        if self.leaves {
+        if self.summary.leaves {
             let above = self.destination + self.settings.band + HEIGHT;
             let (ceiling, dip) = (above + CEILING, (self.state.z - DIP).min(above));
             let floor = dip.max(middle - half);
