@@ -93,9 +93,8 @@ pub struct Vehicle {
     pub(super) navigation: NavigationConfig,
     /// The last of each event, for a station that asks for it.
     pub(super) last: Last,
-    /// Whether another vehicle with this number was told of.
+    /// Whether another vehicle with this number, and a climb over a silent half of the lidar, were told of.
     pub(super) twin: bool,
-    /// Whether it was told that the aircraft climbs because the lidar is silent beneath.
     pub(super) climbs: bool,
 }
 
