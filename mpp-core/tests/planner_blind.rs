@@ -151,7 +151,7 @@ fn an_aircraft_that_has_been_in_the_dark_for_long_climbs_above_the_band() {
     let mut planner = planner(&Settings::flight());
     let state = level(&planner);
     plan(&mut planner, &state, &[(130.0, 42.0, 2.0)]);
-    for (time, climbs) in [(5.0, false), (6.5, true)] {
+    for (time, climbs) in [(6.5, false), (7.5, true)] {
         planner.begin_from(time, &Pose::of(&state), &state, &Conditions::STILL, None);
         while planner.advance() {}
         planner.finish();
