@@ -258,9 +258,15 @@ impl ScanMonitor {
     fn mute(&self, scan: &mut LidarScan, sight: f64) {
         let answers = answers(scan, sight);
         let mut silent = self.silent;
-        for at in (1..SECTORS).chain((0..SECTORS - 1).rev()) {
-            let near = [at.wrapping_sub(1), at + 1].map(|it| silent.get(it) == Some(&true));
-            silent[at] |= near.contains(&true) && !answers[at];
+        let mut near = false;
+        for (silent, answers) in silent.iter_mut().zip(&answers) {
+            near = *silent || near && !answers;
+            *silent = near;
+        }
+        near = false;
+        for (silent, answers) in silent.iter_mut().zip(&answers).rev() {
+            near = *silent || near && !answers;
+            *silent = near;
         }
         let beams = scan.ranges.len();
         for (beam, range) in scan.ranges.iter_mut().enumerate() {
