@@ -146,17 +146,22 @@ fn what_lies_beneath_a_silent_half_is_flown_over() {
     }
 }
 
+/// Without any scan the aircraft stays level, as in mode CRUISE.
 #[test]
 fn an_aircraft_that_has_been_in_the_dark_for_long_climbs_above_the_band() {
-    let mut planner = planner(&Settings::flight());
-    let state = level(&planner);
-    plan(&mut planner, &state, &[(130.0, 42.0, 2.0)]);
-    for (time, climbs) in [(6.5, false), (7.5, true)] {
-        planner.begin_from(time, &Pose::of(&state), &state, &Conditions::STILL, None);
-        while planner.advance() {}
-        planner.finish();
-        let most = highest(&planner);
-        assert_eq!(most > 55.0, climbs, "{time} s: {most} m");
+    for (lies, late) in [(true, true), (false, false)] {
+        let mut planner = planner(&Settings::flight());
+        let state = level(&planner);
+        plan(&mut planner, &state, &[(128.0, 50.0, 2.0)]);
+        let empty = scan(&[], &state);
+        for (time, climbs) in [(6.5, false), (7.5, late)] {
+            let seen = lies.then_some(&empty);
+            planner.begin_from(time, &Pose::of(&state), &state, &Conditions::STILL, seen);
+            while planner.advance() {}
+            planner.finish();
+            let end = planner.best().knots.last().unwrap().state.z;
+            assert_eq!(end > 55.0, climbs, "{time} s, a scan {lies}: {end} m");
+        }
     }
 }
 

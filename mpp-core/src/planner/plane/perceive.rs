@@ -71,6 +71,8 @@ impl PlanePlanner {
             return;
         };
         let (pose, sight) = (self.pose, self.settings.sight);
+        // Whoever gives no scan may ask for level flight without a lidar.
+        let none = self.summary.blind;
         // A lidar that was distrusted once stays so until a beam returns.
         let empty = !has_return(scan, sight);
         self.lidar_distrusted =
@@ -81,7 +83,7 @@ impl PlanePlanner {
             self.map.clear();
         }
         self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
-        if !self.summary.blind || sees_below(scan, sight) {
+        if none || !self.summary.blind || sees_below(scan, sight) {
             self.seen = self.time;
         }
         self.summary.leaves = verdict == ScanVerdict::Silent && self.monitor.hides_below(scan)
