@@ -75,6 +75,10 @@ pub struct FaultRow {
     /// Number of flights with the fault that collided with an obstacle that a beam had met more than 1 s
     /// before.
     pub known_collisions: u32,
+    /// Number of flights with the fault that cost the aircraft: a collision or an extreme state.
+    pub aircraft_lost: u32,
+    /// Number of these in which the core said nothing after the onset.
+    pub lost_untold: u32,
     /// Number of flights with the fault in which the core refused an input or excluded a sensor after the
     /// onset.
     pub flagged: u32,
@@ -134,6 +138,7 @@ impl FaultRow {
         let pairs = count(|_, _| true);
         let (low, high) = paired(only_clean, only_faulty, pairs);
         let lost = f64::from(only_clean) - f64::from(only_faulty);
+        let crashed = || faulty.iter().filter(|flown| !flown.survived);
         let flags = || faulty.iter().filter_map(|flown| flown.flagged);
         Self {
             name,
@@ -153,6 +158,8 @@ impl FaultRow {
             asked: None,
             oracle: None,
             known_collisions: faulty.iter().filter(|flown| flown.known_collision).count() as u32,
+            aircraft_lost: crashed().count() as u32,
+            lost_untold: crashed().filter(|flown| flown.flagged.is_none()).count() as u32,
             flagged: flags().count() as u32,
             flagged_s: quantile(flags(), 0.5),
             told: told(faulty),
@@ -197,7 +204,7 @@ impl fmt::Display for FaultReport {
         };
         writeln!(
             f,
-            "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  told / without fault",
+            "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {:<23} {:>5} {:>6} {:>5} {:>8} {:>6} {:>7} {:>9}  told / without fault",
             "fault",
             column("field"),
             "obstacles",
@@ -211,6 +218,8 @@ impl fmt::Display for FaultReport {
             "asked",
             "oracle",
             "known",
+            "aircraft",
+            "untold",
             "flagged",
             "after [s]",
         )?;
@@ -224,7 +233,7 @@ impl fmt::Display for FaultReport {
             };
             writeln!(
                 f,
-                "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>6} {:>5} {:>7} {:>9}  {} / {}",
+                "{:<18} {}{:>9} {:>4} {:>5} {:>6} {:>6} {:>10} {:>11}  {lost:<23} {:>5} {:>6} {:>5} {:>8} {:>6} {:>7} {:>9}  {} / {}",
                 row.name,
                 column(&row.kind),
                 row.obstacles,
@@ -237,6 +246,8 @@ impl fmt::Display for FaultReport {
                 number(row.asked, 0),
                 number(row.oracle.map(f64::from), 0),
                 row.known_collisions,
+                row.aircraft_lost,
+                row.lost_untold,
                 row.flagged,
                 number(row.flagged_s, 2),
                 listed(&row.told),
@@ -309,5 +320,29 @@ mod tests {
                 .starts_with("pitch-bias                20    1"),
             "{one}"
         );
+    }
+
+    /// A mission is lost without the aircraft if it leaves the band.
+    #[test]
+    fn a_lost_mission_is_no_lost_aircraft() {
+        let flown = |survived, flagged| Flown {
+            strict: false,
+            survived,
+            known_collision: false,
+            flagged,
+            told: BTreeSet::new(),
+        };
+        let faulty = [
+            flown(true, None),
+            flown(false, None),
+            flown(false, Some(0.1)),
+        ];
+        let faulty: Vec<&Flown> = faulty.iter().collect();
+        let faults = NamedFault::of(&["pitch-bias".to_owned()]).unwrap();
+        let (file, lists) = (ScenarioFile::default(), Lists::default());
+        let campaign = FaultCampaign::new(&file, &lists, 3, Some(1), &faults).unwrap();
+        let cell = (&campaign.faults[0].cells[0], String::new());
+        let row = FaultRow::new("pitch-bias", cell, &faulty, &faulty);
+        assert_eq!((row.aircraft_lost, row.lost_untold), (2, 1));
     }
 }
