@@ -1,0 +1,197 @@
+"""Makes an aircraft file from a flight log: `python -m mppflight.fit LOG --mass 2.0 --wing-area 0.45 --out plane.toml`.
+Needs SciPy: `pip install 'mppflight[fit]'`.
+
+LOG is a CSV with a header. Cells may be empty, so sensors may have rates of their own; log at 25 Hz or more.
+
+    t               time [s]
+    airspeed        true airspeed [m/s]
+    pitch           [rad], nose-up positive
+    pitch_command   pitch that the autopilot was told to hold [rad]
+    throttle        throttle command, 0 to 1
+    climb, or z     climb rate [m/s], or height [m]; both upwards
+    ax, az          optional: accelerometers forward and down [m/s^2], az is about -9.8 in level flight
+
+Fly with level wings in calm air (`--manoeuvres` prints what), and give with `--from` and `--to` the stretch in which the
+autopilot followed the commands. Mass, wing area and air density are yours to give.
+
+The method is output error: the aircraft's own equations are simulated with the parameters, and least squares bring
+airspeed, climb and accelerations to the measured ones, in stretches of 10 s with free initial states. Delays of the
+airspeed and of the climb against the pitch, and biases of the accelerometers, are estimated along. The dead time of the
+pitch loop goes from the command to the measured pitch. Gain and offset of the loop are estimated too, but a file has no
+place for them. Not estimated: dead time of the thrust, derivatives by rates, the stall, moments, roll.
+
+Intervals are of 95 %. They come from the Jacobian, with the covariance of each sensor's residuals multiplied by
+1 + 2 (sum of their autocorrelations up to the first that is not positive), because residuals are not white.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import json
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy
+
+from ._native import Aircraft
+from .errors import InputError
+from .identify import MEASURED, STRETCH, Floats, Known, Value, estimate
+
+NEEDED = ("t", "airspeed", "pitch", "pitch_command", "throttle")
+# Times [s], pitch against that of level flight [deg], and throttle against that of level flight.
+MANOEUVRES = [
+    (seconds, pitch, throttle)
+    for throttle in (1.0, 0.5, 1.5)
+    for seconds, pitch in [(3, 0), (1.5, 8), (1.5, -8), (0.7, 8), (0.7, -8), (2, 0), (2, 5), (2, -5), (1, 0)]
+] + [(3, 0, 1.9), (3, 0, 0.1), (2, 0, 1.9), (2, 0, 0.1), (1, 0, 1.9), (1, 0, 0.1), (6, 6, 0.7), (5, -4, 1.3)]
+
+
+def read(path: str, start: float = -numpy.inf, end: float = numpy.inf) -> dict[str, Floats]:
+    """The columns of a CSV between two times; an empty cell is not a number."""
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    names = set(rows[0]) if rows else set()
+    missing = [name for name in NEEDED if name not in names]
+    if missing or not names & {"climb", "z"}:
+        raise InputError(f"{path}: give the columns {', '.join([*missing, 'climb or z'])}; --help has names and units")
+    try:
+        columns = {
+            name: numpy.array([float(row[name] or "nan") for row in rows])
+            for name in (*NEEDED, *MEASURED)
+            if name in names
+        }
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{path}: give numbers or empty cells: {error}") from error
+    keep = (columns["t"] >= start) & (columns["t"] <= end)
+    columns = {name: column[keep] for name, column in columns.items()}
+    if len(columns["t"]) < 2 or not (numpy.diff(columns["t"]) > 0).all():
+        raise InputError(f"{path}: `t` must rise from row to row")
+    if columns["t"][-1] - columns["t"][0] < 2 * STRETCH:
+        raise InputError(f"{path}: give {2 * STRETCH:.0f} s or more, not {columns['t'][-1] - columns['t'][0]:.1f} s")
+    return columns
+
+
+def unexcited(log: dict[str, Floats]) -> list[str]:
+    """What the log cannot tell, and what to fly."""
+
+    def width(name: str) -> float:
+        low, high = numpy.nanpercentile(log[name], [2, 98])
+        return float(high - low)
+
+    told = []
+    if width("throttle") < 0.05:
+        told.append("thrust: the throttle never changes by more than 5 %: fly throttle steps")
+    if width("pitch_command") < 0.07:
+        told.append("pitch loop, lift: the commanded pitch never changes by more than 4 deg: fly doublets of 8 deg")
+    if width("airspeed") < 0.1 * numpy.nanmedian(log["airspeed"]):
+        told.append("lift, drag: the airspeed stays within 10 %: fly slowly and fast")
+    return told
+
+
+# What a file cannot do without: how far an interval may reach as a share of the value (of the delay: in s), and what to fly.
+ESSENTIAL = {
+    "lift.alpha": (0.25, "doublets of the pitch, slow and fast flight"),
+    "thrust.max": (0.25, "throttle steps"),
+    "pitch_loop.frequency": (0.15, "doublets of the pitch"),
+    "pitch_loop.delay": (0.03, "doublets of the pitch"),
+}
+UNITS = {"thrust.max": "N", "thrust.lag": "s", "pitch_loop.frequency": "rad/s", "pitch_loop.delay": "s", "lift.alpha": "1/rad"}
+
+
+def unclear(values: dict[str, Value]) -> list[str]:
+    """What the fit could not tell, and what to fly."""
+    told = []
+    for name, (share, advice) in ESSENTIAL.items():
+        value = values[name]
+        if not value.half <= share * (1.0 if name.endswith("delay") else value.value):
+            told.append(f"{name}: the log does not tell it, {value.value:.3g} +- {value.half:.2g}: fly {advice}")
+    if abs(values["gain"].value - 1) > 0.15:
+        told.append(f"pitch loop: the pitch follows {values['gain'].value:.2f} of its command: tune the autopilot's pitch loop")
+    return told
+
+
+def toml(values: dict[str, Value], known: Known, cruise: float, name: str, log: str) -> str:
+    """The aircraft file, each value with its interval."""
+    parts = [
+        f"name = {json.dumps(name)}",
+        f"source = {json.dumps(f'fitted to the flight log {log} by mppflight.fit; mass, wing area and air density given')}",
+        'derivatives = "radian"',
+        f"mass = {known.mass!r}\nwing_area = {known.wing_area!r}\nair_density = {known.air_density!r}",
+        f"chord = 1.0 # of no effect with a pitch loop\ncruise = {cruise:.4g}",
+    ]
+    for table in ("lift", "drag", "pitch_loop", "thrust"):
+        parts.append(f"\n[{table}]")
+        for key, value in values.items():
+            if key.startswith(f"{table}."):
+                parts.append(f"{key.split('.')[1]} = {value.value:.4g} # +- {value.half:.2g}")
+    return "\n".join(parts) + "\n"
+
+
+def manoeuvres() -> str:
+    """What to fly, as text."""
+    lines = [
+        "Trim in level flight at cruise speed, with level wings, in calm air, 100 m high or more. Note pitch and throttle.",
+        "Let the autopilot hold the pitch. Angles add to the pitch of level flight, throttles are shares of its throttle.",
+        "", "seconds  pitch, deg  throttle",
+    ]  # fmt: skip
+    return "\n".join([*lines, *(f"{s:7.1f}  {pitch:+10.0f}  {throttle:8.1f}" for s, pitch, throttle in MANOEUVRES)])
+
+
+def _arguments() -> argparse.Namespace:
+    plain = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(prog="python -m mppflight.fit", description=__doc__, formatter_class=plain)
+    parser.add_argument("log", nargs="?", help="CSV with the columns above")
+    parser.add_argument("--mass", type=float, help="kg")
+    parser.add_argument("--wing-area", type=float, help="m^2")
+    parser.add_argument("--air-density", type=float, default=1.225, help="kg/m^3, by default 1.225")
+    parser.add_argument("--cruise", type=float, help="airspeed of level flight [m/s], by default the median of the log")
+    parser.add_argument("--from", dest="start", type=float, default=-numpy.inf, help="first time in use [s]")
+    parser.add_argument("--to", dest="end", type=float, default=numpy.inf, help="last time in use [s]")
+    parser.add_argument("--name", default="fitted", help="name of the aircraft")
+    parser.add_argument("--out", help="aircraft file to write; by default it is printed")
+    parser.add_argument("--manoeuvres", action="store_true", help="print what to fly, and end")
+    given = parser.parse_args()
+    if not given.manoeuvres and None in (given.log, given.mass, given.wing_area):
+        parser.error("give LOG, --mass and --wing-area")
+    return given
+
+
+def aircraft(path: str, log: dict[str, Floats], known: Known, name: str = "fitted") -> tuple[str, dict[str, Value]]:
+    """The text of the aircraft file of a log, and all parameters."""
+    if told := unexcited(log):
+        raise InputError("\n".join([f"{path} does not excite all that a file needs:", *told]))
+    values = estimate(log, known)
+    if told := unclear(values):
+        raise InputError("\n".join([f"{path} does not tell all that a file needs:", *told]))
+    cruise = known.cruise or float(numpy.nanmedian(log["airspeed"]))
+    text = toml(values, known, cruise, name, Path(path).name)
+    # It refuses what makes no sense.
+    Aircraft(tomllib.loads(text))
+    return text, values
+
+
+def main() -> int:
+    """The command."""
+    given = _arguments()
+    if given.manoeuvres:
+        print(manoeuvres())
+        return 0
+    try:
+        known = Known(given.mass, given.wing_area, given.air_density, given.cruise)
+        text, values = aircraft(given.log, read(given.log, given.start, given.end), known, given.name)
+        for name, it in values.items():
+            print(f"{name:22} {it.value:10.4g} +- {it.half:<8.2g} {UNITS.get(name, '')}", file=sys.stderr)
+        if given.out:
+            Path(given.out).write_text(text)
+        else:
+            print(text, end="")
+    except (InputError, OSError) as error:
+        print(f"fit: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,134 @@
+"""Flies random aircraft of our own plant, fits their logs, and prints how near the values are: `python fit_trial.py 50 --seed 1`."""
+
+import argparse
+import math
+import os
+import sys
+
+# Matrices are small: threads of the linear algebra would only wait for each other.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import mppflight
+import numpy
+from mppflight import fit
+
+# Greatest errors that count as a success: shares of the value, and seconds.
+WANTED = {"lift.alpha": 0.10, "thrust.max": 0.10, "pitch_loop.frequency": 0.05, "pitch_loop.delay": 0.015}
+MORE = ("lift.zero", "drag.zero", "drag.induced", "thrust.lag", "pitch_loop.damping")
+
+
+def aircraft(rng):
+    """Keys of a random aircraft with a pitch loop, and the dead time of its autopilot [s]."""
+    while True:
+        mass, cruise = rng.uniform(0.8, 8.0), rng.uniform(11.0, 24.0)
+        lift = rng.uniform(0.3, 0.7)
+        keys = {
+            "name": "random", "source": "drawn", "derivatives": "radian", "mass": mass, "chord": 0.3,
+            "wing_area": 2 * mass * 9.81 / (1.225 * cruise**2 * lift), "cruise": cruise,
+            "lift": {"zero": rng.uniform(0.0, 0.4), "alpha": rng.uniform(3.5, 6.5)},
+            "drag": {"zero": rng.uniform(0.02, 0.1), "induced": rng.uniform(0.03, 0.09)},
+            "pitch_loop": {"frequency": rng.uniform(3.5, 10.0), "damping": rng.uniform(0.5, 1.2)},
+            "thrust": {"max": mass * 9.81 * rng.uniform(0.35, 0.9), "lag": rng.uniform(0.05, 0.5)},
+        }  # fmt: skip
+        delay = int(rng.integers(2, 15)) * 0.01
+        try:
+            if mppflight.Aircraft(keys).trim["thrust"] < 0.5 * keys["thrust"]["max"]:
+                return keys, delay
+        except mppflight.MppError:
+            continue
+
+
+def over_ground(state):
+    """Velocity downrange and up [m/s]."""
+    path, wind = state["flight_path"], [state["wind_x"], state["wind_z"]]
+    return state["airspeed"] * numpy.array([math.cos(path), math.sin(path)]) + wind
+
+
+def fly(keys, delay, rng, gusts=0.0, accelerometers=True):
+    """The manoeuvres as a log at 50 Hz, with noise, biases and lags of the sensors."""
+    plane = mppflight.Aircraft(keys)
+    duration = sum(seconds for seconds, _, _ in fit.MANOEUVRES)
+    faults = {"gusts": {"intensity": gusts}} if gusts else {}
+    # Manoeuvres begin when the pilot moves the stick, not at a tick of the log.
+    begin = numpy.cumsum([0.0] + [seconds + rng.uniform(-0.1, 0.1) for seconds, _, _ in fit.MANOEUVRES])
+    seed = int(rng.integers(1 << 30))
+    world = mppflight.World(seed=seed, obstacles=0, duration=duration + 5.0, aircraft=plane, faults=faults)
+    trim, most = plane.trim, keys["thrust"]["max"]
+    commands, rows, before, air, felt = [], [], 0.0, None, None
+    lag = rng.uniform(0.03, 0.2)
+    filtering = rng.uniform(0.3, 1.0)
+    late = int(rng.integers(0, 11))
+    bias = rng.normal(0.0, [0.1, 0.1, 0.3, math.radians(0.5)])
+    while world.state["t"] < begin[-1] - 0.2:
+        s = world.state
+        index = min(int(numpy.searchsorted(begin, s["t"], side="right")) - 1, len(fit.MANOEUVRES) - 1)
+        _, pitch, factor = fit.MANOEUVRES[index]
+        command = trim["pitch"] + math.radians(pitch)
+        throttle = min(factor * trim["thrust"] / most, 1.0)
+        commands.append(command)
+        held = commands[max(len(commands) - 1 - round(delay / 0.01), 0)]
+        world.measure()
+        # The path at the middle of the tick: a real autopilot is not told it once a tick.
+        middle = s["flight_path"] + 0.5 * (s["flight_path"] - before)
+        before = s["flight_path"]
+        world.step(throttle * most, held - middle)
+        air = s["airspeed"] if air is None else air + 0.01 / lag * (s["airspeed"] - air)
+        # Specific force along the body, of the motion over ground.
+        fx, fz = (over_ground(world.state) - over_ground(s)) / 0.01 + [0.0, 9.81]
+        sin, cos = math.sin(s["pitch"]), math.cos(s["pitch"])
+        push = numpy.array([fx * cos + fz * sin, fx * sin - fz * cos])
+        felt = push if felt is None else felt + filtering * (push - felt)
+        rows.append([s["t"], air, s["pitch"], command, throttle, over_ground(s)[1], *felt])
+    table = numpy.array(rows)
+    table[late:, 5] = table[: len(table) - late, 5]
+    table = table[20::2]
+    noise = rng.normal(size=table.shape)
+    table[:, 1] += bias[2] + 0.3 * noise[:, 1]
+    table[:, 2] += bias[3] + math.radians(0.3) * noise[:, 2]
+    table[:, 5] += 0.2 * noise[:, 5]
+    table[:, 6:] += bias[:2] + 0.4 * noise[:, 6:]
+    names = ["t", "airspeed", "pitch", "pitch_command", "throttle", "climb", "ax", "az"]
+    return {name: table[:, k].copy() for k, name in enumerate(names) if accelerometers or k < 6}
+
+
+def truth(keys, delay):
+    """The true value of each parameter."""
+    values = {f"{table}.{key}": v for table, it in keys.items() if isinstance(it, dict) for key, v in it.items()}
+    return values | {"pitch_loop.delay": delay}
+
+
+def error(name, found, true):
+    """Error as it is judged."""
+    return abs(found - true) / (1.0 if name in ("pitch_loop.delay", "lift.zero") else true)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("trials", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--gusts", type=float, default=0.0)
+    parser.add_argument("--without-accelerometers", action="store_true")
+    given = parser.parse_args()
+    errors, covered = {name: [] for name in (*WANTED, *MORE)}, []
+    for trial in range(given.trials):
+        rng = numpy.random.default_rng([given.seed, trial])
+        keys, delay = aircraft(rng)
+        log = fly(keys, delay, rng, given.gusts, not given.without_accelerometers)
+        values = fit.estimate(log, fit.Known(keys["mass"], keys["wing_area"], cruise=keys["cruise"]))
+        true = truth(keys, delay)
+        for name in errors:
+            errors[name].append(error(name, values[name].value, true[name]))
+        covered.append([abs(values[name].value - true[name]) <= values[name].half for name in errors])
+        print(trial, {n: (round(values[n].value, 3), round(true[n], 3)) for n in errors}, file=sys.stderr)
+    print("parameter              within   of         median error  90 % error  in interval")
+    for k, (name, found) in enumerate(errors.items()):
+        wanted = WANTED.get(name)
+        share = f"{numpy.mean(numpy.array(found) <= wanted):7.0%}   {wanted:<8}" if wanted else f"{'-':>7}   {'':8}"
+        most, inside = numpy.percentile(found, 90), numpy.mean(covered, axis=0)[k]
+        print(f"{name:22} {share}   {numpy.median(found):10.4f}  {most:10.4f}  {inside:9.0%}")
+    every = numpy.mean([all(errors[n][k] <= w for n, w in WANTED.items()) for k in range(given.trials)])
+    print(f"all four               {every:7.0%}")
+
+
+if __name__ == "__main__":
+    main()
