@@ -1,4 +1,4 @@
-"""Flies random aircraft of our own plant, fits their logs, and prints how near the values are: `python fit_trial.py 50 --seed 1`."""
+"""Flies random aircraft of our own plant, fits their logs, and prints how near the values are: `fit_trial.py 50 --seed 1`."""
 
 import argparse
 import math

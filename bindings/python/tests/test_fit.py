@@ -70,7 +70,9 @@ def test_height_and_sparse_sensors_do_as_well(flown, tmp_path):
     [
         ({"throttle": 0.5}, "the throttle never changes by more than 5 %: fly throttle steps"),
         ({"pitch_command": 0.03}, "the commanded pitch never changes by more than 4 deg: fly doublets"),
-        ({"pitch": numpy.nan}, "`pitch` has 0 values"),
+        ({"pitch": numpy.nan}, "`pitch` is nan in the median"),
+        ({"pitch": 4.0}, "`pitch` is 4 in the median: give -0.8 to 0.8"),
+        ({"airspeed": 17.0}, "the airspeed stays within 10 %: fly slowly and fast"),
         ({"t": 1.0}, "`t` must rise"),
     ],
 )
@@ -86,6 +88,12 @@ def test_a_column_that_is_missing_is_named(flown, tmp_path):
     path = save(tmp_path / "log.csv", {name: log[name] for name in ("t", "pitch", "climb")})
     with pytest.raises(mppflight.InputError, match="give the columns airspeed, pitch_command, throttle"):
         fit.read(path)
+
+
+def test_a_log_that_is_no_csv_has_advice(tmp_path):
+    (tmp_path / "log.tlog").write_bytes(b"\xfe\x00\xff" * 100)
+    with pytest.raises(mppflight.InputError, match="give a CSV: `mavlogdump.py` of pymavlink"):
+        fit.read(tmp_path / "log.tlog")
 
 
 def test_the_manoeuvres_are_those_of_the_trials():

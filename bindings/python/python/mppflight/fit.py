@@ -15,10 +15,11 @@ Fly with level wings in calm air (`--manoeuvres` prints what), and give with `--
 autopilot followed the commands. Mass, wing area and air density are yours to give.
 
 The method is output error: the aircraft's own equations are simulated with the parameters, and least squares bring
-airspeed, climb and accelerations to the measured ones, in stretches of 10 s with free initial states. Delays of the
-airspeed and of the climb against the pitch, and biases of the accelerometers, are estimated along. The dead time of the
-pitch loop goes from the command to the measured pitch. Gain and offset of the loop are estimated too, but a file has no
-place for them. Not estimated: dead time of the thrust, derivatives by rates, the stall, moments, roll.
+airspeed, climb and accelerations to the measured ones, in stretches of 10 s with free initial states. Delays of airspeed,
+climb and accelerations against the pitch, and biases of airspeed and accelerometers, are estimated along. A bias of the pitch
+goes into `lift.zero`. The dead time of the pitch loop goes from the command to the measured pitch. Its frequency is constant
+or grows with the airspeed, whatever fits better; the file has that of cruise. Gain and offset of the loop are estimated too,
+but a file has no place for them. Not estimated: dead time of the thrust, derivatives by rates, the stall, moments, roll.
 
 Intervals are of 95 %. They come from the Jacobian, with the covariance of each sensor's residuals multiplied by
 1 + 2 (sum of their autocorrelations up to the first that is not positive), because residuals are not white.
@@ -36,10 +37,12 @@ from pathlib import Path
 import numpy
 
 from ._native import Aircraft
-from .errors import InputError
+from .errors import InputError, MppError
 from .identify import MEASURED, STRETCH, Floats, Known, Value, estimate
 
 NEEDED = ("t", "airspeed", "pitch", "pitch_command", "throttle")
+# Medians in the units of this module.
+USUAL = {"airspeed": (3, 300), "pitch": (-0.8, 0.8), "pitch_command": (-0.8, 0.8), "throttle": (0, 1), "az": (-20, -2)}
 # Times [s], pitch against that of level flight [deg], and throttle against that of level flight.
 MANOEUVRES = [
     (seconds, pitch, throttle)
@@ -50,8 +53,12 @@ MANOEUVRES = [
 
 def read(path: str, start: float = -numpy.inf, end: float = numpy.inf) -> dict[str, Floats]:
     """The columns of a CSV between two times; an empty cell is not a number."""
-    with open(path, newline="") as file:
-        rows = list(csv.DictReader(file))
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(file))
+    except (UnicodeDecodeError, csv.Error) as error:
+        advice = "`mavlogdump.py` of pymavlink and `ulog2csv` of pyulog write CSV, --help has the columns"
+        raise InputError(f"{path}: give a CSV: {advice}") from error
     names = set(rows[0]) if rows else set()
     missing = [name for name in NEEDED if name not in names]
     if missing or not names & {"climb", "z"}:
@@ -70,6 +77,12 @@ def read(path: str, start: float = -numpy.inf, end: float = numpy.inf) -> dict[s
         raise InputError(f"{path}: `t` must rise from row to row")
     if columns["t"][-1] - columns["t"][0] < 2 * STRETCH:
         raise InputError(f"{path}: give {2 * STRETCH:.0f} s or more, not {columns['t'][-1] - columns['t'][0]:.1f} s")
+    for name, column in columns.items():
+        low, high = USUAL.get(name, (0, 0))
+        there = column[numpy.isfinite(column)]
+        middle = float(numpy.median(there)) if len(there) else numpy.nan
+        if name in USUAL and not low <= middle <= high:
+            raise InputError(f"{path}: `{name}` is {middle:.3g} in the median: give {low} to {high}; --help has the units")
     return columns
 
 
@@ -97,7 +110,10 @@ ESSENTIAL = {
     "pitch_loop.frequency": (0.15, "doublets of the pitch"),
     "pitch_loop.delay": (0.03, "doublets of the pitch"),
 }
-UNITS = {"thrust.max": "N", "thrust.lag": "s", "pitch_loop.frequency": "rad/s", "pitch_loop.delay": "s", "lift.alpha": "1/rad"}
+UNITS = {
+    "thrust.max": "N", "thrust.lag": "s", "pitch_loop.frequency": "rad/s", "pitch_loop.delay": "s", "lift.alpha": "1/rad",
+    "airspeed delay": "s", "climb delay": "s", "acceleration delay": "s", "airspeed bias": "m/s",
+}  # fmt: skip
 
 
 def unclear(values: dict[str, Value]) -> list[str]:
@@ -108,7 +124,8 @@ def unclear(values: dict[str, Value]) -> list[str]:
         if not value.half <= share * (1.0 if name.endswith("delay") else value.value):
             told.append(f"{name}: the log does not tell it, {value.value:.3g} +- {value.half:.2g}: fly {advice}")
     if abs(values["gain"].value - 1) > 0.15:
-        told.append(f"pitch loop: the pitch follows {values['gain'].value:.2f} of its command: tune the autopilot's pitch loop")
+        gain = values["gain"].value
+        told.append(f"pitch loop: the pitch follows {gain:.2f} of its command: tune the autopilot's pitch loop")
     return told
 
 
@@ -158,8 +175,10 @@ def _arguments() -> argparse.Namespace:
     return given
 
 
-def aircraft(path: str, log: dict[str, Floats], known: Known, name: str = "fitted") -> tuple[str, dict[str, Value]]:
+def aircraft(path: str, log: dict[str, Floats], known: Known, name: str) -> tuple[str, dict[str, Value]]:
     """The text of the aircraft file of a log, and all parameters."""
+    if not all(0 < number < numpy.inf for number in (known.mass, known.wing_area, known.air_density, known.cruise or 1.0)):
+        raise InputError("mass, wing area, air density, cruise: give positive numbers")
     if told := unexcited(log):
         raise InputError("\n".join([f"{path} does not excite all that a file needs:", *told]))
     values = estimate(log, known)
@@ -187,7 +206,7 @@ def main() -> int:
             Path(given.out).write_text(text)
         else:
             print(text, end="")
-    except (InputError, OSError) as error:
+    except (MppError, OSError) as error:
         print(f"fit: {error}", file=sys.stderr)
         return 2
     return 0

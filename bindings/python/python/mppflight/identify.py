@@ -154,7 +154,8 @@ class Motion:
     """Airspeed and flight path in stretches of the log, for many sets of parameters side by side."""
 
     def __init__(self, log: dict[str, Floats], known: Known, times: Floats, pitch: Floats) -> None:
-        self.known, self.throttle, self.pitch, self.fine = known, _held(log, "throttle", numpy.append(times, times[-1] + FINE)), pitch, times
+        self.known, self.pitch = known, pitch
+        self.throttle = _held(log, "throttle", numpy.append(times, times[-1] + FINE))
         count = int((times[-1] - times[0] - 2 * LATEST) // STRETCH)
         length = (times[-1] - times[0] - 2 * LATEST) / count
         # A stretch starts early and ends late enough for delayed sensors.
