@@ -16,13 +16,16 @@ autopilot followed the commands. Mass, wing area and air density are yours to gi
 
 The method is output error: the aircraft's own equations are simulated with the parameters, and least squares bring
 airspeed, climb and accelerations to the measured ones, in stretches of 10 s with free initial states. Delays of airspeed,
-climb and accelerations against the pitch, and biases of airspeed and accelerometers, are estimated along. A bias of the pitch
-goes into `lift.zero`. The dead time of the pitch loop goes from the command to the measured pitch. Its frequency is constant
-or grows with the airspeed, whatever fits better; the file has that of cruise. Gain and offset of the loop are estimated too,
-but a file has no place for them. Not estimated: dead time of the thrust, derivatives by rates, the stall, moments, roll.
+climb and accelerations against the pitch, and biases of airspeed and accelerometers, are estimated along. In gusts the log
+does not tell the bias of the airspeed: it counts as 0, and each per cent of it is two of lift and drag. A bias of the pitch
+goes into `lift.zero`. The dead time of the pitch loop goes from the command to the measured pitch; half the time between rows
+adds to its interval. Its frequency is constant or grows with the airspeed, whatever fits better; the file has that of cruise.
+Gain and offset of the loop are estimated too, but a file has no place for them. Not estimated: dead time of the thrust,
+derivatives by rates, the stall, moments, roll.
 
 Intervals are of 95 %. They come from the Jacobian, with the covariance of each sensor's residuals multiplied by
 1 + 2 (sum of their autocorrelations up to the first that is not positive), because residuals are not white.
+A tlog, DataFlash or ULog is not read: convert it to this CSV first.
 """
 
 from __future__ import annotations

@@ -33,6 +33,8 @@ MOTION = {
     "acceleration delay": (-LATEST, LATEST, 1e-3), "ax bias": (-3.0, 3.0, 1e-3), "az bias": (-3.0, 3.0, 1e-3),
     "airspeed bias": (-5.0, 5.0, 1e-3),
 }  # fmt: skip
+# Interval of the airspeed's bias beyond which it counts as none [m/s].
+UNKNOWN = 0.4
 LOOP = {
     "pitch_loop.frequency": (0.5, 60.0), "pitch_loop.damping": (0.05, 5.0), "pitch_loop.delay": (1e-3, 0.3),
     "gain": (0.3, 3.0), "offset": (-0.5, 0.5), "start": (-1.5, 1.5), "start rate": (-5.0, 5.0),
@@ -251,17 +253,19 @@ class Motion:
         own = numpy.concatenate([it[2] for it in self.seen.values()])[:, None] == numpy.arange(count)
         return numpy.column_stack([*slopes[:fixed], slopes[fixed][:, None] * own, slopes[fixed + 1][:, None] * own])
 
-    def fit(self) -> dict[str, Value]:
-        """The parameters; the errors of the sensors are taken from what the first fits leave over."""
+    def fit(self, airspeed_bias: float) -> dict[str, Value]:
+        """The parameters, with this greatest bias of the airspeed [m/s]. The errors of the sensors are taken from what the
+        first fits leave over."""
         p, count = self.first(), len(self.starts)
         bounds = [*((low, high) for low, high, _ in MOTION.values()), *[(3.0, 300.0)] * count, *[(-1.2, 1.2)] * count]
         low, high = numpy.array(bounds).T
+        low[len(MOTION) - 1], high[len(MOTION) - 1] = -airspeed_bias, airspeed_bias
 
         def residual(p: Floats) -> Floats:
             return numpy.concatenate(self.residuals(p[None])[0])
 
         for _ in range(3):
-            inside = p.clip(low + 1e-6, high - 1e-6)
+            inside = p.clip(low + 1e-7, high - 1e-7)
             p = least_squares(residual, inside, self.jacobian, (low, high), x_scale="jac", xtol=1e-5, ftol=1e-6).x
             for name, left in zip(self.seen, self.residuals(p[None])[0], strict=True):
                 self.deviation[name] *= max(float(numpy.sqrt((left**2).mean())), 1e-3)
@@ -273,7 +277,11 @@ def estimate(log: dict[str, Floats], known: Known) -> dict[str, Value]:
     """All parameters of a log."""
     cruise = known.cruise or float(numpy.nanmedian(log["airspeed"]))
     loop = min((pitch_loop(log, cruise, scheduled) for scheduled in (False, True)), key=lambda it: it.cost)
-    motion = Motion(log, known, loop.times, loop.pitch).fit()
+    simulated = Motion(log, known, loop.times, loop.pitch)
+    motion = simulated.fit(5.0)
+    if motion["airspeed bias"].half > UNKNOWN:
+        # Gusts hide it, and it would spoil the rest.
+        motion = simulated.fit(1e-6)
     # Once more, by the airspeed without its bias and delay.
     t, airspeed = _given(log, "airspeed")
     later = numpy.interp(log["t"] + motion["airspeed delay"].value, t, airspeed)
