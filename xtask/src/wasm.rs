@@ -12,14 +12,7 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Greatest size of the page as a server would send it \[bytes\].
 const PAGE_MAX: usize = 500_000;
 /// The crates in which a flight in the browser spends its time. They are built for speed, and the rest for size.
-const FAST: [&str; 6] = [
-    "mpp-data",
-    "mpp-core",
-    "mpp-sim",
-    "hil-protocol",
-    "libm",
-    "nalgebra",
-];
+const FAST: [&str; 5] = ["mpp-data", "mpp-core", "hil-protocol", "libm", "nalgebra"];
 /// The parts of the page, in order. The module comes after the last one.
 const PARTS: [&str; 7] = [
     "mpp-analysis/src/picture/page_head.html",
