@@ -122,7 +122,7 @@ fn highest(planner: &Planner) -> f64 {
     knots.fold(0.0, |most: f64, knot| most.max(knot.state.z))
 }
 
-/// A plan climbs while the half beneath the body axis is silent, and while the whole fan is for long, but not while the upper half is.
+/// A plan climbs while the half beneath the body axis is silent, but not while the upper half is.
 #[test]
 fn what_lies_beneath_a_silent_half_is_flown_over() {
     let discs: [Disc; 2] = [(128.0, 42.0, 2.0), (128.0, 66.0, 2.0)];

@@ -145,8 +145,8 @@ impl Airframe {
     /// Whether the elevator is a commanded angle of attack, as of an aircraft behind the pitch loop of an autopilot.
     #[must_use]
     pub fn commands_angle_of_attack(&self) -> bool {
-        let apart = (self.moment_elevator + self.moment_alpha) / self.moment_alpha;
-        self.moment_zero == 0.0 && apart * apart < 1e-18
+        let apart = libm::fabs(self.moment_elevator + self.moment_alpha);
+        self.moment_zero == 0.0 && apart < 1e-9 * libm::fabs(self.moment_alpha)
     }
 
     /// The airframe whose lift is that with the elevator in balance at each angle of attack and each rate, and

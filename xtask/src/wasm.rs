@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Greatest size of the page as a server would send it \[bytes\].
 const PAGE_MAX: usize = 500_000;
-/// The crates in which a flight in the browser spends its time. They are built for speed, and the rest for size.
+/// The crates in which a flight in the browser spends most of its time. They are built for speed, and the rest for size.
 const FAST: [&str; 5] = ["mpp-data", "mpp-core", "hil-protocol", "libm", "nalgebra"];
 /// The parts of the page, in order. The module comes after the last one.
 const PARTS: [&str; 7] = [

@@ -131,7 +131,8 @@ impl ScanMonitor {
     }
 
     /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
-    /// to be believed. A scan without a return says nothing here; [`super::RollingGrid::contradicts`] judges it.
+    /// to be believed. A scan without a return is [`ScanVerdict::Silent`] if enough was predicted, and suspects its sectors;
+    /// [`super::RollingGrid::contradicts`] judges it too, by the map.
     pub fn check(
         &mut self,
         scan: &mut LidarScan,

@@ -232,6 +232,4 @@ pub mod leave {
     pub const CEILING: f64 = 2.0;
     /// Distance by which plans may sink on the way up \[m\]; what lies beneath is not seen. Source: D59.
     pub const DIP: f64 = 1.0;
-    /// Height of the middle of the map's window above the aircraft \[m\]: half of its reach. Source: derived.
-    pub const LOOK_UP: f64 = 8.0;
 }

@@ -8,13 +8,13 @@ use super::scenario::{FieldArgs, ScenarioArgs, replace};
 use super::signals::Signals;
 use super::values::{Item, number, preset, seed, threads, whole, width, within};
 use crate::campaign::{CampaignError, Extras, RowFile, decide_all, header, read, run as fly_all};
+use clap::builder::StringValueParser;
 use mpp_analysis::campaign::{
     Campaign, Cell, CellReport, Lists, Report, Row, Sequential, Shard, Taxonomy, merge,
 };
 use mpp_analysis::rows::Header;
 use mpp_sim::scenario::{Preset, ScenarioFile};
 use std::collections::HashSet;
-use std::convert::Infallible;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
@@ -69,7 +69,7 @@ pub(super) struct CampaignArgs {
         help_heading = RUN,
         value_name = "NAME",
         value_delimiter = ',',
-        value_parser = Item(|name: &str| Ok::<_, Infallible>(name.to_owned())),
+        value_parser = Item(StringValueParser::new()),
         conflicts_with_all = ["out", "report", "shard", "ceiling", "timing", "taxonomy"]
     )]
     pub(super) faults: Vec<String>,

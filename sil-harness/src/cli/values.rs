@@ -153,10 +153,8 @@ pub(super) fn preset() -> impl TypedValueParser<Value = Preset> {
     let space = PossibleValue::new(SPACE).help("The planner in space: it has other flags");
     let here = Preset::ALL.map(|preset| PossibleValue::new(preset.name()).help(help(preset)));
     PossibleValuesParser::new(here.into_iter().chain([space])).try_map(|name| {
-        if name == SPACE {
-            return Err("give `--preset space` alone, after fly or campaign".to_owned());
-        }
-        name.parse().map_err(|error: UnknownName| error.to_string())
+        let other = "give `--preset space` alone, after fly or campaign";
+        name.parse().map_err(|_: UnknownName| other)
     })
 }
 

@@ -3,19 +3,21 @@
 use super::workspace::{Intake, Workspace};
 use super::{Phase, PlanePlanner};
 use crate::lattice::{CLIMB, Lattice, LatticeTask};
-use crate::map::{ScanVerdict, has_return, sees_below};
+use crate::map::{RollingGrid, ScanVerdict, has_return, sees_below};
 use crate::tuning::candidates::BEAMS_PER_SLICE;
-use crate::tuning::leave::{CEILING, DARK, DIP, HEIGHT, LOOK_UP};
+use crate::tuning::grid::CELL;
+use crate::tuning::leave::{CEILING, DARK, DIP, HEIGHT};
 use crate::vehicle::Trim;
+
+/// Height of the middle of the map's window above an aircraft that leaves the band \[m\]: half of its reach.
+const LOOK_UP: f64 = 0.25 * CELL * RollingGrid::SHAPE[0] as f64;
 
 impl PlanePlanner {
     /// Takes some beams of the scan into the map. After the last beam it builds the distance field, proposes
     /// the previous plan, and starts the search of the lattice.
     #[inline(never)]
     pub(super) fn remember(&mut self) {
-        if let Workspace::Scan(Intake { beams: 0, .. }) = self.workspace {
-            self.judge_scan();
-        }
+        self.judge_scan();
         let Workspace::Scan(Intake {
             scan,
             beams,
@@ -59,13 +61,13 @@ impl PlanePlanner {
         self.phase = Phase::Lattice;
     }
 
-    /// Decides what of the scan is believed, and moves the map along with the aircraft.
+    /// Decides once what of the scan is believed, and moves the map along with the aircraft.
     fn judge_scan(&mut self) {
         let Workspace::Scan(Intake {
             scan,
+            beams: 0,
             isolated,
             predictions,
-            ..
         }) = &mut self.workspace
         else {
             return;
