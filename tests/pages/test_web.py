@@ -17,6 +17,18 @@ PAPERS = "#field=paper&obstacles=20&hz=1&duration=20"
 pytestmark = pytest.mark.skipif(not PAGE.exists(), reason="the page is not built: cargo xtask web")
 
 
+@pytest.fixture
+def open_page(open_page):
+    """Opens a page, and the drawer with all that the page that flies can do."""
+    drawer_shut = open_page
+
+    def open_(url, **options):
+        page = drawer_shut(url, **options)
+        page.evaluate("document.getElementById('drawer')?.setAttribute('open', '')")
+        return page
+    return open_
+
+
 def stands(page):
     """Waits until the flight stands and its hash is shown."""
     page.wait_for_function("/^[0-9a-f]{16}$/.test(document.getElementById('hash').textContent)")
@@ -164,6 +176,8 @@ def test_an_endless_field_goes_on_with_the_next_seed(open_page, tmp_path):
     page.click("#play")
     page.wait_for_function("ended")
     assert "collision" in page.inner_text("#state") and page.input_value("#seed") == "1"
+    # Orders that nobody drew are obstacles of the duel too.
+    assert page.inner_text("#verdict").startswith("You got it! You placed 1, it passed 0.")
 
 
 def test_it_can_hurry_to_thirty_times_real_time(open_page):
@@ -188,7 +202,7 @@ def test_keys_settings_and_bad_links(open_page):
     page.keyboard.press(".")
     assert page.evaluate("flight.ticks.t.length") == still + 1
     page.keyboard.press("n")
-    assert page.input_value("#seed") == "3" and "seed 3" in page.inner_text("#title")
+    assert page.input_value("#seed") == "3" and "Seed 3" in page.inner_text("#title")
     page.select_option("#aircraft", "aerosonde")
     page.wait_for_function("flight.header.world_scale > 1.5")
     page.select_option("#field", "canyon")

@@ -1,11 +1,14 @@
 // The page that flies: the module asks nobody, and this page shows what it answers.
 const columns = ["t", "x", "z", "airspeed", "pitch", "flight_path", "ref_x", "ref_z", "ref_airspeed", "ref_pitch",
   "ref_flight_path", "thrust", "elevator", "wind_x", "wind_z"];
-const FIELDS = ["endless", "paper", "sealed", "forest", "canyon", "slalom", "walls", "wires"];
+// The fields, each with the number of obstacles that a choice of it brings: more slalom or walls block the way.
+const DENSITY = { endless: 40, paper: 20, sealed: 40, forest: 60, canyon: 12, slalom: 10, walls: 6, wires: 40 };
 // The settings of a flight, and what a link without them means. `sight` is in per cent of the usual range.
 const USUAL = { seed: 1, obstacles: 40, sight: 100, hz: 4, aircraft: "reference", field: "endless", duration: 600 };
 // Longest time of a frame that is spent on flying in a hurry [ms], and least time between two looks at numbers.
 const HURRY = 12, LOOK = 100;
+// How long a refusal is told [ms].
+const TOLD = 3000;
 // Ticks that the charts show.
 const WINDOW = 2000;
 const WIND = 1.5, DROPOUTS = 0.3;
@@ -13,9 +16,12 @@ const WIND = 1.5, DROPOUTS = 0.3;
 // `gauge` is the module once more: it is asked for a lidar's range while `module` holds the flight. `good` are the
 // settings of the last flight that began.
 let module = null, gauge = null, settings = { ...USUAL }, good = null, flight = null, now = 0;
-let failed = false, playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null;
-let pending = [], planning = [], placeOf = null, drag = null, heard = false;
-const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])), window: null, hover: null,
+let failed = false, playing = false, ended = false, target = null, due = 0, last = null, looked = 0, pace = null, told = 0;
+let pending = [], planning = [], placeOf = null, heard = false;
+// `resume` says whether the flight goes on at the target.
+let resume = false;
+// What a visitor need not know at first is off.
+const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, !["corridor", "reference"].includes(name)])), window: null, hover: null,
   cursor: null, marked: null, note: text => { $("occupancy").textContent = text; } };
 
 // Asks the module and returns the bytes of its answer.
@@ -48,9 +54,10 @@ function scenario() {
 }
 
 // Begins a flight with these orders, up to a tick if one is given.
-function begin(orders = [], until = null) {
+function begin(orders = [], until = null, goesOn = false) {
   try {
     take(orders, until);
+    resume = goesOn;
   } catch (error) {
     refuse(error);
   }
@@ -59,15 +66,16 @@ function begin(orders = [], until = null) {
 function take(orders, until) {
   const begun = ask({ ask: "begin", scenario: scenario(), orders, details: true });
   good = { ...settings };
+  if (flight) keepMine();
   // The listeners of the charts hold this object.
   flight = Object.assign(flight || { id: "", first: 0 }, { header: begun.header, plans: [], orders: [], details: new Map(),
-    ticks: Object.fromEntries(columns.map(name => [name, []])), far: undefined, summary: null });
+    ticks: Object.fromEntries(columns.map(name => [name, []])), far: undefined, summary: null,
+    crash: null });
   if (!heard) { heard = true; hearCharts(flight, look, stir, null); hearView(flight, look, stir, () => placeOf); }
-  [now, ended, due, last, planning, pending, drag, target] = [0, false, 0, null, [], [], null, until];
+  [now, ended, due, last, planning, pending, drag, target, slow, resume] = [0, false, 0, null, [], [], null, until, null, false];
   for (const id of ["wind", "dropouts", "elevator"]) $(id).checked = false;
   const h = flight.header, count = Object.values(h.field).reduce((sum, kind) => sum + kind.length, 0);
-  $("title").textContent = document.title = `Model Predictive Planning: seed ${h.seed}, ${count} obstacles, ` +
-    `aircraft ${settings.aircraft}`;
+  $("title").textContent = `Seed ${h.seed}, ${count} obstacles, aircraft ${settings.aircraft}`;
   showSettings(begun.aircraft);
   showOrders();
   fly(1);
@@ -75,7 +83,7 @@ function take(orders, until) {
 }
 
 // Draws anew after the pointer moved. While it flies, the next frame does so anyway.
-function stir() { if (!playing && target === null && !drag) show(); }
+function stir() { if (!playing && target === null && slow === null && !drag) show(); }
 
 // Tells why a flight did not begin. The one before stays as it was; if there is none, the usual one begins.
 function refuse(error) {
@@ -115,7 +123,10 @@ function fly(ticks) {
     for (const order of answer.orders) showSwitches(order);
     showOrders();
   }
-  if (answer.refused.length) $("state").textContent = "refused: " + answer.refused.join(", ");
+  if (answer.refused.length) {
+    say("refused: " + answer.refused.join(", "));
+    told = performance.now() + TOLD;
+  }
   ended = answer.ended;
   if (ended && !goesOn()) setPlaying(false);
 }
@@ -147,14 +158,15 @@ function order(given) {
 
 function frame(time) {
   requestAnimationFrame(frame);
+  if (flight && slow !== null) return showSlowly(time);
   if (!flight || !playing && target === null) return;
   const before = flight.ticks.t.length, since = last === null ? 0 : Math.min(time - last, 250);
   last = time;
   const speed = $("speed").value;
   if (!attempt(() => {
-    if (target !== null || speed === "max") hurry();
+    if (target !== null || speed === "max" && !drag) hurry();
     else {
-      due += since / 10 * Number(speed);
+      due += since / 10 * (drag ? HELD : Number(speed));
       fly(Math.floor(due));
       due -= Math.floor(due);
     }
@@ -177,7 +189,7 @@ function hurry() {
   }
   if (target !== null && (ended || flight.ticks.t.length >= target)) {
     target = null;
-    setPlaying(false);
+    setPlaying(resume && !ended);
   }
 }
 
@@ -185,9 +197,17 @@ function show(time = null) {
   if (!flight || !flight.ticks.t.length) return;
   look.follow = $("follow").checked;
   placeOf = drawView(flight, now, look);
-  if (drag) drawDrag();
+  const view = $("view"), pen = view.getContext("2d");
+  drawCrash(pen, flight, now, pointOf);
+  drawPointer(pen, view.clientWidth, view.clientHeight);
   if (time !== null && time - looked < LOOK) return;
   looked = time ?? looked;
+  showDuel();
+  if ($("drawer").open) showNumbers();
+}
+
+// What the drawer shows at the present time.
+function showNumbers() {
   const T = flight.ticks, cost = planning.slice(-50).sort((a, b) => a - b);
   const number = value => value.toFixed(1) + " ms";
   showValues(flight, now, [
@@ -198,7 +218,6 @@ function show(time = null) {
   showWhy(flight, now, look, stir);
   look.window = [Math.max(0, now - WINDOW), Math.max(now, 1)];
   drawCharts(flight, now, look);
-  if (!ended && !failed) say(`${T.t[now].toFixed(2)} s, ${playing ? "flying" : target === null ? "paused" : "going to the moment"}`);
 }
 
 function say(text, over = false) {
@@ -209,7 +228,12 @@ function say(text, over = false) {
 // Hash and outcome of the flight so far. They cost time, so they are shown while the flight stands.
 function showLog() {
   const { hash, summary } = ask({ ask: "log" });
+  const first = ended && !flight.summary;
   if (ended) flight.summary = summary;
+  if (first) {
+    flight.crash = crashOf(flight);
+    if (flight.crash && !matchMedia("(prefers-reduced-motion: reduce)").matches) slow = 0;
+  }
   $("hash").textContent = hash;
   if (ended) say(`${summary.outcome.replace(/-/g, " ")} after ${summary.t_end.toFixed(2)} s and ` +
     `${summary.x_end.toFixed(0)} m`, summary.outcome !== "survived");
@@ -224,6 +248,16 @@ function fragment() {
   const given = flight.orders.filter(order => !pending.includes(order));
   if (given.length) link.set("orders", JSON.stringify(given));
   return "#" + link;
+}
+
+// Copies what came of it, and the link to this moment.
+function copyLink() {
+  if (playing) setPlaying(false);
+  const tell = text => { say(text); told = performance.now() + TOLD; };
+  const text = `${$("verdict").textContent} ${location.href}`;
+  const failing = () => tell("The browser does not let this page copy; the link is in its address line.");
+  if (!navigator.clipboard) return failing();
+  navigator.clipboard.writeText(text).then(() => tell("Copied."), failing);
 }
 
 // Takes settings, orders and moment from the link, and begins.
@@ -252,8 +286,8 @@ function setPlaying(value) {
   playing = value;
   failed = false;
   last = pace = null;
-  $("play").textContent = playing ? "Pause" : "Play";
-  $("play").disabled = $("step").disabled = $("next").disabled = ended;
+  $("play").textContent = playing ? "Pause" : ended ? "Fly again" : "Play";
+  $("step").disabled = $("next").disabled = $("ahead").hidden = ended;
   if (!flight) return;
   if (playing) $("hash").textContent = "shown while the flight stands";
   else if (target === null) showLog();
@@ -269,7 +303,7 @@ function toNextPlan() {
 
 function showSettings(names) {
   const options = (id, all) => $(id).replaceChildren(...all.map(name => new Option(name)));
-  if (!$("aircraft").length) { options("aircraft", names); options("field", FIELDS); }
+  if (!$("aircraft").length) { options("aircraft", names); options("field", Object.keys(DENSITY)); }
   for (const id of ["obstacles", "sight", "hz", "aircraft", "field", "seed"]) $(id).value = settings[id];
   showRanges();
 }
@@ -293,60 +327,29 @@ function showOrders() {
   }));
 }
 
-// A place under the pointer, to the centimetre.
-function pointed(event) {
-  const box = $("view").getBoundingClientRect();
-  const [x, z] = placeOf(event.clientX - box.left, event.clientY - box.top);
-  return [Math.round(x * 100) / 100, Math.round(z * 100) / 100];
-}
-
-function drawDrag() {
-  const pen = $("view").getContext("2d");
-  pen.beginPath();
-  pen.moveTo(...drag.from); pen.lineTo(...drag.to);
-  pen.strokeStyle = colour.obstacle; pen.lineWidth = 10; pen.lineCap = "round"; pen.globalAlpha = 0.6;
-  pen.stroke();
-  pen.globalAlpha = 1; pen.lineCap = "butt";
-}
-
-function pixel(event) {
-  const box = $("view").getBoundingClientRect();
-  return [event.clientX - box.left, event.clientY - box.top];
-}
-
-$("view").addEventListener("pointerdown", event => {
-  if (!placeOf || ended || event.button) return;
-  $("view").setPointerCapture(event.pointerId);
-  drag = { from: pixel(event), to: pixel(event), place: pointed(event) };
-});
-$("view").addEventListener("pointermove", event => {
-  if (!drag) return;
-  drag.to = pixel(event);
-  if (!playing) show();
-});
-$("view").addEventListener("pointercancel", () => { drag = null; });
-$("view").addEventListener("pointerup", event => {
-  if (!drag) return;
-  const { from: [u, v], place } = drag, [right, down] = pixel(event), radius = flight.header.world_scale;
-  const far = Math.hypot(right - u, down - v) > 12, end = pointed(event);
-  drag = null;
-  order({ order: "obstacles", field: far ? { capsule: [{ from: place, to: end, radius: radius / 2 }] }
-    : { circle: [{ x: place[0], z: place[1], radius }] } });
-});
-
 $("wind").onchange = event => order({ order: "disturb", gusts: event.target.checked ? WIND : 0 });
 $("dropouts").onchange = event => order({ order: "disturb", dropouts: event.target.checked ? DROPOUTS : 0 });
 $("elevator").onchange = event => order({ order: "disturb", elevator_stuck: event.target.checked });
 for (const id of ["obstacles", "sight", "hz", "seed"])
   $(id).onchange = event => { settings[id] = Number(event.target.value); begin(); };
-for (const id of ["aircraft", "field"]) $(id).onchange = event => { settings[id] = event.target.value; begin(); };
+$("aircraft").onchange = event => { settings.aircraft = event.target.value; begin(); };
+$("field").onchange = event => {
+  settings.field = event.target.value;
+  settings.obstacles = DENSITY[settings.field];
+  begin();
+};
 for (const id of ["obstacles", "sight"]) $(id).oninput = showRanges;
 const steer = what => () => { if (flight) attempt(what); };
-$("play").onclick = steer(() => setPlaying(!playing));
+$("play").onclick = steer(() => ended ? begin() : setPlaying(!playing));
 $("step").onclick = steer(() => { playing = false; fly(1); setPlaying(false); });
 $("next").onclick = steer(toNextPlan);
 $("again").onclick = () => begin();
 $("other").onclick = () => { settings.seed++; begin(); };
+$("slow").onclick = () => { slow = 0; };
+$("mine").onclick = againWithMine;
+$("ahead").onclick = steer(placeAhead);
+$("copy").onclick = steer(copyLink);
+$("drawer").ontoggle = () => { if (flight) show(); };
 $("follow").onchange = () => show();
 $("speed").onchange = () => { due = 0; pace = null; };
 $("save").onclick = event => {
@@ -365,7 +368,7 @@ matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { re
 addEventListener("keydown", event => {
   if (!flight || event.ctrlKey || event.metaKey || event.altKey || ["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
   const buttons = { " ": "play", ".": "step", "]": "next", r: "again", n: "other", w: "wind", d: "dropouts",
-    e: "elevator", f: "follow" };
+    e: "elevator", f: "follow", o: "ahead", m: "mine", c: "copy", l: "slow" };
   const layer = LAYERS[Number(event.key) - 1], id = buttons[event.key] || layer && "layer-" + layer[0];
   if (!id) return;
   $(id).click();

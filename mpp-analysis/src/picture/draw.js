@@ -121,7 +121,8 @@ function sight(flight, row, follow, width, height) {
     const start = T.x[0] - 8, end = Math.max(flight.first ? 0 : flight.far, T.x[T.t.length - 1]) + 20;
     return [width / (end - start), start, LIMITS.altitude];
   }
-  const scale = Math.min(width / 62, height / 26) / unit;
+  // A tall picture shows less of the way ahead, and so more of what is near.
+  const scale = Math.min(height / 26, Math.max(width / 62, Math.min(height / 48, width / 36))) / unit;
   return [scale, T.x[row] - 0.22 * width / scale, T.z[row]];
 }
 
@@ -226,7 +227,7 @@ function drawView(flight, now, look) {
     pen.globalAlpha = 1;
   }
   if (on.candidates && detail) {
-    detail.paths.forEach(path => line(pen, path.map(([x, z]) => at(x, z)), colour.candidate, 1.2));
+    detail.paths.forEach(path => line(pen, path.map(([x, z]) => at(x, z)), colour.candidate, 0.8));
     const marked = detail.paths[look.marked];
     if (marked) line(pen, marked.map(([x, z]) => at(x, z)), colour.text, 2.5);
   }
@@ -236,7 +237,7 @@ function drawView(flight, now, look) {
     pen.fillStyle = colour.scan;
     for (const [x, z] of detail.hits) { const [u, v] = at(x, z); pen.fillRect(u - 2, v - 2, 4, 4); }
   }
-  if (on.plan && detail) line(pen, detail.trajectory.map(([x, z]) => at(x, z)), colour.plan, 2, [6, 4]);
+  if (on.plan && detail) line(pen, detail.trajectory.map(([x, z]) => at(x, z)), colour.plan, 3);
   drawMarks(pen, flight, at, width);
   // What lies left of the picture is not drawn.
   let first = row;
