@@ -30,11 +30,11 @@ function drawPointer(pen, width, height) {
   const scale = pointOf(1, 0)[0] - pointOf(0, 0)[0], T = flight.ticks, radius = flight.header.world_scale * scale;
   if (drag) {
     pen.globalAlpha = 0.6;
-    drawField(pen, drawn(), 0, pointOf, scale, width, height);
+    drawField(pen, drawn(), 0, pointOf, scale, width, height, colour.placed);
     pen.globalAlpha = 1;
   } else {
     pen.beginPath(); pen.arc(...point, radius, 0, 7);
-    pen.strokeStyle = colour.text; pen.lineWidth = 1.5; pen.stroke();
+    pen.strokeStyle = colour.placed; pen.lineWidth = 2; pen.stroke();
   }
   const ahead = (placeOf(...point)[0] - T.x[now]) / T.airspeed[now];
   if (ahead > 0) labelInside(pen, `${ahead.toFixed(1)} s ahead`, point[0], point[1] - radius - 8, colour.text);

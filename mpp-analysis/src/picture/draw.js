@@ -19,7 +19,7 @@ const colour = {};
 
 function readColours() {
   const style = getComputedStyle(document.documentElement);
-  for (const name of ["text", "faint", "line", "ground", "good", "bad", ...LAYERS.map(([, c]) => c)])
+  for (const name of ["text", "faint", "line", "ground", "good", "bad", "placed", ...LAYERS.map(([, c]) => c)])
     colour[name] = style.getPropertyValue("--" + name).trim();
 }
 
@@ -82,10 +82,10 @@ function extents(field) {
 }
 
 // The obstacles where they are at a time. Thin ones are drawn a pixel wide at least.
-function drawField(pen, field, time, at, scale, width, height) {
+function drawField(pen, field, time, at, scale, width, height, style = colour.obstacle) {
   const of = kind => field[kind] || [];
   const moved = (o, [x, z]) => at(x + (o.velocity ? o.velocity[0] : 0) * time, z + (o.velocity ? o.velocity[1] : 0) * time);
-  pen.fillStyle = pen.strokeStyle = colour.obstacle;
+  pen.fillStyle = pen.strokeStyle = style;
   pen.lineCap = pen.lineJoin = "round";
   const path = points => {
     pen.beginPath();
@@ -214,18 +214,16 @@ function drawView(flight, now, look) {
     line(pen, [at(-1e4, z), at(1e6, z)], colour.line, 0.5);
     pen.fillText(z + " m", 4, at(0, z)[1] - 3);
   }
-  if (on.field) {
-    drawField(pen, flight.header.field, T.t[row], at, scale, width, height);
-    // An order of the next tick is shown at once.
-    for (const order of flight.orders)
-      if (order.field && order.tick <= now + 1) drawField(pen, order.field, T.t[row], at, scale, width, height);
-  }
+  if (on.field) drawField(pen, flight.header.field, T.t[row], at, scale, width, height);
   if (on.occupancy && detail) {
     look.note(detail.map.unknown.length ? MEMORY : GRID);
     pen.globalAlpha = 0.8;
     cells(detail.map.occupied, colour.cells, detail.map.cell);
     pen.globalAlpha = 1;
   }
+  // An order of the next tick is shown at once.
+  if (on.field) for (const order of flight.orders)
+    if (order.field && order.tick <= now + 1) drawField(pen, order.field, T.t[row], at, scale, width, height, colour.placed);
   if (on.candidates && detail) {
     detail.paths.forEach(path => line(pen, path.map(([x, z]) => at(x, z)), colour.candidate, 0.8));
     const marked = detail.paths[look.marked];
