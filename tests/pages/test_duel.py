@@ -131,6 +131,13 @@ def test_a_choice_of_field_brings_its_density_and_nobody_needs_a_pointer(open_pa
     page.evaluate("document.activeElement.blur()")
     page.keyboard.press("o")
     page.wait_for_function("flight.orders.length === 1 && pending.length === 0")
+    # On a button that has the focus, the space key presses that one.
+    page.focus("#wind")
+    page.keyboard.press(" ")
+    page.focus("#next")
+    page.keyboard.press(" ")
+    page.wait_for_function("!playing")
+    assert page.is_checked("#wind")
     x, order = page.evaluate("[flight.ticks.x[flight.orders[0].tick - 1], flight.orders[0]]")
     assert 10 < order["field"]["circle"][0]["x"] - x < 26
 

@@ -250,16 +250,6 @@ function fragment() {
   return "#" + link;
 }
 
-// Copies what came of it, and the link to this moment.
-function copyLink() {
-  if (playing) setPlaying(false);
-  const tell = text => { say(text); told = performance.now() + TOLD; };
-  const text = `${$("verdict").textContent} ${location.href}`;
-  const failing = () => tell("The browser does not let this page copy; the link is in its address line.");
-  if (!navigator.clipboard) return failing();
-  navigator.clipboard.writeText(text).then(() => tell("Copied."), failing);
-}
-
 // Takes settings, orders and moment from the link, and begins.
 function fromLink() {
   const link = new URLSearchParams(location.hash.slice(1));
@@ -369,6 +359,8 @@ addEventListener("keydown", event => {
   if (!flight || event.ctrlKey || event.metaKey || event.altKey || ["SELECT", "INPUT"].includes(event.target.tagName) && event.target.type !== "checkbox") return;
   const buttons = { " ": "play", ".": "step", "]": "next", r: "again", n: "other", w: "wind", d: "dropouts",
     e: "elevator", f: "follow", o: "ahead", m: "mine", c: "copy", l: "slow" };
+  // The space key presses what has the focus.
+  if (event.key === " " && ["BUTTON", "INPUT", "SUMMARY"].includes(event.target.tagName)) return;
   const layer = LAYERS[Number(event.key) - 1], id = buttons[event.key] || layer && "layer-" + layer[0];
   if (!id) return;
   $(id).click();

@@ -45,7 +45,8 @@ function placeAhead() {
   const T = flight.ticks, x = T.x[now] + 1.5 * T.airspeed[now], path = detailAt(flight, now)?.trajectory || [];
   const near = path.reduce((best, p) => Math.abs(p[0] - x) < Math.abs(best[0] - x) ? p : best, [Infinity, T.z[now]]);
   const [, z] = Math.abs(near[0] - x) < 2 * flight.header.world_scale ? near : [x, T.z[now]];
-  order({ order: "obstacles", field: { circle: [{ x: Math.round(x * 100) / 100, z, radius: flight.header.world_scale }] } });
+  const [u, v] = [x, z].map(value => Math.round(value * 100) / 100);
+  order({ order: "obstacles", field: { circle: [{ x: u, z: v, radius: flight.header.world_scale }] } });
 }
 
 $("view").addEventListener("pointerdown", event => {
