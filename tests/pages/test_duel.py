@@ -1,5 +1,8 @@
 """The duel on the page that flies: its words, its slow motion, and obstacles that land where they are drawn."""
 
+import json
+from urllib.parse import quote
+
 import pytest
 from test_web import PAGE, PHONE, begun, stands
 
@@ -39,6 +42,35 @@ def test_the_words_of_the_duel(open_page):
     orders = "[{ tick: 100, field: {} }, { tick: 950, gusts: 1 }, { tick: 990, field: {} }]"
     moved, begins = page.evaluate(f"withMine({{ orders: {orders}, ticks: {{ t: {{ length: 1000 }} }} }})")
     assert begins == 600 and [order["tick"] for order in moved] == [100, 600, 950]
+
+
+def test_links_are_short_and_long_ones_lead_to_the_same(open_page):
+    page = open_page(PAGE.as_uri() + "#obstacles=0&aircraft=aerosonde&t=200")
+    stands(page)
+    x, z, unit = page.evaluate("[flight.ticks.x[now], flight.ticks.z[now], flight.header.world_scale]")
+    for given in (f"order: 'obstacles', field: {{ circle: [{{ x: {x} + 99, z: {z}, radius: {unit} }}] }}",
+                  f"order: 'obstacles', field: {{ capsule: [{{ from: [{x} + 99, {z} - 30], to: [{x} + 99, -2.5], radius: {unit} / 2 }}] }}",
+                  "order: 'disturb', gusts: 1.5", "order: 'disturb', dropouts: 0.3", "order: 'disturb', elevator_stuck: true"):
+        page.evaluate(f"order({{ {given} }})")
+    page.click("#play")
+    page.wait_for_function("pending.length === 0")
+    page.click("#play")
+    stands(page)
+    hash_, link, orders = page.inner_text("#hash"), page.get_attribute("#link", "href"), page.evaluate("flight.orders")
+    assert len(orders) == 5 and "&o=" in link and "%" not in link
+    long = f"#obstacles=0&aircraft=aerosonde&t={page.evaluate('flight.ticks.t.length')}&orders={quote(json.dumps(orders))}"
+    assert len(link) < len(long) / 2.5
+    for same in (link, long):
+        other = open_page(PAGE.as_uri() + same)
+        stands(other)
+        assert other.inner_text("#hash") == hash_ and other.get_attribute("#link", "href") == link
+    # What has no short form is not lost, and a damaged one is told.
+    wide = "{ tick: 1, order: 'obstacles', field: { circle: [{ x: 9, z: 50, radius: 2 }] } }"
+    assert page.evaluate(f"packOrders([{wide}], 1)") == ""
+    for damaged in ("1*c5", "1*c5_x_2", "1*q5_1_2", "*", "y*c5_1_2"):
+        page.goto("about:blank")
+        page.goto(PAGE.as_uri() + "#o=" + damaged)
+        page.wait_for_function("document.getElementById('state').textContent.includes('damaged')")
 
 
 def test_a_crash_is_shown_slowly_and_flown_again_with_the_same_obstacles(open_page, shot):

@@ -14,7 +14,7 @@ const PAGE_MAX: usize = 500_000;
 /// The crates in which a flight in the browser spends most of its time. They are built for speed, and the rest for size.
 const FAST: [&str; 5] = ["mpp-data", "mpp-core", "hil-protocol", "libm", "nalgebra"];
 /// The parts of the page, in order. The module comes after the last one.
-const PARTS: [&str; 9] = [
+const PARTS: [&str; 10] = [
     "mpp-analysis/src/picture/page_head.html",
     "mpp-analysis/src/picture/page.css",
     "bindings/web/page/body.html",
@@ -23,6 +23,7 @@ const PARTS: [&str; 9] = [
     "mpp-analysis/src/picture/numbers.js",
     "bindings/web/page/duel.js",
     "bindings/web/page/point.js",
+    "bindings/web/page/link.js",
     "bindings/web/page/fly.js",
 ];
 

@@ -175,13 +175,3 @@ function showDuel() {
     (slow !== null ? "slow motion" : target !== null ? "going to the moment" + share : playing ? "flying" : ended ? "ended" : "paused");
   if (!ended && !failed && told < performance.now()) say("");
 }
-
-// Copies what came of it, and the link to this moment.
-function copyLink() {
-  if (playing) setPlaying(false);
-  const tell = text => { say(text); told = performance.now() + TOLD; };
-  const text = `${$("verdict").textContent} ${location.href}`;
-  const failing = () => tell("The browser does not let this page copy; the link is in its address line.");
-  if (!navigator.clipboard) return failing();
-  navigator.clipboard.writeText(text).then(() => tell("Copied."), failing);
-}

@@ -241,37 +241,6 @@ function showLog() {
   $("link").href = fragment();
 }
 
-function fragment() {
-  const link = new URLSearchParams();
-  for (const [name, value] of Object.entries(settings)) if (value !== USUAL[name]) link.set(name, value);
-  link.set("t", flight.ticks.t.length);
-  const given = flight.orders.filter(order => !pending.includes(order));
-  if (given.length) link.set("orders", JSON.stringify(given));
-  return "#" + link;
-}
-
-// Takes settings, orders and moment from the link, and begins.
-function fromLink() {
-  const link = new URLSearchParams(location.hash.slice(1));
-  settings = { ...USUAL };
-  for (const [name, usual] of Object.entries(USUAL)) {
-    const text = link.get(name);
-    if (text === null) continue;
-    settings[name] = typeof usual === "number" ? Number(text) : text;
-    // JSON has no such numbers: the module would take them for numbers that are not given.
-    if (typeof usual === "number" && !Number.isFinite(settings[name]))
-      return refuse(new Error(`${name} is not a number: ${text}`));
-  }
-  let orders = [];
-  try {
-    orders = JSON.parse(link.get("orders") || "[]");
-  } catch {
-    return refuse(new Error("the link's orders are damaged"));
-  }
-  const until = Math.floor(Number(link.get("t")));
-  begin(orders, link.has("t") && until > 0 ? until : null);
-}
-
 function setPlaying(value) {
   playing = value;
   failed = false;
