@@ -25,6 +25,8 @@ def test_the_words_of_the_duel(open_page):
     seen = "{ kind: 'capsule', mine: true, placed: 800, end: 900, seen: 825, away: 9.14, known: 829 }"
     assert page.evaluate(f"sawText({seen})") == ("You placed the bar 1.00 s before the crash. It saw the bar 0.75 s before, "
                                                  "9.1 m away, and flew a plan that knew of it from 0.71 s before.")
+    theirs = seen.replace("mine: true, placed: 800", "mine: false, placed: null")
+    assert page.evaluate(f"sawText({theirs})").startswith("It saw the bar 0.75 s before the crash, 9.1 m away, and flew")
     unseen = "{ kind: 'circle', mine: false, placed: null, end: 900, seen: null, away: null, known: null }"
     assert page.evaluate(f"sawText({unseen})") == "It never saw the circle."
     # A second takes four, and stands at the end.

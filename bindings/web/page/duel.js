@@ -97,7 +97,7 @@ function sawText({ kind, mine, placed, end, seen, away, known }) {
   const before = tick => `${seconds(end - tick)} before`, word = WORDS[kind] || kind;
   return (mine ? `You placed the ${word} ${before(placed)} the crash. ` : "") + (seen === null
     ? `It never saw the ${word}.`
-    : `It saw the ${word} ${before(seen)}, ${round1(away)} m away, and flew ` + (known === null
+    : `It saw the ${word} ${before(seen)}${mine ? "" : " the crash"}, ${round1(away)} m away, and flew ` + (known === null
       ? "no plan that knew of it." : `a plan that knew of it from ${before(known)}.`));
 }
 
