@@ -1,9 +1,13 @@
-"""Flies random aircraft of our own plant, fits their logs, and prints how near the values are: `fit_trial.py 50 --seed 1`."""
+"""Flies random aircraft of our own plant, fits their logs, and prints how near the values are: `fit_trial.py 50 --seed 1`.
+With `--fields 100` each aircraft then flies past obstacles, by a core that was told its true file and by one that was told
+the fitted file.
+"""
 
 import argparse
 import math
 import os
 import sys
+import tomllib
 
 # Matrices are small: threads of the linear algebra would only wait for each other.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -102,13 +106,38 @@ def error(name, found, true):
     return abs(found - true) / (1.0 if name in ("pitch_loop.delay", "lift.zero") else true)
 
 
+def past_obstacles(keys, delay, values, obstacles, seeds):
+    """How many fields an aircraft survives, planned at 1 Hz: with a core that was told the true file, the fitted file, with
+    either. The core's thrust reaches the motor as a throttle, a share of the greatest thrust of the file."""
+    true = mppflight.Aircraft(keys | {"pitch_loop": keys["pitch_loop"] | {"delay": delay}})
+    known = fit.Known(keys["mass"], keys["wing_area"])
+    fitted = mppflight.Aircraft(tomllib.loads(fit.toml(values, known, keys["cruise"], "fitted", "of a trial")))
+    most = keys["thrust"]["max"]
+
+    def survives(told, factor, seed):
+        shared = {"seed": int(seed), "preset": "flight", "obstacles": obstacles, "replan_hz": 1.0}
+        shared["world_scale"] = true.world_scale
+        world, core = mppflight.World(aircraft=true, **shared), mppflight.Core(aircraft=told, **shared)
+        going = True
+        while going:
+            thrust, elevator = core.step(**world.measure())
+            going = world.step(thrust * factor, elevator)
+        return world.outcome == "survived"
+
+    ends = [(survives(true, 1.0, it), survives(fitted, most / values["thrust.max"].value, it)) for it in seeds]
+    return numpy.array([(one, other, one and other) for one, other in ends]).sum(axis=0)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("trials", type=int)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--gusts", type=float, default=0.0)
     parser.add_argument("--without-accelerometers", action="store_true")
+    parser.add_argument("--fields", type=int, default=0, help="fields that each aircraft flies through")
+    parser.add_argument("--obstacles", type=int, default=20, help="obstacles in each field")
     given = parser.parse_args()
+    past = numpy.zeros(3, int)
     errors, covered = {name: [] for name in (*WANTED, *MORE)}, []
     for trial in range(given.trials):
         rng = numpy.random.default_rng([given.seed, trial])
@@ -119,6 +148,8 @@ def main():
         for name in errors:
             errors[name].append(error(name, values[name].value, true[name]))
         covered.append([abs(values[name].value - true[name]) <= values[name].half for name in errors])
+        if given.fields:
+            past += past_obstacles(keys, delay, values, given.obstacles, rng.integers(1 << 30, size=given.fields))
         print(trial, {n: (round(values[n].value, 3), round(true[n], 3)) for n in errors}, file=sys.stderr)
     print("parameter              within   of         median error  90 % error  in interval")
     for k, (name, found) in enumerate(errors.items()):
@@ -128,6 +159,11 @@ def main():
         print(f"{name:22} {share}   {numpy.median(found):10.4f}  {most:10.4f}  {inside:9.0%}")
     every = numpy.mean([all(errors[n][k] <= w for n, w in WANTED.items()) for k in range(given.trials)])
     print(f"all four               {every:7.0%}")
+    if flights := given.trials * given.fields:
+        for name, count in zip(("true", "fitted"), past, strict=False):
+            low, high = mppflight.wilson(int(count), flights)
+            print(f"{name:7} file told: {count} of {flights} survive, {count / flights:.2%} ({low:.2%} to {high:.2%})")
+        print(f"survive with only one of the files: {past[0] - past[2]} true, {past[1] - past[2]} fitted")
 
 
 if __name__ == "__main__":

@@ -91,9 +91,9 @@ def test_a_column_that_is_missing_is_named(flown, tmp_path):
 
 
 def test_a_log_that_is_no_csv_has_advice(tmp_path):
-    (tmp_path / "log.tlog").write_bytes(b"\xfe\x00\xff" * 100)
-    with pytest.raises(mppflight.InputError, match="give a CSV: `mavlogdump.py` of pymavlink"):
-        fit.read(tmp_path / "log.tlog")
+    (tmp_path / "log").write_bytes(b"\xfe\x00\xff" * 100)
+    with pytest.raises(mppflight.InputError, match="give a CSV, or a name that ends in .tlog, .bin, .ulg"):
+        fit.read(tmp_path / "log")
 
 
 def test_the_manoeuvres_are_those_of_the_trials():

@@ -1,7 +1,8 @@
 """Makes an aircraft file from a flight log: `python -m mppflight.fit LOG --mass 2.0 --wing-area 0.45 --out plane.toml`.
 Needs SciPy: `pip install 'mppflight[fit]'`.
 
-LOG is a CSV with a header. Cells may be empty, so sensors may have rates of their own; log at 25 Hz or more.
+LOG is a MAVLink tlog (.tlog), a DataFlash log (.bin), a ULog (.ulg), or a CSV with a header. Cells may be empty, so sensors
+may have rates of their own; log the pitch and its command at 25 Hz or more, the others at 10 Hz.
 
     t               time [s]
     airspeed        true airspeed [m/s]
@@ -25,7 +26,10 @@ derivatives by rates, the stall, moments, roll.
 
 Intervals are of 95 %. They come from the Jacobian, with the covariance of each sensor's residuals multiplied by
 1 + 2 (sum of their autocorrelations up to the first that is not positive), because residuals are not white.
-A tlog, DataFlash or ULog is not read: convert it to this CSV first.
+
+Times of a tlog, DataFlash log or ULog count from the start of the autopilot; of a tlog with several, from the last. True
+airspeed comes from the equivalent one by the air density, unless the log has it. In a tlog the delays of the link are in the
+estimated ones: prefer the log on board.
 """
 
 from __future__ import annotations
@@ -39,6 +43,7 @@ from pathlib import Path
 
 import numpy
 
+from . import logs
 from ._native import Aircraft
 from .errors import InputError, MppError
 from .identify import MEASURED, STRETCH, Floats, Known, Value, estimate
@@ -54,26 +59,30 @@ MANOEUVRES = [
 ] + [(3, 0, 1.9), (3, 0, 0.1), (2, 0, 1.9), (2, 0, 0.1), (1, 0, 1.9), (1, 0, 0.1), (6, 6, 0.7), (5, -4, 1.3)]
 
 
-def read(path: str, start: float = -numpy.inf, end: float = numpy.inf) -> dict[str, Floats]:
-    """The columns of a CSV between two times; an empty cell is not a number."""
+def _csv(path: str | Path) -> dict[str, Floats]:
+    """The columns of a CSV; an empty cell is not a number."""
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = list(csv.DictReader(file))
     except (UnicodeDecodeError, csv.Error) as error:
-        advice = "`mavlogdump.py` of pymavlink and `ulog2csv` of pyulog write CSV, --help has the columns"
-        raise InputError(f"{path}: give a CSV: {advice}") from error
+        raise InputError(f"{path}: give a CSV, or a name that ends in {', '.join(logs.KINDS)}") from error
     names = set(rows[0]) if rows else set()
     missing = [name for name in NEEDED if name not in names]
     if missing or not names & {"climb", "z"}:
         raise InputError(f"{path}: give the columns {', '.join([*missing, 'climb or z'])}; --help has names and units")
     try:
-        columns = {
+        return {
             name: numpy.array([float(row[name] or "nan") for row in rows])
             for name in (*NEEDED, *MEASURED)
             if name in names
         }
     except (TypeError, ValueError) as error:
         raise InputError(f"{path}: give numbers or empty cells: {error}") from error
+
+
+def read(path: str | Path, start: float = -numpy.inf, end: float = numpy.inf, air_density: float = 1.225) -> dict[str, Floats]:
+    """The columns of a log between two times."""
+    columns = logs.columns(path, air_density) if Path(path).suffix.lower() in logs.KINDS else _csv(path)
     keep = (columns["t"] >= start) & (columns["t"] <= end)
     columns = {name: column[keep] for name, column in columns.items()}
     if len(columns["t"]) < 2 or not (numpy.diff(columns["t"]) > 0).all():
@@ -162,7 +171,7 @@ def manoeuvres() -> str:
 def _arguments() -> argparse.Namespace:
     plain = argparse.RawDescriptionHelpFormatter
     parser = argparse.ArgumentParser(prog="python -m mppflight.fit", description=__doc__, formatter_class=plain)
-    parser.add_argument("log", nargs="?", help="CSV with the columns above")
+    parser.add_argument("log", nargs="?", help="tlog, DataFlash log, ULog, or CSV with the columns above")
     parser.add_argument("--mass", type=float, help="kg")
     parser.add_argument("--wing-area", type=float, help="m^2")
     parser.add_argument("--air-density", type=float, default=1.225, help="kg/m^3, by default 1.225")
@@ -202,7 +211,7 @@ def main() -> int:
         return 0
     try:
         known = Known(given.mass, given.wing_area, given.air_density, given.cruise)
-        text, values = aircraft(given.log, read(given.log, given.start, given.end), known, given.name)
+        text, values = aircraft(given.log, read(given.log, given.start, given.end, given.air_density), known, given.name)
         for name, it in values.items():
             print(f"{name:22} {it.value:10.4g} +- {it.half:<8.2g} {UNITS.get(name, '')}", file=sys.stderr)
         if given.out:
