@@ -5,12 +5,8 @@ the fitted file.
 
 import argparse
 import math
-import os
 import sys
 import tomllib
-
-# Matrices are small: threads of the linear algebra would only wait for each other.
-os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import mppflight
 import numpy

@@ -4,6 +4,7 @@ import math
 import struct
 import subprocess
 import sys
+import tomllib
 
 import fit_trial
 import mppflight
@@ -12,7 +13,7 @@ import pytest
 from mppflight import fit
 from pymavlink.dialects.v10 import ardupilotmega as one
 from pymavlink.dialects.v20 import ardupilotmega as two
-from test_fit import command, save
+from test_fit import command, fitted, save
 
 # What an autopilot logs at 10 Hz.
 SLOW = ("airspeed", "throttle", "climb")
@@ -202,6 +203,16 @@ def test_a_message_that_is_missing_is_named_with_what_to_set(flown, tmp_path, na
     WRITERS[name](tmp_path / name, flown[1], left_out)
     with pytest.raises(mppflight.InputError, match=told):
         fit.read(tmp_path / name)
+
+
+def test_only_the_aircraft_file_goes_to_the_output(flown, tmp_path):
+    keys, log = flown
+    write_dataflash(tmp_path / "log.bin", log)
+    # DFReader and pyulog tell of such bytes.
+    with (tmp_path / "log.bin").open("ab") as file:
+        file.write(bytes(100))
+    text = fitted(tmp_path / "log.bin", keys)
+    assert tomllib.loads(text)["mass"] == keys["mass"] and text.startswith("name")
 
 
 def test_accelerations_may_be_missing(flown, tmp_path):

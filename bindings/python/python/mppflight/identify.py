@@ -15,8 +15,9 @@ from .errors import InputError
 try:
     from scipy.optimize import least_squares  # type: ignore[import-untyped]
     from scipy.signal import cont2discrete, lfilter  # type: ignore[import-untyped]
+    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 except ImportError as error:
-    raise ImportError("mppflight.fit needs SciPy: pip install 'mppflight[fit]'") from error
+    raise ImportError("mppflight.fit needs SciPy and threadpoolctl: pip install 'mppflight[fit]'") from error
 
 Floats = NDArray[numpy.float64]
 
@@ -273,8 +274,9 @@ class Motion:
         return {name: Value(*pair) for name, *pair in zip(MOTION, p.tolist(), halves.tolist(), strict=False)}
 
 
+@threadpool_limits.wrap(limits=1)  # type: ignore[untyped-decorator]
 def estimate(log: dict[str, Floats], known: Known) -> dict[str, Value]:
-    """All parameters of a log."""
+    """All parameters of a log. Matrices are small: threads of the linear algebra would only wait for each other."""
     cruise = known.cruise or float(numpy.nanmedian(log["airspeed"]))
     loop = min((pitch_loop(log, cruise, scheduled) for scheduled in (False, True)), key=lambda it: it.cost)
     simulated = Motion(log, known, loop.times, loop.pitch)

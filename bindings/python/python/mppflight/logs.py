@@ -4,7 +4,9 @@ seconds since the start of the autopilot.
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,8 +24,8 @@ Message = tuple[Floats, dict[str, Floats]]
 DEGREE = numpy.pi / 180
 MILLI_G = 9.80665e-3
 SEA_LEVEL = 1.225
-# Values of one column that come within this time [s] become one, their mean.
-TOGETHER = 0.01
+# Values of one column that come within this time [s] become one, their mean. Fewer values than this count as none.
+TOGETHER, FEWEST = 0.01, 50
 
 
 @dataclass(frozen=True)
@@ -67,7 +69,8 @@ def _tlog(path: str, names: set[str]) -> dict[str, Message]:
                 rows.clear()
             newest = fields["time_boot_ms"] / 1e3
         own = fields.get("time_boot_ms", fields.get("time_usec", numpy.nan) / 1e3) / 1e3
-        rows.setdefault(name, []).append((message._timestamp, own, _flat(fields)))
+        # Some count from 1970.
+        rows.setdefault(name, []).append((message._timestamp, own if own < 1e8 else numpy.nan, _flat(fields)))
     log.close()
     late = float(numpy.median([came - own for it in rows.values() for came, own, _ in it if own == own] or [0.0]))
     return {
@@ -164,13 +167,13 @@ RATES = {"pitch": 15.0, "pitch_command": 15.0}
 
 
 def _column(found: dict[str, Message], sources: list[Source], density: float) -> tuple[Floats, Floats]:
-    """Times and values by the first source that the log has."""
+    """Times and values by the first source of which the log has enough."""
     for source in sources:
         times, fields = found.get(source.message, (numpy.empty(0), {}))
         if all(name in fields for name in source.fields):
             value = source.value(density, *(fields[name] for name in source.fields))
             there = numpy.isfinite(value)
-            if there.any():
+            if there.sum() >= FEWEST:
                 return _together(times[there], value[there])
     return numpy.empty(0), numpy.empty(0)
 
@@ -187,7 +190,9 @@ def _read(path: str, kind: Kind) -> dict[str, Message]:
     # The libraries take a missing file for something else.
     Path(path).open("rb").close()
     try:
-        return kind.read(path, names)
+        # Their warnings are not part of an aircraft file.
+        with contextlib.redirect_stdout(sys.stderr):
+            return kind.read(path, names)
     except ImportError as error:
         raise InputError(f"{path}: {kind.library} reads it: pip install {kind.library}") from error
     except Exception as error:  # The libraries raise what their parsers meet.
