@@ -1,5 +1,5 @@
 // Flies scenarios with the module of the page, in Node: node fly.mjs MODULE SCENARIO..., where a scenario is JSON with
-// the keys of a scenario file. Prints the hash of each flight's log.
+// the keys of a scenario file; flights in space need a module with the feature `space`. Prints the hash of each flight's log.
 import { readFile } from "node:fs/promises";
 
 const [file, ...scenarios] = process.argv.slice(2);
@@ -17,7 +17,12 @@ function ask(question) {
 }
 
 for (const scenario of scenarios) {
-  ask({ ask: "begin", scenario: JSON.parse(scenario) });
+  const file = JSON.parse(scenario);
+  if (file.preset === "space") {
+    console.log(ask({ ask: "space", scenario: file }).hash);
+    continue;
+  }
+  ask({ ask: "begin", scenario: file });
   while (!ask({ ask: "fly", ticks: 6000 }).ended);
   console.log(ask({ ask: "log" }).hash);
 }

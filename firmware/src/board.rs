@@ -24,6 +24,12 @@ pub const REGIONS: [Region; 4] = [
     Region::device(0x4000_0000, 16),
 ];
 
+/// What the image of the planner in space may use: its memory goes on behind what an STM32H743 has.
+pub const SPACE_REGIONS: [Region; 4] = {
+    let [code, near, _, device] = REGIONS;
+    [code, near, Region::data(0x6000_0000, 22), device]
+};
+
 /// Starts the free-running timer.
 pub fn start_timer() {
     // SAFETY: only this module uses the timer. The code writes reload and value, then enables it.

@@ -25,7 +25,7 @@ pub mod host;
 pub mod image;
 mod mailbox;
 pub mod mark;
-mod owned;
+pub mod owned;
 pub mod panic_gate;
 pub mod processor;
 pub mod protection;

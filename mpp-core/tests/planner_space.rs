@@ -49,7 +49,8 @@ pub(crate) fn with_planner(
     let body = move || {
         let mut map = Box::new(VoxelGrid::new());
         map.clear(0.0);
-        let mut planner = Box::new(SpacePlanner::new(model(), keep));
+        let mut planner = Box::new(SpacePlanner::new());
+        planner.set_up(model(), keep);
         run(&mut map, &mut planner);
     };
     let thread = std::thread::Builder::new().stack_size(16 << 20);
@@ -130,7 +131,7 @@ fn plans_in_forests_keep_clear_of_the_trunks_and_within_the_limits() {
                 })
                 .collect();
             let beams = sweep(|direction| to_trunks(&trunks, direction));
-            map.insert(&[0.0, 0.0, 7.5], &beams, 45.0);
+            map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
             let (plan, _) = plan(planner, map, &level(&model), 0.0);
             in_bounds(&plan, &model);
             let mut least = f64::INFINITY;
@@ -161,7 +162,7 @@ fn a_plan_goes_through_the_only_window_of_a_wall() {
                 range
             }
         });
-        map.insert(&[0.0, 0.0, 7.5], &beams, 45.0);
+        map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
         let (plan, _) = plan(planner, map, &level(&model), 0.0);
         in_bounds(&plan, &model);
         let through = (0..225)
@@ -187,7 +188,7 @@ fn a_wing_banks_or_goes_around_where_a_sphere_passes() {
         };
         with_planner(keep, move |map, planner| {
             let model = model();
-            map.insert(&[0.0, 0.0, 7.5], &beams, 45.0);
+            map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
             let (plan, _) = plan(planner, map, &level(&model), 0.0);
             let mut least = f64::INFINITY;
             for step in 0..150 {
@@ -250,7 +251,7 @@ fn the_refinement_makes_plans_cheaper_within_the_limits() {
                 .map(|_| [draw.between(9.0, 45.0), draw.between(-20.0, 20.0), 0.3])
                 .collect();
             let beams = sweep(|direction| to_trunks(&trunks, direction));
-            map.insert(&[0.0, 0.0, 7.5], &beams, 45.0);
+            map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
             planner.choose(1, false);
             planner.begin(&level(&model), 0.0);
             let mut prices = Vec::new();
@@ -291,7 +292,7 @@ fn hostile_scans_and_starts_end_within_the_bound() {
             let mut numbers = level(planner.model()).numbers();
             numbers[round % 8] = odd;
             let start = SpacePath::of(numbers);
-            map.insert(&start.position, &beams, 45.0);
+            map.insert(&start.position, beams.iter().copied(), 45.0);
             planner.begin(&start, odd);
             let mut slices = 1;
             while !planner.advance(map) {
@@ -308,9 +309,9 @@ fn the_same_scan_gives_the_same_bits() {
         let trunks = [[18.0, 1.0, 0.3], [25.0, -4.0, 0.2], [24.0, 5.0, 0.4]];
         let beams = sweep(|direction| to_trunks(&trunks, direction));
         let start = level(planner.model());
-        map.insert(&start.position, &beams, 45.0);
+        map.insert(&start.position, beams.iter().copied(), 45.0);
         let (first, slices) = plan(planner, map, &start, 0.0);
-        *planner = SpacePlanner::new(model(), KEEP);
+        planner.set_up(model(), KEEP);
         assert_eq!(plan(planner, map, &start, 0.0), (first, slices));
     });
 }

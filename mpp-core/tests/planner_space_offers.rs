@@ -11,7 +11,7 @@ fn a_cycle_waits_for_plans_of_others_and_judges_them() {
         let (model, start) = (model(), level(&model()));
         map.insert(
             &start.position,
-            &sweep(|to| to_trunks(&[[15.0, 0.5, 0.4]], to)),
+            sweep(|to| to_trunks(&[[15.0, 0.5, 0.4]], to)).into_iter(),
             45.0,
         );
         let turned = |right: f64| {

@@ -24,18 +24,21 @@ pub(crate) enum Image {
     UartFaults,
     /// The image [`Image::Fifo`] with faults for tests.
     FifoFaults,
+    /// The planner in space, over semihosting.
+    Space,
     /// Flies over the serial line of a Nucleo-H743ZI.
     Nucleo,
 }
 
 /// All images for the emulator.
-const ALL: [Image; 6] = [
+const ALL: [Image; 7] = [
     Image::Uart,
     Image::Lockstep,
     Image::Fifo,
     Image::Comparison,
     Image::UartFaults,
     Image::FifoFaults,
+    Image::Space,
 ];
 
 impl Image {
@@ -47,6 +50,7 @@ impl Image {
             Self::Comparison => "comparison",
             Self::UartFaults => "flight-faults",
             Self::FifoFaults => "semihosting-faults",
+            Self::Space => "space-semihosting",
             Self::Nucleo => "nucleo-h743zi",
         }
     }
@@ -60,6 +64,7 @@ impl Image {
             Self::Comparison => ("fifo", &["--features", "paper"]),
             Self::UartFaults => ("uart", &["--features", "lockstep,faults"]),
             Self::FifoFaults => ("fifo", &["--features", "faults"]),
+            Self::Space => ("space", &[]),
             Self::Nucleo => ("nucleo", &[]),
         }
     }

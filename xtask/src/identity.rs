@@ -4,6 +4,7 @@ use crate::firmware::{self, Image};
 use crate::flight::Harness;
 use crate::folders::work;
 use crate::qemu::{Emulator, Run};
+use crate::toolchain::output;
 use crate::{aarch64, wasm};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 use serde_json::json;
@@ -24,6 +25,9 @@ pub(crate) struct IdentityArgs {
     /// Number of obstacles in the field
     #[arg(long, default_value_t = 20)]
     obstacles: u16,
+    /// Fly in space, through a forest with so many trunks per square metre
+    #[arg(long, conflicts_with_all = ["duration", "obstacles"])]
+    density: Option<f64>,
     /// Python that has the module `mppflight`
     #[arg(long, default_value = "python3")]
     python: String,
@@ -69,14 +73,26 @@ impl Flights<'_> {
         self.0.seed..self.0.seed.saturating_add(self.0.flights)
     }
 
+    fn image(&self) -> Image {
+        match self.0.density {
+            Some(_) => Image::Space,
+            None => Image::Fifo,
+        }
+    }
+
     /// Its flags for the harness.
     fn flags(&self, seed: u64) -> Vec<String> {
         let IdentityArgs {
             duration,
             obstacles,
+            density,
             ..
         } = self.0;
-        let flags = format!("--seed {seed} --obstacles {obstacles} --duration {duration}");
+        let in_space =
+            density.map(|density| format!("--seed {seed} --preset space --density {density}"));
+        let flags = in_space.unwrap_or_else(|| {
+            format!("--seed {seed} --obstacles {obstacles} --duration {duration}")
+        });
         flags.split(' ').map(str::to_owned).collect()
     }
 
@@ -85,9 +101,14 @@ impl Flights<'_> {
         let IdentityArgs {
             duration,
             obstacles,
+            density,
             ..
         } = self.0;
-        json!({ "seed": seed, "obstacles": obstacles, "duration": duration }).to_string()
+        match density {
+            Some(density) => json!({ "seed": seed, "preset": "space", "density": density }),
+            None => json!({ "seed": seed, "obstacles": obstacles, "duration": duration }),
+        }
+        .to_string()
     }
 
     fn with(&self, fly: impl Fn(&[String]) -> Result<String>) -> Result<Vec<String>> {
@@ -100,12 +121,17 @@ pub(crate) fn run(args: &IdentityArgs) -> Result<()> {
     let flights = Flights(args);
     let folder = work("identity")?;
     let host = Harness::build(&folder)?;
-    firmware::build(&[Image::Fifo])?;
+    firmware::build(&[flights.image()])?;
     let emulated = aarch64::harness(&work("aarch64")?)?;
-    let module = wasm::build()?;
+    let features: &[&str] = if args.density.is_some() {
+        &["space"]
+    } else {
+        &[]
+    };
+    let module = wasm::build(features)?;
     let on_m7 = || {
         Target::fly("cortex-m7", "harness, core in QEMU's mps2-an500", || {
-            flights.with(|flags| cortex_m7(&host, flags))
+            flights.with(|flags| cortex_m7(&host, flights.image(), flags))
         })
     };
     let on_aarch64 = || {
@@ -137,9 +163,9 @@ pub(crate) fn run(args: &IdentityArgs) -> Result<()> {
     report(args, &targets)
 }
 
-fn cortex_m7(host: &Harness, flags: &[String]) -> Result<String> {
+fn cortex_m7(host: &Harness, image: Image, flags: &[String]) -> Result<String> {
     let folder = work("identity")?;
-    let path = Image::Fifo.path()?;
+    let path = image.path()?;
     let mut emulator = Emulator::fifo(
         &Run {
             image: &path,
@@ -170,17 +196,12 @@ fn python(flights: &Flights<'_>) -> Result<Target> {
         });
     }
     Target::fly("python", HOW, || {
-        let IdentityArgs {
-            duration,
-            obstacles,
-            ..
-        } = flights.0;
-        let (seeds, from) = (flights.seeds(), flights.0.seed);
-        let program = format!(
-            "import mppflight\nfor seed in range({from}, {}): print(mppflight.fly(seed=seed, obstacles={obstacles}, duration={duration}).log_hash)",
-            seeds.end
-        );
-        let text = crate::toolchain::output(Command::new(interpreter).args(["-c", &program]))?;
+        let mut python = Command::new(interpreter);
+        python.args([
+            "-c",
+            "import json, sys, mppflight\nfor keys in sys.argv[1:]: print(mppflight.fly(**json.loads(keys)).log_hash)",
+        ]);
+        let text = output(python.args(flights.seeds().map(|seed| flights.scenario(seed))))?;
         Ok(text.lines().map(str::to_owned).collect())
     })
 }
@@ -235,9 +256,17 @@ fn table(args: &IdentityArgs, rows: &[serde_json::Value]) {
         seed,
         duration,
         obstacles,
+        density,
         ..
     } = args;
-    println!("{flights} flights of {duration} s past {obstacles} obstacles, from seed {seed}");
+    match density {
+        Some(density) => {
+            println!("{flights} flights in space, {density} trunks per m^2, from seed {seed}")
+        }
+        None => println!(
+            "{flights} flights of {duration} s past {obstacles} obstacles, from seed {seed}"
+        ),
+    }
     println!(
         "{:<10} {:<37} {:>7} {:>7} {:<17} {:>8}",
         "target", "how", "flights", "equal", "first hash", "seconds"

@@ -7,6 +7,7 @@ use crate::folders::work;
 use crate::qemu::{Emulator, Run};
 use anyhow::{Result, bail};
 use serde_json::json;
+use std::collections::BTreeMap;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Transport {
@@ -24,19 +25,22 @@ pub(crate) struct PilArgs {
     /// Number of seeds to fly
     #[arg(long, default_value_t = 1)]
     flights: u64,
-    /// Number of obstacles in the field
+    /// Number of obstacles in the field, in the vertical plane
     #[arg(long, default_value_t = 20)]
     obstacles: u16,
+    /// Trunks per square metre, with preset `space`
+    #[arg(long, default_value_t = 0.02)]
+    density: f64,
     /// Preset, which is a set of parameters and rules
     #[arg(long, default_value = "flight")]
     preset: String,
-    /// Aircraft, a name or a file
-    #[arg(long, default_value = "reference")]
-    aircraft: String,
-    /// Length of each flight, in seconds
+    /// Aircraft, a name or a file [default: the preset's]
+    #[arg(long)]
+    aircraft: Option<String>,
+    /// Length of each flight in the vertical plane, in seconds
     #[arg(long, default_value_t = 20)]
     duration: u32,
-    /// Transport of the bytes to the emulated core
+    /// Transport of the bytes to the emulated core; preset `space` has FIFOs alone
     #[arg(long, value_enum, default_value_t = Transport::Uart)]
     transport: Transport,
     /// Print one JSON object per flight
@@ -44,24 +48,33 @@ pub(crate) struct PilArgs {
     json: bool,
 }
 
+impl PilArgs {
+    fn is_in_space(&self) -> bool {
+        self.preset == "space"
+    }
+}
+
 pub(crate) fn run(args: &PilArgs) -> Result<()> {
-    let image = match args.transport {
-        Transport::Uart => Image::Lockstep,
-        Transport::Fifo => Image::Fifo,
+    let (image, transport) = match args.transport {
+        _ if args.is_in_space() => (Image::Space, Transport::Fifo),
+        Transport::Uart => (Image::Lockstep, Transport::Uart),
+        Transport::Fifo => (Image::Fifo, Transport::Fifo),
     };
     firmware::build(&[image])?;
     let folder = work("pil")?;
     let (harness, counter) = (Harness::build(&folder)?, plugin()?);
     if !args.json {
         println!(
-            "{:>6} {:<22} {:<17} {:<17} {:>13} {:>12} {:>14}",
+            "{:>6} {:<22} {:<17} {:<17} {:>13} {:>12} {:>14} {:>12} {:>12}",
             "seed",
             "outcome",
             "host_hash",
             "target_hash",
             "instructions",
             "step worst",
-            "cycle median"
+            "cycle median",
+            "cycle worst",
+            "slice worst"
         );
     }
     let mut unequal = 0;
@@ -75,7 +88,7 @@ pub(crate) fn run(args: &PilArgs) -> Result<()> {
             shift: 0,
             counter: Some(&counter),
         };
-        let mut emulator = match args.transport {
+        let mut emulator = match transport {
             Transport::Uart => Emulator::uart(&run)?,
             Transport::Fifo => Emulator::fifo(&run, false)?,
         };
@@ -96,17 +109,27 @@ fn scenario(args: &PilArgs, seed: u64) -> Vec<String> {
         preset,
         duration,
         aircraft,
+        density,
         ..
     } = args;
-    let flags =
-        format!("--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}");
+    let flags = if args.is_in_space() {
+        format!("--seed {seed} --preset {preset} --density {density}")
+    } else {
+        format!("--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}")
+    };
     let mut arguments: Vec<String> = flags.split(' ').map(str::to_owned).collect();
-    arguments.extend(["--aircraft".to_owned(), aircraft.clone()]);
+    if let Some(aircraft) = aircraft {
+        arguments.extend(["--aircraft".to_owned(), aircraft.clone()]);
+    }
     arguments
 }
 
 fn print_flight(args: &PilArgs, seed: u64, host: &Outcome, target: &Outcome, counts: &Counts) {
-    let (step, cycle) = (counts.step_worst(), median(&counts.cycles()));
+    let cycles = counts.cycles();
+    let (step, cycle) = (counts.step_worst(), median(&cycles));
+    let worst = cycles.last().copied().unwrap_or_default();
+    let slices: BTreeMap<_, _> = counts.slices_worst().collect();
+    let slice = slices.values().copied().max().unwrap_or_default();
     if args.json {
         let object = json!({
             "seed": seed,
@@ -120,11 +143,13 @@ fn print_flight(args: &PilArgs, seed: u64, host: &Outcome, target: &Outcome, cou
             "step_mean": counts.step_mean(),
             "step_worst": step,
             "cycle_median": cycle,
+            "cycle_worst": worst,
+            "slices_worst": slices,
         });
         println!("{object}");
     } else {
         println!(
-            "{seed:>6} {:<22} {:<17} {:<17} {:>13} {step:>12} {cycle:>14}",
+            "{seed:>6} {:<22} {:<17} {:<17} {:>13} {step:>12} {cycle:>14} {worst:>12} {slice:>12}",
             host.outcome(),
             host.hash(),
             target.hash(),

@@ -28,7 +28,7 @@ const PARTS: [&str; 10] = [
 ];
 
 /// Builds the simulation and its interface for WebAssembly. Returns the path of the module.
-pub(crate) fn build() -> Result<PathBuf> {
+pub(crate) fn build(features: &[&str]) -> Result<PathBuf> {
     let toolchain = Toolchain::find(TARGET)?;
     let mut cargo = toolchain.cargo("rustc", "")?;
     cargo.args(["--config", "profile.release.opt-level='s'"]);
@@ -39,14 +39,17 @@ pub(crate) fn build() -> Result<PathBuf> {
     succeed(
         cargo
             .args(["--locked", "--release", "-p", "mpp-web", "--lib"])
-            .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"]),
+            .args(["--features", &features.join(",")])
+            .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"])
+            // The core in space is built on the stack before it moves to its box.
+            .args(["-C", "link-arg=-zstack-size=33554432"]),
     )?;
     Ok(work("")?.join(TARGET).join("release/mpp_web.wasm"))
 }
 
 /// Builds the page. It holds all that it needs. Returns its file.
 pub(crate) fn page() -> Result<PathBuf> {
-    let module = gzip(&std::fs::read(build()?)?)?;
+    let module = gzip(&std::fs::read(build(&[])?)?)?;
     let mut page = String::new();
     for part in PARTS {
         page += &std::fs::read_to_string(root().join(part)).context(part)?;

@@ -10,6 +10,8 @@ use mpp_sim::log::{Header, Summary};
 use mpp_sim::orders::{Ground, Order, OrderEntry, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+#[cfg(feature = "space")]
+use mpp_sim::space::{SpaceFile, fly_space};
 use mpp_sim::tick_record::TickRecord;
 use mpp_sim::world::World;
 use serde::{Deserialize, Serialize};
@@ -46,6 +48,12 @@ pub enum Question {
     Log,
     /// Asks for the log so far. The answer is its bytes, as `sil-harness` writes them.
     Bytes,
+    /// Flies a whole flight in space. The answer is a [`Logged`].
+    #[cfg(feature = "space")]
+    Space {
+        /// The flight, with the keys of a scenario file in space.
+        scenario: Box<SpaceFile>,
+    },
 }
 
 /// The answer to [`Question::Begin`].
@@ -231,6 +239,10 @@ impl Desk {
         {
             return self.begin(&scenario, orders, details);
         }
+        #[cfg(feature = "space")]
+        if let Question::Space { scenario } = question {
+            return json(&in_space(&scenario)?);
+        }
         let flying = self.flight.as_mut().ok_or("no flight has begun")?;
         match question {
             Question::Fly { ticks, orders } => json(&flying.fly(ticks, orders)?),
@@ -239,7 +251,7 @@ impl Desk {
                 let log = flying.flight.log(&flying.world);
                 log.to_json().map_err(|error| error.to_string())
             }
-            Question::Begin { .. } => Err("a flight begins once".to_owned()),
+            _ => Err("a flight begins once".to_owned()),
         }
     }
 
@@ -268,6 +280,17 @@ impl Desk {
         self.flight = Some(flying);
         answer
     }
+}
+
+#[cfg(feature = "space")]
+fn in_space(file: &SpaceFile) -> Result<Logged, String> {
+    let scenario = file.build(None).map_err(|error| error.to_string())?;
+    let log = fly_space(&scenario).map_err(|error| error.to_string())?;
+    Ok(Logged {
+        hash: log.hash().map_err(|error| error.to_string())?,
+        ticks: log.ticks.len() as u32,
+        summary: log.summary,
+    })
 }
 
 fn json(answer: &impl Serialize) -> Result<Vec<u8>, String> {

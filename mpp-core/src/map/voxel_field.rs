@@ -319,7 +319,7 @@ mod tests {
             let fine = CELL / 16.0;
             shown.push([part(to[0], fine), part(to[1], fine), part(to[2], CELL)]);
         }
-        map.insert(&from, &beams, 45.0);
+        map.insert(&from, beams.iter().copied(), 45.0);
         field.update(&map, &from);
         let mut seen = 0;
         field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |[least, most]| {

@@ -68,13 +68,19 @@ impl VoxelGrid {
         self.first
     }
 
-    /// Takes up a scan from a position \[m\], by a lidar with the range `sight` \[m\].
-    pub fn insert(&mut self, position: &[f64; 3], beams: &[SpaceBeam], sight: f64) {
+    /// Takes up a scan from a position \[m\], by a lidar with the range `sight` \[m\]. The beams are passed twice: first for
+    /// their hits, then for what they passed.
+    pub fn insert(
+        &mut self,
+        position: &[f64; 3],
+        beams: impl Iterator<Item = SpaceBeam> + Clone,
+        sight: f64,
+    ) {
         self.roll(position[0]);
         for slice in &mut self.hit {
             slice.fill(0);
         }
-        for beam in beams {
+        for beam in beams.clone() {
             if let Some(range) = beam.range {
                 let end =
                     core::array::from_fn(|axis| position[axis] + range * beam.direction[axis]);

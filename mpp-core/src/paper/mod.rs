@@ -36,12 +36,12 @@ mod walk;
 
 use crate::config::KNOTS;
 use crate::corridor::Corridor;
-use crate::planner::{NO_TRIM, PlanSummary, STILL, SetupError, Verdict, check, check_planner};
+use crate::planner::{PlanSummary, SetupError, Verdict, check, check_planner};
 use crate::qp::{Condensed, Problem, Solution, Solver};
 use crate::sense::LidarScan;
 use crate::settings::{PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{Airframe, Trim, VehicleState};
+use crate::vehicle::{AirState, Airframe, Trim, VehicleState};
 pub use collocation::{CollocationPoints, GOAL_DISTANCE, GOALS, Path, path_length, resample};
 use grid::MAX_WALK;
 pub use grid::OccupancyGrid;
@@ -114,7 +114,7 @@ impl PaperPlanner {
             rules: Rules::Corrected,
             padding: Padding::AUTHORS,
             airframe: Airframe::REFERENCE,
-            trim: NO_TRIM,
+            trim: Trim::NONE,
             model: StageModel::at_rest(),
             shared: Condensed::new(),
             random: None,
@@ -123,7 +123,7 @@ impl PaperPlanner {
             state: VehicleState {
                 x: 0.0,
                 z: 0.0,
-                air: STILL,
+                air: AirState::NONE,
             },
             scan: LidarScan::new(),
             grid: OccupancyGrid::new(),

@@ -30,11 +30,7 @@ pub(crate) use error::check;
 use plane::PlanePlanner;
 pub use summary::{PlanSummary, Verdict};
 #[cfg(feature = "paper")]
-pub(crate) use {
-    error::check_planner,
-    shared::{NO_TRIM, STEPS_PER_SLICE, STILL},
-    summary::FEASIBLE,
-};
+pub(crate) use {error::check_planner, shared::STEPS_PER_SLICE, summary::FEASIBLE};
 
 /// The work of the next slice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,6 +21,14 @@ pub struct AirState {
 }
 
 impl AirState {
+    /// At rest: the value in a planner that is not set up.
+    pub(crate) const NONE: Self = Self {
+        airspeed: 0.0,
+        pitch: 0.0,
+        pitch_rate: 0.0,
+        flight_path: 0.0,
+    };
+
     /// Angle of attack `alpha = theta - gamma` \[rad\].
     #[must_use]
     pub fn angle_of_attack(&self) -> f64 {

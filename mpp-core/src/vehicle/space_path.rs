@@ -67,7 +67,31 @@ pub struct SpaceModel {
 const MOST_ABOVE_LEVEL: f64 = 0.2;
 const FROM_STALL: f64 = 0.05;
 
+impl SpacePath {
+    /// At rest in the origin.
+    pub(crate) const ORIGIN: Self = Self {
+        position: [0.0; 3],
+        airspeed: 0.0,
+        angle_of_attack: 0.0,
+        bank: 0.0,
+        flight_path: 0.0,
+        course: 0.0,
+    };
+}
+
 impl SpaceModel {
+    /// No aircraft: the value before a set-up.
+    pub(crate) const NONE: Self = Self {
+        airframe: Airframe::REFERENCE,
+        trim: Trim::NONE,
+        thrust_max: 0.0,
+        angle_of_attack: [0.0; 2],
+        angle_of_attack_rate: 0.0,
+        bank: 0.0,
+        bank_rate: 0.0,
+        wind: [0.0; 3],
+    };
+
     /// The model of an aircraft at an airspeed [m/s], with the stall \[rad\], the greatest thrust \[N\], bank \[rad\] and rate of
     /// the bank [rad/s].
     ///

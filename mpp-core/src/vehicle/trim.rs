@@ -11,6 +11,17 @@ pub struct Trim {
     pub control: Control,
 }
 
+impl Trim {
+    /// No trim: the value in a planner that is not set up.
+    pub(crate) const NONE: Self = Self {
+        state: AirState::NONE,
+        control: Control {
+            thrust: 0.0,
+            elevator: 0.0,
+        },
+    };
+}
+
 /// The reason why there is no trim. The vehicle then does not start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum TrimError {

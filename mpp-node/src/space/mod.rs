@@ -20,7 +20,7 @@
 //! | `input.rs` | takes measurements, or says why not |
 //! | `tick.rs` | the step |
 //! | `sweep.rs` | the points of a sensor frame, each placed by the pose of its time |
-//! | `planning.rs`, `cycle.rs` | the planner's cycles, and the plan that is flown |
+//! | `planning.rs`, `cycle.rs` | slices of map and planner, and the plan that is flown |
 
 mod cycle;
 mod input;
@@ -37,8 +37,8 @@ use hil_protocol::{
 };
 use mpp_core::control::SpaceRegulator;
 use mpp_core::estimate::SpaceEstimator;
-use mpp_core::map::{SpaceBeam, VoxelGrid};
-use mpp_core::planner::space::SpacePlanner;
+use mpp_core::map::VoxelGrid;
+use mpp_core::planner::space::{SpacePlanner, SpaceStage};
 use mpp_core::vehicle::{LateralControl, SpaceModel};
 use sweep::Sweep;
 
@@ -52,7 +52,6 @@ struct Session {
     /// The last command to the surfaces.
     surfaces: LateralControl,
     regulator: SpaceRegulator,
-    planner: SpacePlanner,
     estimator: SpaceEstimator,
     /// What was measured since the last sensor frame.
     inertial: Option<InertialFrame>,
@@ -74,9 +73,21 @@ pub struct SpaceNode {
     limits: Option<ConfigureSpace>,
     session: Option<Session>,
     map: VoxelGrid,
+    planner: SpacePlanner,
     sweep: Sweep,
-    /// The points of a tick in world axes.
-    beams: heapless::Vec<SpaceBeam, MOST_POINTS>,
+    /// Tick and position \[m\] of points that wait for their way into the map.
+    intake: Option<(u32, [f64; 3])>,
+    /// Slices that the planner may still use in this tick.
+    granted: u32,
+}
+
+/// What a slice between two ticks does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpaceSlice {
+    /// Takes the points of a sweep into the map.
+    Map,
+    /// A slice of the planner.
+    Planner(SpaceStage),
 }
 
 // Whoever places it counts on 2 MB, as docs say.
@@ -93,37 +104,60 @@ impl SpaceNode {
             limits: None,
             session: None,
             map: VoxelGrid::new(),
+            planner: SpacePlanner::new(),
             sweep: Sweep::new(),
-            beams: heapless::Vec::new(),
+            intake: None,
+            granted: 0,
         }
+    }
+
+    /// Makes a node out of memory of zeros, which is a node whose contents mean nothing, without a copy on the stack.
+    pub fn reset(&mut self) {
+        self.decoder = Decoder::new();
+        self.forget();
+        self.sweep.clear();
+        self.map.clear(0.0);
     }
 
     /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function returns, the planner has
     /// used all slices granted so far.
     pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
-        let send = &mut send;
         for byte in bytes {
-            let handled = match self.decoder.take(*byte) {
-                None => continue,
-                Some(Ok(id)) => self.handle(id, send),
-                Some(Err(fault)) => Err(fault),
-            };
-            if let Err(fault) = handled {
-                self.reject(RejectionCause::Frame(fault), send);
-            }
+            self.take(*byte, &mut send);
+            // The grant of a tick bounds the loop.
+            while self.advance() {}
         }
+    }
+
+    /// Takes a byte from the link. The caller then calls [`advance`](Self::advance) until it returns false.
+    pub fn take(&mut self, byte: u8, send: &mut impl FnMut(&[u8])) {
+        let handled = match self.decoder.take(byte) {
+            None => return,
+            Some(Ok(id)) => self.handle(id, send),
+            Some(Err(fault)) => Err(fault),
+        };
+        if let Err(fault) = handled {
+            self.reject(RejectionCause::Frame(fault), send);
+        }
+    }
+
+    /// The tick of the last sensor frame.
+    #[must_use]
+    pub fn last_tick(&self) -> Option<u32> {
+        self.session.as_ref()?.last_tick
     }
 
     /// The planner and its map, for inspection between ticks.
     #[must_use]
     pub fn planner(&self) -> Option<(&SpacePlanner, &VoxelGrid)> {
-        let session = self.session.as_ref()?;
-        Some((&session.planner, &self.map))
+        self.session.as_ref()?;
+        Some((&self.planner, &self.map))
     }
 
     /// The planner, for a host that compares it with others.
     pub fn planner_mut(&mut self) -> Option<&mut SpacePlanner> {
-        Some(&mut self.session.as_mut()?.planner)
+        self.session.as_ref()?;
+        Some(&mut self.planner)
     }
 
     fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
@@ -155,16 +189,18 @@ impl SpaceNode {
     }
 
     fn reject(&mut self, cause: RejectionCause, send: &mut impl FnMut(&[u8])) {
-        let last = self.session.as_ref().and_then(|session| session.last_tick);
-        let tick = last.unwrap_or(0);
+        let tick = self.last_tick().unwrap_or(0);
         self.emit(&Rejection { tick, cause }, send);
     }
 
     /// Answers a hello. It starts a new session, whatever the state of the last one.
     fn greet(&mut self, send: &mut impl FnMut(&[u8])) {
-        self.session = None;
-        self.lateral = None;
-        self.limits = None;
+        self.forget();
         self.emit(&greeting(), send);
+    }
+
+    fn forget(&mut self) {
+        (self.session, self.lateral, self.limits) = (None, None, None);
+        (self.intake, self.granted) = (None, 0);
     }
 }

@@ -1,25 +1,22 @@
 //! The work of the planner in space: where cycles begin, what they may use, and when their plan is taken over.
 
 use super::cycle::{Cycle, Flown};
-use super::{Session, SpaceNode};
+use super::{Session, SpaceNode, SpaceSlice};
 use crate::{duration, ticks};
 use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
-use mpp_core::map::VoxelGrid;
-use mpp_core::planner::space::MOST_SPACE_SLICES;
+use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner};
 use mpp_core::vehicle::SpaceControl;
 
 impl SpaceNode {
-    /// After the step: the points go into the map, a cycle begins when its time has come, and the planner works.
+    /// After the step: points wait for the map, a cycle begins when its time has come, and slices are granted.
     pub(super) fn plan(&mut self, tick: u32, motion: &SpaceMotion) {
         let Some(session) = &mut self.session else {
             return;
         };
         let seen = !self.sweep.is_empty();
         if seen {
-            let sight = f64::from(session.configure.range_max);
-            self.sweep.place(tick, &session.estimator, &mut self.beams);
-            self.map.insert(&motion.path.position, &self.beams, sight);
+            self.intake = Some((tick, motion.path.position));
         }
         // A silent lidar leaves the map as it is, and plans go on in it.
         let period = session.configure.replan_period_ticks;
@@ -33,15 +30,53 @@ impl SpaceNode {
             None => seen,
         };
         if due {
-            session.begin(tick, motion);
+            session.begin(&mut self.planner, tick, motion);
         }
-        session.work(&self.map);
+        self.granted = session
+            .configure
+            .slices_per_tick
+            .min(MOST_SPACE_SLICES as u32);
+    }
+
+    /// What [`advance`](Self::advance) does next; `None` until the next tick.
+    #[must_use]
+    pub fn slice(&self) -> Option<SpaceSlice> {
+        if self.intake.is_some() {
+            return Some(SpaceSlice::Map);
+        }
+        self.session.as_ref()?.cycle.filter(|it| !it.complete)?;
+        let stage = self.planner.stage().filter(|_| self.granted > 0);
+        stage.map(SpaceSlice::Planner)
+    }
+
+    /// Does a slice of the work between two ticks. Returns false if there is none.
+    pub fn advance(&mut self) -> bool {
+        let Some(session) = &mut self.session else {
+            return false;
+        };
+        if let Some((tick, position)) = self.intake.take() {
+            let sight = f64::from(session.configure.range_max);
+            let beams = self.sweep.beams(tick, &session.estimator);
+            self.map.insert(&position, beams, sight);
+            self.sweep.clear_points();
+            return true;
+        }
+        let Some(cycle) = session.cycle.as_mut().filter(|cycle| !cycle.complete) else {
+            return false;
+        };
+        let Some(left) = self.granted.checked_sub(1) else {
+            return false;
+        };
+        self.granted = left;
+        cycle.slices = cycle.slices.saturating_add(1);
+        cycle.complete = self.planner.advance(&self.map);
+        true
     }
 }
 
 impl Session {
     /// Begins a cycle from where the aircraft will be when the plan is taken over.
-    fn begin(&mut self, tick: u32, motion: &SpaceMotion) {
+    fn begin(&mut self, planner: &mut SpacePlanner, tick: u32, motion: &SpaceMotion) {
         let model = self.model;
         let latency = duration(self.configure.latency_ticks);
         let (start, shift) = match &self.flown {
@@ -59,8 +94,8 @@ impl Session {
                 (motion.path.after(&model, &level, latency), 0.0)
             }
         };
-        self.planner.set_wind(model.wind);
-        self.planner.begin(&start, shift);
+        planner.set_wind(model.wind);
+        planner.begin(&start, shift);
         self.last_cycle = Some(tick);
         self.cycle = Some(Cycle {
             begun: tick,
@@ -70,27 +105,13 @@ impl Session {
         });
     }
 
-    /// Does the slices of a tick.
-    fn work(&mut self, map: &VoxelGrid) {
-        let Some(cycle) = &mut self.cycle else {
-            return;
-        };
-        for _ in 0..self.configure.slices_per_tick.min(MOST_SPACE_SLICES as u32) {
-            if cycle.complete {
-                return;
-            }
-            cycle.slices = cycle.slices.saturating_add(1);
-            cycle.complete = self.planner.advance(map);
-        }
-    }
-
     /// Takes over the plan that is due in this tick.
-    pub(super) fn take_over(&mut self, tick: u32) {
+    pub(super) fn take_over(&mut self, planner: &SpacePlanner, tick: u32) {
         let Some(cycle) = self.cycle.filter(|cycle| ticks(cycle.due, tick) >= 0) else {
             return;
         };
         self.cycle = None;
-        let best = self.planner.best().map(|(plan, judged)| (*plan, *judged));
+        let best = planner.best().map(|(plan, judged)| (*plan, *judged));
         let (cost, violation) = best.map_or((f64::INFINITY, f64::INFINITY), |(_, judged)| {
             (judged.price, judged.missing)
         });
@@ -103,7 +124,7 @@ impl Session {
         if let Some((plan, _)) = best {
             self.flown = Some(Flown {
                 plan,
-                model: *self.planner.model(),
+                model: *planner.model(),
                 start: cycle.due,
                 begun: cycle.begun,
             });
@@ -112,7 +133,7 @@ impl Session {
             scan_tick: cycle.begun,
             used_from_tick: tick,
             outcome,
-            candidates: self.planner.proposed() as u16,
+            candidates: planner.proposed() as u16,
             feasible: u16::from(violation <= 0.0),
             tree_runs: 0,
             slices: cycle.slices,

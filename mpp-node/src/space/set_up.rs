@@ -7,7 +7,7 @@ use hil_protocol::{
 };
 use mpp_core::control::{LateralRegulator, SpaceRegulator};
 use mpp_core::estimate::SpaceEstimator;
-use mpp_core::planner::space::{Keep, SpacePlanner};
+use mpp_core::planner::space::Keep;
 use mpp_core::vehicle::{Derivatives, LateralAirframe, LateralControl, SpaceModel};
 
 /// Room that floor and ceiling must leave, and the sides \[m\]: some voxels.
@@ -85,15 +85,15 @@ impl SpaceNode {
             half_width: limits.half_width,
             altitude: told.altitude,
         };
-        let mut planner = SpacePlanner::new(model, keep);
-        planner.choose(usize::from(told.paths), limits.programs);
+        self.planner.set_up(model, keep);
+        self.planner
+            .choose(usize::from(told.paths), limits.programs);
         self.sweep.clear();
         self.map.clear(0.0);
         self.session = Some(Session {
             configure: *told,
             model,
             regulator: SpaceRegulator::new(airframe, holds, &model),
-            planner,
             estimator: SpaceEstimator::new(&model, &lateral.airframe),
             surfaces: LateralControl::default(),
             inertial: None,

@@ -79,31 +79,30 @@ impl Sweep {
         Ok(())
     }
 
-    /// Places all points as seen from the present position, each by the pose of its own time, and forgets them. A point whose pose
-    /// is not known shows nothing.
-    pub(super) fn place(
-        &mut self,
+    /// All points as seen from the present position, each by the pose of its own time. A point whose pose is not known shows
+    /// nothing.
+    pub(super) fn beams<'a>(
+        &'a self,
         tick: u32,
-        estimator: &SpaceEstimator,
-        beams: &mut heapless::Vec<SpaceBeam, { MOST_POINTS }>,
-    ) {
-        beams.clear();
-        let (Some(origin), Some(clock)) = (estimator.position(), self.clock) else {
-            return self.points.clear();
-        };
-        let now = tick.wrapping_mul(TICK_US).wrapping_add(clock);
-        for point in &self.points {
+        estimator: &'a SpaceEstimator,
+    ) -> impl Iterator<Item = SpaceBeam> + Clone + 'a {
+        let known = estimator.position().zip(self.clock);
+        let points = self.points.iter();
+        points.filter_map(move |point| {
+            let (origin, clock) = known?;
+            let now = tick.wrapping_mul(TICK_US).wrapping_add(clock);
             let age = f64::from(now.wrapping_sub(point.time).cast_signed()) * 1e-6;
-            let Some(pose) = estimator.pose(age) else {
-                continue;
-            };
+            let pose = estimator.pose(age)?;
             let at = point.at.map(f64::from);
             let length = libm::sqrt(at.iter().map(|it| it * it).sum());
             let answered = libm::fabs(length - NO_RETURN) > ROUNDING;
             let direction = at.map(|it| it / length);
-            // As many beams as points.
-            let _ = beams.push(pose.beam(direction, answered.then_some(length), &origin));
-        }
+            Some(pose.beam(direction, answered.then_some(length), &origin))
+        })
+    }
+
+    /// Forgets the points, but not the clock.
+    pub(super) fn clear_points(&mut self) {
         self.points.clear();
     }
 }

@@ -46,7 +46,7 @@ impl SpaceNode {
             .untold
             .take()
             .map(|report| (report, session.flown.filter(|_| report.outcome.is_new())));
-        session.take_over(tick);
+        session.take_over(&self.planner, tick);
         let estimate = session.estimator.motion();
         // A plan is followed in the wind for which it was made, so that a change of the wind is no error of the velocity.
         let model = session.flown.map_or(session.model, |flown| flown.model);

@@ -152,7 +152,7 @@ impl FlyArgs {
 }
 
 /// Connects to a core that runs elsewhere.
-fn connect(text: &str, patience: Option<Duration>) -> Result<Box<dyn Link>, Failure> {
+pub(super) fn connect(text: &str, patience: Option<Duration>) -> Result<Box<dyn Link>, Failure> {
     let failed = |error| Failure::new(LINK, error);
     match text.split_once(':') {
         Some(("tcp", address)) if place(address).is_ok() => Ok(Box::new(

@@ -2,14 +2,15 @@
 //! Their flags are others than those of the vertical plane, so they are commands of their own behind the same names.
 
 use super::answer::{Failure, data, print_json, talk};
-use super::fly::{exit_code, keep, told};
-use super::help::{CAMPAIGN_IN_SPACE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
+use super::fly::{connect, exit_code, keep, told};
+use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
 use super::values::{Item, baseline, number, seed, threads, whole, wind, within, world};
 use crate::campaign::pool;
 use crate::files::{read_aircraft, read_stems, try_directory};
 use clap::{Parser, Subcommand};
 use mpp_analysis::campaign::wilson;
+use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::WorldName;
@@ -111,6 +112,9 @@ pub(super) struct FlyInSpace {
     /// Density of the world: trunks/m^2, walls or rows per m, or the spheres' share of the volume
     #[arg(long, help_heading = WORLD, value_name = "DENSITY", value_parser = number)]
     density: Option<f64>,
+    /// Place where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and to-harness [default: in this process]
+    #[arg(long, help_heading = CORE, conflicts_with = "baseline")]
+    link: Option<String>,
     /// Directory for the log and the picture
     #[arg(long, help_heading = OUTPUT, default_value = "out")]
     out: PathBuf,
@@ -192,9 +196,17 @@ impl InSpace {
     }
 }
 
-fn flown(scenario: &SpaceScenario, signals: &Signals) -> Result<FlightLog, Failure> {
+fn flown(
+    scenario: &SpaceScenario,
+    link: Option<&str>,
+    signals: &Signals,
+) -> Result<FlightLog, Failure> {
     let stops = || signals.raised().is_some();
-    fly_space_with(scenario, &mut SpacePipe::of(scenario), stops)
+    let mut link: Box<dyn Link> = match link {
+        Some(place) => connect(place, None)?,
+        None => Box::new(SpacePipe::of(scenario)),
+    };
+    fly_space_with(scenario, link.as_mut(), stops)
         .map_err(|error| Failure::new(exit_code(&error), error))
 }
 
@@ -204,10 +216,11 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     let signals = Signals::heed()?;
     try_directory(&args.out)?;
     talk(format_args!(
-        "flying seed {seed} through {} bodies, preset {SPACE}, core in this process",
-        scenario.world.bodies().len()
+        "flying seed {seed} through {} bodies, preset {SPACE}, core {}",
+        scenario.world.bodies().len(),
+        args.link.as_deref().unwrap_or("in this process")
     ));
-    let log = flown(&scenario, &signals)?;
+    let log = flown(&scenario, args.link.as_deref(), &signals)?;
     let usual = SpaceFile {
         seed: Some(seed),
         ..SpaceFile::default()
@@ -302,7 +315,7 @@ fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
 }
 
 fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRow, Failure> {
-    let log = flown(scenario, signals)?;
+    let log = flown(scenario, None, signals)?;
     if let Some(code) = signals.raised() {
         return Err(Failure::new(
             code,

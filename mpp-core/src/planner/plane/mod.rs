@@ -39,7 +39,6 @@ mod rungs;
 mod setup;
 mod workspace;
 
-use super::shared::{NO_TRIM, STILL};
 use super::summary::PlanSummary;
 use crate::gate::Gate;
 use crate::lattice::{CLIMB, CostToGo, MAX_LATTICE_PATHS};
@@ -169,7 +168,7 @@ impl PlanePlanner {
             seen: f64::INFINITY,
             weights: Weights::PAPER,
             units: Units::SI,
-            known: (Airframe::REFERENCE, NO_TRIM),
+            known: (Airframe::REFERENCE, Trim::NONE),
             si_airframe: Airframe::REFERENCE,
             actuators: ActuatorLimits::NONE,
             lag: ThrustLag::NONE,
@@ -186,11 +185,11 @@ impl PlanePlanner {
             state: VehicleState {
                 x: 0.0,
                 z: 0.0,
-                air: STILL,
+                air: AirState::NONE,
             },
             wind: Wind::STILL,
             airframe: Airframe::REFERENCE,
-            trim: NO_TRIM,
+            trim: Trim::NONE,
             limits: Limits::NONE,
             workspace: Workspace::NEW,
             map: RollingGrid::new(),

@@ -32,14 +32,7 @@ impl SpacePlan {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            knots: [SpacePath {
-                position: [0.0; 3],
-                airspeed: 0.0,
-                angle_of_attack: 0.0,
-                bank: 0.0,
-                flight_path: 0.0,
-                course: 0.0,
-            }; KNOTS],
+            knots: [SpacePath::ORIGIN; KNOTS],
             controls: [SpaceControl {
                 bank_rate: 0.0,
                 angle_of_attack_rate: 0.0,

@@ -19,6 +19,15 @@ pub struct Keep {
 }
 
 impl Keep {
+    /// Nothing is kept: the value before a set-up.
+    pub(super) const NONE: Self = Self {
+        margin: 0.0,
+        half_span: 0.0,
+        heights: [0.0; 2],
+        half_width: 0.0,
+        altitude: 0.0,
+    };
+
     /// Distance that the body keeps from an obstacle in the direction of a normal, with its wing along a unit vector \[m\].
     pub(super) fn distance(&self, normal: &[f64; 3], wing: &[f64; 3]) -> f64 {
         self.margin + self.half_span * libm::fabs(dot(normal, wing))

@@ -76,6 +76,23 @@ enum Phase {
     Refine(usize),
 }
 
+/// What the next slice of a cycle does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SpaceStage {
+    /// Distances to what the map knows.
+    Field,
+    /// A station of the lattice.
+    Lattice,
+    /// A candidate, flown.
+    Candidate,
+    /// Faces and program of a candidate.
+    Program,
+    /// Steps of the solver.
+    Solve,
+    /// Moves of the best plan.
+    Refine,
+}
+
 /// A candidate and its worth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Candidate {
@@ -109,22 +126,20 @@ pub struct SpacePlanner {
 }
 
 impl SpacePlanner {
-    /// A planner for an aircraft.
+    /// A planner that waits for [`set_up`](Self::set_up). The value is large: place it in a `static` or a box.
     #[must_use]
-    pub fn new(model: SpaceModel, keep: Keep) -> Self {
-        let mut lattice = Lattice::new();
-        lattice.set_up(&model);
+    pub const fn new() -> Self {
         Self {
-            model,
-            keep,
-            wanted: SPACE_CANDIDATES,
+            model: SpaceModel::NONE,
+            keep: Keep::NONE,
+            wanted: 0,
             programs: true,
             field: VoxelField::new(),
-            lattice,
+            lattice: Lattice::new(),
             paths: heapless::Vec::new(),
             candidates: heapless::Vec::new(),
             best: None,
-            start: SpacePath::default(),
+            start: SpacePath::ORIGIN,
             previous: None,
             phase: Phase::Idle,
             faces: Faces::none(),
@@ -134,6 +149,16 @@ impl SpacePlanner {
             solution: Solution::new(),
             steps: 0,
         }
+    }
+
+    /// Sets the planner up in place for an aircraft, and forgets the last flight.
+    pub fn set_up(&mut self, model: SpaceModel, keep: Keep) {
+        (self.model, self.keep) = (model, keep);
+        self.choose(SPACE_CANDIDATES, true);
+        self.lattice.set_up(&model);
+        self.phase = Phase::Idle;
+        self.candidates.clear();
+        (self.best, self.previous) = (None, None);
     }
 
     /// Chooses the number of candidates, from 1 to [`SPACE_CANDIDATES`], and whether a program improves each.
@@ -182,6 +207,20 @@ impl SpacePlanner {
             Phase::Refine(number) => self.refine(number),
         };
         matches!(self.phase, Phase::Idle | Phase::Offers)
+    }
+
+    /// What the next slice does; `None` if the cycle is done.
+    #[must_use]
+    pub fn stage(&self) -> Option<SpaceStage> {
+        match self.phase {
+            Phase::Idle | Phase::Offers => None,
+            Phase::Field => Some(SpaceStage::Field),
+            Phase::Forward(_) | Phase::Backward(_) => Some(SpaceStage::Lattice),
+            Phase::Previous | Phase::Candidate(_) => Some(SpaceStage::Candidate),
+            Phase::Pose(_) => Some(SpaceStage::Program),
+            Phase::Solve(_) => Some(SpaceStage::Solve),
+            Phase::Refine(_) => Some(SpaceStage::Refine),
+        }
     }
 
     /// The best plan so far, and its worth.

@@ -164,15 +164,12 @@ fn is_minimum(totals: &Totals, row: usize, layer: usize, apart: usize) -> bool {
 
 /// Inserts a minimum before those that cost more. The dearest one leaves a full list.
 fn insert<const N: usize>(minima: &mut heapless::Vec<(u16, State), N>, cost: u16, state: State) {
-    let place = minima
-        .iter()
-        .position(|other| cost < other.0)
-        .unwrap_or(minima.len());
-    if minima.is_full() {
-        if place == minima.len() {
-            return;
+    let (mut moved, mut placed) = ((cost, state), false);
+    for other in minima.iter_mut() {
+        placed |= moved.0 < other.0;
+        if placed {
+            core::mem::swap(other, &mut moved);
         }
-        minima.pop();
     }
-    let _ = minima.insert(place, (cost, state));
+    let _ = minima.push(moved);
 }
