@@ -14,6 +14,8 @@ const BEHIND: i64 = 8;
 const REACH: i32 = 6;
 /// Greatest distance that the field tells \[m\].
 pub const MOST_CLEARANCE: f64 = REACH as f64 * CELL;
+/// Diagonal of a voxel, and a little more against rounding \[m\].
+const DIAGONAL: f64 = 1.733 * CELL;
 /// Square of a distance beyond the reach, in parts of a voxel.
 const FAR: u16 = (REACH * PARTS * REACH * PARTS) as u16;
 
@@ -130,9 +132,8 @@ impl VoxelField {
         self.clearance_and_slope(point).0
     }
 
-    /// [`clearance`](Self::clearance), and its slope [-].
-    #[must_use]
-    pub fn clearance_and_slope(&self, point: &[f64; 3]) -> (f64, [f64; 3]) {
+    /// The voxel with the least numbers of the eight whose centres lie around a point, and the place of the point among them [-].
+    fn cube(&self, point: &[f64; 3]) -> ([usize; 3], [f64; 3]) {
         let [x, y, z] = point.map(|it| it / CELL - 0.5);
         let middle = CELLS[1] as f64 / 2.0;
         let at = [
@@ -143,18 +144,35 @@ impl VoxelField {
         let mut low = [0; 3];
         let mut share = [0.0; 3];
         for (axis, length) in [LENGTH, WIDTH, HEIGHT].into_iter().enumerate() {
+            // Positive, so the whole part is the floor.
             let inside = at[axis].max(0.0).min(length as f64 - 1.001);
-            let floor = libm::floor(inside);
-            (low[axis], share[axis]) = (floor as usize, inside - floor);
+            low[axis] = inside as usize;
+            share[axis] = inside - low[axis] as f64;
         }
-        let [x, y, z] = low;
+        (low, share)
+    }
+
+    /// Whether [`clearance`](Self::clearance) is at least a distance \[m\]. False also where that takes more than a look at one
+    /// voxel: the distances of the centres around a point differ by the diagonal of a voxel at most.
+    #[must_use]
+    pub fn is_clear(&self, point: &[f64; 3], distance: f64) -> bool {
+        let (low, _) = self.cube(point);
+        let needed = (distance + DIAGONAL) / PART;
+        f64::from(self.square(low)) >= needed * needed
+    }
+
+    /// [`clearance`](Self::clearance), and its slope [-].
+    #[must_use]
+    pub fn clearance_and_slope(&self, point: &[f64; 3]) -> (f64, [f64; 3]) {
+        let ([x, y, z], share) = self.cube(point);
         // Value and slopes along z, then y, then x.
         let mix = |a: f64, b: f64, share: f64| a + (b - a) * share;
-        let column = |x, y| {
-            let (below, above) = (
-                root(self.square([x, y, z])),
-                root(self.square([x, y, z + 1])),
-            );
+        let column = |x: usize, y: usize| {
+            let squares = self.squares.get(x).and_then(|slice| slice.get(y));
+            let [below, above] = [z, z + 1].map(|z| {
+                let square = squares.and_then(|squares| squares.get(z));
+                root(square.copied().unwrap_or(FAR))
+            });
             [mix(below, above, share[2]), above - below]
         };
         let slice = |x| {

@@ -289,17 +289,17 @@ fn rate(
         course,
     ] = *numbers;
     let (a, v) = (&model.airframe, airspeed.max(LEAST_AIRSPEED));
-    let [along, ..] = path_axes(flight_path, course);
     let (sin_path, cos_path) = libm::sincos(flight_path);
+    let (sin_course, cos_course) = libm::sincos(course);
     let (sin_bank, cos_bank) = libm::sincos(bank);
     let lift = a.lift_zero + a.lift_alpha * angle_of_attack;
     let drag = model.pressure_area(v) * (a.drag_zero + a.drag_induced * (lift * lift));
     let pull = model.pull(v, angle_of_attack, control.thrust);
     let pushed = control.thrust * libm::cos(angle_of_attack) - drag;
     [
-        v * along[0] + model.wind[0],
-        v * along[1] + model.wind[1],
-        v * along[2] + model.wind[2],
+        v * (cos_path * cos_course) + model.wind[0],
+        v * (cos_path * sin_course) + model.wind[1],
+        v * sin_path + model.wind[2],
         pushed / a.mass - GRAVITY * sin_path,
         control.angle_of_attack_rate,
         control.bank_rate,

@@ -46,12 +46,26 @@ impl SpacePlan {
         &mut self,
         model: &SpaceModel,
         start: &SpacePath,
+        choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
+    ) {
+        let [first, ..] = &mut self.knots;
+        *first = *start;
+        self.fly_from(0, model, choose);
+    }
+
+    /// Flies the stages from `stage` on anew, from the knot at its beginning.
+    pub(super) fn fly_from(
+        &mut self,
+        stage: usize,
+        model: &SpaceModel,
         mut choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
     ) {
-        let [first, later @ ..] = &mut self.knots;
-        *first = *start;
-        let mut state = *start;
-        for (stage, (control, knot)) in self.controls.iter_mut().zip(later).enumerate() {
+        let Some(mut state) = self.knots.get(stage).copied() else {
+            return;
+        };
+        let [_, later @ ..] = &mut self.knots;
+        let stages = self.controls.iter_mut().zip(later).enumerate();
+        for (stage, (control, knot)) in stages.skip(stage) {
             *control = choose(stage, &state);
             state = state.after(model, control, STAGE_PERIOD);
             *knot = state;

@@ -22,59 +22,117 @@ pub struct SpaceJudgement {
     pub missing: f64,
 }
 
-pub(super) fn judge(
-    field: &VoxelField,
-    lattice: &Lattice,
-    model: &SpaceModel,
-    keep: &Keep,
-    plan: &SpacePlan,
-) -> SpaceJudgement {
-    let via = lattice.via();
-    let [first, .., last] = &plan.knots;
-    let (mut price, mut missing) = (0.0, 0.0_f64);
-    let mut to_go = None;
-    let segments = plan.knots.iter().zip(plan.knots.iter().skip(1));
-    for (stage, (from, to)) in segments.enumerate() {
+/// The costs of a trajectory up to a knot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tally {
+    price: f64,
+    missing: f64,
+    /// Cost-to-go, once the trajectory has passed the via station.
+    to_go: Option<f64>,
+    /// Velocity over ground at the knot [m/s].
+    velocity: [f64; 3],
+}
+
+/// What a trajectory is judged by.
+pub(super) struct Judge<'a> {
+    pub(super) field: &'a VoxelField,
+    pub(super) lattice: &'a Lattice,
+    pub(super) model: &'a SpaceModel,
+    pub(super) keep: &'a Keep,
+}
+
+impl Judge<'_> {
+    /// The worth of a trajectory.
+    pub(super) fn judge(&self, plan: &SpacePlan) -> SpaceJudgement {
+        self.judge_from(plan, 0, self.begin(plan), |_| ())
+    }
+
+    /// No costs at the first knot.
+    pub(super) fn begin(&self, plan: &SpacePlan) -> Tally {
+        let [first, ..] = &plan.knots;
+        Tally {
+            price: 0.0,
+            missing: 0.0,
+            to_go: None,
+            velocity: first.ground_velocity(&self.model.wind),
+        }
+    }
+
+    /// The worth of a trajectory whose costs up to the knot `stage` are known. `each` sees the costs at every later knot.
+    pub(super) fn judge_from(
+        &self,
+        plan: &SpacePlan,
+        stage: usize,
+        mut tally: Tally,
+        mut each: impl FnMut(&Tally),
+    ) -> SpaceJudgement {
+        let [first, ..] = &plan.knots;
+        let segments = plan.knots.iter().zip(plan.knots.iter().skip(1));
+        for (stage, (from, to)) in segments.enumerate().skip(stage) {
+            self.add(&mut tally, stage, first.position[0], [from, to]);
+            each(&tally);
+        }
+        self.end(plan, &tally)
+    }
+
+    /// Adds the costs of a stage.
+    fn add(&self, tally: &mut Tally, stage: usize, begun: f64, [from, to]: [&SpacePath; 2]) {
+        let (field, keep, via) = (self.field, self.keep, self.lattice.via());
         let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
+        let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
+        let [_, after] = velocities;
+        tally.velocity = after;
         for index in 1..=POINTS {
             let share = index as f64 / POINTS as f64;
-            let point = between(from, to, &model.wind, share);
+            let point = between(from, to, &velocities, share);
             let later = if point[0] <= via { 1.0 } else { LATER };
-            if to_go.is_none() && point[0] >= via {
-                to_go = Some(lattice.cost_to_go(&point, &to.ground_velocity(&model.wind)));
+            if tally.to_go.is_none() && point[0] >= via {
+                tally.to_go = Some(self.lattice.cost_to_go(&point, &after));
             }
-            let (clearance, slope) = field.clearance_and_slope(&point);
-            let margin = keep.margin(clearance, &slope, &wing(from, to, share));
-            let lack = (margin - clearance).max(0.0) + keep.outside(&point);
-            let room = (margin + ROOM - clearance).max(0.0);
-            price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
-            missing = missing.max(lack * later);
+            let (mut lack, mut room) = (0.0, 0.0);
+            if !field.is_clear(&point, keep.margin + keep.half_span + ROOM) {
+                let (clearance, slope) = field.clearance_and_slope(&point);
+                let margin = keep.margin(clearance, &slope, || wing(from, to, share));
+                lack = (margin - clearance).max(0.0);
+                room = (margin + ROOM - clearance).max(0.0);
+            }
+            lack += keep.outside(&point);
+            tally.price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
+            tally.missing = tally.missing.max(lack * later);
             if field.is_unknown(&point) {
-                let near = 1.0 - (point[0] - first.position[0]) / UNKNOWN_AHEAD;
-                price += UNKNOWN_COST * later * near.max(0.0);
+                let near = 1.0 - (point[0] - begun) / UNKNOWN_AHEAD;
+                tally.price += UNKNOWN_COST * later * near.max(0.0);
             }
         }
     }
-    let level = model.trim.control.thrust;
-    for control in &plan.controls {
-        let [bank, attack, thrust] = CONTROL;
-        let extra = control.thrust - level;
-        price += 0.5
-            * (bank * control.bank_rate * control.bank_rate
-                + attack * control.angle_of_attack_rate * control.angle_of_attack_rate
-                + thrust * extra * extra);
+
+    /// Adds effort, end and cost-to-go.
+    fn end(&self, plan: &SpacePlan, tally: &Tally) -> SpaceJudgement {
+        let (trim, [.., last]) = (&self.model.trim, &plan.knots);
+        let mut price = tally.price;
+        for control in &plan.controls {
+            let [bank, attack, thrust] = CONTROL;
+            let extra = control.thrust - trim.control.thrust;
+            price += 0.5
+                * (bank * control.bank_rate * control.bank_rate
+                    + attack * control.angle_of_attack_rate * control.angle_of_attack_rate
+                    + thrust * extra * extra);
+        }
+        let off = last.position[2] - self.keep.altitude;
+        let fast = last.airspeed - trim.state.airspeed;
+        let turned =
+            last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
+        let to_go = tally.to_go.unwrap_or(SHORT);
+        price += 0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go;
+        SpaceJudgement {
+            price: if price.is_finite() {
+                price
+            } else {
+                f64::INFINITY
+            },
+            missing: tally.missing,
+        }
     }
-    let off = last.position[2] - keep.altitude;
-    let fast = last.airspeed - model.trim.state.airspeed;
-    let turned =
-        last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
-    price += 0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go.unwrap_or(SHORT);
-    let price = if price.is_finite() {
-        price
-    } else {
-        f64::INFINITY
-    };
-    SpaceJudgement { price, missing }
 }
 
 /// The wing at a share of the way between two knots.
@@ -85,8 +143,12 @@ fn wing(from: &SpacePath, to: &SpacePath, share: f64) -> [f64; 3] {
 }
 
 /// The position at a share of the way between two knots: a cubic with the velocities of both.
-fn between(from: &SpacePath, to: &SpacePath, wind: &[f64; 3], share: f64) -> [f64; 3] {
-    let (before, after) = (from.ground_velocity(wind), to.ground_velocity(wind));
+fn between(
+    from: &SpacePath,
+    to: &SpacePath,
+    [before, after]: &[[f64; 3]; 2],
+    share: f64,
+) -> [f64; 3] {
     let (s2, s3) = (share * share, share * share * share);
     core::array::from_fn(|axis| {
         let ends = (2.0 * s3 - 3.0 * s2 + 1.0) * from.position[axis]

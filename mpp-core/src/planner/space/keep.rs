@@ -34,7 +34,12 @@ impl Keep {
     }
 
     /// The same at a point with a clearance \[m\] and its slope.
-    pub(super) fn margin(&self, clearance: f64, slope: &[f64; 3], wing: &[f64; 3]) -> f64 {
+    pub(super) fn margin(
+        &self,
+        clearance: f64,
+        slope: &[f64; 3],
+        wing: impl FnOnce() -> [f64; 3],
+    ) -> f64 {
         if self.half_span <= 0.0 || clearance >= MOST_CLEARANCE {
             return self.margin;
         }
@@ -42,7 +47,7 @@ impl Keep {
         if steep < 1e-6 {
             return self.margin + self.half_span;
         }
-        self.distance(&slope.map(|it| it / steep), wing)
+        self.distance(&slope.map(|it| it / steep), &wing())
     }
 
     /// Distance beyond the band \[m\].

@@ -263,7 +263,12 @@ fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -
     let [low, high] = rules.heights;
     let beyond = (low - point[2]).max(point[2] - high).max(0.0);
     let outside = (libm::fabs(point[1]) - rules.half_width).max(0.0);
-    let lack = (rules.margin - field.clearance(point)).max(0.0) + beyond + outside;
+    let near_obstacle = if field.is_clear(point, rules.margin) {
+        0.0
+    } else {
+        (rules.margin - field.clearance(point)).max(0.0)
+    };
+    let lack = near_obstacle + beyond + outside;
     let near = 1.0 - ahead / UNKNOWN_AHEAD;
     let unknown = if near > 0.0 && field.is_unknown(point) {
         UNKNOWN_COST * near

@@ -36,9 +36,10 @@ use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 use candidate::{Pursuit, limited};
-use judge::judge;
+use judge::Judge;
 use lattice::{Lattice, Path, Rules, STATIONS, VIA};
 use program::{Frame, WEIGHTS};
+use refine::Unmoved;
 
 /// Most candidates: the previous plan and paths of the lattice.
 pub const SPACE_CANDIDATES: usize = 7;
@@ -113,6 +114,8 @@ pub struct SpacePlanner {
     paths: heapless::Vec<Path, SPACE_CANDIDATES>,
     candidates: heapless::Vec<Candidate, SPACE_CANDIDATES>,
     best: Option<Candidate>,
+    /// The best plan as moves begin with it, once one was tried.
+    unmoved: Option<Unmoved>,
     start: SpacePath,
     /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
     previous: Option<(SpacePlan, f64)>,
@@ -139,6 +142,7 @@ impl SpacePlanner {
             paths: heapless::Vec::new(),
             candidates: heapless::Vec::new(),
             best: None,
+            unmoved: None,
             start: SpacePath::ORIGIN,
             previous: None,
             phase: Phase::Idle,
@@ -181,7 +185,7 @@ impl SpacePlanner {
     /// Begins a cycle at the state in which the plan will be taken over, `shift` \[s\] after the first knot of the last plan.
     pub fn begin(&mut self, start: &SpacePath, shift: f64) {
         self.previous = self.best.map(|best| (best.plan, shift));
-        self.best = None;
+        (self.best, self.unmoved) = (None, None);
         self.start = *start;
         self.candidates.clear();
         self.paths.clear();
@@ -348,8 +352,17 @@ impl SpacePlanner {
         self.judged(plan)
     }
 
+    fn judge(&self) -> Judge<'_> {
+        Judge {
+            field: &self.field,
+            lattice: &self.lattice,
+            model: &self.model,
+            keep: &self.keep,
+        }
+    }
+
     fn judged(&self, plan: SpacePlan) -> Candidate {
-        let judgement = judge(&self.field, &self.lattice, &self.model, &self.keep, &plan);
+        let judgement = self.judge().judge(&plan);
         Candidate { plan, judgement }
     }
 
@@ -364,6 +377,7 @@ impl SpacePlanner {
             .is_none_or(|best| candidate.judgement.price < best.judgement.price);
         if better {
             self.best = Some(candidate);
+            self.unmoved = None;
         }
     }
 
@@ -371,11 +385,17 @@ impl SpacePlanner {
     fn refine(&mut self, first: usize) -> Phase {
         let end = (first + SLICE_TRIALS).min(refine::TRIALS);
         for number in first..end {
-            if let Some(best) = self.best {
-                let by = refine::Move::of(number);
-                let plan = refine::moved(&self.model, &self.start, &best.plan, &by);
-                let candidate = self.judged(plan);
-                self.consider(candidate);
+            let Some(best) = self.best else {
+                continue;
+            };
+            if self.unmoved.is_none() {
+                self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan));
+            }
+            let by = refine::Move::of(number);
+            let moved = (self.unmoved.as_ref())
+                .and_then(|unmoved| unmoved.moved(&self.judge(), &best.plan, &by));
+            if let Some((plan, judgement)) = moved {
+                self.consider(Candidate { plan, judgement });
             }
         }
         if end < refine::TRIALS {

@@ -3,7 +3,8 @@
 //! Programs hold faces and wing as the candidate has them; a roll-out is judged as it is flown.
 
 use super::candidate::{SpacePlan, limited};
-use crate::config::{KNOTS, STAGE_PERIOD};
+use super::judge::{Judge, SpaceJudgement, Tally};
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::tuning::space_refinement::{ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
@@ -44,19 +45,81 @@ impl Move {
     }
 }
 
-/// The plan with its bank moved.
-pub(super) fn moved(
-    model: &SpaceModel,
-    start: &SpacePath,
-    plan: &SpacePlan,
-    by: &Move,
-) -> SpacePlan {
-    let mut flown = SpacePlan::new();
-    flown.fly(model, start, |stage, state| {
-        let (Some(next), Some(control), Some(change)) = (
-            plan.knots.get(stage + 1),
-            plan.controls.get(stage),
-            by.0.get(stage + 1),
+/// The plan that is moved, flown by the rules of moves, with its costs at each knot: a move has them up to its first knot.
+#[derive(Clone, Debug)]
+pub(super) struct Unmoved {
+    plan: SpacePlan,
+    tallies: heapless::Vec<Tally, KNOTS>,
+    /// For each stage of the best plan: its lift upwards [m/s^2], and the angle of attack of its whole lift \[rad\].
+    lifts: [[f64; 2]; STAGES],
+}
+
+impl Unmoved {
+    /// Of the best plan.
+    pub(super) fn of(judge: &Judge<'_>, best: &SpacePlan) -> Self {
+        let model = judge.model;
+        let lifts = core::array::from_fn(|stage| {
+            let (Some(next), Some(control)) = (best.knots.get(stage + 1), best.controls.get(stage))
+            else {
+                return [0.0; 2];
+            };
+            let pull = model.pull(next.airspeed, next.angle_of_attack, control.thrust);
+            [
+                pull * upwards(next.bank),
+                model.angle_for(next.airspeed, pull),
+            ]
+        });
+        let mut unmoved = Self {
+            plan: *best,
+            tallies: heapless::Vec::new(),
+            lifts,
+        };
+        let mut plan = *best;
+        plan.fly_from(0, model, |stage, state| {
+            unmoved.control(model, best, stage, state, 0.0)
+        });
+        unmoved.plan = plan;
+        let first = judge.begin(&plan);
+        // As many knots as places.
+        let _ = unmoved.tallies.push(first);
+        judge.judge_from(&plan, 0, first, |tally| {
+            let _ = unmoved.tallies.push(*tally);
+        });
+        unmoved
+    }
+
+    /// The best plan with its bank moved, and its worth.
+    pub(super) fn moved(
+        &self,
+        judge: &Judge<'_>,
+        best: &SpacePlan,
+        by: &Move,
+    ) -> Option<(SpacePlan, SpaceJudgement)> {
+        // The first stage that the move changes.
+        let stage = by.0.iter().skip(1).position(|change| *change != 0.0)?;
+        let mut plan = self.plan;
+        plan.fly_from(stage, judge.model, |stage, state| {
+            let change = by.0.get(stage + 1).copied().unwrap_or(0.0);
+            self.control(judge.model, best, stage, state, change)
+        });
+        let tally = self.tallies.get(stage)?;
+        let judgement = judge.judge_from(&plan, stage, *tally, |_| ());
+        Some((plan, judgement))
+    }
+
+    /// The control of a stage that reaches the bank of the best plan and a change, and keeps the lift upwards.
+    fn control(
+        &self,
+        model: &SpaceModel,
+        best: &SpacePlan,
+        stage: usize,
+        state: &SpacePath,
+        change: f64,
+    ) -> SpaceControl {
+        let (Some(next), Some(control), Some([lift, whole])) = (
+            best.knots.get(stage + 1),
+            best.controls.get(stage),
+            self.lifts.get(stage),
         ) else {
             return SpaceControl::default();
         };
@@ -65,18 +128,18 @@ pub(super) fn moved(
             ..*control
         };
         let banked = limited(model, state, &wanted);
-        // The lift upwards stays what it was.
         let bank = state.bank + banked.bank_rate * STAGE_PERIOD;
-        let pull = model.pull(next.airspeed, next.angle_of_attack, control.thrust);
-        let level = |bank: f64| libm::cos(bank).max(0.3);
-        let now = model.angle_for(next.airspeed, pull * level(next.bank) / level(bank));
-        let then = model.angle_for(next.airspeed, pull);
-        let attack = between(next.angle_of_attack + now - then, model.angle_of_attack);
+        let now = model.angle_for(next.airspeed, lift / upwards(bank));
+        let attack = between(next.angle_of_attack + now - whole, model.angle_of_attack);
         let wanted = SpaceControl {
             angle_of_attack_rate: (attack - state.angle_of_attack) / STAGE_PERIOD,
             ..wanted
         };
         limited(model, state, &wanted)
-    });
-    flown
+    }
+}
+
+/// The share of the lift that goes upwards at a bank \[rad\].
+fn upwards(bank: f64) -> f64 {
+    libm::cos(bank).max(0.3)
 }
