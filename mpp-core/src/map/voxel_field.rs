@@ -144,12 +144,22 @@ impl VoxelField {
         let mut low = [0; 3];
         let mut share = [0.0; 3];
         for (axis, length) in [LENGTH, WIDTH, HEIGHT].into_iter().enumerate() {
-            // Positive, so the whole part is the floor.
-            let inside = at[axis].max(0.0).min(length as f64 - 1.001);
-            low[axis] = inside as usize;
-            share[axis] = inside - low[axis] as f64;
+            (low[axis], share[axis]) = along(at[axis], length);
         }
         (low, share)
+    }
+
+    /// [`is_clear`](Self::is_clear) for the points of a vertical line, by their height \[m\].
+    pub(crate) fn clear_column(&self, x: f64, y: f64, distance: f64) -> impl Fn(f64) -> bool {
+        let ([x, y, _], _) = self.cube(&[x, y, 0.0]);
+        let needed = (distance + DIAGONAL) / PART;
+        let needed = libm::ceil(needed * needed).min(f64::from(u16::MAX)) as u16;
+        let squares = self.squares.get(x).and_then(|slice| slice.get(y));
+        move |z| {
+            let (z, _) = along(z / CELL - 0.5, HEIGHT);
+            let square = squares.and_then(|squares| squares.get(z));
+            square.is_some_and(|square| *square >= needed)
+        }
     }
 
     /// Whether [`clearance`](Self::clearance) is at least a distance \[m\]. False also where that takes more than a look at one
@@ -243,6 +253,14 @@ impl VoxelField {
     pub fn covers(&self, x: f64) -> bool {
         voxel(x) < self.first[0] + LENGTH as i64
     }
+}
+
+/// The voxel below a coordinate in voxels, with a next one above it, and the share of the way to that \[-\].
+fn along(at: f64, length: usize) -> (usize, f64) {
+    // Positive, so the whole part is the floor.
+    let inside = at.max(0.0).min(length as f64 - 1.001);
+    let low = inside as usize;
+    (low, inside - low as f64)
 }
 
 /// Occupied and unknown voxels of a column.

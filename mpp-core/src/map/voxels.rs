@@ -150,22 +150,33 @@ impl VoxelGrid {
     /// Lowers the evidence of the voxels that a beam passes on its first `end` metres, by steps from face to face (Amanatides,
     /// Woo: "A fast voxel traversal algorithm for ray tracing", 1987).
     fn pass(&mut self, from: &[f64; 3], direction: &[f64; 3], end: f64, miss: i8) {
-        let mut at = from.map(voxel);
+        let start = from.map(voxel);
+        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
+        let first = self.first.rem_euclid(CELLS[0] as i64) as usize;
+        let (Some(_), [x, y, z]) = (self.place(start), start) else {
+            return;
+        };
+        let mut at = [x - self.first, y + MIDDLE, z].map(|it| it as i32);
         let mut next = [f64::INFINITY; 3];
         let mut each = [f64::INFINITY; 3];
+        let mut step = [-1; 3];
         for axis in 0..3 {
             let speed = direction[axis];
-            let corner = at[axis] as f64 * CELL;
+            let corner = start[axis] as f64 * CELL;
             if speed > 1e-12 {
                 (each[axis], next[axis]) = (CELL / speed, (corner + CELL - from[axis]) / speed);
+                step[axis] = 1;
             } else if speed < -1e-12 {
                 (each[axis], next[axis]) = (-CELL / speed, (corner - from[axis]) / speed);
             }
         }
         for _ in 0..MOST_STEPS {
-            let Some([x, y, z]) = self.place(at) else {
+            let [x, y, z] = at.map(|it| it as usize);
+            // A number below zero is a very large one here.
+            if x >= CELLS[0] || y >= CELLS[1] || z >= CELLS[2] {
                 return;
-            };
+            }
+            let x = (first + x) % CELLS[0];
             let hit = column(&mut self.hit, x, y).is_some_and(|hit| *hit >> z & 1 == 1);
             if let Some(evidence) = cell(&mut self.evidence, x, y, z).filter(|_| !hit) {
                 *evidence = updated(*evidence, -miss);
@@ -180,7 +191,7 @@ impl VoxelGrid {
             if next[axis] > end {
                 return;
             }
-            at[axis] += if direction[axis] > 0.0 { 1 } else { -1 };
+            at[axis] += step[axis];
             next[axis] += each[axis];
         }
     }

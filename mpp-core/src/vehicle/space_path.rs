@@ -232,10 +232,15 @@ impl SpacePath {
     #[must_use]
     pub fn after(&self, model: &SpaceModel, control: &SpaceControl, dt: f64) -> Self {
         let start = self.numbers();
-        let k1 = rate(&start, model, control);
-        let k2 = rate(&moved(&start, &k1, 0.5 * dt), model, control);
-        let k3 = rate(&moved(&start, &k2, 0.5 * dt), model, control);
-        let k4 = rate(&moved(&start, &k3, dt), model, control);
+        let angles = Angles::of(&start);
+        let k1 = rate(&start, &angles, model, control);
+        let half = moved(&start, &k1, 0.5 * dt);
+        // Bank and angle of attack do not depend on the other states, so both middles have the same.
+        let angles = Angles::of(&half);
+        let k2 = rate(&half, &angles, model, control);
+        let k3 = rate(&moved(&start, &k2, 0.5 * dt), &angles, model, control);
+        let end = moved(&start, &k3, dt);
+        let k4 = rate(&end, &Angles::of(&end), model, control);
         Self::of(core::array::from_fn(|state| {
             start[state] + dt / 6.0 * (k1[state] + 2.0 * (k2[state] + k3[state]) + k4[state])
         }))
@@ -272,30 +277,38 @@ fn moved(state: &[f64; SPACE_STATES], rate: &[f64; SPACE_STATES], dt: f64) -> [f
     core::array::from_fn(|index| state[index] + dt * rate[index])
 }
 
+/// Sines and cosines of the angles whose rates are controls.
+struct Angles {
+    attack: (f64, f64),
+    bank: (f64, f64),
+}
+
+impl Angles {
+    fn of([_, _, _, _, attack, bank, _, _]: &[f64; SPACE_STATES]) -> Self {
+        Self {
+            attack: libm::sincos(*attack),
+            bank: libm::sincos(*bank),
+        }
+    }
+}
+
 /// Time derivative of the numbers of a state.
 fn rate(
     numbers: &[f64; SPACE_STATES],
+    angles: &Angles,
     model: &SpaceModel,
     control: &SpaceControl,
 ) -> [f64; SPACE_STATES] {
-    let [
-        _,
-        _,
-        _,
-        airspeed,
-        angle_of_attack,
-        bank,
-        flight_path,
-        course,
-    ] = *numbers;
+    let [_, _, _, airspeed, angle_of_attack, _, flight_path, course] = *numbers;
+    let ((sin_attack, cos_attack), (sin_bank, cos_bank)) = (angles.attack, angles.bank);
     let (a, v) = (&model.airframe, airspeed.max(LEAST_AIRSPEED));
     let (sin_path, cos_path) = libm::sincos(flight_path);
     let (sin_course, cos_course) = libm::sincos(course);
-    let (sin_bank, cos_bank) = libm::sincos(bank);
     let lift = a.lift_zero + a.lift_alpha * angle_of_attack;
-    let drag = model.pressure_area(v) * (a.drag_zero + a.drag_induced * (lift * lift));
-    let pull = model.pull(v, angle_of_attack, control.thrust);
-    let pushed = control.thrust * libm::cos(angle_of_attack) - drag;
+    let pressure = model.pressure_area(v);
+    let drag = pressure * (a.drag_zero + a.drag_induced * (lift * lift));
+    let pull = (pressure * lift + control.thrust * sin_attack) / a.mass;
+    let pushed = control.thrust * cos_attack - drag;
     [
         v * (cos_path * cos_course) + model.wind[0],
         v * (cos_path * sin_course) + model.wind[1],

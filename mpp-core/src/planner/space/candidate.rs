@@ -46,29 +46,27 @@ impl SpacePlan {
         &mut self,
         model: &SpaceModel,
         start: &SpacePath,
-        choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
+        mut choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
     ) {
         let [first, ..] = &mut self.knots;
         *first = *start;
-        self.fly_from(0, model, choose);
+        for stage in 0..STAGES {
+            self.fly_stage(stage, model, |state| choose(stage, state));
+        }
     }
 
-    /// Flies the stages from `stage` on anew, from the knot at its beginning.
-    pub(super) fn fly_from(
+    /// Flies a stage from the knot at its beginning.
+    pub(super) fn fly_stage(
         &mut self,
         stage: usize,
         model: &SpaceModel,
-        mut choose: impl FnMut(usize, &SpacePath) -> SpaceControl,
+        choose: impl FnOnce(&SpacePath) -> SpaceControl,
     ) {
-        let Some(mut state) = self.knots.get(stage).copied() else {
-            return;
-        };
-        let [_, later @ ..] = &mut self.knots;
-        let stages = self.controls.iter_mut().zip(later).enumerate();
-        for (stage, (control, knot)) in stages.skip(stage) {
-            *control = choose(stage, &state);
-            state = state.after(model, control, STAGE_PERIOD);
-            *knot = state;
+        let control = self.controls.get_mut(stage);
+        let knots = self.knots.get_mut(stage..);
+        if let (Some([from, to, ..]), Some(control)) = (knots, control) {
+            *control = choose(from);
+            *to = from.after(model, control, STAGE_PERIOD);
         }
     }
 

@@ -33,6 +33,13 @@ pub(super) struct Tally {
     velocity: [f64; 3],
 }
 
+impl Tally {
+    /// A price that the trajectory exceeds or has, whatever comes: no cost is negative, and rounded sums grow with their terms.
+    pub(super) fn least_price(&self) -> f64 {
+        self.price + self.to_go.unwrap_or(0.0)
+    }
+}
+
 /// What a trajectory is judged by.
 pub(super) struct Judge<'a> {
     pub(super) field: &'a VoxelField,
@@ -44,7 +51,11 @@ pub(super) struct Judge<'a> {
 impl Judge<'_> {
     /// The worth of a trajectory.
     pub(super) fn judge(&self, plan: &SpacePlan) -> SpaceJudgement {
-        self.judge_from(plan, 0, self.begin(plan), |_| ())
+        let mut tally = self.begin(plan);
+        for stage in 0..STAGES {
+            self.add(plan, stage, &mut tally);
+        }
+        self.end(plan, &tally)
     }
 
     /// No costs at the first knot.
@@ -58,25 +69,12 @@ impl Judge<'_> {
         }
     }
 
-    /// The worth of a trajectory whose costs up to the knot `stage` are known. `each` sees the costs at every later knot.
-    pub(super) fn judge_from(
-        &self,
-        plan: &SpacePlan,
-        stage: usize,
-        mut tally: Tally,
-        mut each: impl FnMut(&Tally),
-    ) -> SpaceJudgement {
-        let [first, ..] = &plan.knots;
-        let segments = plan.knots.iter().zip(plan.knots.iter().skip(1));
-        for (stage, (from, to)) in segments.enumerate().skip(stage) {
-            self.add(&mut tally, stage, first.position[0], [from, to]);
-            each(&tally);
-        }
-        self.end(plan, &tally)
-    }
-
     /// Adds the costs of a stage.
-    fn add(&self, tally: &mut Tally, stage: usize, begun: f64, [from, to]: [&SpacePath; 2]) {
+    pub(super) fn add(&self, plan: &SpacePlan, stage: usize, tally: &mut Tally) {
+        let [first, ..] = &plan.knots;
+        let (Some(from), Some(to)) = (plan.knots.get(stage), plan.knots.get(stage + 1)) else {
+            return;
+        };
         let (field, keep, via) = (self.field, self.keep, self.lattice.via());
         let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
@@ -100,14 +98,14 @@ impl Judge<'_> {
             tally.price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
             tally.missing = tally.missing.max(lack * later);
             if field.is_unknown(&point) {
-                let near = 1.0 - (point[0] - begun) / UNKNOWN_AHEAD;
+                let near = 1.0 - (point[0] - first.position[0]) / UNKNOWN_AHEAD;
                 tally.price += UNKNOWN_COST * later * near.max(0.0);
             }
         }
     }
 
     /// Adds effort, end and cost-to-go.
-    fn end(&self, plan: &SpacePlan, tally: &Tally) -> SpaceJudgement {
+    pub(super) fn end(&self, plan: &SpacePlan, tally: &Tally) -> SpaceJudgement {
         let (trim, [.., last]) = (&self.model.trim, &plan.knots);
         let mut price = tally.price;
         for control in &plan.controls {

@@ -11,6 +11,7 @@ use crate::map::VoxelField;
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use crate::vehicle::{SpaceModel, between};
+use core::ops::Range;
 
 /// Stations, that of the aircraft included.
 pub(super) const STATIONS: usize = 14;
@@ -103,35 +104,52 @@ impl Lattice {
         self.origin[0] + VIA as f64 * self.step
     }
 
-    /// Prices the places at the station after `station`, and those halfway to it.
-    pub(super) fn price(&mut self, station: usize, field: &VoxelField, rules: &Rules) {
-        let (origin, step) = (self.origin, self.step);
-        let half = (station as f64 + 0.5) * step;
+    /// Rows that paths reach at the station after `station`, before the via station.
+    pub(super) fn reached(&self, station: usize) -> Range<usize> {
+        let free = |row: &[[Layers; CLIMBS]; SLOPES]| {
+            let costs = row.as_flattened().as_flattened();
+            costs.iter().any(|cost| *cost < NONE)
+        };
+        let rows = self.forward.get(station).map_or(&[][..], |rows| rows);
+        let (first, last) = (rows.iter().position(free), rows.iter().rposition(free));
+        let (first, last) = (first.unwrap_or(0), last.unwrap_or(0));
+        first.saturating_sub(SLOPES - 1)..(last + SLOPES).min(ROWS)
+    }
+
+    /// Prices the places in some rows at the station after `station`, and those halfway to it.
+    pub(super) fn price(
+        &mut self,
+        station: usize,
+        field: &VoxelField,
+        rules: &Rules,
+        rows: Range<usize>,
+    ) {
+        let half = (station as f64 + 0.5) * self.step;
+        let line = |ahead: f64, row: f64| Line::new(&self.origin, field, rules, ahead, row);
         let (Some(nodes), Some(halfway)) =
             (self.nodes.get_mut(station), self.halfway.get_mut(station))
         else {
             return;
         };
-        let at = |ahead: f64, row: f64, layer: f64| {
-            let y = origin[1] + (row - (ROWS / 2) as f64) * ACROSS;
-            let z = origin[2] + (layer - (LAYERS / 2) as f64) * UP;
-            ([origin[0] + ahead, y, z], ahead)
-        };
-        for (row, parts) in halfway.iter_mut().enumerate() {
+        let halves = 2 * rows.start..2 * rows.end - 1;
+        for (row, parts) in halves
+            .clone()
+            .zip(halfway.get_mut(halves).unwrap_or(&mut []))
+        {
+            let line = line(half, row as f64 / 2.0);
             for (between, layers) in parts.iter_mut().enumerate() {
                 for (layer, cost) in layers.iter_mut().enumerate() {
-                    let (point, ahead) =
-                        at(half, row as f64 / 2.0, layer as f64 + 0.5 * between as f64);
-                    *cost = units(place_cost(field, rules, &point, ahead));
+                    *cost = units(line.cost(layer as f64 + 0.5 * between as f64).0);
                 }
             }
         }
-        for (row, layers) in nodes.iter_mut().enumerate() {
+        for (row, layers) in rows.clone().zip(nodes.get_mut(rows).unwrap_or(&mut [])) {
+            let line = line(half + 0.5 * self.step, row as f64);
             for (layer, cost) in layers.iter_mut().enumerate() {
-                let (point, ahead) = at(half + 0.5 * step, row as f64, layer as f64);
-                let (off, side) = (point[2] - rules.altitude, point[1]);
+                let (place, [_, side, z]) = line.cost(layer as f64);
+                let off = z - rules.altitude;
                 let far = HEIGHT * off * off + SIDE * side * side;
-                *cost = units(place_cost(field, rules, &point, ahead) + far);
+                *cost = units(place + far);
             }
         }
     }
@@ -258,22 +276,63 @@ fn place(value: f64, count: usize) -> usize {
     libm::round(value).max(0.0).min(count as f64 - 1.0) as usize
 }
 
-/// Cost of a place [-], without that of its distance from the middle.
-fn place_cost(field: &VoxelField, rules: &Rules, point: &[f64; 3], ahead: f64) -> f64 {
-    let [low, high] = rules.heights;
-    let beyond = (low - point[2]).max(point[2] - high).max(0.0);
-    let outside = (libm::fabs(point[1]) - rules.half_width).max(0.0);
-    let near_obstacle = if field.is_clear(point, rules.margin) {
-        0.0
-    } else {
-        (rules.margin - field.clearance(point)).max(0.0)
-    };
-    let lack = near_obstacle + beyond + outside;
-    let near = 1.0 - ahead / UNKNOWN_AHEAD;
-    let unknown = if near > 0.0 && field.is_unknown(point) {
-        UNKNOWN_COST * near
-    } else {
-        0.0
-    };
-    LACK * lack * lack + unknown
+/// Places above each other.
+struct Line<'a, C> {
+    field: &'a VoxelField,
+    rules: &'a Rules,
+    /// The place of the middle layer.
+    foot: [f64; 3],
+    /// Distance beyond the sides of the band \[m\].
+    outside: f64,
+    /// Weight of the unknown [-].
+    near: f64,
+    is_clear: C,
+}
+
+impl<'a> Line<'a, ()> {
+    /// The places at a distance ahead of the origin \[m\], and at a row.
+    fn new(
+        origin: &[f64; 3],
+        field: &'a VoxelField,
+        rules: &'a Rules,
+        ahead: f64,
+        row: f64,
+    ) -> Line<'a, impl Fn(f64) -> bool + use<'a>> {
+        let (x, y) = (
+            origin[0] + ahead,
+            origin[1] + (row - (ROWS / 2) as f64) * ACROSS,
+        );
+        Line {
+            field,
+            rules,
+            foot: [x, y, origin[2]],
+            outside: (libm::fabs(y) - rules.half_width).max(0.0),
+            near: 1.0 - ahead / UNKNOWN_AHEAD,
+            is_clear: field.clear_column(x, y, rules.margin),
+        }
+    }
+}
+
+impl<C: Fn(f64) -> bool> Line<'_, C> {
+    /// Cost of the place at a layer [-], without that of its distance from the middle, and the place.
+    fn cost(&self, layer: f64) -> (f64, [f64; 3]) {
+        let [x, y, origin] = self.foot;
+        let (field, rules) = (self.field, self.rules);
+        let z = origin + (layer - (LAYERS / 2) as f64) * UP;
+        let point = [x, y, z];
+        let [low, high] = rules.heights;
+        let beyond = (low - z).max(z - high).max(0.0);
+        let near_obstacle = if (self.is_clear)(z) {
+            0.0
+        } else {
+            (rules.margin - field.clearance(&point)).max(0.0)
+        };
+        let lack = near_obstacle + beyond + self.outside;
+        let unknown = if self.near > 0.0 && field.is_unknown(&point) {
+            UNKNOWN_COST * self.near
+        } else {
+            0.0
+        };
+        (LACK * lack * lack + unknown, point)
+    }
 }

@@ -36,6 +36,7 @@ use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 use candidate::{Pursuit, limited};
+use edges::ROWS;
 use judge::Judge;
 use lattice::{Lattice, Path, Rules, STATIONS, VIA};
 use program::{Frame, WEIGHTS};
@@ -258,7 +259,8 @@ impl SpacePlanner {
 
     fn extend(&mut self, station: usize) -> Phase {
         let rules = self.rules();
-        self.lattice.price(station, &self.field, &rules);
+        let rows = self.lattice.reached(station);
+        self.lattice.price(station, &self.field, &rules, rows);
         self.lattice.extend(station);
         if station + 1 < VIA {
             Phase::Forward(station + 1)
@@ -269,7 +271,7 @@ impl SpacePlanner {
 
     fn retreat(&mut self, station: usize) -> Phase {
         let rules = self.rules();
-        self.lattice.price(station, &self.field, &rules);
+        (self.lattice).price(station, &self.field, &rules, 0..ROWS);
         self.lattice.retreat(station);
         if station > VIA {
             Phase::Backward(station - 1)
@@ -392,8 +394,9 @@ impl SpacePlanner {
                 self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan));
             }
             let by = refine::Move::of(number);
-            let moved = (self.unmoved.as_ref())
-                .and_then(|unmoved| unmoved.moved(&self.judge(), &best.plan, &by));
+            let moved = (self.unmoved.as_ref()).and_then(|unmoved| {
+                unmoved.moved(&self.judge(), &best.plan, best.judgement.price, &by)
+            });
             if let Some((plan, judgement)) = moved {
                 self.consider(Candidate { plan, judgement });
             }

@@ -45,20 +45,68 @@ impl Move {
     }
 }
 
-/// The plan that is moved, flown by the rules of moves, with its costs at each knot: a move has them up to its first knot.
+/// The plan that is moved, flown by the rules of moves, with its costs before each stage: a move has them up to its first
+/// stage.
 #[derive(Clone, Debug)]
 pub(super) struct Unmoved {
     plan: SpacePlan,
-    tallies: heapless::Vec<Tally, KNOTS>,
-    /// For each stage of the best plan: its lift upwards [m/s^2], and the angle of attack of its whole lift \[rad\].
-    lifts: [[f64; 2]; STAGES],
+    tallies: heapless::Vec<Tally, STAGES>,
+    lifts: Lifts,
 }
+
+/// For each stage of the best plan: its lift upwards [m/s^2], and the angle of attack of its whole lift \[rad\].
+#[derive(Clone, Debug)]
+struct Lifts([[f64; 2]; STAGES]);
 
 impl Unmoved {
     /// Of the best plan.
     pub(super) fn of(judge: &Judge<'_>, best: &SpacePlan) -> Self {
-        let model = judge.model;
-        let lifts = core::array::from_fn(|stage| {
+        let lifts = Lifts::of(judge.model, best);
+        let (mut plan, mut tally) = (*best, judge.begin(best));
+        let mut tallies = heapless::Vec::new();
+        for stage in 0..STAGES {
+            // As many stages as places.
+            let _ = tallies.push(tally);
+            plan.fly_stage(stage, judge.model, |state| {
+                lifts.control(judge.model, best, stage, state, 0.0)
+            });
+            judge.add(&plan, stage, &mut tally);
+        }
+        Self {
+            plan,
+            tallies,
+            lifts,
+        }
+    }
+
+    /// The best plan with its bank moved, and its worth; `None` where the costs of its beginning are a `price` already.
+    pub(super) fn moved(
+        &self,
+        judge: &Judge<'_>,
+        best: &SpacePlan,
+        price: f64,
+        by: &Move,
+    ) -> Option<(SpacePlan, SpaceJudgement)> {
+        // The first stage that the move changes.
+        let first = by.0.iter().skip(1).position(|change| *change != 0.0)?;
+        let (mut plan, mut tally) = (self.plan, *self.tallies.get(first)?);
+        for stage in first..STAGES {
+            let change = by.0.get(stage + 1).copied().unwrap_or(0.0);
+            plan.fly_stage(stage, judge.model, |state| {
+                self.lifts.control(judge.model, best, stage, state, change)
+            });
+            judge.add(&plan, stage, &mut tally);
+            if tally.least_price() >= price {
+                return None;
+            }
+        }
+        Some((plan, judge.end(&plan, &tally)))
+    }
+}
+
+impl Lifts {
+    fn of(model: &SpaceModel, best: &SpacePlan) -> Self {
+        Self(core::array::from_fn(|stage| {
             let (Some(next), Some(control)) = (best.knots.get(stage + 1), best.controls.get(stage))
             else {
                 return [0.0; 2];
@@ -68,43 +116,7 @@ impl Unmoved {
                 pull * upwards(next.bank),
                 model.angle_for(next.airspeed, pull),
             ]
-        });
-        let mut unmoved = Self {
-            plan: *best,
-            tallies: heapless::Vec::new(),
-            lifts,
-        };
-        let mut plan = *best;
-        plan.fly_from(0, model, |stage, state| {
-            unmoved.control(model, best, stage, state, 0.0)
-        });
-        unmoved.plan = plan;
-        let first = judge.begin(&plan);
-        // As many knots as places.
-        let _ = unmoved.tallies.push(first);
-        judge.judge_from(&plan, 0, first, |tally| {
-            let _ = unmoved.tallies.push(*tally);
-        });
-        unmoved
-    }
-
-    /// The best plan with its bank moved, and its worth.
-    pub(super) fn moved(
-        &self,
-        judge: &Judge<'_>,
-        best: &SpacePlan,
-        by: &Move,
-    ) -> Option<(SpacePlan, SpaceJudgement)> {
-        // The first stage that the move changes.
-        let stage = by.0.iter().skip(1).position(|change| *change != 0.0)?;
-        let mut plan = self.plan;
-        plan.fly_from(stage, judge.model, |stage, state| {
-            let change = by.0.get(stage + 1).copied().unwrap_or(0.0);
-            self.control(judge.model, best, stage, state, change)
-        });
-        let tally = self.tallies.get(stage)?;
-        let judgement = judge.judge_from(&plan, stage, *tally, |_| ());
-        Some((plan, judgement))
+        }))
     }
 
     /// The control of a stage that reaches the bank of the best plan and a change, and keeps the lift upwards.
@@ -119,7 +131,7 @@ impl Unmoved {
         let (Some(next), Some(control), Some([lift, whole])) = (
             best.knots.get(stage + 1),
             best.controls.get(stage),
-            self.lifts.get(stage),
+            self.0.get(stage),
         ) else {
             return SpaceControl::default();
         };
