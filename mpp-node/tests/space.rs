@@ -11,7 +11,8 @@ use hil_protocol::{
     ConfigureVerdict, ControlMode, Decoder, Derivatives, InertialFrame, LateralAirframe, MAX_FRAME,
     Message, PlanOutcome, PointPacket, Preset, RejectionCause, SensorFrame, SpacePosition, encode,
 };
-use mpp_node::{FlightNode, SpaceNode};
+use mpp_core::planner::space::SpaceStage;
+use mpp_node::{FlightNode, SpaceNode, SpaceSlice};
 
 /// Does something on a stack on which the node can be built.
 fn aside(work: impl FnOnce() + Send + 'static) {
@@ -23,6 +24,10 @@ fn answers(node: &mut SpaceNode, message: &Message) -> Vec<Message> {
     let (mut buffer, mut sent) = ([0; MAX_FRAME], Vec::new());
     let frame = encode(message, &mut buffer).unwrap();
     node.receive(frame, |frame| sent.extend_from_slice(frame));
+    decoded(&sent)
+}
+
+fn decoded(sent: &[u8]) -> Vec<Message> {
     let mut decoder = Decoder::new();
     let received = sent.iter().filter_map(|byte| decoder.push(*byte));
     received.map(Result::unwrap).collect()
@@ -84,14 +89,18 @@ fn lateral() -> ConfigureLateral {
 
 fn ready(configure: Configure) -> Box<SpaceNode> {
     let mut node = Box::new(SpaceNode::new());
+    configured(&mut node, configure);
+    node
+}
+
+fn configured(node: &mut SpaceNode, configure: Configure) {
     for message in [
         Message::ConfigureLateral(lateral()),
         Message::ConfigureSpace(LIMITS),
         Message::Configure(configure),
     ] {
-        assert_eq!(verdict(&mut node, message), ConfigureVerdict::Accepted);
+        assert_eq!(verdict(node, message), ConfigureVerdict::Accepted);
     }
-    node
 }
 
 /// What comes before the sensor frame of a tick of level flight at 12 m/s, and the frame. A sensor that repeats to the last bit
@@ -306,5 +315,43 @@ fn a_cycle_gets_its_slices_and_no_more() {
         let report = report.unwrap();
         assert_eq!((report.slices, report.complete), (10, false));
         assert_eq!(report.outcome, PlanOutcome::TrimHold);
+    });
+}
+
+/// As an image does it, in memory that it has used before: byte by byte, and each slice on its own.
+#[test]
+fn a_node_that_is_reset_gives_the_same_answers_slice_by_slice() {
+    use SpaceStage::{Candidate, Field, Lattice, Program, Refine, Solve};
+    aside(|| {
+        let mut node = ready(CONFIGURE);
+        let sees = |tick: u32| tick % 10 == 3;
+        let wanted: Vec<_> = (0..60)
+            .flat_map(|tick| fly(&mut node, tick, sees(tick)))
+            .collect();
+        node.reset();
+        assert_eq!((node.slice(), node.advance()), (None, false));
+        configured(&mut node, CONFIGURE);
+        let (mut sent, mut slices) = (Vec::new(), Vec::new());
+        for message in (0..60).flat_map(|tick| level(tick, sees(tick))) {
+            let mut buffer = [0; MAX_FRAME];
+            for byte in encode(&message, &mut buffer).unwrap() {
+                node.take(*byte, &mut |frame: &[u8]| sent.extend_from_slice(frame));
+                while let Some(slice) = node.slice() {
+                    assert!(node.advance());
+                    slices.push(slice);
+                }
+            }
+        }
+        assert!(decoded(&sent) == wanted);
+        let count = |wanted| slices.iter().filter(|slice| **slice == wanted).count();
+        assert_eq!(count(SpaceSlice::Map), 6);
+        let cycles = count(SpaceSlice::Planner(Field));
+        assert_eq!(cycles, 3);
+        for stage in [Lattice, Candidate, Program, Solve, Refine] {
+            assert!(
+                count(SpaceSlice::Planner(stage)) >= cycles && cycles == 3,
+                "{stage:?}"
+            );
+        }
     });
 }
