@@ -214,13 +214,12 @@ impl Gate {
     fn is_occupied_near(&self, map: &RollingGrid, (x, z): (f64, f64)) -> bool {
         let reach = self.body_radius + numbers::REACH;
         let cells = (libm::ceil(reach / CELL) as i32).clamp(1, numbers::MOST_CELLS);
-        let centre = |at: f64, offset: i32, edge: f64| {
-            edge + CELL * (libm::floor((at - edge) / CELL) + 0.5 + f64::from(offset))
-        };
+        let [col_here, row_here] =
+            [(x, 0.0), (z, map.floor())].map(|(at, edge)| libm::floor((at - edge) / CELL) + 0.5);
         for right in -cells..=cells {
-            let col = centre(x, right, 0.0);
+            let col = CELL * (col_here + f64::from(right));
             for up in -cells..=cells {
-                let row = centre(z, up, map.floor());
+                let row = map.floor() + CELL * (row_here + f64::from(up));
                 let (off_x, off_z) = (col - x, row - z);
                 if off_x * off_x + off_z * off_z < reach * reach
                     && map.log_odds((col, row)) >= crate::tuning::grid::OCCUPIED

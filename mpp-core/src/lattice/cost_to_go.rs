@@ -1,7 +1,7 @@
 //! The cost-to-go of the lattice from the via station on. It outlives the search, because it is part of the price of a
 //! roll-out.
 
-use super::edges::{COST_UNIT, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, SLOPES, VIA};
+use super::edges::{HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, SLOPES, VIA, from_units};
 use crate::map::split;
 use crate::tuning::lattice::{MOST_COST_TO_GO, RISE, SPACING};
 
@@ -48,7 +48,7 @@ impl CostToGo {
         let at = |height: usize, slope: usize| {
             let costs = self.layer.get(slope);
             let cost = costs.and_then(|costs| costs.get(height)).copied();
-            (f64::from(cost.unwrap_or(NEVER)) / COST_UNIT).min(MOST_COST_TO_GO)
+            from_units(cost.unwrap_or(NEVER)).min(MOST_COST_TO_GO)
         };
         let along = |height| at(height, slope) * (1.0 - steeper) + at(height, slope + 1) * steeper;
         along(height) * (1.0 - up) + along(height + 1) * up

@@ -1,6 +1,6 @@
 //! The edges between two stations of the lattice, by their slopes.
 
-use crate::tuning::lattice::{SLOPE_WEIGHT, TURN_COST};
+use crate::tuning::lattice::{MOST_POINT_COST, SLOPE_WEIGHT, TURN_COST};
 use core::ops::Range;
 
 /// Number of heights at a station.
@@ -16,21 +16,34 @@ pub(super) const VIA: usize = 6;
 pub(super) type Layer = [[u32; HEIGHTS]; SLOPES];
 pub(super) const NO_COSTS: Layer = [[0; HEIGHTS]; SLOPES];
 /// Cost of what no path reaches.
-pub(super) const NEVER: u32 = 1 << 28;
+pub(super) const NEVER: u32 = 1 << 30;
+/// Costs are multiples of this number. While a search compares edges it adds the number of the edge, so that the least
+/// number is the first of the best edges, and tells which one it is.
+pub(super) const CHOICES: u32 = 4;
 
 /// Number of points of an edge whose costs the search adds up.
 pub(super) const QUARTERS: usize = 4;
 /// Number of heights of these points, in steps of half of [`RISE`].
 pub(super) const POINTS: usize = 2 * HEIGHTS - 1;
 /// Costs are whole numbers of sixteenths, so that sums do not depend on the order of their terms.
-pub(super) const COST_UNIT: f64 = 16.0;
+const COST_UNIT: f64 = 16.0;
 /// Farthest point of an edge from the height at which it begins, in steps of half of `RISE`.
 pub(super) const EDGE_REACH: usize = 18;
 
-/// Costs of the points of edges, by quarter and height in halves of `RISE`. The first and the last
-/// [`EDGE_REACH`] places lie outside of the heights and cost nothing. One more place makes pairs of them.
-pub(super) type PointCosts = [[u32; EDGE_REACH + POINTS + EDGE_REACH + 1]; QUARTERS];
-pub(super) const NO_POINT_COSTS: PointCosts = [[0; _]; QUARTERS];
+/// Costs of the points of edges, by quarter and height in halves of `RISE`: first the even heights, then the odd ones. The
+/// first and the last [`EDGE_REACH`] heights lie outside of the lattice and cost nothing.
+pub(super) type PointCosts = [[[u32; EDGE_REACH + HEIGHTS]; 2]; QUARTERS];
+pub(super) const NO_POINT_COSTS: PointCosts = [[[0; _]; 2]; QUARTERS];
+
+/// A cost as the search counts it.
+pub(super) fn in_units(cost: f64) -> u32 {
+    CHOICES * (COST_UNIT * cost).min(MOST_POINT_COST) as u32
+}
+
+/// The cost that the search counts so.
+pub(super) fn from_units(cost: u32) -> f64 {
+    f64::from(cost / CHOICES) / COST_UNIT
+}
 
 /// The heights between the lowest and the highest that a path reaches.
 pub(super) fn reached(layer: &Layer) -> Range<usize> {
@@ -57,32 +70,43 @@ pub(super) fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
 
 /// Number of choices in a byte.
 pub(super) const PER_BYTE: usize = 4;
+/// The numbers of the edges at each height and slope: [`ChoiceBits`] tells which bits hold them.
+pub(super) type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
 
-/// The two bits that hold the choices of a slope: four slopes share a row of bytes. A choice is the change of the slope
-/// by -1 to 1.
+/// The two bits that hold the choices of a slope: four slopes share a row of bytes.
 #[derive(Clone, Copy)]
-pub(super) struct ChoiceBits {
-    pub(super) row: usize,
+struct ChoiceBits {
+    row: usize,
     shift: u32,
 }
 
 impl ChoiceBits {
-    pub(super) fn of(slope: i32) -> Self {
+    fn of(slope: i32) -> Self {
         let slope = slope as u32;
         Self {
             row: slope as usize / PER_BYTE,
             shift: 2 * (slope % PER_BYTE as u32),
         }
     }
+}
 
-    /// The mask that keeps the other choices of a byte, and the bits of a change of slope.
-    pub(super) fn choosing(self, change: i32) -> (u8, u8) {
-        (!(3 << self.shift), ((change + 1) as u8) << self.shift)
-    }
+/// The number of the edge at a height and a slope.
+pub(super) fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<usize> {
+    let bits = ChoiceBits::of(slope);
+    let byte = choices.get(bits.row)?.get(usize::try_from(height).ok()?)?;
+    Some(usize::from(byte >> bits.shift & 3))
+}
 
-    /// The change of slope in a byte.
-    pub(super) fn change(self, byte: u8) -> i32 {
-        i32::from(byte >> self.shift & 3) - 1
+/// Takes the numbers of the edges out of the costs of a station.
+#[inline(never)]
+pub(super) fn settle(found: &Layer, layer: &mut Layer, choices: &mut Choice) {
+    for (slope, (costs, found)) in (0..).zip(layer.iter_mut().zip(found)) {
+        let ChoiceBits { row, shift } = ChoiceBits::of(slope);
+        let choices = choices.get_mut(row).map_or(&mut [][..], |row| row);
+        for ((cost, place), found) in costs.iter_mut().zip(choices).zip(found) {
+            *cost = found & !(CHOICES - 1);
+            *place = *place & !(3 << shift) | ((found & (CHOICES - 1)) as u8) << shift;
+        }
     }
 }
 
@@ -121,7 +145,7 @@ impl Edges {
     }
 
     /// Lowers costs to those over the edges from the height `first` on, which are known costs and the costs of
-    /// points, slope and turn. Notes the choice where a cost falls.
+    /// points, slope and turn, and the number of the edge.
     // The callers are few loops over slopes, which would each hold a copy.
     #[inline(never)]
     pub(super) fn relax(
@@ -129,33 +153,27 @@ impl Edges {
         points: &PointCosts,
         first: usize,
         known: &[u32],
-        (mask, choice): (u8, u8),
-        (costs, choices): (&mut [u32], &mut [u8]),
+        number: u32,
+        costs: &mut [u32],
     ) {
-        const TURN: u32 = (COST_UNIT * TURN_COST) as u32;
         let turn = self.next - self.slope;
-        let own = if turn == 0 { 0 } else { TURN };
-        let own = own + (COST_UNIT * SLOPE_WEIGHT * f64::from(self.next * self.next)) as u32;
+        let of_turn = if turn == 0 { 0 } else { in_units(TURN_COST) };
+        let own = of_turn + in_units(SLOPE_WEIGHT * f64::from(self.next * self.next)) + number;
         let of_quarter = |quarter: usize| {
             // The edge is a parabola, in halves of a rise: slope q + turn q^2 / 8, rounded down.
             let q = quarter as i32 + 1;
             let rise = self.slope * q + turn * (q * q / 8);
             let place = (EDGE_REACH + 2 * first).saturating_add_signed(rise as isize);
-            let points = points.get(quarter).and_then(|points| points.get(place..));
-            points.unwrap_or_default().as_chunks::<2>().0.iter()
+            let points = points.get(quarter).and_then(|points| points.get(place % 2));
+            let points = points.and_then(|points| points.get(place / 2..));
+            points.unwrap_or_default().iter()
         };
         let [a, b, c, d] = [0, 1, 2, 3].map(of_quarter);
-        let quarters = a.zip(b).zip(c).zip(d);
-        let edges = known.iter().zip(quarters);
-        for ((cost, place), (known, ((([a, _], [b, _]), [c, _]), [d, _]))) in
-            costs.iter_mut().zip(choices).zip(edges)
-        {
-            // The sum cannot overflow: known costs are at most `NEVER`, and those of an edge 5e7.
+        let edges = known.iter().zip(a.zip(b).zip(c.zip(d)));
+        for (cost, (known, ((a, b), (c, d)))) in costs.iter_mut().zip(edges) {
+            // The sum cannot overflow: known costs are at most `NEVER`, and those of an edge 2e8.
             let through = known.wrapping_add(own + a + b + c + d);
-            if through < *cost {
-                *cost = through;
-                *place = *place & mask | choice;
-            }
+            *cost = through.min(*cost);
         }
     }
 }

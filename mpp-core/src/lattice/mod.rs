@@ -13,14 +13,13 @@ mod edges;
 use crate::map::{DistanceField, Height};
 use crate::tuning::UNKNOWN_COST;
 use crate::tuning::lattice::{
-    AGILE, ALTITUDE_WEIGHT, BAND_MARGIN, MARGIN, MARGIN_WEIGHT, MOST_POINT_COST, RISE, SPACING,
-    STRETCH,
+    AGILE, ALTITUDE_WEIGHT, BAND_MARGIN, MARGIN, MARGIN_WEIGHT, RISE, SPACING, STRETCH,
 };
 use core::ops::Range;
 pub use cost_to_go::CostToGo;
 use edges::{
-    COST_UNIT, ChoiceBits, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS,
-    NO_POINT_COSTS, PER_BYTE, POINTS, PointCosts, QUARTERS, SLOPES, VIA, forbid, reached, row,
+    Choice, EDGE_REACH, Edges, HEIGHTS, LEVEL, Layer, MIDDLE, NEVER, NO_COSTS, NO_POINT_COSTS,
+    POINTS, PointCosts, QUARTERS, VIA, choice, forbid, in_units, reached, row, settle,
 };
 
 /// Number of stations, the station at the aircraft included.
@@ -28,12 +27,14 @@ pub const STATIONS: usize = 17;
 /// Greatest number of paths from one search.
 pub const MAX_LATTICE_PATHS: usize = 6;
 
+/// The changes of slope from a station back to the one before, and from a station to the next one. Among equal costs the first
+/// one stays: the lowest start, and the edge without a turn.
+const BEFORE: [i32; 3] = [1, 0, -1];
+const AFTER: [i32; 3] = [0, -1, 1];
+
 /// Greatest distance of a path in height from where it starts \[m\].
 pub(crate) const CLIMB: f64 = MIDDLE as f64 * RISE;
 
-/// The slope at the other end of the best edge for each height and slope, as a difference: [`ChoiceBits`] tells
-/// which bits hold it.
-type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
 /// A path: its height at each station \[m\].
 pub type LatticePath = [f64; STATIONS];
 
@@ -72,7 +73,7 @@ pub struct Lattice {
     /// Costs at the next station, as far as the search knows them.
     next: Layer,
     /// Terms of the costs of points that depend on their heights alone.
-    heights: [HeightTerms; POINTS],
+    heights: [[HeightTerms; 2]; HEIGHTS],
     /// PointCosts of the points of the present edges.
     point_costs: PointCosts,
     /// Costs from the start to the via station.
@@ -104,7 +105,7 @@ impl Lattice {
             station: STATIONS,
             layer: NO_COSTS,
             next: NO_COSTS,
-            heights: [HeightTerms::NONE; POINTS],
+            heights: [[HeightTerms::NONE; 2]; HEIGHTS],
             point_costs: NO_POINT_COSTS,
             to_via: NO_COSTS,
             before: [[[0; HEIGHTS]; _]; VIA + 1],
@@ -116,7 +117,7 @@ impl Lattice {
     /// The field must not change during the search.
     pub fn start(&mut self, task: &LatticeTask, field: &DistanceField) {
         self.task = *task;
-        for (place, terms) in self.heights.iter_mut().enumerate() {
+        for (place, terms) in self.heights.as_flattened_mut().iter_mut().enumerate() {
             *terms = HeightTerms::new(task, field, place);
         }
         // RISE = spacing * step / 2 holds at every spacing.
@@ -163,34 +164,21 @@ impl Lattice {
         let reached = reached(&self.layer);
         self.write_point_costs(field, station, &reached);
         forbid(&mut self.next);
-        let choices = self.before.get_mut(station + 1);
-        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
         for (to, costs) in (0..).zip(&mut self.next) {
-            // The lowest start comes first: among equal costs the first one stays.
-            for from in [to + 1, to, to - 1] {
+            for (number, change) in (0..).zip(BEFORE) {
+                let from = to + change;
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, from)) else {
                     continue;
                 };
                 let heights = edges.starts(&reached);
-                let ends = edges.ends(&heights);
-                let bits = ChoiceBits::of(to);
-                let row = choices.get_mut(bits.row);
-                let row = row.and_then(|row| row.get_mut(ends.clone()));
+                let costs = costs.get_mut(edges.ends(&heights)).unwrap_or_default();
                 let known = known.get(heights.clone()).unwrap_or_default();
-                let found = (
-                    costs.get_mut(ends).unwrap_or_default(),
-                    row.unwrap_or_default(),
-                );
-                edges.relax(
-                    &self.point_costs,
-                    heights.start,
-                    known,
-                    bits.choosing(from - to),
-                    found,
-                );
+                edges.relax(&self.point_costs, heights.start, known, number, costs);
             }
         }
-        self.layer = self.next;
+        if let Some(choices) = self.before.get_mut(station + 1) {
+            settle(&self.next, &mut self.layer, choices);
+        }
     }
 
     #[inline(never)]
@@ -198,34 +186,21 @@ impl Lattice {
         let all = 0..HEIGHTS;
         self.write_point_costs(field, station, &all);
         forbid(&mut self.next);
-        let choices = self.after.get_mut(station - VIA);
-        let choices = choices.map_or(&mut [][..], |choices| &mut choices[..]);
         for (from, costs) in (0..).zip(&mut self.next) {
-            // The edge without a turn comes first: among equal costs the first one stays.
-            for to in [from, from - 1, from + 1] {
+            for (number, change) in (0..).zip(AFTER) {
+                let to = from + change;
                 let Some((edges, known)) = Edges::new(from, to).zip(row(&self.layer, to)) else {
                     continue;
                 };
                 let heights = edges.starts(&all);
                 let known = known.get(edges.ends(&heights)).unwrap_or_default();
-                let first = heights.start;
-                let bits = ChoiceBits::of(from);
-                let row = choices.get_mut(bits.row);
-                let row = row.and_then(|row| row.get_mut(heights.clone()));
-                let found = (
-                    costs.get_mut(heights).unwrap_or_default(),
-                    row.unwrap_or_default(),
-                );
-                edges.relax(
-                    &self.point_costs,
-                    first,
-                    known,
-                    bits.choosing(to - from),
-                    found,
-                );
+                let costs = costs.get_mut(heights.clone()).unwrap_or_default();
+                edges.relax(&self.point_costs, heights.start, known, number, costs);
             }
         }
-        self.layer = self.next;
+        if let Some(choices) = self.after.get_mut(station - VIA) {
+            settle(&self.next, &mut self.layer, choices);
+        }
     }
 
     /// Writes the costs of the points on the edges of a station that begin at certain heights. The last quarter also
@@ -250,26 +225,34 @@ impl Lattice {
                 let crowded = (task.room - distance).max(0.0);
                 MARGIN_WEIGHT * lack * lack + task.room_weight * crowded * crowded
             };
-            let in_units = |cost: f64| (COST_UNIT * cost).min(MOST_POINT_COST) as u32;
             let far_cost = clearance_cost(column.farthest(), 0.0);
-            let far_costs = [far_cost, far_cost + unknown].map(in_units);
+            let far = [far_cost, far_cost + unknown];
+            let far_costs = far.map(in_units);
             let is_end = quarter + 1 == QUARTERS;
-            let costs = costs.get_mut(EDGE_REACH + first..EDGE_REACH + last);
-            let heights = self.heights.get(first..last).unwrap_or_default();
-            for (cost, terms) in costs.unwrap_or_default().iter_mut().zip(heights) {
-                let is_unknown = column.is_unknown(&terms.height);
-                if !is_end && column.is_far(&terms.height) && terms.outside == 0.0 {
-                    *cost = far_costs[usize::from(is_unknown)];
-                    continue;
+            let pairs = self.heights.get(first / 2..).unwrap_or_default();
+            for (parity, costs) in costs.iter_mut().enumerate() {
+                let start = (EDGE_REACH + first) / 2;
+                let count = (last - first + 1 - parity) / 2;
+                let costs = costs.get_mut(start..start + count).unwrap_or_default();
+                for (cost, pair) in costs.iter_mut().zip(pairs) {
+                    let terms = &pair[parity % 2];
+                    let is_unknown = column.is_unknown(&terms.height);
+                    let of_altitude = if is_end { terms.altitude_cost } else { 0.0 };
+                    if column.is_far(&terms.height) && terms.outside == 0.0 {
+                        let is_unknown = usize::from(is_unknown);
+                        *cost = if is_end {
+                            in_units(far[is_unknown] + of_altitude)
+                        } else {
+                            far_costs[is_unknown]
+                        };
+                        continue;
+                    }
+                    let mut sum = clearance_cost(column.distance(&terms.height), terms.outside);
+                    if is_unknown {
+                        sum += unknown;
+                    }
+                    *cost = in_units(sum + of_altitude);
                 }
-                let mut sum = clearance_cost(column.distance(&terms.height), terms.outside);
-                if is_unknown {
-                    sum += unknown;
-                }
-                if is_end {
-                    sum += terms.altitude_cost;
-                }
-                *cost = in_units(sum);
             }
         }
     }
@@ -328,13 +311,13 @@ impl Lattice {
         let (before, after) = path.split_at_mut(VIA);
         let mut at = (height, slope);
         for (place, choices) in before.iter_mut().zip(&self.before[1..]).rev() {
-            let slope = choice(choices, at).unwrap_or(LEVEL);
+            let slope = other_end(choices, at, &BEFORE);
             at = (at.0 - (slope - LEVEL) - (at.1 - LEVEL), slope);
             *place = z(at.0);
         }
         let mut at = (height, slope);
         for (place, choices) in after.iter_mut().skip(1).zip(&self.after) {
-            let slope = choice(choices, at).unwrap_or(LEVEL);
+            let slope = other_end(choices, at, &AFTER);
             at = (at.0 + (at.1 - LEVEL) + (slope - LEVEL), slope);
             *place = z(at.0);
         }
@@ -371,9 +354,8 @@ impl HeightTerms {
     }
 }
 
-/// The choice at a height and a slope.
-fn choice(choices: &Choice, (height, slope): (i32, i32)) -> Option<i32> {
-    let bits = ChoiceBits::of(slope);
-    let choices = choices.get(bits.row)?.get(usize::try_from(height).ok()?)?;
-    Some(slope + bits.change(*choices))
+/// The slope at the other end of the best edge at a height and a slope.
+fn other_end(choices: &Choice, at: (i32, i32), changes: &[i32]) -> i32 {
+    let change = choice(choices, at).and_then(|number| changes.get(number));
+    change.map_or(LEVEL, |change| at.1 + change)
 }

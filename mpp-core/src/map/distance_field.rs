@@ -223,8 +223,7 @@ impl DistanceField {
                 continue;
             }
             let z = self.floor + CELL * (row as f64 + 0.5);
-            let words = [0, 32, 64, 96].map(|first| (cells >> first) as u32);
-            for (first, mut bits) in (0_u32..).step_by(32).zip(words) {
+            for (first, mut bits) in (0_u32..).step_by(WORD).zip(words(cells)) {
                 while bits != 0 {
                     let col = first + bits.trailing_zeros();
                     bits &= bits - 1;
@@ -293,6 +292,14 @@ impl Column {
     }
 }
 
+/// Number of cells in a word of the processor.
+const WORD: usize = usize::BITS as usize;
+
+/// The cells of a row in words, which a processor searches faster than the whole row.
+fn words(cells: u128) -> [usize; COLS / WORD] {
+    core::array::from_fn(|word| (cells >> (word * WORD)) as usize)
+}
+
 /// The number of the cell that holds a coordinate in cells. It is `None` below the first cell.
 fn cell(coordinate: f64) -> Option<usize> {
     (coordinate >= 0.0).then_some(coordinate as usize)
@@ -329,11 +336,10 @@ fn write_distances(
             continue;
         }
         known |= new;
-        let words = [0, 32, 64, 96].map(|first| (new >> first) as u32);
-        let blocks = distances.as_chunks_mut::<32>().0;
-        for (mut bits, distances) in words.into_iter().zip(blocks) {
+        let blocks = distances.as_chunks_mut::<WORD>().0;
+        for (mut bits, distances) in words(new).into_iter().zip(blocks) {
             while bits != 0 {
-                distances[bits.trailing_zeros() as usize % 32] = distance;
+                distances[bits.trailing_zeros() as usize % WORD] = distance;
                 bits &= bits - 1;
             }
         }

@@ -243,11 +243,8 @@ impl RollingGrid {
         let mut last = None;
         for _ in 0..steps.min(MAX_STEPS) {
             let place = (row.cell(), col.cell());
+            let before = last.replace(place);
             (row, col) = (row.after(next_row), col.after(next_col));
-            if last == Some(place) {
-                continue;
-            }
-            last = Some(place);
             let (row, col) = (place.0 as usize, place.1 as usize);
             let (Some(cells), Some(isolated)) = (self.log_odds.get_mut(row), isolated.0.get(row))
             else {
@@ -256,10 +253,11 @@ impl RollingGrid {
             if col >= COLS {
                 continue;
             }
-            let cell = &mut cells[(first_slot + col) % COLS];
+            let slot = (first_slot + col) % COLS;
+            let cell = &mut cells[slot];
             // Most cells on the way are as free as they can be. A beam of this scan that ended in a cell that stands alone says
             // more than others that pass.
-            if *cell > -FREE && !bit(isolated, (first_slot + col) % COLS) {
+            if *cell > -FREE && before != Some(place) && !bit(isolated, slot) {
                 *cell = updated(*cell, -by);
             }
         }

@@ -139,10 +139,11 @@ pub(crate) fn air_rate_along(
 /// Time derivative of the whole vehicle state.
 #[must_use]
 pub fn vehicle_rate(airframe: &Airframe, state: &VehicleState, control: Control) -> VehicleState {
-    let (sin_path, cos_path) = libm::sincos(state.air.flight_path);
+    let directions = Directions::of(&state.air);
+    let (sin_path, cos_path) = directions.path;
     VehicleState {
         x: state.air.airspeed * cos_path,
         z: state.air.airspeed * sin_path,
-        air: air_rate(airframe, &state.air, control),
+        air: air_rate_along(&directions, airframe, &state.air, control),
     }
 }

@@ -61,6 +61,7 @@ pub(super) fn ray_to_segment(from: Point, direction: Point, segment: [Point; 2])
 /// Distance along a ray at which it enters a circle \[m\]. It is 0 if the ray starts inside, where
 /// the exit is not visible. Returns `None` if the ray misses the circle. `direction` is a unit
 /// vector.
+#[inline]
 pub(super) fn ray_to_circle(
     from: Point,
     direction: Point,

@@ -78,10 +78,15 @@ impl Field for ObstacleField {
 
     fn clearance_of_motion(&self, from: Point, to: Point, lasting: f64) -> f64 {
         let times = [self.time, self.time + lasting];
-        self.obstacles
-            .iter()
-            .map(|obstacle| obstacle.clearance_of_motion(from, to, times))
-            .fold(f64::INFINITY, f64::min)
+        let clearance = |it: &Obstacle| it.clearance_of_motion(from, to, times);
+        // Where the obstacles are in the order of their downrange distance, this one is near, and most others surely farther.
+        let near = (self.obstacles).partition_point(|it| it.middle() < from.0);
+        let near = self.obstacles.get(near).or(self.obstacles.last());
+        let near = near.map_or(f64::INFINITY, clearance);
+        let may_be_least =
+            |it: &&Obstacle| it.least_clearance_of_motion(from, to, times) <= near + BEYOND;
+        let least = self.obstacles.iter().filter(may_be_least).map(clearance);
+        least.fold(near, f64::min)
     }
 
     fn range(&self, from: Point, direction: Point) -> Option<f64> {
@@ -94,14 +99,11 @@ impl Field for ObstacleField {
     /// Most obstacles of a long field are beyond the reach of a lidar.
     fn ranges(&self, from: Point, directions: &[Point], within: f64) -> Vec<Option<f64>> {
         let near = |it: &&Obstacle| it.clearance(from, self.time) <= within + BEYOND;
-        let near: Vec<&Obstacle> = self.obstacles.iter().filter(near).collect();
-        let range = |direction: &Point| {
-            let ranges = near
-                .iter()
-                .filter_map(|it| it.range(from, *direction, self.time));
-            ranges.reduce(f64::min)
-        };
-        directions.iter().map(range).collect()
+        let mut ranges = vec![None; directions.len()];
+        for obstacle in self.obstacles.iter().filter(near) {
+            obstacle.shorten(from, directions, self.time, &mut ranges);
+        }
+        ranges
     }
 
     fn obstacles(&self) -> &[Obstacle] {

@@ -120,6 +120,16 @@ impl Shape {
         }
     }
 
+    /// At most what [`Self::clearance_of_segment`] gives from one place downrange to another, up to rounding \[m\]: how far a
+    /// circle is ahead or behind.
+    #[inline]
+    pub(super) fn least_clearance_along(&self, from: f64, to: f64) -> f64 {
+        match self {
+            Self::Circle { centre, radius } => (centre.0 - from).abs() - (to - from).abs() - radius,
+            _ => f64::NEG_INFINITY,
+        }
+    }
+
     /// Distance along a ray at which it enters the shape \[m\]. The distance is 0 if the ray starts
     /// inside, where the exit is not visible. Returns `None` if the ray misses the shape.
     /// `direction` is a unit vector.
@@ -134,6 +144,17 @@ impl Shape {
             Self::Ground(sheet) | Self::Ceiling(sheet) => {
                 range_to_area(&sheet.corners, from, direction)
             }
+        }
+    }
+
+    /// Shortens the ranges along rays from one place to where they enter the shape; see [`Self::range`]. What all rays to a
+    /// circle share is computed once.
+    pub(super) fn shorten(&self, from: Point, directions: &[Point], ranges: &mut [Option<f64>]) {
+        match self {
+            Self::Circle { centre, radius } => shorten(ranges, directions, |direction| {
+                ray_to_circle(from, direction, *centre, *radius)
+            }),
+            _ => shorten(ranges, directions, |direction| self.range(from, direction)),
         }
     }
 
@@ -197,6 +218,15 @@ impl Shape {
             Self::Line { points, .. } => points.len(),
             Self::Polygon { corners } => corners.len(),
             Self::Ground(sheet) | Self::Ceiling(sheet) => sheet.line().len(),
+        }
+    }
+}
+
+/// Shortens ranges to what `range` gives along their directions.
+fn shorten(ranges: &mut [Option<f64>], directions: &[Point], range: impl Fn(Point) -> Option<f64>) {
+    for (nearest, direction) in ranges.iter_mut().zip(directions) {
+        if let Some(range) = range(*direction) {
+            *nearest = Some(nearest.map_or(range, |nearest: f64| nearest.min(range)));
         }
     }
 }

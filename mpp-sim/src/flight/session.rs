@@ -116,13 +116,14 @@ impl Session<'_> {
         scan: Option<&LidarScan>,
         frame: SensorFrame,
     ) -> Result<Option<StepReply>, LinkError> {
-        let scan = scan.map(|scan| Message::LidarScan(scan.clone()));
-        let questions: Vec<_> = scan
-            .into_iter()
-            .chain([Message::SensorFrame(frame)])
-            .collect();
+        let alone = [Message::SensorFrame(frame)];
+        let with_scan = scan.map(|scan| {
+            let scan = Message::LidarScan(scan.clone());
+            [scan, Message::SensorFrame(frame)]
+        });
+        let questions = with_scan.as_ref().map_or(&alone[..], |both| both);
         let awaited = format!("the actuator command of tick {}", frame.tick);
-        self.ask(&awaited, &questions, |draft: &mut Draft, message| {
+        self.ask(&awaited, questions, |draft: &mut Draft, message| {
             match message {
                 Message::ActuatorCommand(command) if command.tick == frame.tick => {
                     let Draft {

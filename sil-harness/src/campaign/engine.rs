@@ -93,7 +93,7 @@ pub fn run_faults(
 ) -> Result<Vec<(FaultJob, Flown)>, CampaignError> {
     let fly_one = |link: &mut DirectLink, job: FaultJob| {
         let scenario = campaign.scenario(&job).map_err(CampaignError::Scenario)?;
-        let (log, observer, _) = observed(&scenario, link, false).map_err(|error| {
+        let (log, observer, _) = observed(&scenario, link, Extras::NONE).map_err(|error| {
             let fault = campaign.name(&job).unwrap_or("no fault");
             CampaignError::Faulty(fault, Box::new(job.cell.clone()), job.seed, error)
         })?;
@@ -130,7 +130,7 @@ pub fn run_pairs(
 ) -> Result<Vec<(FaultPair, Flown)>, CampaignError> {
     let fly_one = |link: &mut DirectLink, pair: FaultPair| {
         let scenario = campaign.scenario(&pair).map_err(CampaignError::Scenario)?;
-        let (log, observer, _) = observed(&scenario, link, false)
+        let (log, observer, _) = observed(&scenario, link, Extras::NONE)
             .map_err(|error| CampaignError::Pair(pair.faults.join(" and "), pair.seed, error))?;
         done()?;
         Ok((pair, kept(&log, &observer)))
@@ -186,20 +186,21 @@ fn useful(threads: usize, jobs: usize) -> usize {
     threads.min(jobs).max(1)
 }
 
-/// Flies a scenario in this process, with a log of its ticks or without. Also gives the time for which the core worked.
+/// Flies a scenario in this process. Also gives the time for which the core worked, if it is asked for.
 fn observed(
     scenario: &Scenario,
     link: &mut DirectLink,
-    logged: bool,
+    extras: Extras,
 ) -> Result<(FlightLog, FlightObserver, Duration), FlyError> {
     link.restart(scenario);
     let mut link = Stopwatch {
         link,
+        timed: extras.timed,
         elapsed: Duration::ZERO,
     };
     let mut observer = FlightObserver::of(scenario);
     let watch = |record: &TickRecord<'_>| observer.watch(record);
-    let log = if logged {
+    let log = if extras.hashed {
         fly(scenario, &mut link, watch)?
     } else {
         fly_in_brief(scenario, &mut link, watch)?
@@ -218,7 +219,7 @@ fn flown(
     let scenario = campaign
         .scenario(cell, seed)
         .map_err(CampaignError::Scenario)?;
-    let (log, observer, elapsed) = observed(&scenario, link, extras.hashed)
+    let (log, observer, elapsed) = observed(&scenario, link, extras)
         .map_err(|error| CampaignError::Flight(Box::new(cell.clone()), seed, error))?;
     let hash = extras.hashed.then(|| log.hash()).transpose();
     let hash = hash.map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
@@ -227,17 +228,18 @@ fn flown(
     Ok(Row::new(cell.clone(), &log, &observer, hash, core_ms))
 }
 
-/// A link that measures how long the core works. In this process the core works during `send`.
+/// A link that measures how long the core works, if it is asked to. In this process the core works during `send`.
 struct Stopwatch<'a> {
     link: &'a mut DirectLink,
+    timed: bool,
     elapsed: Duration,
 }
 
 impl Link for Stopwatch<'_> {
     fn send(&mut self, message: &Message) -> Result<(), LinkError> {
-        let begin = Instant::now();
+        let begin = self.timed.then(Instant::now);
         let sent = self.link.send(message);
-        self.elapsed += begin.elapsed();
+        self.elapsed += begin.map_or(Duration::ZERO, |begin| begin.elapsed());
         sent
     }
 
