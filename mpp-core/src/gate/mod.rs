@@ -214,15 +214,14 @@ impl Gate {
     fn is_occupied_near(&self, map: &RollingGrid, (x, z): (f64, f64)) -> bool {
         let reach = self.body_radius + numbers::REACH;
         let cells = (libm::ceil(reach / CELL) as i32).clamp(1, numbers::MOST_CELLS);
-        let [col_here, row_here] =
-            [(x, 0.0), (z, map.floor())].map(|(at, edge)| libm::floor((at - edge) / CELL) + 0.5);
+        let (row, col) = map.locate((x, z));
         for right in -cells..=cells {
-            let col = CELL * (col_here + f64::from(right));
+            let off_x = CELL * (f64::from(col) + 0.5 + f64::from(right)) - x;
             for up in -cells..=cells {
-                let row = map.floor() + CELL * (row_here + f64::from(up));
-                let (off_x, off_z) = (col - x, row - z);
+                let off_z = map.floor() + CELL * (f64::from(row) + 0.5 + f64::from(up)) - z;
+                let cell = (row.saturating_add(up), col.saturating_add(right));
                 if off_x * off_x + off_z * off_z < reach * reach
-                    && map.log_odds((col, row)) >= crate::tuning::grid::OCCUPIED
+                    && map.log_odds_of(cell) >= crate::tuning::grid::OCCUPIED
                 {
                     return true;
                 }

@@ -69,7 +69,7 @@ pub(super) fn row(layer: &Layer, slope: i32) -> Option<&[u32; HEIGHTS]> {
 }
 
 /// Number of choices in a byte.
-pub(super) const PER_BYTE: usize = 4;
+const PER_BYTE: usize = 4;
 /// The numbers of the edges at each height and slope: [`ChoiceBits`] tells which bits hold them.
 pub(super) type Choice = [[u8; HEIGHTS]; SLOPES.div_ceil(PER_BYTE)];
 

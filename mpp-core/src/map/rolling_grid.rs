@@ -240,19 +240,22 @@ impl RollingGrid {
         let mut row = FixedPoint::of((z + FIRST_STEP * up - self.floor) / CELL);
         let [next_col, next_row] = [ahead, up].map(|share| FixedPoint::of(STEP / CELL * share));
         let first_slot = slot(self.first_col);
-        let mut last = None;
+        let (mut last, mut entered) = (None, false);
         for _ in 0..steps.min(MAX_STEPS) {
             let place = (row.cell(), col.cell());
             let before = last.replace(place);
             (row, col) = (row.after(next_row), col.after(next_col));
             let (row, col) = (place.0 as usize, place.1 as usize);
-            let (Some(cells), Some(isolated)) = (self.log_odds.get_mut(row), isolated.0.get(row))
+            let (Some(cells), Some(isolated), 0..COLS) =
+                (self.log_odds.get_mut(row), isolated.0.get(row), col)
             else {
+                // A beam that leaves the window does not come back.
+                if entered {
+                    break;
+                }
                 continue;
             };
-            if col >= COLS {
-                continue;
-            }
+            entered = true;
             let slot = (first_slot + col) % COLS;
             let cell = &mut cells[slot];
             // Most cells on the way are as free as they can be. A beam of this scan that ended in a cell that stands alone says
@@ -303,7 +306,7 @@ impl RollingGrid {
     }
 
     /// Row and world column of a point `(x, z)` \[m\].
-    fn locate(&self, (x, z): (f64, f64)) -> (i32, i32) {
+    pub(crate) fn locate(&self, (x, z): (f64, f64)) -> (i32, i32) {
         (
             rounded_down((z - self.floor) / CELL),
             rounded_down(x / CELL),
@@ -320,7 +323,12 @@ impl RollingGrid {
     /// Log-odds of the cell that holds a place `(x, z)` \[m\]; 0 if no beam has seen it, or outside of the window.
     #[must_use]
     pub fn log_odds(&self, place: (f64, f64)) -> i8 {
-        let found = self.slot_at(self.locate(place));
+        self.log_odds_of(self.locate(place))
+    }
+
+    /// The same of a cell by its row and world column.
+    pub(crate) fn log_odds_of(&self, cell: (i32, i32)) -> i8 {
+        let found = self.slot_at(cell);
         found.map_or(0, |(row, slot)| {
             self.log_odds.get(row).map_or(0, |cells| cells[slot])
         })
