@@ -315,3 +315,45 @@ fn a_corner_cannot_be_cut_off() {
     let through = square.clearance_of_segment((-1.0, 0.5), (2.0, 0.5));
     assert!((through + 0.5).abs() < 1e-12, "{through}");
 }
+
+/// The least of many, in any order, at rest and in motion, is to the bit what each of them gives.
+#[test]
+fn a_field_tells_what_its_nearest_obstacle_does() {
+    for seed in 0..300 {
+        let random = &mut random::generator(seed, Stream::Field);
+        let mut obstacles: Vec<Obstacle> = (0..12)
+            .map(|_| Obstacle {
+                velocity: (uniform(random, -3.0, 3.0), uniform(random, -3.0, 3.0)),
+                ..Obstacle::circle(
+                    uniform(random, -60.0, 60.0),
+                    uniform(random, -9.0, 9.0),
+                    1.0,
+                )
+            })
+            .collect();
+        if seed % 3 == 0 {
+            obstacles.extend(shapes(seed).into_iter().map(Obstacle::at_rest));
+        }
+        let mut field = ObstacleField::new(obstacles);
+        let time = uniform(random, 0.0, 5.0);
+        field.move_to(time);
+        let from = (uniform(random, -70.0, 70.0), uniform(random, -9.0, 9.0));
+        let to = (from.0 + uniform(random, -4.0, 4.0), from.1 + 1.0);
+        let times = [time, time + 0.01];
+        let each = (field.obstacles.iter()).map(|it| it.clearance_of_motion(from, to, times));
+        let least = each.fold(f64::INFINITY, f64::min);
+        assert_eq!(
+            field.clearance_of_motion(from, to, 0.01).to_bits(),
+            least.to_bits()
+        );
+        let directions: Vec<Point> = (0..30).map(|beam| f64::from(beam).sin_cos()).collect();
+        let ranges = field.ranges(from, &directions, 45.0);
+        for (range, direction) in ranges.iter().zip(&directions) {
+            let within = |range: &f64| *range <= 45.0;
+            assert_eq!(
+                range.filter(within),
+                field.range(from, *direction).filter(within)
+            );
+        }
+    }
+}
