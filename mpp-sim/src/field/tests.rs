@@ -346,7 +346,7 @@ fn a_field_tells_what_its_nearest_obstacle_does() {
             field.clearance_of_motion(from, to, 0.01).to_bits(),
             least.to_bits()
         );
-        let directions: Vec<Point> = (0..30).map(|beam| f64::from(beam).sin_cos()).collect();
+        let directions: Vec<Point> = (0..30).map(|beam| libm::sincos(f64::from(beam))).collect();
         let ranges = field.ranges(from, &directions, 45.0);
         for (range, direction) in ranges.iter().zip(&directions) {
             let within = |range: &f64| *range <= 45.0;
