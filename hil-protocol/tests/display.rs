@@ -49,7 +49,7 @@ fn every_verdict_and_cause_speaks() {
         (
             ConfigureVerdict::SpaceLimits,
             ParameterVerdict::CruiseFixed,
-            RejectionCause::ScanSilentBelow,
+            RejectionCause::ScanAged,
             DecodeError::TrailingBytes { id: 0 },
         )
     );

@@ -72,7 +72,7 @@ fn fly(settings: &Settings, [elevator, thrust]: [usize; 2]) -> Flown {
         }
         let out = flight.step(time, &frame(&state));
         if tick % 25 == 0 {
-            let (pose, scan) = (flight.pose_at(0).unwrap(), scan(&DISCS, &state));
+            let (pose, scan) = (flight.poses_at(0).unwrap(), scan(&DISCS, &state));
             let from = flight.planned_from();
             planner.begin_from(time, &pose, &from, &flight.conditions(), Some(&scan));
         }

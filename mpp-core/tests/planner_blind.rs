@@ -5,11 +5,18 @@ use crate::common::world::{Disc, scan};
 use mpp_core::planner::{Planner, Verdict};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Settings;
+use mpp_core::tuning::scan_match::AGES;
 use mpp_core::vehicle::{ActuatorLimits, Conditions, Pose, VehicleState};
 
 /// Plans one cycle, from a scan if there is one.
 fn plan_from(planner: &mut Planner, state: &VehicleState, scan: Option<&LidarScan>) -> Verdict {
-    planner.begin_from(3.0, &Pose::of(state), state, &Conditions::STILL, scan);
+    planner.begin_from(
+        3.0,
+        &[Pose::of(state); AGES],
+        state,
+        &Conditions::STILL,
+        scan,
+    );
     while planner.advance() {}
     planner.finish()
 }
@@ -67,7 +74,13 @@ fn rows_of_the_angle_of_attack_are_hard_without_a_scan_as_with_one() {
         let state = level(&planner);
         let empty = scan(&[], &state);
         for scan in [Some(&empty), None] {
-            planner.begin_from(3.0, &Pose::of(&state), &state, &Conditions::STILL, scan);
+            planner.begin_from(
+                3.0,
+                &[Pose::of(&state); AGES],
+                &state,
+                &Conditions::STILL,
+                scan,
+            );
             let mut programs = 0;
             while planner.advance() {
                 if let Some((_, program)) = planner.candidate() {
@@ -156,7 +169,13 @@ fn an_aircraft_that_has_been_in_the_dark_for_long_climbs_above_the_band() {
         let empty = scan(&[], &state);
         for (time, climbs) in [(6.5, false), (7.5, late)] {
             let seen = lies.then_some(&empty);
-            planner.begin_from(time, &Pose::of(&state), &state, &Conditions::STILL, seen);
+            planner.begin_from(
+                time,
+                &[Pose::of(&state); AGES],
+                &state,
+                &Conditions::STILL,
+                seen,
+            );
             while planner.advance() {}
             planner.finish();
             let end = planner.best().knots.last().unwrap().state.z;

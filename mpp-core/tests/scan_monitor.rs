@@ -2,6 +2,7 @@
 
 use mpp_core::map::{Predictions, ScanMonitor, ScanVerdict};
 use mpp_core::sense::LidarScan;
+use mpp_core::tuning::scan_match::AGES;
 use mpp_core::vehicle::Pose;
 
 const SIGHT: f64 = 45.0;
@@ -49,7 +50,7 @@ fn check(
 ) -> (ScanVerdict, LidarScan) {
     let mut scan = seen(&FIELD, &pose(x));
     spoil(&mut scan);
-    let verdict = monitor.check(&mut scan, SIGHT, &pose(x), &mut Predictions::new());
+    let verdict = monitor.check(&mut scan, SIGHT, &[pose(x); AGES], &mut Predictions::new());
     (verdict, scan)
 }
 
@@ -115,7 +116,8 @@ fn a_silent_half_is_told_from_a_silent_lidar_and_from_fog_by_what_returns_later(
             let mut check = |x: f64, spoil: fn(&mut LidarScan)| {
                 let mut scan = seen(&field, &pose(x));
                 spoil(&mut scan);
-                let verdict = monitor.check(&mut scan, SIGHT, &pose(x), &mut Predictions::new());
+                let verdict =
+                    monitor.check(&mut scan, SIGHT, &[pose(x); AGES], &mut Predictions::new());
                 (verdict, monitor.hides_below(&scan))
             };
             check(0.0, |_| {});
@@ -181,7 +183,7 @@ fn a_wire_that_is_not_met_again_is_no_sign() {
         let verdict = monitor.check(
             &mut seen(shown, &pose(x)),
             SIGHT,
-            &pose(x),
+            &[pose(x); AGES],
             &mut Predictions::new(),
         );
         assert_eq!(verdict, ScanVerdict::Agrees, "{x}");
@@ -205,11 +207,101 @@ fn a_wrong_pitch_is_not_held_against_the_lidar() {
         let told = pose(3.0);
         let pitch = told.pitch + error.to_radians();
         let mut scan = seen(&FIELD, &Pose { pitch, ..told });
-        let verdict = monitor.check(&mut scan, SIGHT, &told, &mut Predictions::new());
+        let verdict = monitor.check(&mut scan, SIGHT, &[told; AGES], &mut Predictions::new());
         assert_eq!(
             (verdict, scan.bad_beams()),
             (ScanVerdict::Agrees, 0),
             "{error}"
         );
     }
+}
+
+/// The pose of an aircraft that turns up and down, at a time \[s\].
+fn turning(time: f64) -> Pose {
+    let turn = 0.25 * libm::sin(2.0 * time);
+    Pose {
+        x: 12.0 * time,
+        z: 50.0 - 1.5 * libm::cos(2.0 * time),
+        pitch: 0.156 + turn,
+    }
+}
+
+/// The ages \[ms\] that a monitor believes in after each of 40 scans at 4 Hz, of the true ages \[ms\]. `course` gives the pose at a
+/// time, `known` the poses of a time by which the monitor judges.
+fn ages_found(
+    age: impl Fn(usize) -> f64,
+    course: impl Fn(f64) -> Pose,
+    known: impl Fn(f64) -> [Pose; AGES],
+) -> Vec<usize> {
+    let circles: Vec<_> = (0..24)
+        .map(f64::from)
+        .map(|number| {
+            (
+                15.0 + 6.0 * number,
+                50.0 + 9.0 * libm::sin(2.4 * number),
+                1.0,
+            )
+        })
+        .collect();
+    let mut monitor = ScanMonitor::new();
+    let after = |number: usize| {
+        let time = 0.25 * number as f64;
+        let mut scan = seen(&circles, &course(time - 0.001 * age(number)));
+        monitor.check(&mut scan, SIGHT, &known(time), &mut Predictions::new());
+        100 * monitor.age()
+    };
+    (0..40).map(after).collect()
+}
+
+/// The poses of the stamp, and before it.
+fn past(course: impl Fn(f64) -> Pose, time: f64) -> [Pose; AGES] {
+    std::array::from_fn(|number| course(time - 0.1 * number as f64))
+}
+
+#[test]
+fn the_age_that_stamps_hide_is_found_in_turns_and_its_end_too() {
+    let known = |time| past(turning, time);
+    assert_eq!(ages_found(|_| 0.0, turning, known), [0; 40]);
+    for age in [100, 200] {
+        let found = ages_found(|_| f64::from(age), turning, known);
+        let first = found.iter().position(|it| *it > 0).unwrap();
+        assert!(first <= 8, "{age} ms is found by scan {first}");
+        assert!(
+            found.iter().skip(first).all(|it| *it == age as usize),
+            "{found:?}"
+        );
+    }
+    let ends = |number: usize| if number < 20 { 100.0 } else { 0.0 };
+    let found = ages_found(ends, turning, known);
+    assert_eq!((found[19], found[39]), (100, 0), "{found:?}");
+}
+
+/// On a steady course scans of every age look alike, and without earlier poses there is nothing to compare.
+#[test]
+fn no_age_is_found_that_nothing_shows() {
+    let steady = |time: f64| pose(12.0 * time);
+    assert_eq!(
+        ages_found(|_| 100.0, steady, |time| past(steady, time)),
+        [0; 40]
+    );
+    assert_eq!(
+        ages_found(|_| 100.0, turning, |time| [turning(time); AGES]),
+        [0; 40]
+    );
+}
+
+/// A pose that jumps once, or a pitch that is wrong all the time, is no age.
+#[test]
+fn a_wrong_pose_is_no_age() {
+    let off = |by: f64| {
+        move |time: f64| {
+            past(turning, time).map(|it| Pose {
+                pitch: it.pitch + by,
+                ..it
+            })
+        }
+    };
+    assert_eq!(ages_found(|_| 0.0, turning, off(0.04)), [0; 40]);
+    let jumps = |time: f64| off(if (3.9..4.1).contains(&time) { 0.1 } else { 0.0 })(time);
+    assert_eq!(ages_found(|_| 0.0, turning, jumps), [0; 40]);
 }

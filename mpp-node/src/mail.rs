@@ -5,7 +5,7 @@ use mpp_core::sense::LidarScan;
 use mpp_core::settings::{PlannerSettings, Settings};
 use mpp_core::trajectory::Trajectory;
 use mpp_core::vehicle::Conditions;
-use mpp_core::vehicle::Pose;
+use mpp_core::vehicle::ScanPoses;
 use mpp_core::vehicle::VehicleState;
 
 /// A request of the step to the planner.
@@ -32,8 +32,8 @@ pub enum PlanRequest {
         /// Whether the planner must forget its map and its last plan first, because the origin of the
         /// positions has jumped.
         forget: bool,
-        /// Pose of the lidar when it took the scan.
-        pose: Pose,
+        /// Poses of the lidar when it took the scan, by each age that its stamp may hide.
+        poses: ScanPoses,
         /// State of the aircraft at that tick.
         state: VehicleState,
         /// Estimated wind and lift at that tick.

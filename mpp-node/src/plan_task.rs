@@ -82,7 +82,7 @@ impl PlanTask {
                 tick,
                 time,
                 forget,
-                pose,
+                poses,
                 state,
                 conditions,
                 scan,
@@ -98,7 +98,7 @@ impl PlanTask {
                     self.planner.forget();
                 }
                 self.planner
-                    .begin_from(*time, pose, state, conditions, scan.as_ref());
+                    .begin_from(*time, poses, state, conditions, scan.as_ref());
                 self.cycle = Some(Cycle {
                     tick: *tick,
                     slices: 0,

@@ -105,7 +105,7 @@ impl Oracle {
                 }
             }
             PlanRequest::Begin {
-                pose,
+                poses,
                 state,
                 conditions,
                 scan,
@@ -123,7 +123,9 @@ impl Oracle {
                         z: z - up,
                     };
                     (state.x, state.z) = (truth.x, truth.z);
-                    (pose.x, pose.z) = (truth.x, truth.z);
+                    for pose in poses {
+                        (pose.x, pose.z) = (truth.x, truth.z);
+                    }
                 }
                 // Beams would clear occupied cells that they graze. Without a scan the planner would believe that it is blind.
                 *scan = Some(LidarScan::new());

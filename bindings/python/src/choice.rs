@@ -292,13 +292,14 @@ impl Run {
     }
 
     fn plan(&mut self, time: f64, scan: &hil_protocol::LidarScan) -> PyResult<()> {
-        let pose = self
+        let poses = self
             .flight
-            .pose_at(self.episode.tick.saturating_sub(scan.tick));
-        let pose = pose.ok_or_else(|| FlightError::new_err("the scan is too old for the core"))?;
+            .poses_at(self.episode.tick.saturating_sub(scan.tick));
+        let poses =
+            poses.ok_or_else(|| FlightError::new_err("the scan is too old for the core"))?;
         let (state, conditions) = (self.flight.planned_from(), self.flight.conditions());
         let planner = &mut self.planner;
-        planner.begin_from(time, &pose, &state, &conditions, Some(&core_scan(scan)));
+        planner.begin_from(time, &poses, &state, &conditions, Some(&core_scan(scan)));
         while planner.advance() {}
         self.verdict = planner.finish();
         let mut offered = Trajectory::new();

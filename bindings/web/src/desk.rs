@@ -288,7 +288,7 @@ fn in_space(file: &SpaceFile) -> Result<Logged, String> {
     let log = fly_space(&scenario).map_err(|error| error.to_string())?;
     Ok(Logged {
         hash: log.hash().map_err(|error| error.to_string())?,
-        ticks: log.ticks.len() as u32,
+        ticks: log.ticks.t.len() as u32,
         summary: log.summary,
     })
 }

@@ -221,6 +221,11 @@ pub enum RejectionCause {
         "the lidar is silent beneath: the aircraft climbs out of the altitude band, check the lidar"
     )]
     ScanSilentBelow,
+    /// Scans are older than their stamps say by another age than before. From this one on the core reckons with that age.
+    #[error(
+        "the scans are not as old as their stamps say, and the core corrects that: check the clock of the lidar"
+    )]
+    ScanAged,
 }
 
 /// A task of the core. The order goes over the wire: append only.

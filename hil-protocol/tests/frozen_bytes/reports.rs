@@ -140,6 +140,7 @@ fn rejection_and_every_cause() {
         ),
         (rejection(PlannerOff), "0c4d500209ac02103809154c00"),
         (rejection(ScanSilentBelow), "0c4d500209ac0211ae39123b00"),
+        (rejection(ScanAged), "0c4d500209ac021214681ba200"),
     ]);
 }
 

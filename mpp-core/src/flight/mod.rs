@@ -11,7 +11,7 @@ use crate::trajectory::{Reference, Trajectory};
 use crate::tuning::sensors::LONGEST_DOUBT;
 use crate::tuning::tracking::{LEAST_ADVANCE, MOST_TURN};
 use crate::vehicle::{
-    AirState, Conditions, Control, Pose, StallGuard, Trim, VehicleState, linearize,
+    AirState, Conditions, Control, ScanPoses, StallGuard, Trim, VehicleState, linearize,
 };
 
 /// The source of the reference: a trajectory, or level trim.
@@ -248,10 +248,10 @@ impl FlightLoop {
         self.ahead.state
     }
 
-    /// The pose at the tick that was `age` ticks ago; see [`Estimator::pose_at`].
+    /// The poses of a scan with a stamp `age` ticks ago; see [`Estimator::poses_at`].
     #[must_use]
-    pub fn pose_at(&self, age: u32) -> Option<Pose> {
-        self.estimator.pose_at(age)
+    pub fn poses_at(&self, age: u32) -> Option<ScanPoses> {
+        self.estimator.poses_at(age)
     }
 
     /// The estimated wind and lift, which a plan uses with the state.

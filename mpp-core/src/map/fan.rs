@@ -5,6 +5,7 @@ use crate::sense::LidarScan;
 use crate::tuning::scan_match::{OFF, OFF_SHARE, SECTORS};
 
 /// Whether a beam of each sector has returned.
+#[inline(never)]
 pub(super) fn answers(scan: &LidarScan, sight: f64) -> [bool; SECTORS] {
     let mut answers = [false; SECTORS];
     for (beam, range) in scan.ranges.iter().enumerate() {
@@ -20,6 +21,7 @@ pub(crate) fn sees_below(scan: &LidarScan, sight: f64) -> bool {
 }
 
 /// The farthest return of a scan \[m\]; 0 without one.
+#[inline(never)]
 pub(super) fn farthest(scan: &LidarScan, sight: f64) -> f64 {
     let ranges = scan.ranges.iter().map(|range| f64::from(*range));
     ranges
@@ -38,12 +40,14 @@ pub(super) fn met(
 ) -> Option<bool> {
     let off = OFF + OFF_SHARE * expected;
     let mut hidden = false;
+    // Of `len` beams `len - 1 - beam` is `len + !beam`. With a branch the loop would be compiled twice.
+    let (turned, end) = if reversed {
+        (usize::MAX, scan.ranges.len())
+    } else {
+        (0, 0)
+    };
     for beam in first.saturating_sub(1)..first + 3 {
-        let sent = if reversed {
-            scan.ranges.len().wrapping_sub(beam + 1)
-        } else {
-            beam
-        };
+        let sent = (beam ^ turned).wrapping_add(end);
         let range = scan.ranges.get(sent).map_or(0.0, |range| f64::from(*range));
         if is_return(range, sight) {
             if libm::fabs(range - expected) < off {

@@ -12,6 +12,8 @@ mod distance_field;
 mod extent;
 mod fan;
 mod rolling_grid;
+mod scan_age;
+mod scan_fit;
 mod scan_monitor;
 pub(crate) mod voxel_field;
 pub(crate) mod voxels;
@@ -21,7 +23,8 @@ pub(crate) use distance_field::{Height, split};
 pub(crate) use fan::sees_below;
 pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
-pub use scan_monitor::{Prediction, Predictions, ScanMonitor, ScanVerdict};
+pub use scan_fit::{Prediction, Predictions};
+pub use scan_monitor::{ScanMonitor, ScanVerdict};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
 pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
 

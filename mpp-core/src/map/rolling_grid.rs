@@ -377,6 +377,7 @@ pub(super) fn updated(log_odds: i8, change: i8) -> i8 {
 }
 
 /// Whether a beam of a scan by a lidar with this range \[m\] has met an obstacle.
+#[inline(never)]
 pub(crate) fn has_return(scan: &LidarScan, sight: f64) -> bool {
     let mut ranges = scan.ranges.iter();
     ranges.any(|range| is_return(f64::from(*range), sight))

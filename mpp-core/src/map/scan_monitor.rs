@@ -5,15 +5,16 @@
 //! comes nearer than predicted hides the rest and says nothing; what comes from farther, or not at all, is a *miss*. If most
 //! misses are hits when the scan is turned, the pitch is wrong and not the lidar: the scan says nothing.
 
-use super::fan::{answers, farthest, met, sector};
+use super::fan::{answers, farthest, sector};
 use super::rolling_grid::{has_return, is_return};
-use crate::config::MAX_BEAMS;
+use super::scan_age::AgeWatch;
+use super::scan_fit::{Fit, Prediction, Predictions, fit, turned_hits};
 use crate::sense::LidarScan;
 use crate::tuning::scan_match::{
-    ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, NEAR, SECTORS,
-    SIGHT_SHARE, TURN_PART, TURN_STEP, TURN_STEPS,
+    AGES, ALIKE, ALIKE_SHARE, EDGE_BEAMS, LEAST_GAIN, LEAST_MISSES, LEAST_SILENT, MOST_MISFIT,
+    NEAR, SECTORS, SIGHT_SHARE, SPREAD, SPREAD_SHARE,
 };
-use crate::vehicle::Pose;
+use crate::vehicle::{Pose, ScanPoses};
 
 /// What the monitor makes of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,7 +35,8 @@ pub enum ScanVerdict {
 #[derive(Clone, Debug)]
 pub struct ScanMonitor {
     last: LidarScan,
-    pose: Pose,
+    poses: ScanPoses,
+    age: AgeWatch,
     /// Sectors that went silent, and from which no beam has returned since.
     silent: [bool; SECTORS],
     /// Sectors in which returns were missing that fog may hide, or a lidar that is silent altogether. No beam has returned since
@@ -46,66 +48,29 @@ pub struct ScanMonitor {
     sight: f64,
 }
 
-/// How well a scan fits the last one.
-#[derive(Clone, Copy)]
-struct Fit {
-    /// Numbers of predicted returns that came and that did not.
-    hits: u32,
-    misses: u32,
-    /// Missed returns of each sector that are no farther than the farthest return, each counted once for every adjacent beam
-    /// that confirmed it.
-    missed: [u32; SECTORS],
-    /// The same sums for those that are farther, and the least range of these \[m\].
-    beyond: [u32; SECTORS],
-    first_beyond: f64,
-}
-
-impl Fit {
-    /// Nothing was predicted.
-    const NOTHING: Self = Self {
-        hits: 0,
-        misses: 0,
-        missed: [0; SECTORS],
-        beyond: [0; SECTORS],
-        first_beyond: f64::INFINITY,
-    };
-
-    /// Whether so much is missing beyond the farthest return that the sight is short.
-    fn is_short(&self) -> bool {
-        self.beyond.iter().sum::<u32>() >= LEAST_SILENT
-    }
-}
-
-/// A return of the last scan that is expected again.
-#[derive(Clone, Debug)]
-pub struct Prediction {
-    /// Where it is expected, as a number of beams from the first one [-].
-    place: f64,
-    /// Its range \[m\].
-    range: f64,
-    /// Number of adjacent beams that confirmed it.
-    confirmed: u32,
-}
-
-/// What a scan should show again. The caller keeps the room for it, because it is too large for the stack.
-pub type Predictions = heapless::Vec<Prediction, MAX_BEAMS>;
-
 impl ScanMonitor {
     /// A monitor that has seen no scan.
     #[must_use]
     pub const fn new() -> Self {
         Self {
             last: LidarScan::new(),
-            pose: Pose {
+            poses: [Pose {
                 x: 0.0,
                 z: 0.0,
                 pitch: 0.0,
-            },
+            }; AGES],
+            age: AgeWatch::new(),
             silent: [false; SECTORS],
             suspected: [false; SECTORS],
             reversed: false,
             sight: f64::INFINITY,
         }
+    }
+
+    /// Forgets everything, for another flight.
+    pub fn start(&mut self) {
+        self.age = AgeWatch::new();
+        self.clear();
     }
 
     /// Forgets the last scan and what was held against the lidar.
@@ -130,20 +95,37 @@ impl ScanMonitor {
         (0..beams).any(|beam| self.silent[sector(beam, beams)] && scan.beam_angle(beam) < 0.0)
     }
 
-    /// Compares a scan from a pose, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
+    /// The age that the stamps of scans hide, as a number of [`crate::tuning::scan_match::AGE_STEP`] [-].
+    #[must_use]
+    pub fn age(&self) -> usize {
+        self.age.number()
+    }
+
+    /// The pose of a scan by this age.
+    #[must_use]
+    pub fn pose<'a>(&self, poses: &'a ScanPoses) -> &'a Pose {
+        self.age.pose(poses)
+    }
+
+    /// Compares a scan from one of these poses, by a lidar with the range `sight` \[m\], with the last one, and takes out of it what is not
     /// to be believed. A scan without a return is [`ScanVerdict::Silent`] if enough was predicted, and suspects its sectors;
     /// [`super::RollingGrid::contradicts`] judges it too, by the map.
     pub fn check(
         &mut self,
         scan: &mut LidarScan,
         sight: f64,
-        pose: &Pose,
+        poses: &ScanPoses,
         predictions: &mut Predictions,
     ) -> ScanVerdict {
+        let returns = has_return(scan, sight);
+        if returns {
+            self.note_age(scan, sight, poses);
+        }
+        let pose = self.pose(poses);
         let (mut before, known) = (false, self.reversed);
         self.predict(scan, sight, pose, false, predictions);
         let as_sent = fit(scan, sight, predictions, 0.0, false);
-        if has_return(scan, sight) {
+        if returns {
             let turned = turned_hits(scan, sight, predictions, &as_sent);
             let rival = turned.unwrap_or(0);
             before = self.note_order(scan, sight, pose, &as_sent, rival, predictions);
@@ -158,10 +140,9 @@ impl ScanMonitor {
             // In short sight the last scan that saw farther tells more, as long as something is predicted by it.
             if self.sight >= sight || as_sent.hits + as_sent.misses == 0 {
                 self.last.clone_from(scan);
-                self.pose = *pose;
+                self.poses = *poses;
             }
-        } else if !known && as_sent.is_short() {
-            self.suspect(&as_sent);
+        } else if !known && self.suspect(&as_sent) {
             return ScanVerdict::Silent;
         }
         if self.reversed {
@@ -185,6 +166,32 @@ impl ScanMonitor {
         } else {
             ScanVerdict::Agrees
         }
+    }
+
+    /// Notes how well the scan fits the last one if both are older than their stamps say.
+    #[inline(never)]
+    fn note_age(&mut self, scan: &LidarScan, sight: f64, poses: &ScanPoses) {
+        // Earlier poses are not known at the start of a flight, or while the pitch is left out.
+        let known = |poses: &ScanPoses| usize::from(poses[AGES - 1].x < poses[0].x);
+        let ages = 1 + (AGES - 1) * known(poses) * known(&self.poses);
+        let (mut sums, mut returns) = ([0.0; AGES], 0.0);
+        for (beam, range) in self.last.ranges.iter().enumerate() {
+            let range = f64::from(*range);
+            if self.confirmed(beam, range, sight) == 0 {
+                continue;
+            }
+            let mut costs = [0.0; AGES];
+            for ((cost, from), to) in costs.iter_mut().zip(&self.poses).zip(poses).take(ages) {
+                *cost = self.misfit(scan, sight, [from, to], beam, range);
+            }
+            if costs.iter().sum::<f64>().is_finite() {
+                returns += 1.0;
+                for (sum, cost) in sums.iter_mut().zip(costs) {
+                    *sum += cost;
+                }
+            }
+        }
+        self.age.note(sums.get(..ages).unwrap_or_default(), returns);
     }
 
     /// Notes whether the reverse order fits better than the one as sent, and no worse than a turn with so many hits. Returns
@@ -220,17 +227,21 @@ impl ScanMonitor {
         if farthest(scan, sight) > self.sight {
             self.sight = f64::INFINITY;
         }
-        if fit.is_short() {
+        if self.suspect(fit) {
             self.sight = self.sight.min(fit.first_beyond);
-            self.suspect(fit);
         }
     }
 
-    /// Suspects the sectors in which returns are missing beyond the farthest one.
-    fn suspect(&mut self, fit: &Fit) {
+    /// Suspects the sectors in which returns are missing beyond the farthest one, if they are enough to make the sight short.
+    #[inline(never)]
+    fn suspect(&mut self, fit: &Fit) -> bool {
+        if fit.beyond.iter().sum::<u32>() < LEAST_SILENT {
+            return false;
+        }
         for (suspected, beyond) in self.suspected.iter_mut().zip(fit.beyond) {
             *suspected |= beyond > 0;
         }
+        true
     }
 
     /// Notes the sectors in which predicted returns are missing and no beam returns. A sector stays silent until one does. What
@@ -257,17 +268,12 @@ impl ScanMonitor {
     /// Marks the beams of silent sectors as bad, so that they show no free space, and those of adjacent sectors up to the next
     /// one with a return.
     fn mute(&self, scan: &mut LidarScan, sight: f64) {
-        let answers = answers(scan, sight);
-        let mut silent = self.silent;
-        let mut near = false;
-        for (silent, answers) in silent.iter_mut().zip(&answers) {
-            near = *silent || near && !answers;
-            *silent = near;
-        }
-        near = false;
-        for (silent, answers) in silent.iter_mut().zip(&answers).rev() {
-            near = *silent || near && !answers;
-            *silent = near;
+        let (mut answers, mut silent) = (answers(scan, sight), self.silent);
+        // Up and then down the fan.
+        for _ in 0..2 {
+            spread(&mut silent, &answers);
+            silent.reverse();
+            answers.reverse();
         }
         let beams = scan.ranges.len();
         for (beam, range) in scan.ranges.iter_mut().enumerate() {
@@ -278,6 +284,7 @@ impl ScanMonitor {
     }
 
     /// What this scan should show of the last one, if the beams of that are taken as sent or in reverse order.
+    #[inline(never)]
     fn predict(
         &self,
         scan: &LidarScan,
@@ -287,7 +294,7 @@ impl ScanMonitor {
         predictions: &mut Predictions,
     ) {
         predictions.clear();
-        let step = self.last.angle_increment;
+        let from = self.pose(&self.poses);
         let last = self.last.ranges.len();
         for (beam, range) in self.last.ranges.iter().enumerate() {
             let range = f64::from(*range);
@@ -296,15 +303,7 @@ impl ScanMonitor {
                 continue;
             }
             let sent = if reversed { last - 1 - beam } else { beam };
-            let angle = self.pose.pitch + self.last.angle_min + step * sent as f64;
-            let (up, ahead) = libm::sincos(angle);
-            let (ahead, up) = (
-                self.pose.x + range * ahead - pose.x,
-                self.pose.z + range * up - pose.z,
-            );
-            let place =
-                (libm::atan2(up, ahead) - pose.pitch - scan.angle_min) / scan.angle_increment;
-            let range = libm::hypot(ahead, up);
+            let (place, range) = self.seen_again(scan, [from, pose], sent, range);
             if (NEAR..=SIGHT_SHARE * sight).contains(&range) {
                 // A scan has no more beams than there is room for.
                 let _ = predictions.push(Prediction {
@@ -316,7 +315,59 @@ impl ScanMonitor {
         }
     }
 
+    /// Where a scan should show again what a beam of the last one met at a range \[m\], as a number of beams from the first one [-],
+    /// and its range then \[m\].
+    #[inline(never)]
+    fn seen_again(
+        &self,
+        scan: &LidarScan,
+        [from, pose]: [&Pose; 2],
+        beam: usize,
+        range: f64,
+    ) -> (f64, f64) {
+        let (up, ahead) = libm::sincos(from.pitch + self.last.beam_angle(beam));
+        let (ahead, up) = (
+            from.x + range * ahead - pose.x,
+            from.z + range * up - pose.z,
+        );
+        let angle = libm::atan2(up, ahead) - pose.pitch - scan.angle_min;
+        (angle / scan.angle_increment, libm::hypot(ahead, up))
+    }
+
+    /// How far the nearest return of a scan is from where it should show again what a beam of the last one met at a range \[m\], from
+    /// these poses of both, in squared standard deviations [-]. Infinite where nothing is predicted.
+    #[inline(never)]
+    fn misfit(
+        &self,
+        scan: &LidarScan,
+        sight: f64,
+        poses: [&Pose; 2],
+        beam: usize,
+        range: f64,
+    ) -> f64 {
+        let (place, range) = self.seen_again(scan, poses, beam, range);
+        let last = scan.ranges.len() as f64 - 1.0;
+        let inside = (EDGE_BEAMS..=last - EDGE_BEAMS).contains(&place);
+        if !inside || !(NEAR..=SIGHT_SHARE * sight).contains(&range) {
+            return f64::INFINITY;
+        }
+        let first = place as usize;
+        let near = first.saturating_sub(2)..(first + 4).min(scan.ranges.len());
+        let spread = SPREAD + SPREAD_SHARE * range;
+        let mut least = MOST_MISFIT;
+        for beam in near {
+            let met = scan.ranges.get(beam).map_or(0.0, |met| f64::from(*met));
+            if is_return(met, sight) {
+                let aside = (place - beam as f64) * scan.angle_increment * range;
+                let off = met - range;
+                least = least.min((aside * aside + off * off) / (spread * spread));
+            }
+        }
+        least
+    }
+
     /// Number of adjacent beams of the last scan that met the same surface as a beam with this range \[m\].
+    #[inline(never)]
     fn confirmed(&self, beam: usize, range: f64, sight: f64) -> u32 {
         if !is_return(range, sight) {
             return 0;
@@ -333,48 +384,12 @@ impl ScanMonitor {
     }
 }
 
-/// How well a scan fits predictions that are moved by so many beams, if its own beams are taken as sent or in reverse order.
-fn fit(scan: &LidarScan, sight: f64, predictions: &Predictions, turn: f64, reversed: bool) -> Fit {
-    let mut fit = Fit::NOTHING;
-    let far = farthest(scan, sight);
-    let beams = scan.ranges.len();
-    for it in predictions {
-        let place = it.place + turn;
-        if !(EDGE_BEAMS..=beams as f64 - 1.0 - EDGE_BEAMS).contains(&place) {
-            continue;
-        }
-        let first = place as usize;
-        match met(scan, sight, first, it.range, reversed) {
-            Some(true) => fit.hits += 1,
-            Some(false) => {
-                fit.misses += 1;
-                if it.range > far {
-                    fit.beyond[sector(first, beams)] += it.confirmed;
-                    fit.first_beyond = fit.first_beyond.min(it.range);
-                } else {
-                    fit.missed[sector(first, beams)] += it.confirmed;
-                }
-            }
-            None => {}
-        }
+/// Spreads silence up the fan to sectors without an answer.
+#[inline(never)]
+fn spread(silent: &mut [bool], answers: &[bool]) {
+    let mut near = false;
+    for (silent, answers) in silent.iter_mut().zip(answers) {
+        near = *silent || near && !answers;
+        *silent = near;
     }
-    fit
-}
-
-/// The most hits of a scan that is turned, as by a wrong pitch, if a turn makes hits of enough misses. `None` too if the misses
-/// are too few to be held against the lidar.
-fn turned_hits(
-    scan: &LidarScan,
-    sight: f64,
-    predictions: &Predictions,
-    as_sent: &Fit,
-) -> Option<u32> {
-    // A miss weighs as many adjacent beams as confirmed it, 2 at most.
-    if 2 * as_sent.misses < LEAST_SILENT {
-        return None;
-    }
-    let turns = (1..=TURN_STEPS).flat_map(|it| [it, -it]);
-    let hits = |turn| fit(scan, sight, predictions, TURN_STEP * f64::from(turn), false).hits;
-    let most = turns.map(hits).max()?;
-    (most >= as_sent.hits + as_sent.misses.div_ceil(TURN_PART)).then_some(most)
 }

@@ -24,7 +24,8 @@ use crate::qp::Problem;
 use crate::sense::LidarScan;
 use crate::settings::{Method, PlannerSettings, Settings};
 use crate::trajectory::Trajectory;
-use crate::vehicle::{Conditions, Pose, Trim, VehicleState};
+use crate::tuning::scan_match::AGES;
+use crate::vehicle::{Conditions, Pose, ScanPoses, Trim, VehicleState};
 pub use error::SetupError;
 pub(crate) use error::check;
 use plane::PlanePlanner;
@@ -169,22 +170,28 @@ impl Planner {
         conditions: &Conditions,
         scan: &LidarScan,
     ) {
-        self.begin_from(time, &Pose::of(state), state, conditions, Some(scan));
+        self.begin_from(
+            time,
+            &[Pose::of(state); AGES],
+            state,
+            conditions,
+            Some(scan),
+        );
     }
 
-    /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from another pose, or without a scan
+    /// Starts a cycle as [`Self::begin`] does, with a scan that was taken earlier from one of these poses, or without a scan
     /// because the lidar shows nothing. The plane planner then plans slow flight in the map that it has. The
     /// paper's method has no map and knows only the present pose: without a scan it plans nothing.
     pub fn begin_from(
         &mut self,
         time: f64,
-        pose: &Pose,
+        poses: &ScanPoses,
         state: &VehicleState,
         conditions: &Conditions,
         scan: Option<&LidarScan>,
     ) {
         match self.chosen {
-            Chosen::Plane => self.plane.begin(time, pose, state, conditions, scan),
+            Chosen::Plane => self.plane.begin(time, poses, state, conditions, scan),
             #[cfg(feature = "paper")]
             Chosen::Paper => self.paper.begin(time, state, scan),
         }

@@ -27,6 +27,8 @@ pub struct PlanSummary {
     pub blind: bool,
     /// Whether plans leave the altitude band upwards, because a blind lidar does not show what lies beneath.
     pub leaves: bool,
+    /// Whether the cycle found that scans are older than their stamps say, or no longer; it began a new map.
+    pub aged: bool,
     /// Whether the planner ended the cycle early, because its phase and its workspace did not belong together. This is a
     /// defect of the planner; [`FlightLoop::count_cycle`](crate::flight::FlightLoop::count_cycle) counts it.
     pub inconsistent: bool,
@@ -49,6 +51,7 @@ impl PlanSummary {
         complete: false,
         blind: false,
         leaves: false,
+        aged: false,
         inconsistent: false,
         refused: None,
         cost: f64::INFINITY,

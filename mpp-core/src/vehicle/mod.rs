@@ -23,7 +23,7 @@ pub use mpp_data::{
     ActuatorLimits, Airframe, Control, Derivatives, GRAVITY, LateralAirframe, LateralControl,
 };
 pub use point_mass::{PathControl, PathState};
-pub use pose::Pose;
+pub use pose::{Pose, ScanPoses};
 pub use quaternion::Quaternion;
 pub use space_path::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath, path_axes};
 pub(crate) use space_path::{between, within};

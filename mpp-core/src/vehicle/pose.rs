@@ -1,6 +1,7 @@
 //! Where a scan was made.
 
 use super::VehicleState;
+use crate::tuning::scan_match::AGES;
 
 /// Position and pitch of the aircraft at a scan.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,6 +13,9 @@ pub struct Pose {
     /// Pitch of the body axis \[rad\].
     pub pitch: f64,
 }
+
+/// Where the lidar was at the stamp of a scan, and earlier by each age that a stamp may hide.
+pub type ScanPoses = [Pose; AGES];
 
 impl Pose {
     /// The pose of a vehicle.

@@ -10,7 +10,7 @@ use hil_protocol::{ActuatorCommand, HealthReport, PlanOutcome, PlanReport, Rejec
 use mpp_core::estimate::{Innovation, MeasurementStatus, PositionVerdict};
 use mpp_core::planner::PlanSummary;
 use mpp_core::tuning::sensors::SUSPECTED_AFTER;
-use mpp_core::vehicle::Pose;
+use mpp_core::vehicle::ScanPoses;
 
 /// Time between two scans of the slowest lidar whose rate is no fault, in periods of the planner [-].
 const SLOWEST_LIDAR: u32 = 4;
@@ -68,12 +68,13 @@ impl StepTask {
             complete,
             blind,
             leaves,
+            aged,
             cost,
             violation,
             ..
         } = plan.summary;
         if !cycle.without_scan {
-            session.lidar_good = Some(!blind && !session.spoilt);
+            session.lidar_good = Some(!blind && !aged && !session.spoilt);
         }
         session.untold = Some(PlanReport {
             scan_tick,
@@ -88,16 +89,13 @@ impl StepTask {
             complete,
         });
         self.plan = None;
-        if blind && !cycle.without_scan {
-            self.reject(
-                if leaves {
-                    RejectionCause::ScanSilentBelow
-                } else {
-                    RejectionCause::ScanBlind
-                },
-                send,
-            );
-        }
+        let cause = match (aged, blind && !cycle.without_scan, leaves) {
+            (true, _, _) => RejectionCause::ScanAged,
+            (_, true, true) => RejectionCause::ScanSilentBelow,
+            (_, true, false) => RejectionCause::ScanBlind,
+            _ => return,
+        };
+        self.reject(cause, send);
     }
 
     /// Tells the plan that the tick before has taken over, and a tick later its commands. The tick that takes over has enough
@@ -191,8 +189,8 @@ impl StepTask {
         match session.scan_tick.take() {
             Some(scan_tick) => self.plan_from_scan(tick, scan_tick, send),
             None if session.is_due_without_scan(tick) && self.request.is_none() => {
-                if let Some(pose) = session.control.pose_at(0) {
-                    self.request_cycle(tick, tick, &pose, true);
+                if let Some(poses) = session.control.poses_at(0) {
+                    self.request_cycle(tick, tick, &poses, true);
                 }
             }
             None => {}
@@ -207,7 +205,7 @@ impl StepTask {
         let again = session
             .last_scan
             .is_some_and(|last| ticks(last, scan_tick) <= 0);
-        let Some(pose) = session.control.pose_at(age).filter(|_| !again) else {
+        let Some(poses) = session.control.poses_at(age).filter(|_| !again) else {
             let cause = RejectionCause::TickOrder {
                 expected: tick,
                 found: scan_tick,
@@ -229,10 +227,10 @@ impl StepTask {
             return self.reject(RejectionCause::PlannerBusy, send);
         }
         session.note_scan(scan_tick);
-        self.request_cycle(tick, scan_tick, &pose, false);
+        self.request_cycle(tick, scan_tick, &poses, false);
     }
 
-    fn request_cycle(&mut self, tick: u32, scan_tick: u32, pose: &Pose, without_scan: bool) {
+    fn request_cycle(&mut self, tick: u32, scan_tick: u32, poses: &ScanPoses, without_scan: bool) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -249,7 +247,7 @@ impl StepTask {
             tick,
             time: session.time(tick),
             forget: session.forget,
-            pose: *pose,
+            poses: *poses,
             state: session.control.planned_from(),
             conditions: session.control.conditions(),
             scan: (!without_scan).then(|| self.scan.clone()),

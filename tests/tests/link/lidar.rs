@@ -241,3 +241,34 @@ fn a_lidar_with_many_bad_beams_is_told() {
     let mut told = log.sensors.iter().filter(|it| it.sensor == "lidar");
     assert!(told.any(|it| it.state == excluded));
 }
+
+/// Scans that are 100 ms older than their stamps say are told once, corrected, and told once more when they are no longer.
+#[test]
+fn an_age_that_stamps_hide_is_told_once_and_corrected() {
+    for seed in 1..=3 {
+        let mut scenario = Scenario::new(Preset::Flight, seed);
+        (scenario.obstacles, scenario.replan_ticks) = (120, 25);
+        for (age_ms, until, told) in [
+            (None, None, 0),
+            (Some(100), None, 1),
+            (Some(100), Some(8.0), 2),
+        ] {
+            scenario.faults.scan = ScanFault {
+                until,
+                age_ms,
+                ..ScanFault::default()
+            };
+            let log = fly(&scenario, &mut PipeLink::new(), |_| {}).unwrap();
+            assert_eq!(
+                causes(&log),
+                vec!["ScanAged"; told],
+                "seed {seed}, until {until:?} s"
+            );
+            assert_eq!(
+                log.summary.outcome,
+                Outcome::Survived,
+                "seed {seed}, until {until:?} s"
+            );
+        }
+    }
+}

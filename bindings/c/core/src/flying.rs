@@ -10,7 +10,7 @@ use mpp_core::flight::{Adoption, FlightLoop, Mode};
 use mpp_core::planner::{Planner, SetupError};
 use mpp_core::sense::LidarScan;
 use mpp_core::settings::Setting;
-use mpp_core::vehicle::Pose;
+use mpp_core::vehicle::ScanPoses;
 use mpp_node::parameters::Tuning;
 
 /// By how much sums of ticks may differ [s]. A plan has no reference before its start.
@@ -65,12 +65,18 @@ impl Flight {
     }
 
     /// Begins a cycle at a time \[s\]. Without a scan its plans are slow flight in the map that earlier scans have left.
-    fn begin(&mut self, planner: &mut Planner, time: f64, pose: &Pose, scan: Option<&LidarScan>) {
+    fn begin(
+        &mut self,
+        planner: &mut Planner,
+        time: f64,
+        poses: &ScanPoses,
+        scan: Option<&LidarScan>,
+    ) {
         if core::mem::take(&mut self.forget) {
             planner.forget();
         }
         let (state, conditions) = (self.control.planned_from(), self.control.conditions());
-        planner.begin_from(time, pose, &state, &conditions, scan);
+        planner.begin_from(time, poses, &state, &conditions, scan);
         let latency = f64::from(self.tuning.configure.latency_ticks) * TICK_PERIOD;
         self.due = Some(time + latency);
     }
@@ -163,7 +169,7 @@ impl MppCore {
     ) -> Result<(), MppStatus> {
         let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
         let time = flight.time_to_begin()?;
-        let pose = flight.control.pose_at(age).ok_or(MppStatus::ScanAge)?;
+        let poses = flight.control.poses_at(age).ok_or(MppStatus::ScanAge)?;
         let scan = flight.checked(angles, ranges)?;
         let taken = time - f64::from(age) * TICK_PERIOD;
         let is_newer = (flight.seen).is_none_or(|seen| taken - seen > 0.5 * TICK_PERIOD);
@@ -172,7 +178,7 @@ impl MppCore {
         }
         flight.seen = Some(taken);
         self.scan = scan;
-        flight.begin(&mut self.planner, time, &pose, Some(&self.scan));
+        flight.begin(&mut self.planner, time, &poses, Some(&self.scan));
         Ok(())
     }
 
@@ -180,8 +186,8 @@ impl MppCore {
     pub(crate) fn begin_blind(&mut self) -> Result<(), MppStatus> {
         let flight = self.flight.as_mut().ok_or(MppStatus::NotSetUp)?;
         let time = flight.time_to_begin()?;
-        let pose = Pose::of(&flight.control.state());
-        flight.begin(&mut self.planner, time, &pose, None);
+        let poses = flight.control.poses_at(0).ok_or(MppStatus::ScanAge)?;
+        flight.begin(&mut self.planner, time, &poses, None);
         Ok(())
     }
 

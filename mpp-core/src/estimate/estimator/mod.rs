@@ -13,10 +13,13 @@ use crate::health::Health;
 use crate::sense::{AirData, Measurement, Position, SensorFrame};
 use crate::settings::Settings;
 use crate::tuning::pitch_bias::LEAST_TURN;
+use crate::tuning::scan_match::{AGE_STEP, AGES};
 use crate::tuning::sensors::{
     CHANGED, GAP_AIRSPEED, GAP_ANGLE, GAP_RATE, LONGEST_GAP, LONGEST_PREDICTION, POSITION_PERIOD,
 };
-use crate::vehicle::{AirState, Airframe, Conditions, Control, GRAVITY, Pose, Trim, VehicleState};
+use crate::vehicle::{
+    AirState, Airframe, Conditions, Control, GRAVITY, Pose, ScanPoses, Trim, VehicleState,
+};
 
 /// The aircraft after the dead time of the elevator, under the commands that have been sent.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,6 +114,8 @@ impl Estimator {
 
     /// The pose of the lidar at the tick that was `age` ticks ago. `None` if that was before the first step or more
     /// than [`MOST_SCAN_AGE`] ticks ago.
+    // The poses of all ages call it, and each would hold a copy.
+    #[inline(never)]
     #[must_use]
     pub fn pose_at(&self, age: u32) -> Option<Pose> {
         if age == 0 {
@@ -121,6 +126,20 @@ impl Estimator {
         }
         let ((x, z), pitch) = self.navigation.pose_at(age)?;
         Some(Pose { x, z, pitch })
+    }
+
+    /// [`Self::pose_at`] for each age that the stamp of a scan may hide. Where an earlier pose is not known, or the pitch is
+    /// left out, it is that of the stamp.
+    #[must_use]
+    pub fn poses_at(&self, age: u32) -> Option<ScanPoses> {
+        let stamped = self.pose_at(age)?;
+        let mut poses = [stamped; AGES];
+        let mut then = age;
+        for pose in poses.iter_mut().skip(1).filter(|_| self.pitch.uses()) {
+            then = then.saturating_add(AGE_STEP);
+            *pose = self.pose_at(then).unwrap_or(stamped);
+        }
+        Some(poses)
     }
 
     /// Corrects the pitch by the bias that the watch has found, if it is another one than before. Gives the angle by which

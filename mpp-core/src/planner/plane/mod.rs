@@ -47,10 +47,11 @@ use crate::qp::{Solver, Weights};
 use crate::sense::LidarScan;
 use crate::settings::PlaneSettings;
 use crate::trajectory::Trajectory;
+use crate::tuning::scan_match::AGES;
 use crate::units::Units;
 use crate::vehicle::{
-    ActuatorLimits, AirState, Airframe, Conditions, PathControl, PathState, Pose, ThrustLag, Trim,
-    VehicleState, Wind,
+    ActuatorLimits, AirState, Airframe, Conditions, PathControl, PathState, Pose, ScanPoses,
+    ThrustLag, Trim, VehicleState, Wind,
 };
 use candidate::{Candidate, Frame};
 pub use judge::PriceParts;
@@ -115,8 +116,8 @@ pub struct PlanePlanner {
     phase: Phase,
     /// The estimated wind and lift in SI units.
     conditions: Conditions,
-    /// Where the scan was made.
-    pose: Pose,
+    /// Where the scan was made, by its stamp and by each age that the stamp may hide.
+    poses: ScanPoses,
     /// When the plan is taken over \[s\], and the state and the thrust that the aircraft will have then.
     time: f64,
     state: VehicleState,
@@ -175,11 +176,11 @@ impl PlanePlanner {
             ready: false,
             phase: Phase::Idle,
             conditions: Conditions::STILL,
-            pose: Pose {
+            poses: [Pose {
                 x: 0.0,
                 z: 0.0,
                 pitch: 0.0,
-            },
+            }; AGES],
             time: 0.0,
             thrust: 0.0,
             state: VehicleState {
@@ -217,13 +218,15 @@ impl PlanePlanner {
     pub fn begin(
         &mut self,
         time: f64,
-        pose: &Pose,
+        poses: &ScanPoses,
         state: &VehicleState,
         conditions: &Conditions,
         scan: Option<&LidarScan>,
     ) {
         self.take_conditions(conditions);
-        self.pose = self.units.own_pose(pose);
+        for (own, pose) in self.poses.iter_mut().zip(poses) {
+            *own = self.units.own_pose(pose);
+        }
         self.state = self.taken_over(time, &self.units.own_state(state));
         self.time = time + self.settings.latency * self.units.time;
         let thrust = self.best.thrust(self.time);

@@ -31,7 +31,8 @@ impl PlanePlanner {
             let next = *beams..*beams + BEAMS_PER_SLICE;
             *beams = next.end;
             let sight = self.monitor.sight(self.settings.sight);
-            (self.map).insert_beams(scan, next, sight, &self.pose, isolated);
+            let pose = self.monitor.pose(&self.poses);
+            (self.map).insert_beams(scan, next, sight, pose, isolated);
             return;
         }
         // Slowly the nose is high, and a climb needs the lift.
@@ -72,16 +73,19 @@ impl PlanePlanner {
         else {
             return;
         };
-        let (pose, sight) = (self.pose, self.settings.sight);
+        let (age, sight) = (self.monitor.age(), self.settings.sight);
+        let pose = self.monitor.pose(&self.poses);
         // Whoever gives no scan may ask for level flight without a lidar.
         let none = self.summary.blind;
         // A lidar that was distrusted once stays so until a beam returns.
         let empty = !has_return(scan, sight);
         self.lidar_distrusted =
-            empty && (self.lidar_distrusted || self.map.contradicts(scan, sight, &pose));
-        let verdict = self.monitor.check(scan, sight, &pose, predictions);
+            empty && (self.lidar_distrusted || self.map.contradicts(scan, sight, pose));
+        let verdict = self.monitor.check(scan, sight, &self.poses, predictions);
+        let pose = self.monitor.pose(&self.poses);
+        self.summary.aged = self.monitor.age() != age;
         self.lidar_distrusted |= empty && verdict == ScanVerdict::Silent;
-        if verdict == ScanVerdict::ReversedBefore {
+        if verdict == ScanVerdict::ReversedBefore || self.summary.aged {
             self.map.clear();
         }
         self.summary.blind |= self.lidar_distrusted || verdict != ScanVerdict::Agrees;
@@ -105,7 +109,7 @@ impl PlanePlanner {
         if self.lidar_distrusted {
             scan.ranges.clear();
         }
-        self.map.write_isolated_hits(scan, sight, &pose, isolated);
+        self.map.write_isolated_hits(scan, sight, pose, isolated);
     }
 
     /// Plans the slowest flight that the limits of the angle of attack and of the thrust allow, because no scan shows what

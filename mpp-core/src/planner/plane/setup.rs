@@ -44,7 +44,7 @@ impl PlanePlanner {
         self.ready = true;
         self.map.clear();
         self.lidar_distrusted = false;
-        self.monitor.clear();
+        self.monitor.start();
         self.seen = f64::INFINITY;
         self.best.clear();
         self.ladder = Ladder::NEW;

@@ -55,6 +55,7 @@ mod tests {
     use crate::planner::Verdict;
     use crate::sense::LidarScan;
     use crate::settings::{PlaneSettings, Settings};
+    use crate::tuning::scan_match::AGES;
     use crate::vehicle::{Conditions, Pose, VehicleState};
     use std::boxed::Box;
 
@@ -78,7 +79,13 @@ mod tests {
                 z: 50.0,
                 air,
             };
-            planner.begin(0.0, &Pose::of(&state), &state, &Conditions::STILL, None);
+            planner.begin(
+                0.0,
+                &[Pose::of(&state); AGES],
+                &state,
+                &Conditions::STILL,
+                None,
+            );
             assert!(planner.is_working() && !planner.summary.inconsistent);
             let one = planner.cruising();
             planner.propose(one);
