@@ -261,7 +261,7 @@ fn table(args: &IdentityArgs, rows: &[serde_json::Value]) {
     } = args;
     match density {
         Some(density) => {
-            println!("{flights} flights in space, {density} trunks per m^2, from seed {seed}")
+            println!("{flights} flights in space, {density} trunks per m^2, from seed {seed}");
         }
         None => println!(
             "{flights} flights of {duration} s past {obstacles} obstacles, from seed {seed}"

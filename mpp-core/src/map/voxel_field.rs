@@ -118,14 +118,6 @@ impl VoxelField {
         ]
     }
 
-    fn square(&self, [x, y, z]: [usize; 3]) -> u16 {
-        let column = self.squares.get(x).and_then(|slice| slice.get(y));
-        column
-            .and_then(|column| column.get(z))
-            .copied()
-            .unwrap_or(FAR)
-    }
-
     /// Distance of a point \[m\], at most [`MOST_CLEARANCE`], interpolated between the centres of voxels.
     #[must_use]
     pub fn clearance(&self, point: &[f64; 3]) -> f64 {
@@ -162,13 +154,12 @@ impl VoxelField {
         }
     }
 
-    /// Whether [`clearance`](Self::clearance) is at least a distance \[m\]. False also where that takes more than a look at one
-    /// voxel: the distances of the centres around a point differ by the diagonal of a voxel at most.
+    /// Whether [`clearance`](Self::clearance) is at least a distance \[m\], as far as one voxel tells: distances of the centres
+    /// around a point differ by the diagonal of a voxel at most.
     #[must_use]
     pub fn is_clear(&self, point: &[f64; 3], distance: f64) -> bool {
-        let (low, _) = self.cube(point);
-        let needed = (distance + DIAGONAL) / PART;
-        f64::from(self.square(low)) >= needed * needed
+        let [x, y, z] = *point;
+        self.clear_column(x, y, distance)(z)
     }
 
     /// [`clearance`](Self::clearance), and its slope [-].
@@ -205,7 +196,7 @@ impl VoxelField {
     pub fn is_unknown(&self, point: &[f64; 3]) -> bool {
         let [x, y, z] = self.place(point);
         let column = self.unknown.get(x).and_then(|slice| slice.get(y));
-        column.is_some_and(|column| *column >> z & 1 == 1)
+        column.is_some_and(|it| *it >> z & 1 == 1)
     }
 
     /// Calls `each` with the least and the greatest coordinates of what hits have shown of every occupied voxel of a box that has
