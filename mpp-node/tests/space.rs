@@ -346,12 +346,10 @@ fn a_node_that_is_reset_gives_the_same_answers_slice_by_slice() {
         let count = |wanted| slices.iter().filter(|slice| **slice == wanted).count();
         assert_eq!(count(SpaceSlice::Map), 6);
         let cycles = count(SpaceSlice::Planner(Field));
-        assert_eq!(cycles, 3);
+        // At ticks 3 and 33: a cycle begins with a sweep, or waits twice as long.
+        assert_eq!(cycles, 2);
         for stage in [Lattice, Candidate, Program, Solve, Refine] {
-            assert!(
-                count(SpaceSlice::Planner(stage)) >= cycles && cycles == 3,
-                "{stage:?}"
-            );
+            assert!(count(SpaceSlice::Planner(stage)) >= cycles, "{stage:?}");
         }
     });
 }
