@@ -8,7 +8,9 @@ use mpp_sim::orders::Ground;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::plant::{Plant, PlantError};
 use mpp_sim::scenario::{Preset, Scenario};
-use mpp_sim::space::{Quaternion, SpaceAircraft, SpaceDynamics, SpaceState, WindConfig};
+use mpp_sim::space::{
+    Quaternion, SpaceAircraft, SpaceDynamics, SpaceFile, SpaceState, WindConfig, fly_space_with,
+};
 use mpp_sim::world::World;
 use nalgebra::{SMatrix, SVector};
 
@@ -292,4 +294,18 @@ fn an_aircraft_without_a_lateral_table_is_refused() {
             .starts_with("aircraft.lateral: give this table"),
         "{error}"
     );
+}
+
+#[test]
+fn a_core_in_the_plane_says_that_it_does_not_fly_in_space() {
+    let told = std::thread::Builder::new().stack_size(32 << 20).spawn(|| {
+        let flight = SpaceFile::default().build(None).unwrap();
+        let mut core = PipeLink::of(&Scenario::new(Preset::Flight, 1));
+        let error = fly_space_with(&flight, &mut core, || false).unwrap_err();
+        assert!(
+            error.to_string().contains("flies no such preset"),
+            "{error}"
+        );
+    });
+    told.unwrap().join().unwrap();
 }

@@ -12,8 +12,8 @@ use crate::log::{FlightLog, Summary};
 use crate::outcome::{Class, Outcome};
 use crate::scenario::Scenario;
 use hil_protocol::{
-    ActuatorCommand, ConfigureVerdict, ControlMode, Message, PlanReport, SpaceReport, StepReport,
-    SurfaceCommand,
+    ActuatorCommand, ConfigureVerdict, ControlMode, Message, PlanReport, Rejection, RejectionCause,
+    SpaceReport, StepReport, SurfaceCommand,
 };
 use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState};
 
@@ -102,6 +102,10 @@ impl SpaceHost {
                         refused => return Err(LinkError::Refused(refused).into()),
                     },
                     // A core in the vertical plane takes no such message.
+                    Message::Rejection(Rejection {
+                        cause: RejectionCause::UnexpectedMessage { .. },
+                        ..
+                    }) => return Err(LinkError::Refused(ConfigureVerdict::NoSuchPlanner).into()),
                     Message::Rejection(told) => log.rejections.push(entry(&told)),
                     other => return Err(unexpected(awaited, &other)),
                 }
