@@ -54,6 +54,16 @@ impl Outcome {
     }
 }
 
+/// The words of a line of flags.
+pub(crate) fn flags(line: &str) -> Vec<String> {
+    line.split(' ').map(str::to_owned).collect()
+}
+
+/// The flags of a flight in space, through a forest with so many trunks per square metre.
+pub(crate) fn in_space(seed: u64, density: f64) -> Vec<String> {
+    flags(&format!("--seed {seed} --preset space --density {density}"))
+}
+
 /// The built harness.
 pub(crate) struct Harness {
     program: PathBuf,

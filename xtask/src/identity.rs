@@ -1,7 +1,7 @@
 //! `identity`: flies the same seeds on every machine that the core runs on, and compares the logs' hashes.
 
 use crate::firmware::{self, Image};
-use crate::flight::Harness;
+use crate::flight::{Harness, flags, in_space};
 use crate::folders::work;
 use crate::qemu::{Emulator, Run};
 use crate::toolchain::output;
@@ -88,12 +88,12 @@ impl Flights<'_> {
             density,
             ..
         } = self.0;
-        let in_space =
-            density.map(|density| format!("--seed {seed} --preset space --density {density}"));
-        let flags = in_space.unwrap_or_else(|| {
-            format!("--seed {seed} --obstacles {obstacles} --duration {duration}")
-        });
-        flags.split(' ').map(str::to_owned).collect()
+        match density {
+            Some(density) => in_space(seed, *density),
+            None => flags(&format!(
+                "--seed {seed} --obstacles {obstacles} --duration {duration}"
+            )),
+        }
     }
 
     /// Its keys of a scenario file.
@@ -123,12 +123,7 @@ pub(crate) fn run(args: &IdentityArgs) -> Result<()> {
     let host = Harness::build(&folder)?;
     firmware::build(&[flights.image()])?;
     let emulated = aarch64::harness(&work("aarch64")?)?;
-    let features: &[&str] = if args.density.is_some() {
-        &["space"]
-    } else {
-        &[]
-    };
-    let module = wasm::build(features)?;
+    let module = wasm::build(args.density.is_some())?;
     let on_m7 = || {
         Target::fly("cortex-m7", "harness, core in QEMU's mps2-an500", || {
             flights.with(|flags| cortex_m7(&host, flights.image(), flags))

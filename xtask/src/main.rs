@@ -87,7 +87,7 @@ fn main() -> ExitCode {
         Command::Aarch64(args) => aarch64::run(&args),
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
-        Command::Wasm => wasm::build(&[]).map(|path| println!("{}", path.display())),
+        Command::Wasm => wasm::build(false).map(|path| println!("{}", path.display())),
         Command::Web => wasm::page().map(|_| ()),
         Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),

@@ -2,7 +2,7 @@
 
 use crate::counts::{Counts, median, plugin};
 use crate::firmware::{self, Image};
-use crate::flight::{Harness, Outcome};
+use crate::flight::{Harness, Outcome, flags, in_space};
 use crate::folders::work;
 use crate::qemu::{Emulator, Run};
 use anyhow::{Result, bail};
@@ -25,22 +25,22 @@ pub(crate) struct PilArgs {
     /// Number of seeds to fly
     #[arg(long, default_value_t = 1)]
     flights: u64,
-    /// Number of obstacles in the field, in the vertical plane
+    /// Number of obstacles in the field
     #[arg(long, default_value_t = 20)]
     obstacles: u16,
-    /// Trunks per square metre, with preset `space`
-    #[arg(long, default_value_t = 0.02)]
-    density: f64,
+    /// Fly in space, through a forest with so many trunks per square metre
+    #[arg(long, conflicts_with_all = ["obstacles", "preset", "duration", "transport"])]
+    density: Option<f64>,
     /// Preset, which is a set of parameters and rules
     #[arg(long, default_value = "flight")]
     preset: String,
     /// Aircraft, a name or a file [default: the preset's]
     #[arg(long)]
     aircraft: Option<String>,
-    /// Length of each flight in the vertical plane, in seconds
+    /// Length of each flight, in seconds
     #[arg(long, default_value_t = 20)]
     duration: u32,
-    /// Transport of the bytes to the emulated core; preset `space` has FIFOs alone
+    /// Transport of the bytes to the emulated core; in space by FIFOs
     #[arg(long, value_enum, default_value_t = Transport::Uart)]
     transport: Transport,
     /// Print one JSON object per flight
@@ -48,15 +48,9 @@ pub(crate) struct PilArgs {
     json: bool,
 }
 
-impl PilArgs {
-    fn is_in_space(&self) -> bool {
-        self.preset == "space"
-    }
-}
-
 pub(crate) fn run(args: &PilArgs) -> Result<()> {
     let (image, transport) = match args.transport {
-        _ if args.is_in_space() => (Image::Space, Transport::Fifo),
+        _ if args.density.is_some() => (Image::Space, Transport::Fifo),
         Transport::Uart => (Image::Lockstep, Transport::Uart),
         Transport::Fifo => (Image::Fifo, Transport::Fifo),
     };
@@ -112,12 +106,12 @@ fn scenario(args: &PilArgs, seed: u64) -> Vec<String> {
         density,
         ..
     } = args;
-    let flags = if args.is_in_space() {
-        format!("--seed {seed} --preset {preset} --density {density}")
-    } else {
-        format!("--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}")
+    let mut arguments = match density {
+        Some(density) => in_space(seed, *density),
+        None => flags(&format!(
+            "--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}"
+        )),
     };
-    let mut arguments: Vec<String> = flags.split(' ').map(str::to_owned).collect();
     if let Some(aircraft) = aircraft {
         arguments.extend(["--aircraft".to_owned(), aircraft.clone()]);
     }
@@ -133,8 +127,7 @@ fn print_flight(args: &PilArgs, seed: u64, host: &Outcome, target: &Outcome, cou
     if args.json {
         let object = json!({
             "seed": seed,
-            "obstacles": args.obstacles,
-            "preset": args.preset,
+            "flags": scenario(args, seed).join(" "),
             "outcome": host.outcome(),
             "host_hash": host.hash(),
             "target_hash": target.hash(),
@@ -144,6 +137,7 @@ fn print_flight(args: &PilArgs, seed: u64, host: &Outcome, target: &Outcome, cou
             "step_worst": step,
             "cycle_median": cycle,
             "cycle_worst": worst,
+            "stages_mean": counts.stages_mean().collect::<BTreeMap<_, _>>(),
             "slices_worst": slices,
         });
         println!("{object}");

@@ -27,8 +27,9 @@ const PARTS: [&str; 10] = [
     "bindings/web/page/fly.js",
 ];
 
-/// Builds the simulation and its interface for WebAssembly. Returns the path of the module.
-pub(crate) fn build(features: &[&str]) -> Result<PathBuf> {
+/// Builds the simulation and its interface for WebAssembly, with flights in space or as the page has it. Returns the path of the
+/// module.
+pub(crate) fn build(in_space: bool) -> Result<PathBuf> {
     let toolchain = Toolchain::find(TARGET)?;
     let mut cargo = toolchain.cargo("rustc", "")?;
     cargo.args(["--config", "profile.release.opt-level='s'"]);
@@ -36,20 +37,23 @@ pub(crate) fn build(features: &[&str]) -> Result<PathBuf> {
         let level = format!("profile.release.package.{package}.opt-level=3");
         cargo.args(["--config", &level]);
     }
-    succeed(
-        cargo
-            .args(["--locked", "--release", "-p", "mpp-web", "--lib"])
-            .args(["--features", &features.join(",")])
-            .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"])
-            // The core in space is built on the stack before it moves to its box.
-            .args(["-C", "link-arg=-zstack-size=33554432"]),
-    )?;
+    if in_space {
+        cargo.args(["--features", "space"]);
+    }
+    cargo
+        .args(["--locked", "--release", "-p", "mpp-web", "--lib"])
+        .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"]);
+    if in_space {
+        // The core in space is built on the stack before it moves to its box.
+        cargo.args(["-C", "link-arg=-zstack-size=33554432"]);
+    }
+    succeed(&mut cargo)?;
     Ok(work("")?.join(TARGET).join("release/mpp_web.wasm"))
 }
 
 /// Builds the page. It holds all that it needs. Returns its file.
 pub(crate) fn page() -> Result<PathBuf> {
-    let module = gzip(&std::fs::read(build(&[])?)?)?;
+    let module = gzip(&std::fs::read(build(false)?)?)?;
     let mut page = String::new();
     for part in PARTS {
         page += &std::fs::read_to_string(root().join(part)).context(part)?;

@@ -5,7 +5,7 @@
 #![no_std]
 #![no_main]
 
-use cortex_m_rt::{entry, exception};
+use cortex_m_rt::entry;
 use firmware::host::{self, Host};
 use firmware::mark::{self, Region};
 use firmware::owned::{self, Owned};
@@ -85,13 +85,7 @@ fn advance(node: &mut SpaceNode, slice: SpaceSlice) {
     }
 }
 
-// The link script wants the handlers of the other images, and none of them runs here.
-#[exception]
-fn SysTick() {}
-
-#[exception]
-unsafe fn DefaultHandler(_: i16) {}
-
+// The restart of the other images refers to it; nothing restarts here.
 #[unsafe(no_mangle)]
 extern "C" fn planner_thread() -> ! {
     report::finish(0)

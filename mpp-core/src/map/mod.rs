@@ -8,6 +8,7 @@
 //! | [`DistanceField`] | the truncated distance field \(ESDF\): from a point to the nearest centre of an occupied cell of the grid |
 
 pub(crate) mod cell;
+mod clear_column;
 mod distance_field;
 mod extent;
 mod fan;
@@ -18,6 +19,7 @@ mod scan_monitor;
 pub(crate) mod voxel_field;
 pub(crate) mod voxels;
 
+pub(crate) use clear_column::ClearColumn;
 pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
 pub(crate) use fan::sees_below;

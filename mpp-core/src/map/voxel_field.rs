@@ -1,5 +1,6 @@
 //! The truncated distance field in space, in a window of the map around the aircraft.
 
+use super::clear_column::{ClearColumn, along};
 use super::extent::{Extent, PART, PARTS};
 use super::voxels::{CELLS, VoxelGrid, row_centre, row_of, voxel};
 use crate::tuning::grid::{CELL, OCCUPIED};
@@ -141,16 +142,13 @@ impl VoxelField {
         (low, share)
     }
 
-    /// [`is_clear`](Self::is_clear) for the points of a vertical line, by their height \[m\].
-    pub(crate) fn clear_column(&self, x: f64, y: f64, distance: f64) -> impl Fn(f64) -> bool {
+    /// [`is_clear`](Self::is_clear) for the points of a vertical line.
+    pub(crate) fn clear_column(&self, x: f64, y: f64, distance: f64) -> ClearColumn<'_> {
         let ([x, y, _], _) = self.cube(&[x, y, 0.0]);
         let needed = (distance + DIAGONAL) / PART;
-        let needed = libm::ceil(needed * needed).min(f64::from(u16::MAX)) as u16;
-        let squares = self.squares.get(x).and_then(|slice| slice.get(y));
-        move |z| {
-            let (z, _) = along(z / CELL - 0.5, HEIGHT);
-            let square = squares.and_then(|squares| squares.get(z));
-            square.is_some_and(|square| *square >= needed)
+        ClearColumn {
+            squares: self.squares.get(x).and_then(|slice| slice.get(y)),
+            needed: libm::ceil(needed * needed).min(f64::from(u16::MAX)) as u16,
         }
     }
 
@@ -159,7 +157,7 @@ impl VoxelField {
     #[must_use]
     pub fn is_clear(&self, point: &[f64; 3], distance: f64) -> bool {
         let [x, y, z] = *point;
-        self.clear_column(x, y, distance)(z)
+        self.clear_column(x, y, distance).is_clear(z)
     }
 
     /// [`clearance`](Self::clearance), and its slope [-].
@@ -244,14 +242,6 @@ impl VoxelField {
     pub fn covers(&self, x: f64) -> bool {
         voxel(x) < self.first[0] + LENGTH as i64
     }
-}
-
-/// The voxel below a coordinate in voxels, with a next one above it, and the share of the way to that \[-\].
-fn along(at: f64, length: usize) -> (usize, f64) {
-    // Positive, so the whole part is the floor.
-    let inside = at.max(0.0).min(length as f64 - 1.001);
-    let low = inside as usize;
-    (low, inside - low as f64)
 }
 
 /// Occupied and unknown voxels of a column.
@@ -368,6 +358,7 @@ mod tests {
             });
             libm::sqrt(squares.sum())
         };
+        let mut clear = 0;
         for _ in 0..2000 {
             let point = [draw(0.0, 42.0), draw(-14.0, 14.0), draw(0.5, 15.0)];
             let centre = point.map(|it| (libm::floor(it / CELL) + 0.5) * CELL);
@@ -387,6 +378,12 @@ mod tests {
                 let expected = slope[axis] * (moved[axis] - point[axis]);
                 assert!((by - expected).abs() < 1e-9, "{point:?} {axis}");
             }
+            let wanted = draw(0.3, 2.0);
+            if field.is_clear(&point, wanted) {
+                assert!(field.clearance(&point) >= wanted, "{point:?} {wanted}");
+                clear += 1;
+            }
         }
+        assert!(clear > 500, "{clear}");
     }
 }

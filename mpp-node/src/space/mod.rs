@@ -131,12 +131,10 @@ impl SpaceNode {
 
     /// Takes a byte from the link. The caller then calls [`advance`](Self::advance) until it returns false.
     pub fn take(&mut self, byte: u8, send: &mut impl FnMut(&[u8])) {
-        let handled = match self.decoder.take(byte) {
-            None => return,
-            Some(Ok(id)) => self.handle(id, send),
-            Some(Err(fault)) => Err(fault),
+        let Some(taken) = self.decoder.take(byte) else {
+            return;
         };
-        if let Err(fault) = handled {
+        if let Err(fault) = taken.and_then(|id| self.handle(id, send)) {
             self.reject(RejectionCause::Frame(fault), send);
         }
     }

@@ -51,7 +51,7 @@ impl SpaceNode {
 
     /// Does a slice of the work between two ticks. Returns false if there is none.
     pub fn advance(&mut self) -> bool {
-        let Some(session) = &mut self.session else {
+        let (Some(_), Some(session)) = (self.slice(), &mut self.session) else {
             return false;
         };
         if let Some((tick, position)) = self.intake.take() {
@@ -59,17 +59,11 @@ impl SpaceNode {
             let beams = self.sweep.beams(tick, &session.estimator);
             self.map.insert(&position, beams, sight);
             self.sweep.clear_points();
-            return true;
+        } else if let Some(cycle) = &mut session.cycle {
+            self.granted = self.granted.saturating_sub(1);
+            cycle.slices = cycle.slices.saturating_add(1);
+            cycle.complete = self.planner.advance(&self.map);
         }
-        let Some(cycle) = session.cycle.as_mut().filter(|cycle| !cycle.complete) else {
-            return false;
-        };
-        let Some(left) = self.granted.checked_sub(1) else {
-            return false;
-        };
-        self.granted = left;
-        cycle.slices = cycle.slices.saturating_add(1);
-        cycle.complete = self.planner.advance(&self.map);
         true
     }
 }

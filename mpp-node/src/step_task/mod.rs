@@ -201,12 +201,10 @@ impl StepTask {
     }
 
     pub(crate) fn take_byte(&mut self, byte: u8, send: &mut impl Out) {
-        let handled = match self.decoder.take(byte) {
-            None => return,
-            Some(Ok(id)) => self.handle(id, send),
-            Some(Err(fault)) => Err(fault),
+        let Some(taken) = self.decoder.take(byte) else {
+            return;
         };
-        if let Err(fault) = handled {
+        if let Err(fault) = taken.and_then(|id| self.handle(id, send)) {
             self.reject(RejectionCause::Frame(fault), send);
         }
     }

@@ -7,7 +7,7 @@
 use super::edges::{
     CLIMBS, LAYERS, Layers, NONE, ROWS, SLOPES, UNIT, across, backward, forward, units,
 };
-use crate::map::VoxelField;
+use crate::map::{ClearColumn, VoxelField};
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use crate::vehicle::{SpaceModel, between};
@@ -277,7 +277,7 @@ fn place(value: f64, count: usize) -> usize {
 }
 
 /// Places above each other.
-struct Line<'a, C> {
+struct Line<'a> {
     field: &'a VoxelField,
     rules: &'a Rules,
     /// The place of the middle layer.
@@ -286,10 +286,10 @@ struct Line<'a, C> {
     outside: f64,
     /// Weight of the unknown [-].
     near: f64,
-    is_clear: C,
+    column: ClearColumn<'a>,
 }
 
-impl<'a> Line<'a, ()> {
+impl<'a> Line<'a> {
     /// The places at a distance ahead of the origin \[m\], and at a row.
     fn new(
         origin: &[f64; 3],
@@ -297,23 +297,21 @@ impl<'a> Line<'a, ()> {
         rules: &'a Rules,
         ahead: f64,
         row: f64,
-    ) -> Line<'a, impl Fn(f64) -> bool + use<'a>> {
+    ) -> Self {
         let (x, y) = (
             origin[0] + ahead,
             origin[1] + (row - (ROWS / 2) as f64) * ACROSS,
         );
-        Line {
+        Self {
             field,
             rules,
             foot: [x, y, origin[2]],
             outside: (libm::fabs(y) - rules.half_width).max(0.0),
             near: 1.0 - ahead / UNKNOWN_AHEAD,
-            is_clear: field.clear_column(x, y, rules.margin),
+            column: field.clear_column(x, y, rules.margin),
         }
     }
-}
 
-impl<C: Fn(f64) -> bool> Line<'_, C> {
     /// Cost of the place at a layer [-], without that of its distance from the middle, and the place.
     fn cost(&self, layer: f64) -> (f64, [f64; 3]) {
         let [x, y, origin] = self.foot;
@@ -322,7 +320,7 @@ impl<C: Fn(f64) -> bool> Line<'_, C> {
         let point = [x, y, z];
         let [low, high] = rules.heights;
         let beyond = (low - z).max(z - high).max(0.0);
-        let near_obstacle = if (self.is_clear)(z) {
+        let near_obstacle = if self.column.is_clear(z) {
             0.0
         } else {
             (rules.margin - field.clearance(&point)).max(0.0)
