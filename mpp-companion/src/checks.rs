@@ -1,57 +1,44 @@
 //! What the companion verifies on the autopilot before it is ready.
 
+use crate::autopilot::{Check, Kind};
+use mavlink::dialects::common::PARAM_VALUE_DATA;
 use std::collections::BTreeMap;
 
-/// A parameter of ArduPlane, the values that a companion can fly with, and what to do otherwise.
-pub(crate) struct Check {
-    pub(crate) name: &'static str,
-    least: f32,
-    most: f32,
-    advice: &'static str,
-}
-
-const fn check(name: &'static str, least: f32, most: f32, advice: &'static str) -> Check {
-    Check {
-        name,
-        least,
-        most,
-        advice,
-    }
-}
-
-/// All checks.
-pub(crate) const CHECKS: [Check; 6] = [
-    check("GUIDED_TIMEOUT", 0.1, 0.5, "set 0.3 to 0.5"),
-    check("SCHED_LOOP_RATE", 63.0, 1000.0, "set 100 or more"),
-    check("TRIM_THROTTLE", 2.0, 100.0, "set more than 1"),
-    check("PTCH_LIM_MAX_DEG", 5.0, 80.0, "set 5 to 80"),
-    check("PTCH_LIM_MIN_DEG", -80.0, -5.0, "set -80 to -5"),
-    check("THR_MAX", 100.0, 100.0, "set 100"),
-];
-
 /// The parameters that the autopilot has told.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Checked {
+    kind: Kind,
     told: BTreeMap<&'static str, f32>,
 }
 
 impl Checked {
+    /// Nothing is told yet by an autopilot of this kind.
+    pub(crate) fn new(kind: Kind) -> Self {
+        let told = BTreeMap::new();
+        Self { kind, told }
+    }
+
+    fn checks(&self) -> &'static [Check] {
+        self.kind.manners().checks
+    }
+
     /// Takes a value.
-    pub(crate) fn hear(&mut self, name: &str, value: f32) {
-        if let Some(check) = CHECKS.iter().find(|check| check.name == name) {
-            self.told.insert(check.name, value);
+    pub(crate) fn hear(&mut self, told: &PARAM_VALUE_DATA) {
+        let name = told.param_id.to_str().unwrap_or_default();
+        if let Some(check) = self.checks().iter().find(|check| check.name == name) {
+            self.told.insert(check.name, self.kind.value(told));
         }
     }
 
     /// The names that are not told yet.
     pub(crate) fn unknown(&self) -> impl Iterator<Item = &'static str> {
-        let names = CHECKS.iter().map(|check| check.name);
+        let names = self.checks().iter().map(|check| check.name);
         names.filter(|name| !self.told.contains_key(name))
     }
 
     /// What keeps the companion on the ground; `None` if all is well.
     pub(crate) fn flaw(&self) -> Option<String> {
-        CHECKS
+        self.checks()
             .iter()
             .find_map(|check| match self.told.get(check.name) {
                 None => Some(format!("{} is not told", check.name)),
@@ -63,7 +50,8 @@ impl Checked {
     /// Least and greatest pitch that the autopilot allows \[rad\].
     pub(crate) fn pitch(&self) -> Option<(f64, f64)> {
         let angle = |name| Some(f64::from(*self.told.get(name)?).to_radians());
-        Some((angle("PTCH_LIM_MIN_DEG")?, angle("PTCH_LIM_MAX_DEG")?))
+        let [least, most] = self.kind.manners().pitch;
+        Some((angle(least)?, angle(most)?))
     }
 
     /// A line on what was verified.
@@ -72,7 +60,13 @@ impl Checked {
             .told
             .iter()
             .map(|(name, value)| format!("{name} {value}"));
-        pairs.collect::<Vec<_>>().join(", ")
+        let manners = self.kind.manners();
+        let begin = format!("{}, mode {}", manners.name, manners.mode);
+        [begin]
+            .into_iter()
+            .chain(pairs)
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 }
 
@@ -80,19 +74,33 @@ impl Checked {
 mod tests {
     use super::*;
 
+    fn told(name: &str, param_value: f32) -> PARAM_VALUE_DATA {
+        PARAM_VALUE_DATA {
+            param_value,
+            param_id: name.into(),
+            ..PARAM_VALUE_DATA::DEFAULT
+        }
+    }
+
     #[test]
     fn a_parameter_that_is_missing_or_out_of_range_keeps_the_companion_on_the_ground() {
-        let mut checked = Checked::default();
-        assert_eq!(checked.unknown().count(), CHECKS.len());
-        for check in &CHECKS {
+        for (kind, name) in [
+            (Kind::ArduPlane, "GUIDED_TIMEOUT"),
+            (Kind::Px4, "COM_OF_LOSS_T"),
+        ] {
+            let mut checked = Checked::new(kind);
+            assert_eq!(checked.unknown().count(), kind.manners().checks.len());
+            for check in kind.manners().checks {
+                assert!(checked.flaw().is_some());
+                checked.hear(&told(check.name, check.most));
+            }
+            assert_eq!(checked.flaw(), None);
+            assert!(checked.pitch().is_some_and(|(least, most)| least < most));
+            checked.hear(&told(name, 3.0));
+            let flaw = checked.flaw().unwrap();
+            assert_eq!(flaw, format!("{name} is 3: set 0.3 to 0.5"));
+            checked.hear(&told(name, f32::NAN));
             assert!(checked.flaw().is_some());
-            checked.hear(check.name, check.most);
         }
-        assert_eq!(checked.flaw(), None);
-        checked.hear("GUIDED_TIMEOUT", 3.0);
-        let flaw = checked.flaw().unwrap();
-        assert_eq!(flaw, "GUIDED_TIMEOUT is 3: set 0.3 to 0.5");
-        checked.hear("GUIDED_TIMEOUT", f32::NAN);
-        assert!(checked.flaw().is_some());
     }
 }

@@ -29,6 +29,12 @@ pub(crate) struct Placed {
     pub(crate) speed: f64,
 }
 
+/// Course over ground \[rad\], clockwise from north, and speed over ground [m/s].
+pub(crate) fn over_ground(position: &LOCAL_POSITION_NED_DATA) -> (f64, f64) {
+    let [north, east] = [position.vx, position.vy].map(f64::from);
+    (libm::atan2(east, north), libm::hypot(north, east))
+}
+
 /// The frame that is fixed at hand-over, and what the autopilot's estimate has jumped since.
 #[derive(Clone, Debug)]
 pub(crate) struct CourseFrame {
@@ -42,12 +48,25 @@ pub(crate) struct CourseFrame {
 impl CourseFrame {
     /// The frame of an aircraft that is here and flies this course; `None` unless it moves.
     pub(crate) fn at(position: &LOCAL_POSITION_NED_DATA) -> Option<Self> {
-        let [north, east] = [position.vx, position.vy].map(f64::from);
-        (is_sound(position) && libm::hypot(north, east) > 1.0).then(|| Self {
+        let (course, speed) = over_ground(position);
+        (is_sound(position) && speed > 1.0).then(|| Self {
             origin: [f64::from(position.x), f64::from(position.y)],
-            course: libm::atan2(east, north),
+            course,
             jumped: [0.0; 3],
             last: position.clone(),
+        })
+    }
+
+    /// The frame on the same line that begins abreast of this position.
+    pub(crate) fn abreast(&self, position: &LOCAL_POSITION_NED_DATA) -> Option<Self> {
+        let begun = Self::at(position)?;
+        let (sin, cos) = libm::sincos(self.course);
+        let [north, east] = begun.origin;
+        let cross = (east - self.origin[1]) * cos - (north - self.origin[0]) * sin;
+        Some(Self {
+            origin: [north + cross * sin, east - cross * cos],
+            course: self.course,
+            ..begun
         })
     }
 
@@ -93,6 +112,13 @@ impl CourseFrame {
     }
 }
 
+/// Roll and pitch of an attitude quaternion \[rad\].
+pub(crate) fn roll_pitch(q: [f32; 4]) -> (f64, f64) {
+    let [w, x, y, z] = q.map(f64::from);
+    let roll = libm::atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y));
+    (roll, libm::asin((2.0 * (w * y - z * x)).clamp(-1.0, 1.0)))
+}
+
 fn ned(position: &LOCAL_POSITION_NED_DATA) -> [f64; 3] {
     [position.x, position.y, position.z].map(f64::from)
 }
@@ -131,6 +157,17 @@ mod tests {
         assert!((next.x - 0.9).abs() < 1e-5 && (next.z - 50.0).abs() < 1e-5);
         assert_eq!(frame.place(&at(60, [99.0, 8.9, -57.0])), None);
         assert_eq!(frame.place(&at(80, [f32::NAN, 8.9, -57.0])), None);
+    }
+
+    #[test]
+    fn a_frame_abreast_keeps_the_line() {
+        let line = CourseFrame::at(&at(0, [100.0, 0.0, -50.0])).unwrap();
+        let mut turned = at(900, [98.0, 13.0, -50.0]);
+        turned.vx = 2.0;
+        let mut frame = line.abreast(&turned).unwrap();
+        let placed = frame.place(&at(920, [98.0, 13.3, -50.0])).unwrap();
+        assert!((placed.x - 0.3).abs() < 1e-6 && (placed.cross - 2.0).abs() < 1e-6);
+        assert!((placed.speed - 15.0).abs() < 1e-9);
     }
 
     #[test]

@@ -13,7 +13,7 @@ pub enum State {
     Flying,
     /// Setpoints of a climb are sent.
     Climb,
-    /// The aircraft is given back: the autopilot's own targets are set, then nothing is sent.
+    /// The aircraft is given back: the autopilot's own targets or mode are set, then nothing is sent.
     GiveBack,
     /// The autopilot is silent.
     Lost,
@@ -28,7 +28,7 @@ pub enum Reason {
     NotVerified,
     /// The pilot chose the mode.
     Chosen,
-    /// The pilot left the mode, or disarmed.
+    /// The mode was left, by the pilot or after it was given back, or the aircraft was disarmed.
     TakenOver,
     /// The core is ready and the flight is level.
     Settled,
@@ -116,10 +116,15 @@ impl Guard {
         Self { state, since }
     }
 
-    /// Whether a setpoint may be sent now.
+    /// Whether a setpoint may be sent now: one of the core or of a climb, or a level one to an autopilot that takes the mode
+    /// of setpoints only while they flow.
     #[must_use]
-    pub(crate) fn sends(&self) -> bool {
-        matches!(self.state, State::Flying | State::Climb)
+    pub(crate) fn sends(&self, flows: bool) -> bool {
+        match self.state {
+            State::Flying | State::Climb => true,
+            State::Ready | State::Listening => flows,
+            State::Off | State::GiveBack | State::Lost => false,
+        }
     }
 
     /// Moves on by what is seen. Returns the reason of a change.

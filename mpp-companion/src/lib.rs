@@ -3,6 +3,7 @@
 //! [`Companion`] has no clock, socket and thread: each input bears its time, so that a recorded flight replays to the last
 //! bit. The binary brings sockets, clock and log; [`stand_in`] brings an autopilot that flies in simulated time.
 
+mod autopilot;
 mod brain;
 mod checks;
 mod clock;
@@ -10,12 +11,14 @@ mod companion;
 mod error;
 mod frames;
 mod guard;
+mod level;
 mod lidar;
 mod log;
 mod setpoint;
 pub mod stand_in;
 mod wire;
 
+pub use autopilot::Kind;
 pub use companion::{Companion, Config, Side, Told};
 pub use error::CompanionError;
 pub use guard::{Reason, State};

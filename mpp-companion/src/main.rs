@@ -4,7 +4,9 @@ mod port;
 mod stream;
 
 use clap::{Parser, Subcommand};
-use mpp_companion::{Companion, CompanionError, Config, LogWriter, Side, Told, replay, stand_in};
+use mpp_companion::{
+    Companion, CompanionError, Config, Kind, LogWriter, Side, Told, replay, stand_in,
+};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use port::Port;
 use std::fs::File;
@@ -25,8 +27,11 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Order {
-    /// Flies an aircraft whose autopilot is ArduPlane.
+    /// Flies an aircraft whose autopilot is ArduPlane or PX4.
     Fly {
+        /// Kind of the autopilot; without it the heartbeat says it.
+        #[arg(long)]
+        kind: Option<Kind>,
         /// Aircraft file with a `pitch_loop`.
         #[arg(long)]
         aircraft: PathBuf,
@@ -58,6 +63,9 @@ enum Order {
     },
     /// Flies a stand-in of an autopilot in simulated time, and prints the figures of the documentation.
     StandIn {
+        /// Kind of the autopilot.
+        #[arg(long, default_value = "arduplane")]
+        kind: Kind,
         /// Flights of each set; a fault gets an eighth of them.
         #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..))]
         flights: u64,
@@ -81,8 +89,12 @@ fn main() -> ExitCode {
 
 fn run(order: Order) -> Result<(), CompanionError> {
     match order {
-        Order::StandIn { flights, seed } => {
-            println!("{}", stand_in::figures(flights, seed)?);
+        Order::StandIn {
+            kind,
+            flights,
+            seed,
+        } => {
+            println!("{}", stand_in::figures(kind, flights, seed)?);
             Ok(())
         }
         Order::Latency => {
@@ -92,6 +104,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
             Ok(())
         }
         Order::Fly {
+            kind,
             aircraft,
             autopilot,
             lidar,
@@ -105,6 +118,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
             let text = std::fs::read_to_string(&aircraft).map_err(io("read the aircraft file"))?;
             let file = AircraftFile::parse(&aircraft.display().to_string(), &text)?;
             let config = Config {
+                kind,
                 beams,
                 replan_ticks: 100 / replan_hz,
                 slices,

@@ -1,8 +1,19 @@
 //! Flights of the companion with the stand-in: what holds whatever the exchange does.
 
 use mpp_companion::stand_in::{Fault, Flight};
-use mpp_companion::{Companion, CompanionError, Config, Reason, State, Told};
+use mpp_companion::{Companion, CompanionError, Config, Kind, Reason, State, Told};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
+
+const KINDS: [Kind; 2] = [Kind::ArduPlane, Kind::Px4];
+
+/// A flight with PX4.
+fn px4(seed: u64, fault: Option<Fault>) -> Flight {
+    Flight {
+        kind: Kind::Px4,
+        fault,
+        ..Flight::new(seed)
+    }
+}
 
 #[test]
 fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
@@ -25,6 +36,21 @@ fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
     assert!(other.replay(&log).is_err());
 }
 
+/// PX4 banks as it is told, and its wings hang: without a loop of the companion it would be tens of metres from its course.
+#[test]
+fn px4_is_flown_past_obstacles_and_along_its_course() {
+    let (flight, mut log) = (px4(3, None), Vec::new());
+    let outcome = flight.fly(Some(&mut log)).unwrap();
+    assert!(
+        outcome.is_strict(&flight.scenario().unwrap()),
+        "{outcome:?}"
+    );
+    assert!((0.1..3.0).contains(&outcome.aside), "{outcome:?}");
+    // Level setpoints flowed before, and do not count.
+    let replayed = flight.replay(&log).unwrap();
+    assert!(replayed.times.len() > outcome.setpoints as usize + 300);
+}
+
 /// In a head wind the damping of the pitch loop looked like an airspeed that reads too much.
 #[test]
 fn it_flies_past_obstacles_in_wind_and_gusts() {
@@ -39,46 +65,79 @@ fn it_flies_past_obstacles_in_wind_and_gusts() {
 
 #[test]
 fn no_fault_of_the_exchange_brings_a_setpoint_that_must_not_be() {
-    for fault in Fault::ALL {
+    for (kind, fault) in KINDS
+        .iter()
+        .flat_map(|kind| Fault::ALL.map(|fault| (*kind, fault)))
+    {
         let flight = Flight {
+            kind,
             fault: Some(fault),
             ..Flight::new(4)
         };
         let outcome = flight.fly(None).unwrap();
         let bad = (outcome.late, outcome.unsound);
-        assert_eq!(bad, (0, 0), "{fault:?}");
+        assert_eq!(bad, (0, 0), "{kind:?} {fault:?}");
+        let most = match (kind, fault) {
+            // A late message tells the old mode; PX4 does not obey.
+            (Kind::Px4, Fault::Late(ticks)) => 10 * ticks as u32,
+            _ => 50,
+        };
         assert!(
-            outcome.last_after <= 50,
-            "{fault:?}: {} ms",
+            outcome.last_after <= most,
+            "{kind:?} {fault:?}: {} ms",
             outcome.last_after
         );
-        assert!(outcome.setpoints > 50, "{fault:?} begins in flight");
+        assert!(
+            outcome.setpoints > 50,
+            "{kind:?} {fault:?} begins in flight"
+        );
     }
 }
 
 #[test]
 fn a_pilot_who_takes_over_has_the_aircraft() {
-    let flight = Flight {
-        fault: Some(Fault::TakeOver),
-        ..Flight::new(5)
-    };
-    let told = flight.fly(None).unwrap().told;
-    let taken = Told::State(State::Off, Reason::TakenOver);
-    assert!(told.contains(&taken), "{told:?}");
+    for kind in KINDS {
+        let flight = Flight {
+            kind,
+            fault: Some(Fault::TakeOver),
+            ..Flight::new(5)
+        };
+        let told = flight.fly(None).unwrap().told;
+        let taken = Told::State(State::Off, Reason::TakenOver);
+        assert!(told.contains(&taken), "{told:?}");
+    }
+}
+
+/// PX4 leaves OFFBOARD when setpoints end. It is not entered again by a companion that knows an old mode.
+#[test]
+fn px4_that_has_left_its_mode_in_silence_is_not_flown_again() {
+    let told = px4(7, Some(Fault::Silent(300))).fly(None).unwrap().told;
+    let states = told.iter().filter_map(|told| match told {
+        Told::State(state, _) => Some(*state),
+        _ => None,
+    });
+    let lost = states.skip_while(|state| *state != State::Lost);
+    assert_eq!(
+        lost.collect::<Vec<_>>(),
+        [State::Lost, State::Off, State::Ready]
+    );
 }
 
 /// The autopilot counts heights above home, and its estimate above another place.
 #[test]
 fn an_aircraft_that_is_given_back_keeps_its_height() {
-    let flight = Flight {
-        fault: Some(Fault::LidarSilent),
-        ..Flight::new(6)
-    };
-    let outcome = flight.fly(None).unwrap();
-    let back = Told::State(State::GiveBack, Reason::Climbed);
-    assert!(outcome.told.contains(&back), "{:?}", outcome.told);
-    // The climb ends 30 m above hand-over.
-    assert!((outcome.end - 30.0).abs() < 3.0, "{}", outcome.end);
+    for kind in KINDS {
+        let flight = Flight {
+            kind,
+            fault: Some(Fault::LidarSilent),
+            ..Flight::new(6)
+        };
+        let outcome = flight.fly(None).unwrap();
+        let back = Told::State(State::GiveBack, Reason::Climbed);
+        assert!(outcome.told.contains(&back), "{:?}", outcome.told);
+        // The climb ends 30 m above hand-over.
+        assert!((outcome.end - 30.0).abs() < 3.0, "{kind:?} {}", outcome.end);
+    }
 }
 
 /// An elevator that is no angle of attack would be sent as a pitch.

@@ -40,7 +40,7 @@ impl Companion {
             && (airspeed - cruise).abs() < 0.1 * cruise
     }
 
-    fn airspeed(&self) -> Option<f64> {
+    pub(super) fn airspeed(&self) -> Option<f64> {
         let density = self.config.model.file.air_density;
         Some(true_airspeed(self.heard.airspeed?, density))
     }
@@ -56,7 +56,10 @@ impl Companion {
     /// Begins a flight of the core at this attitude.
     fn begin(&mut self, attitude: &ATTITUDE_DATA) -> Option<Flown> {
         let position = self.heard.position.as_ref()?;
-        let frame = CourseFrame::at(position)?;
+        let frame = match &self.held {
+            Some((_, line)) => line.abreast(position)?,
+            None => CourseFrame::at(position)?,
+        };
         let height = -f64::from(position.z);
         match Brain::new(&self.config.configure(height)) {
             Ok(brain) => Some(Flown {
@@ -147,6 +150,7 @@ impl Companion {
         let [.., pitch_rate, _] = thought.step.reference;
         Some(Setpoint {
             pitch: thought.command.elevator + path + self.config.lead * pitch_rate,
+            roll: 0.0,
             throttle: thought.command.thrust / self.thrust_max,
         })
     }

@@ -1,9 +1,14 @@
 //! The companion: inputs with their times go in, frames to the autopilot come out.
 
+mod config;
 mod core_side;
+mod level;
 mod questions;
 
+pub use config::Config;
+
 use crate::CompanionError;
+use crate::autopilot::{AUTOPILOT, Kind, SYSTEM};
 use crate::brain::Brain;
 use crate::checks::Checked;
 use crate::clock::Clock;
@@ -12,21 +17,9 @@ use crate::guard::{Guard, Reason, Sight, State};
 use crate::lidar::Lidar;
 use crate::setpoint::{Gate, Setpoint};
 use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
-use hil_protocol::{Configure, MAX_BEAMS};
 use mavlink::dialects::common::{
-    ATTITUDE_DATA, AttitudeTargetTypemask, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag,
-    SET_ATTITUDE_TARGET_DATA,
+    ATTITUDE_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag, SET_ATTITUDE_TARGET_DATA,
 };
-use mpp_sim::aircraft_file::AircraftModel;
-
-/// ArduPlane's number of the mode GUIDED.
-pub(crate) const GUIDED: u32 = 15;
-/// System of the autopilot; the companion is a component of the same system.
-pub(crate) const SYSTEM: u8 = 1;
-/// The autopilot's component.
-pub(crate) const AUTOPILOT: u8 = 1;
-/// ArduPlane then takes the pitch from the quaternion and the throttle, and holds the heading by itself.
-pub(crate) const MASK: AttitudeTargetTypemask = AttitudeTargetTypemask::from_bits_retain(133);
 
 /// Ticks for which the core may be without trust in a sensor: it flies on without that sensor.
 const UNSURE: u32 = 100;
@@ -53,65 +46,13 @@ pub enum Told {
     Core(String),
 }
 
-/// What a companion flies.
-#[derive(Clone, Debug)]
-pub struct Config {
-    /// The aircraft.
-    pub model: AircraftModel,
-    /// Beams of a scan.
-    pub beams: u16,
-    /// Longest range of the lidar \[m\].
-    pub range: f32,
-    /// Ticks from one plan to the next.
-    pub replan_ticks: u32,
-    /// Ticks from the start of a cycle until its plan is flown.
-    pub latency_ticks: u32,
-    /// Slices of planning work in a tick.
-    pub slices: u32,
-    /// Time by which the wanted pitch leads the command \[s\].
-    pub lead: f64,
-}
-
-impl Config {
-    /// The usual flight of an aircraft: 100 beams, 2 Hz.
-    #[must_use]
-    pub fn new(model: AircraftModel, range: f32) -> Self {
-        Self {
-            beams: 100,
-            range,
-            replan_ticks: 50,
-            latency_ticks: 5,
-            slices: u32::MAX,
-            // The command is pitch above the path, and the path turns on until the command acts.
-            lead: model.actuators.elevator_delay.unwrap_or(0.0),
-            model,
-        }
-    }
-
-    /// The core's configuration at a height \[m\].
-    pub(crate) fn configure(&self, altitude: f64) -> Configure {
-        Configure {
-            preset: hil_protocol::Preset::Flight,
-            aircraft: self.model.known,
-            paths: 25,
-            replan_period_ticks: self.replan_ticks,
-            latency_ticks: self.latency_ticks,
-            slices_per_tick: self.slices,
-            seed: 1,
-            beams: self.beams.min(MAX_BEAMS as u16),
-            range_max: self.range,
-            altitude,
-            actuators: self.model.actuators,
-        }
-    }
-}
-
 /// What the autopilot said last.
 #[derive(Default)]
 struct Heard {
     /// When anything came \[us\].
     at: Option<u64>,
-    ours: bool,
+    armed: bool,
+    mode: Option<u32>,
     attitude: Option<ATTITUDE_DATA>,
     position: Option<LOCAL_POSITION_NED_DATA>,
     /// Height of the estimator's origin above home \[m\].
@@ -137,6 +78,8 @@ struct Flown {
 /// A companion. It has no clock: each input bears its time.
 pub struct Companion {
     config: Config,
+    /// The kind of autopilot, once it is known.
+    kind: Option<Kind>,
     thrust_max: f64,
     framer: Framer,
     sender: Sender,
@@ -145,6 +88,8 @@ pub struct Companion {
     clock: Clock,
     checked: Checked,
     guard: Guard,
+    /// Height \[m\] and line that PX4 was given on.
+    held: Option<(f64, CourseFrame)>,
     flown: Option<Flown>,
     asked: questions::Asked,
     told: Vec<Told>,
@@ -168,16 +113,19 @@ impl Companion {
         if file.elevator.min.is_none() || file.elevator.max.is_none() {
             return Err(CompanionError::Lacks("pitch_loop.min and pitch_loop.max"));
         }
+        let kind = config.kind;
         Ok(Self {
             config,
+            kind,
             thrust_max,
             framer: Framer::default(),
             sender: Sender::new(SYSTEM, OWN_COMPONENT),
             heard: Heard::default(),
             lidar: Lidar::new(),
             clock: Clock::default(),
-            checked: Checked::default(),
+            checked: Checked::new(kind.unwrap_or(Kind::ArduPlane)),
             guard: Guard::new(0.0),
+            held: None,
             flown: None,
             asked: questions::Asked::default(),
             told: Vec::new(),
@@ -221,16 +169,17 @@ impl Companion {
     fn hear(&mut self, now: u64, message: &Mav, send: &mut dyn FnMut(&[u8])) {
         match message {
             Mav::HEARTBEAT(beat) => {
-                self.heard.ours = is_ours(beat);
+                self.hear_heartbeat(beat);
+                self.look(now, send);
+            }
+            Mav::CURRENT_MODE(mode) if self.kind == Some(Kind::Px4) => {
+                self.heard.mode = Some(mode.custom_mode);
                 self.look(now, send);
             }
             Mav::TIMESYNC(sync) if sync.tc1 != 0 => {
                 self.clock.hear(now, sync.ts1 / 1000, sync.tc1 / 1000);
             }
-            Mav::PARAM_VALUE(value) => {
-                let name = value.param_id.to_str().unwrap_or_default();
-                self.checked.hear(name, value.param_value);
-            }
+            Mav::PARAM_VALUE(value) => self.checked.hear(value),
             Mav::VFR_HUD(hud) => {
                 self.heard.airspeed =
                     Some(f64::from(hud.airspeed)).filter(|speed| speed.is_finite());
@@ -245,6 +194,25 @@ impl Companion {
             }
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
             _ => {}
+        }
+    }
+
+    /// Before a heartbeat came the companion asks what it asks ArduPlane for.
+    fn asked_kind(&self) -> Kind {
+        self.kind.unwrap_or(Kind::ArduPlane)
+    }
+
+    fn hear_heartbeat(&mut self, beat: &HEARTBEAT_DATA) {
+        let custom = MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED;
+        let armed = MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
+        self.heard.armed = beat.base_mode.contains(armed);
+        let mode = beat.base_mode.contains(custom).then_some(beat.custom_mode);
+        self.heard.mode = mode;
+        let before = self.asked_kind();
+        self.kind = self.config.kind.or_else(|| Kind::of(beat));
+        if self.asked_kind() != before {
+            self.checked = Checked::new(self.asked_kind());
+            self.asked = questions::Asked::default();
         }
     }
 
@@ -270,7 +238,7 @@ impl Companion {
         };
         self.flown = None;
         self.clock = Clock::default();
-        self.checked = Checked::default();
+        self.checked = Checked::new(self.asked_kind());
         self.asked.told = false;
     }
 
@@ -286,12 +254,23 @@ impl Companion {
             State::Flying | State::Climb => {}
             State::Off | State::Ready | State::Listening | State::Lost => self.flown = None,
         }
+        if self.guard.state == State::Lost && self.asked_kind().manners().flows {
+            // It may have left the mode since.
+            self.heard.mode = None;
+        }
+        match self.guard.state {
+            State::Listening => self.held = self.line(),
+            State::Flying | State::Climb => {}
+            _ => self.held = None,
+        }
     }
 
     /// What keeps the companion on the ground; `None` if all is well.
     fn flaw(&self) -> Option<String> {
         let lack = |lacks: bool, name| lacks.then(|| format!("{name} is not told"));
-        (self.checked.flaw())
+        let unknown = "the kind of autopilot is not told: it is neither ArduPlane nor a fixed wing of PX4; else give --kind";
+        (self.kind.is_none().then(|| unknown.to_owned()))
+            .or_else(|| self.checked.flaw())
             .or_else(|| lack(!self.clock.is_in_step(), "TIMESYNC"))
             .or_else(|| lack(self.heard.origin.is_none(), "GLOBAL_POSITION_INT"))
     }
@@ -309,7 +288,7 @@ impl Companion {
             now: now as f64 * 1e-6,
             silence: seconds(self.heard.at),
             verified: self.flaw().is_none(),
-            ours: self.heard.ours,
+            ours: self.heard.armed && self.heard.mode == Some(self.asked_kind().manners().mode),
             level: self.is_level(),
             fresh: brain.is_some_and(|brain| brain.next <= core_side::FRESH && brain.planless == 0),
             plans: brain.map_or(0, |brain| brain.plans),
@@ -333,30 +312,38 @@ impl Companion {
         let Some((pitch_min, pitch_max)) = self.checked.pitch() else {
             return;
         };
+        let kind = self.asked_kind();
         let asked = match self.guard.state {
-            _ if !self.guard.sends() => None,
+            _ if !self.guard.sends(kind.manners().flows) => None,
             State::Climb => Some(Setpoint {
                 pitch: self.config.model.trim.state.pitch + 0.2,
+                roll: 0.0,
                 throttle: 1.0,
             }),
-            _ => self.wanted(),
+            State::Flying => self.wanted(),
+            _ => self.level(),
         };
         let gate = Gate {
             pitch_min,
             pitch_max,
+            bank: kind.manners().bank,
         };
+        let asked = asked.map(|asked| Setpoint {
+            roll: self.roll(kind),
+            ..asked
+        });
         let Some(setpoint) = asked.and_then(|asked| gate.pass(asked)) else {
             return;
         };
-        let (sin, cos) = libm::sincos(0.5 * setpoint.pitch);
+        let (q, type_mask) = kind.target(setpoint, f64::from(attitude.yaw));
         self.send(
             &Mav::SET_ATTITUDE_TARGET(SET_ATTITUDE_TARGET_DATA {
                 time_boot_ms: attitude.time_boot_ms,
-                q: [cos as f32, 0.0, sin as f32, 0.0],
+                q,
                 thrust: setpoint.throttle as f32,
                 target_system: SYSTEM,
                 target_component: AUTOPILOT,
-                type_mask: MASK,
+                type_mask,
                 ..SET_ATTITUDE_TARGET_DATA::DEFAULT
             }),
             send,
@@ -366,11 +353,4 @@ impl Companion {
     fn send(&mut self, message: &Mav, send: &mut dyn FnMut(&[u8])) {
         send(&self.sender.frame(message));
     }
-}
-
-/// Whether the autopilot is armed and in GUIDED.
-fn is_ours(beat: &HEARTBEAT_DATA) -> bool {
-    let flags =
-        MavModeFlag::MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | MavModeFlag::MAV_MODE_FLAG_SAFETY_ARMED;
-    beat.base_mode.contains(flags) && beat.custom_mode == GUIDED
 }

@@ -1,19 +1,16 @@
 //! What the companion asks and commands besides setpoints.
 
-use super::{AUTOPILOT, Companion, GUIDED, SYSTEM, Told};
+use super::{Companion, Told};
+use crate::autopilot::{AUTOPILOT, Kind, SYSTEM, hold_course};
 use crate::guard::State;
 use crate::wire::Mav;
 use mavlink::dialects::common::{
-    COMMAND_INT_DATA, COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavFrame, MavType,
-    PARAM_REQUEST_READ_DATA, TIMESYNC_DATA,
+    COMMAND_LONG_DATA, HEARTBEAT_DATA, MavAutopilot, MavCmd, MavType, PARAM_REQUEST_READ_DATA,
+    TIMESYNC_DATA,
 };
 
 /// Time between two questions \[us\].
 const SECOND: u64 = 1_000_000;
-/// Messages that are asked for, and their periods \[us\]: ATTITUDE, LOCAL_POSITION_NED, VFR_HUD, GLOBAL_POSITION_INT.
-const STREAMS: [[f32; 2]; 4] = [[30.0, 2e4], [32.0, 2e4], [74.0, 2e4], [33.0, 2e5]];
-/// Distance over which the course leads back to the line \[m\].
-const BACK: f64 = 60.0;
 
 /// When what was asked for.
 #[derive(Default)]
@@ -70,7 +67,7 @@ impl Companion {
             self.send(&Mav::PARAM_REQUEST_READ(request), send);
         }
         if self.guard.state == State::Off {
-            for [param1, param2] in STREAMS {
+            for &[param1, param2] in self.asked_kind().manners().streams {
                 let command = COMMAND_LONG_DATA {
                     param1,
                     param2,
@@ -89,7 +86,7 @@ impl Companion {
         }
         if flaw.is_none() && !self.asked.told {
             self.asked.told = true;
-            let text = format!("verified: mode {GUIDED}, {}", self.checked.summary());
+            let text = format!("verified: {}", self.checked.summary());
             self.told.push(Told::Verified(text));
         }
         self.asked.flaw = flaw;
@@ -97,82 +94,32 @@ impl Companion {
 
     /// Asks the autopilot to hold the course, and to come back to its line.
     fn hold_course(&mut self, now: u64, send: &mut dyn FnMut(&[u8])) {
-        if !matches!(
+        let holds = matches!(
             self.guard.state,
             State::Listening | State::Flying | State::Climb
-        ) {
+        );
+        if !holds || self.asked_kind() != Kind::ArduPlane {
             return;
         }
-        let Some(flown) = &mut self.flown else {
-            return;
-        };
-        let Some(placed) = flown.placed else {
+        let (Some(course), Some(flown)) = (self.course(), &mut self.flown) else {
             return;
         };
         if flown.headed.is_some_and(|headed| now < headed + SECOND / 2) {
             return;
         }
         flown.headed = Some(now);
-        let course = flown.frame.course - libm::atan(placed.cross / BACK);
-        let degrees = degrees(course);
-        // Type 0 is a course over ground.
-        self.command(
-            MavCmd::MAV_CMD_GUIDED_CHANGE_HEADING,
-            [0.0, degrees, 5.0],
-            0.0,
-            send,
-        );
+        self.send(&hold_course(course), send);
     }
 
-    /// Sets the autopilot's own targets. The companion falls silent after that.
+    /// Gives the aircraft to the autopilot. The companion falls silent after that.
     pub(super) fn give_back(&mut self, send: &mut dyn FnMut(&[u8])) {
         let here = self.heard.position.as_ref().zip(self.heard.origin);
         let height = here.map(|(position, origin)| origin - position.z);
-        let cruise = self.config.model.file.cruise;
-        let equivalent =
-            cruise / crate::frames::true_airspeed(1.0, self.config.model.file.air_density);
-        if let Some(height) = height.filter(|height| height.is_finite()) {
-            self.command(
-                MavCmd::MAV_CMD_GUIDED_CHANGE_ALTITUDE,
-                [0.0; 3],
-                height,
-                send,
-            );
-        }
-        let speed = [0.0, equivalent as f32, 0.0];
-        self.command(MavCmd::MAV_CMD_GUIDED_CHANGE_SPEED, speed, 0.0, send);
-    }
-
-    fn command(&mut self, command: MavCmd, p: [f32; 3], z: f32, send: &mut dyn FnMut(&[u8])) {
-        let [param1, param2, param3] = p;
-        let command = COMMAND_INT_DATA {
-            param1,
-            param2,
-            param3,
-            z,
-            command,
-            target_system: SYSTEM,
-            target_component: AUTOPILOT,
-            frame: MavFrame::MAV_FRAME_GLOBAL_RELATIVE_ALT,
-            ..COMMAND_INT_DATA::DEFAULT
-        };
-        self.send(&Mav::COMMAND_INT(command), send);
-    }
-}
-
-/// A course in degrees, 0 to less than 360: the autopilot denies 360, to which a course just left of north would be rounded.
-fn degrees(course: f64) -> f32 {
-    let degrees = course.to_degrees().rem_euclid(360.0) as f32;
-    if degrees < 360.0 { degrees } else { 0.0 }
-}
-
-#[cfg(test)]
-mod tests {
-    #[test]
-    fn no_course_is_360_degrees() {
-        for course in [-1e-9, 0.0, 1e-9, 6.0, -6.0] {
-            let degrees = super::degrees(course);
-            assert!((0.0..360.0).contains(&degrees), "{course}: {degrees}");
+        let height = height.filter(|height| height.is_finite());
+        let file = &self.config.model.file;
+        let equivalent = file.cruise / crate::frames::true_airspeed(1.0, file.air_density);
+        for message in self.asked_kind().give_back(height, equivalent as f32) {
+            self.send(&message, send);
         }
     }
 }

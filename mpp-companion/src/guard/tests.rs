@@ -143,17 +143,16 @@ fn a_climb_ends_by_height_or_time_and_the_aircraft_stays_given_back() {
 }
 
 #[test]
-fn setpoints_are_sent_in_two_states() {
-    let sends = |state| Guard { state, since: 0.0 }.sends();
-    assert!(sends(State::Flying) && sends(State::Climb));
-    for state in [
-        State::Off,
-        State::Ready,
-        State::Listening,
-        State::GiveBack,
-        State::Lost,
-    ] {
-        assert!(!sends(state));
+fn setpoints_are_sent_in_two_states_and_level_ones_before_where_they_must_flow() {
+    let sends = |state, flows| Guard { state, since: 0.0 }.sends(flows);
+    for flows in [false, true] {
+        assert!(sends(State::Flying, flows) && sends(State::Climb, flows));
+        for state in [State::Off, State::GiveBack, State::Lost] {
+            assert!(!sends(state, flows));
+        }
+        for state in [State::Ready, State::Listening] {
+            assert_eq!(sends(state, flows), flows);
+        }
     }
 }
 

@@ -1,6 +1,6 @@
 //! Faults of the exchange between autopilot and companion.
 
-use super::autopilot::{LOITER, StandIn};
+use super::autopilot::StandIn;
 
 /// A fault. It begins at the 8th second of the companion's flight, or in the middle of what it names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,9 +66,12 @@ impl Fault {
     pub(super) fn act(self, autopilot: &mut StandIn, since: u32) {
         match (self, since) {
             (Self::Jump(by), 0) => autopilot.jumped = by.map(f32::from),
-            (Self::TakeOver | Self::TakeOverBriefly, 0) => autopilot.mode = LOITER,
-            (Self::TakeOverBriefly, 50) => autopilot.mode = crate::companion::GUIDED,
-            (Self::Reboot, 0) => (autopilot.booted, autopilot.mode) = (autopilot.tick, LOITER),
+            (Self::TakeOver | Self::TakeOverBriefly, 0) => autopilot.take(),
+            (Self::TakeOverBriefly, 50) => autopilot.give(),
+            (Self::Reboot, 0) => {
+                autopilot.booted = autopilot.tick;
+                autopilot.take();
+            }
             _ => {}
         }
     }

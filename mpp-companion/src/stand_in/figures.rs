@@ -1,9 +1,7 @@
 //! The figures of the documentation, by one command.
 
-use super::autopilot::Obeyed;
 use super::{Fault, Flight, StandIn};
-use crate::companion::GUIDED;
-use crate::{CompanionError, State, Told};
+use crate::{CompanionError, Kind, State, Told};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -11,13 +9,14 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// [`CompanionError`].
-pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
-    let base = Flight::new(seed);
+pub fn figures(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionError> {
+    let of = |flight| Flight { kind, ..flight };
+    let base = of(Flight::new(seed));
     let untold = Flight {
         told: false,
         ..base.clone()
     };
-    let forty = Flight::forty(seed);
+    let forty = of(Flight::forty(seed));
     let windy = Flight {
         wind: -4.33,
         gusts: 0.5,
@@ -53,16 +52,16 @@ pub fn figures(flights: u64, seed: u64) -> Result<String, CompanionError> {
         let back = count(&|one| !one.flown);
         text += &format!("| {name} | {strict} of {flights} | {touched} | {back} |\n");
     }
-    text += &faults((flights / 8).max(1), seed)?;
+    text += &faults(kind, (flights / 8).max(1), seed)?;
     text += &format!(
         "\nCompanion dies at -15 deg of pitch and 10 % of throttle: {:.1} m lost\n",
-        lost()?
+        lost(kind)?
     );
     Ok(text)
 }
 
 /// The faults of the exchange.
-fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
+fn faults(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionError> {
     let mut text = format!(
         "\n| fault, {flights} flights each | setpoints after a take-over | not finite or beyond limits | last setpoint after a \
          take-over, ms | ends as |\n|---|---|---|---|---|\n"
@@ -73,6 +72,7 @@ fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
             .map(|seed| {
                 let fault = Some(fault);
                 Flight {
+                    kind,
                     fault,
                     ..Flight::new(seed)
                 }
@@ -83,12 +83,7 @@ fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
         let last = outcomes.iter().map(|one| one.last_after).max().unwrap_or(0);
         let mut ends: BTreeMap<String, u32> = BTreeMap::new();
         for outcome in &outcomes {
-            let state = outcome.told.iter().rev().find_map(|told| match told {
-                Told::State(State::Flying, _) => Some("Flying".to_owned()),
-                Told::State(state, reason) => Some(format!("{state:?}, {reason:?}")),
-                _ => None,
-            });
-            *ends.entry(state.unwrap_or_default()).or_default() += 1;
+            *ends.entry(end(&outcome.told)).or_default() += 1;
         }
         let ends: Vec<_> = ends
             .iter()
@@ -103,23 +98,36 @@ fn faults(flights: u64, seed: u64) -> Result<String, CompanionError> {
     Ok(text)
 }
 
+/// The last state. An aircraft that PX4 has back is verified again, so that what came before is told.
+fn end(told: &[Told]) -> String {
+    let mut states = told.iter().rev().filter_map(|told| match told {
+        Told::State(state, reason) => Some((*state, *reason)),
+        _ => None,
+    });
+    let last = states.next();
+    let back = states
+        .take_while(|(state, _)| *state != State::Flying)
+        .find(|(state, _)| *state == State::GiveBack)
+        .filter(|_| last.is_some_and(|(state, _)| state == State::Ready));
+    match back.or(last) {
+        Some((State::Flying, _)) => "Flying".to_owned(),
+        Some((state, reason)) => format!("{state:?}, {reason:?}"),
+        None => String::new(),
+    }
+}
+
 /// The height that is lost when the companion dies in a dive \[m\].
 ///
 /// # Errors
 /// [`CompanionError`].
-pub(crate) fn lost() -> Result<f64, CompanionError> {
+pub(crate) fn lost(kind: Kind) -> Result<f64, CompanionError> {
     let mut scenario = Flight::new(1).scenario()?;
     scenario.aircraft.actuators.elevator_delay = None;
     let failed = |error: String| mpp_sim::scenario::ScenarioError::Value("aircraft", error);
     let mut autopilot =
-        StandIn::new(&scenario, 0.0, 10).map_err(|error| failed(error.to_string()))?;
-    autopilot.mode = GUIDED;
+        StandIn::new(kind, &scenario, 0.0, 10).map_err(|error| failed(error.to_string()))?;
     let start = autopilot.state().z;
-    autopilot.obeyed = Some(Obeyed {
-        at: 0,
-        pitch: -15_f64.to_radians(),
-        throttle: 0.1,
-    });
+    autopilot.obey_last(-15_f64.to_radians(), 0.1);
     let mut least = start;
     for _ in 0..1500 {
         autopilot

@@ -1,10 +1,11 @@
 //! A stand-in for an autopilot and its aircraft, in simulated time: the plant, lidar and fields of `mpp-sim` behind the
-//! messages and the rules of ArduPlane's GUIDED.
+//! messages and the rules of ArduPlane's GUIDED, or of PX4's OFFBOARD.
 
 mod autopilot;
 mod faults;
 mod figures;
 mod flight;
+mod rules;
 
 pub use autopilot::StandIn;
 pub use faults::Fault;

@@ -1,17 +1,23 @@
 //! The exchange of messages between companion and stand-in: its faults, and the watch on what the companion sends.
 
-use super::{GUIDED, Run};
-use crate::Side;
+use super::Run;
+use crate::frames::roll_pitch;
 use crate::stand_in::Fault;
 use crate::wire::{Framer, Mav};
+use crate::{Side, State};
 use mpp_sim::random::gaussian;
 
 impl Run<'_> {
-    /// Notes when a whole heartbeat tells the companion of a take-over.
+    /// Notes when a whole message tells the companion of a take-over.
     pub(super) fn note(&mut self, frame: &[u8]) {
         if let Some((_, heard)) = &mut self.taken {
+            let given = self.kind.manners().mode;
             Framer::default().receive(frame, |_, _, message| {
-                *heard |= matches!(message, Mav::HEARTBEAT(beat) if beat.custom_mode != GUIDED);
+                *heard |= match message {
+                    Mav::HEARTBEAT(beat) => beat.custom_mode != given,
+                    Mav::CURRENT_MODE(mode) => mode.custom_mode != given,
+                    _ => false,
+                };
             });
         }
     }
@@ -84,19 +90,21 @@ impl Run<'_> {
     /// Judges a frame of the companion.
     fn watch(&mut self, frame: &[u8]) {
         let (taken, tick, outcome) = (self.taken, self.autopilot.tick, &mut self.outcome);
+        let [least, most] = self.autopilot.pitch_limits();
+        let (bank, state) = (self.kind.manners().bank, self.companion.state());
         self.framer.receive(frame, |_, _, message| {
             let Mav::SET_ATTITUDE_TARGET(target) = message else {
                 return;
             };
-            outcome.setpoints += 1;
-            let [w, _, y, _] = target.q.map(f64::from);
-            let pitch = 2.0 * libm::atan2(y, w);
-            let within = pitch.abs() <= 35_f64.to_radians() + 1e-5;
+            outcome.setpoints += u32::from(matches!(state, State::Flying | State::Climb));
+            let (roll, pitch) = roll_pitch(target.q);
+            let within = (least - 1e-5..=most + 1e-5).contains(&pitch) && roll.abs() <= bank + 1e-5;
             // Not a number is not within.
             if !(within && (0.0..=1.0).contains(&target.thrust)) {
                 outcome.unsound += 1;
             }
-            if let Some((since, heard)) = taken {
+            // PX4 gets level setpoints that it does not obey, so that the pilot may give the aircraft.
+            if let Some((since, heard)) = taken.filter(|_| state != State::Ready) {
                 outcome.late += u32::from(heard);
                 outcome.last_after = outcome.last_after.max(10 * (tick - since) + 10);
             }

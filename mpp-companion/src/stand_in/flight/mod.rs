@@ -4,9 +4,8 @@ mod exchange;
 
 use super::autopilot::StandIn;
 use super::faults::Fault;
-use crate::companion::GUIDED;
 use crate::wire::Framer;
-use crate::{Companion, CompanionError, Config, LogWriter, Replayed, Side, State, Told};
+use crate::{Companion, CompanionError, Config, Kind, LogWriter, Replayed, Side, State, Told};
 use hil_protocol::{MAX_FRAME, Message, encode};
 use mpp_sim::field::Field;
 use mpp_sim::lidar::{FanLidar, Lidar};
@@ -16,14 +15,16 @@ use std::collections::VecDeque;
 
 /// How far the field is moved, so that it begins where the core takes over: level flight of 7 s.
 const RUN_UP: f64 = 7.0;
-/// Ticks from the switch to GUIDED until a fault begins.
+/// Ticks from the switch of the mode until a fault begins.
 const FAULT: u32 = 800;
-/// The tick at which the pilot chooses GUIDED.
+/// The tick at which the pilot gives the aircraft.
 const CHOSEN: u32 = 150;
 
 /// What is flown.
 #[derive(Clone, Debug)]
 pub struct Flight {
+    /// The kind of autopilot.
+    pub kind: Kind,
     /// Seed.
     pub seed: u64,
     /// Obstacles over the length of the field.
@@ -49,6 +50,8 @@ pub struct Outcome {
     pub clearance: f64,
     /// Greatest distance from the height at which the core took over \[m\].
     pub off: f64,
+    /// Greatest distance from the course at the start \[m\].
+    pub aside: f64,
     /// Whether the core had the aircraft to the end of the field.
     pub flown: bool,
     /// Setpoints that were sent.
@@ -74,10 +77,11 @@ impl Outcome {
 }
 
 impl Flight {
-    /// 20 obstacles, 2 Hz, a dead time of 0.1 s that is told.
+    /// `ArduPlane`, 20 obstacles, 2 Hz, a dead time of 0.1 s that is told.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self {
+            kind: Kind::ArduPlane,
             seed,
             obstacles: 20,
             dead: 10,
@@ -145,8 +149,9 @@ impl Flight {
         let no_trim = |error: mpp_core::vehicle::TrimError| {
             mpp_sim::scenario::ScenarioError::Value("aircraft", error.to_string())
         };
-        let autopilot = StandIn::new(&plant, self.wind, self.dead).map_err(no_trim)?;
+        let autopilot = StandIn::new(self.kind, &plant, self.wind, self.dead).map_err(no_trim)?;
         let run = Run {
+            kind: self.kind,
             lidar: FanLidar::new(self.seed, scenario.lidar),
             noise: generator(self.seed, Stream::AirspeedSensor),
             fault: self.fault,
@@ -159,6 +164,7 @@ impl Flight {
             count: 0,
             held: None,
             frozen: None,
+            given: false,
             taken: None,
             outcome: Outcome {
                 clearance: f64::INFINITY,
@@ -179,6 +185,7 @@ impl Flight {
 }
 
 struct Run<'a> {
+    kind: Kind,
     companion: Companion,
     autopilot: StandIn,
     lidar: FanLidar,
@@ -192,6 +199,8 @@ struct Run<'a> {
     count: u32,
     held: Option<Vec<u8>>,
     frozen: Option<Vec<u8>>,
+    /// Whether the companion had the aircraft in the last tick.
+    given: bool,
     /// When the pilot took over, and whether the companion heard of it.
     taken: Option<(u32, bool)>,
     outcome: Outcome,
@@ -218,6 +227,7 @@ impl Run<'_> {
             let after = self.autopilot.state();
             let clearance =
                 field.clearance_of_motion((before.x, before.z), (after.x, after.z), 0.01);
+            self.outcome.aside = self.outcome.aside.max(self.autopilot.aside());
             let clear = clearance - scenario.body_radius;
             self.outcome.clearance = self.outcome.clearance.min(clear);
             if self.outcome.setpoints > 0 {
@@ -253,21 +263,21 @@ impl Run<'_> {
 
     fn tick(&mut self, scenario: &Scenario, field: &dyn Field) {
         let tick = self.autopilot.tick;
-        let mode = self.autopilot.mode;
         if tick == CHOSEN {
-            self.autopilot.mode = GUIDED;
+            self.autopilot.give();
         }
         if let (Some(fault), Some(since)) = (self.fault, self.since()) {
             fault.act(&mut self.autopilot, since);
         }
-        if mode == GUIDED && self.autopilot.mode != GUIDED {
-            self.taken = Some((tick, false));
-        } else if self.autopilot.mode == GUIDED {
+        let given = self.autopilot.is_given();
+        if given {
             self.taken = None;
+        } else if self.given {
+            self.taken = Some((tick, false));
         }
-        if mode != self.autopilot.mode || tick.is_multiple_of(100) {
-            let beat = self.autopilot.heartbeat();
-            self.post_up(beat);
+        self.given = given;
+        if let Some(frame) = self.autopilot.says() {
+            self.post_up(frame);
         }
         if tick.is_multiple_of(2) {
             let noise = self.draw();
