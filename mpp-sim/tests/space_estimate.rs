@@ -1,7 +1,7 @@
 //! The core's estimator in space behind sensors with errors, on the plant in six degrees of freedom that flies turns.
 
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::control::SpaceRegulator;
+use mpp_core::control::{SpaceMotion, SpaceRegulator};
 use mpp_core::estimate::SpaceEstimator;
 use mpp_core::vehicle::{GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
@@ -266,4 +266,36 @@ fn altitude_is_held_with_bank() {
         println!("worst {worst:.2} m");
         assert!(worst < most, "{worst}");
     }
+}
+
+/// In a stall the lift line tells a small angle of attack, and the wanted lift asks for more of it.
+#[test]
+fn the_elevator_balances_no_angle_beyond_the_greatest() {
+    let scenario = scenario(1);
+    let known = &scenario.aircraft.known;
+    let model = SpaceModel::new(&known.airframe, known.cruise, 0.28, 20.0, [1.05, 1.57]).unwrap();
+    let follower = SpaceRegulator::new(&known.airframe, regulator(&scenario).unwrap(), &model);
+    let plan = SpacePath {
+        position: [0.0, 0.0, 50.0],
+        airspeed: known.cruise,
+        angle_of_attack: 0.15,
+        ..SpacePath::default()
+    };
+    let path = SpacePath {
+        position: [0.0, 0.0, 40.0],
+        airspeed: 10.0,
+        angle_of_attack: 0.05,
+        ..plan
+    };
+    let rates = [0.0; 3];
+    let motion = SpaceMotion { path, rates };
+    let control = SpaceControl {
+        thrust: model.trim.control.thrust,
+        ..SpaceControl::default()
+    };
+    let (command, _) = follower.step(&model, &motion, &plan, (&plan, &control));
+    let a = known.airframe.balanced();
+    let balanced = -(a.moment_zero + a.moment_elevator * command.elevator) / a.moment_alpha;
+    let [_, greatest] = model.angle_of_attack;
+    assert!((balanced - greatest - 0.03).abs() < 1e-9, "{balanced}");
 }

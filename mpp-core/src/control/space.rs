@@ -102,7 +102,8 @@ impl SpaceRegulator {
         (command, self.lateral.follow(&lateral, bank, rate))
     }
 
-    /// The elevator that brings the angle of attack to a value: the balance there in a steady turn, and the feedback.
+    /// The elevator that brings the angle of attack to a value: the balance there in a steady turn, and the feedback. It pulls no
+    /// more than balances the greatest angle, because beyond the stall the lift line tells a small one (decision 64).
     fn elevator(&self, model: &SpaceModel, motion: &SpaceMotion, attack: f64) -> f64 {
         let (a, path) = (&self.airframe, &motion.path);
         let v = path.airspeed.max(0.5 * model.trim.state.airspeed);
@@ -112,8 +113,16 @@ impl SpaceRegulator {
         let moment = a.moment_zero + a.moment_alpha * attack + a.moment_pitch_rate * turn;
         let ratio = model.trim.state.airspeed / v;
         let [by_attack, by_rate] = self.gain.map(|it| it * ratio * ratio);
-        let off = path.angle_of_attack - attack;
-        -moment / a.moment_elevator + by_attack * off + by_rate * (motion.rates[1] - turn)
+        let (off, pitch_rate) = (path.angle_of_attack - attack, motion.rates[1]);
+        let wanted = -moment / a.moment_elevator + by_attack * off + by_rate * (pitch_rate - turn);
+        let [_, high] = model.angle_of_attack;
+        let most =
+            -(a.moment_zero + a.moment_alpha * (high + BEYOND) + a.moment_pitch_rate * pitch_rate);
+        if a.moment_elevator * wanted > most {
+            most / a.moment_elevator
+        } else {
+            wanted
+        }
     }
 }
 

@@ -11,6 +11,12 @@ pub struct SpaceHeader {
     /// Density of the world, in the unit of its generator; not written for a stem map.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
+    /// Side of the windows of walls \[m\], if one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub window: Option<f64>,
+    /// Name of the lidar, if one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lidar: Option<String>,
     /// Trunks of a stem map: x, y, radius, and height unless it is infinite \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stems: Vec<(f64, f64, f64, Option<f64>)>,

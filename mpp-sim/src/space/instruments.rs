@@ -42,7 +42,7 @@ impl Instruments {
         let plane = &scenario.plane;
         Self {
             sensors: SpaceSensors::new(plane.seed, scenario.errors()),
-            lidar: SpaceLidar::new(plane.seed, scenario.lidar().config()),
+            lidar: SpaceLidar::new(plane.seed, scenario.lidar()),
             deskew: scenario.deskew,
             poses: VecDeque::new(),
             replan_ticks: plane.replan_ticks,

@@ -1,7 +1,7 @@
 //! The parameters of a flight in space.
 
 use super::baseline::{Baseline, BaselineName};
-use super::lidar::LidarName;
+use super::lidar::SpaceLidarConfig;
 use super::world::{Body, Extent, World, WorldConfig, WorldName};
 use super::{Hull, SensorErrors, WindConfig, regulator};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
@@ -66,6 +66,10 @@ pub struct SpaceFile {
     pub world: Option<String>,
     /// Density of the world in the unit of its generator; by default the usual one.
     pub density: Option<f64>,
+    /// Side of the windows of `walls` \[m\]; by default 5.
+    pub window: Option<f64>,
+    /// Name of the lidar; by default `grid-90x16`.
+    pub lidar: Option<String>,
     /// Radius of a sphere that stands for wing and fuselage \[m\].
     pub sphere: Option<f64>,
     /// Measurements without errors; by default `false`.
@@ -105,6 +109,7 @@ pub struct SpaceScenario {
     pub deskew: Deskew,
     /// What plans in place of the planner.
     baseline: Option<BaselineName>,
+    lidar: SpaceLidarConfig,
     header: SpaceHeader,
     candidates: u8,
 }
@@ -172,9 +177,12 @@ impl SpaceFile {
                 clock: 0.001 * clock,
             },
             baseline,
+            lidar: SpaceLidarConfig::kept(self.lidar.as_deref().unwrap_or("grid-90x16"))?,
             header: SpaceHeader {
                 world: name.map(|name| name.name().to_owned()),
                 density,
+                window: self.window,
+                lidar: self.lidar.clone(),
                 stems: stems.unwrap_or_default().iter().filter_map(stem).collect(),
                 extent: [length, half_width, ceiling],
                 sphere: self.sphere,
@@ -223,6 +231,7 @@ impl SpaceFile {
         })?;
         let mut config = WorldConfig::usual(name, seed);
         config.density = self.density.unwrap_or(config.density);
+        config.window = self.window.unwrap_or(config.window);
         let world = config.build().map_err(failed)?;
         Ok((world, Some(name), Some(config.density)))
     }
@@ -284,8 +293,8 @@ impl SpaceScenario {
 
     /// The lidar. Each cycle takes one whole sweep.
     #[must_use]
-    pub fn lidar(&self) -> LidarName {
-        LidarName::Grid90x16
+    pub fn lidar(&self) -> SpaceLidarConfig {
+        self.lidar
     }
 
     /// Errors of the sensors.
@@ -349,7 +358,7 @@ impl SpaceScenario {
             preset: hil_protocol::Preset::Space,
             paths: u16::from(self.candidates),
             beams: 1,
-            range_max: self.lidar().config().range[1] as f32,
+            range_max: self.lidar.range[1] as f32,
             altitude: self.altitude(),
             ..self.plane.configure()
         }
@@ -358,7 +367,7 @@ impl SpaceScenario {
     /// The header of the flight's log.
     #[must_use]
     pub fn header(&self) -> Header {
-        let (lidar, errors) = (self.lidar().config(), self.errors());
+        let (lidar, errors) = (self.lidar, self.errors());
         let plane = Scenario {
             lidar: LidarConfig {
                 beams: lidar.beams(),

@@ -5,7 +5,7 @@ use super::answer::{Failure, data, print_json, talk};
 use super::fly::{connect, exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
-use super::values::{Item, baseline, number, seed, threads, whole, wind, within, world};
+use super::values::{Item, baseline, lidar, number, seed, threads, whole, wind, within, world};
 use crate::campaign::pool;
 use crate::files::{read_aircraft, read_stems, try_directory};
 use clap::{Parser, Subcommand};
@@ -13,6 +13,7 @@ use mpp_analysis::campaign::wilson;
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
 use mpp_sim::outcome::Outcome;
+use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::WorldName;
 use mpp_sim::space::{BaselineName, SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_with};
 use rayon::prelude::*;
@@ -62,6 +63,12 @@ struct InSpace {
     /// World: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height \[m\]
     #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
     stems: Option<PathBuf>,
+    /// Side of the windows of walls \[m\] [default: 5]
+    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
+    window: Option<f64>,
+    /// Lidar; of scattered beams those ahead, at most 2,000 a sweep [default: grid-90x16]
+    #[arg(long, help_heading = WORLD, value_parser = lidar())]
+    lidar: Option<LidarName>,
     /// Radius of a sphere that stands for wing and fuselage \[m\]
     #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
     sphere: Option<f64>,
@@ -178,6 +185,8 @@ impl InSpace {
             airspeed: self.airspeed,
             world: self.world.map(|world| world.name().to_owned()),
             density,
+            window: self.window,
+            lidar: self.lidar.map(|it| it.name().to_owned()),
             sphere: self.sphere,
             exact: Some(self.exact),
             candidates: self.candidates,

@@ -6,6 +6,7 @@ use mpp_sim::generator::GeneratorName;
 use mpp_sim::names::UnknownName;
 use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
+use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::WorldName;
 use mpp_sim::space::{BaselineName, SPACE};
 use std::error::Error;
@@ -193,10 +194,15 @@ pub(super) fn world() -> impl TypedValueParser<Value = WorldName> {
         WorldName::Grid => "Trunks in a grid, each moved by at most half of the spacing",
         WorldName::Disc => "Trunks with a least distance from each other",
         WorldName::Spheres => "Spheres of 1 m radius",
-        WorldName::Walls => "Walls across the way, each with one window of 5 m by 5 m",
+        WorldName::Walls => "Walls across the way, each with one square window",
         WorldName::Slalom => "Rows of trunks from both sides in turn",
     };
     named(WorldName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
+}
+
+/// Reads a lidar in space.
+pub(super) fn lidar() -> impl TypedValueParser<Value = LidarName> {
+    named(LidarName::ALL.map(|name| PossibleValue::new(name.name())))
 }
 
 /// Reads a planner in place of ours.

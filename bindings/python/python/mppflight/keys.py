@@ -50,8 +50,9 @@ CommonKeys = TypedDict("CommonKeys", {"scenario": Path, "aircraft": Aircraft | P
     "field": Field | Path | Mapping[str, Any]}, total=False)
 # The keys of a flight in space.
 SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
-    Any], "airspeed": float, "world": str, "density": float, "sphere": float, "exact": bool, "candidates": int,
-    "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool, "lidar_clock": float,
+    Any], "airspeed": float, "world": str, "density": float, "window": float, "lidar": str, "sphere": float,
+    "exact": bool, "candidates": int, "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float,
+    "deskew": bool, "lidar_clock": float,
     "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 

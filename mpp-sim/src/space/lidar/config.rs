@@ -1,9 +1,11 @@
 //! Lidars that people own, as data.
 
+use crate::file_error::ScenarioError;
 use crate::names::{self, UnknownName};
 use crate::space::Quaternion;
 use core::fmt;
 use core::str::FromStr;
+use mpp_node::MOST_POINTS;
 
 /// In which order a lidar looks where. Angles are in the sensor's axes: azimuth to the right, elevation up \[deg\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,7 +189,54 @@ impl LidarName {
     }
 }
 
+/// Most beams of a sweep that fliers keep, and how far from the axis \[deg\]: azimuth and elevation. Source: the core has room for
+/// 2,048 points; the view is about that of `grid-90x16`.
+const MOST_KEPT: u32 = 2000;
+const KEPT: [f64; 2] = [45.0, 20.0];
+
 impl SpaceLidarConfig {
+    /// The lidar of a flight, by its name.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Value`] for a name that is not known, and for a sweep for which the core has no room.
+    pub fn kept(name: &str) -> Result<Self, ScenarioError> {
+        let refused = |advice: String| ScenarioError::Value("lidar", advice);
+        let name: LidarName = name
+            .parse()
+            .map_err(|error: UnknownName| refused(error.to_string()))?;
+        let kept = name.config().thinned();
+        if kept.beams() > MOST_POINTS {
+            let beams = kept.beams();
+            let advice = format!(
+                "take another one: the core has room for {MOST_POINTS} of its {beams} beams"
+            );
+            return Err(refused(advice));
+        }
+        Ok(kept)
+    }
+
+    /// The beams that a flier keeps of a sweep: of scattered ones those ahead, and of these as many as the core has room for.
+    fn thinned(self) -> Self {
+        let Pattern::Scattered { beams } = self.pattern else {
+            return self;
+        };
+        let kept = |[least, most]: [f64; 2], far: f64| {
+            let kept = [least.max(-far), most.min(far)];
+            (kept, (kept[1] - kept[0]) / (most - least))
+        };
+        let (azimuth, ahead) = kept(self.azimuth, KEPT[0]);
+        let (elevation, level) = kept(self.elevation, KEPT[1]);
+        let beams = (f64::from(beams) * ahead * level) as u32;
+        Self {
+            pattern: Pattern::Scattered {
+                beams: beams.min(MOST_KEPT),
+            },
+            azimuth,
+            elevation,
+            ..self
+        }
+    }
+
     /// Beams of a sweep.
     #[must_use]
     pub fn beams(&self) -> usize {

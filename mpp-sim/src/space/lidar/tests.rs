@@ -272,3 +272,21 @@ fn errors_have_the_shares_and_the_size_asked() {
     // 0.02 m, 0.1 % of 20 m, and 1e-4 / m of its square.
     assert!((sigma / 0.08 - 1.0).abs() < 0.05, "{sigma}");
 }
+
+#[test]
+fn a_flier_keeps_the_beams_ahead_for_which_the_core_has_room() {
+    let kept = SpaceLidarConfig::kept("mid-360").unwrap();
+    let ahead = SpaceLidarConfig {
+        pattern: Pattern::Scattered { beams: 2000 },
+        azimuth: [-45.0, 45.0],
+        elevation: [-7.0, 20.0],
+        ..LidarName::Mid360.config()
+    };
+    assert_eq!(kept, ahead);
+    let grid = SpaceLidarConfig::kept("grid-90x16").unwrap();
+    assert_eq!(grid, LidarName::Grid90x16.config());
+    for (name, advice) in [("os1-32", "room for 2048 of its"), ("os2", "mid-360")] {
+        let refused = SpaceLidarConfig::kept(name).unwrap_err().to_string();
+        assert!(refused.contains(advice), "{refused}");
+    }
+}

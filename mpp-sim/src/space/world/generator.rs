@@ -24,9 +24,10 @@ const SPHERE: f64 = 1.0;
 const DISC_SHARE: f64 = 0.75;
 /// Places drawn for each trunk of `disc` before fewer must do.
 const TRIES: usize = 100;
-/// Half of the thickness of a wall, and the side of its window \[m\]. Source: chosen.
+/// Half of the thickness of a wall, and the usual side of its window and its limits \[m\]. Source: chosen.
 const HALF_THICKNESS: f64 = 0.25;
 const WINDOW: f64 = 5.0;
+const WINDOWS: [f64; 2] = [0.5, 10.0];
 /// Most that a window is moved from the one before, sideways and in height \[m\]. More asks for steeper turns. Source: chosen.
 const MOVES: [f64; 2] = [6.0, 3.0];
 /// Distance of the trunks in a row of `slalom` \[m\]: no wing fits between. Their radius is 0.3 m.
@@ -133,6 +134,8 @@ pub struct WorldConfig {
     pub seed: u64,
     /// Where to fly.
     pub extent: Extent,
+    /// Side of the window of a wall \[m\].
+    pub window: f64,
 }
 
 impl WorldConfig {
@@ -144,13 +147,14 @@ impl WorldConfig {
             density: name.usual_density(),
             seed,
             extent: Extent::USUAL,
+            window: WINDOW,
         }
     }
 
     /// Draws the world.
     ///
     /// # Errors
-    /// [`WorldError::Value`] for a density or an extent that no world has.
+    /// [`WorldError::Value`] for a density, a window or an extent that no world has.
     pub fn build(&self) -> Result<World, WorldError> {
         let most = self.name.most_density();
         if !(self.density > 0.0 && self.density <= most) {
@@ -158,6 +162,14 @@ impl WorldConfig {
             let advice = format!("give more than 0 and at most {most} ({unit})");
             return Err(WorldError::Value {
                 key: "density",
+                advice,
+            });
+        }
+        let [least, most] = WINDOWS;
+        if !(least..=most).contains(&self.window) {
+            let advice = format!("give {least} to {most} m");
+            return Err(WorldError::Value {
+                key: "window",
                 advice,
             });
         }
@@ -300,7 +312,7 @@ impl WorldConfig {
             ceiling,
             ..
         } = self.extent;
-        let half = 0.5 * WINDOW;
+        let half = 0.5 * self.window;
         // The window stays within the extent, and a quarter of it above the ground.
         let most = (half_width - half).max(0.0);
         let heights = [1.5 * half, (ceiling - half).max(1.5 * half)];

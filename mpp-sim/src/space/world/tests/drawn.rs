@@ -64,9 +64,10 @@ fn discs_keep_their_distance() {
 
 #[test]
 fn each_wall_has_one_window() {
-    let world = WorldConfig::usual(WorldName::Walls, 5).build().unwrap();
+    let usual = WorldConfig::usual(WorldName::Walls, 5);
+    let world = usual.build().unwrap();
     assert_eq!(world.bodies().len(), 4 * 7);
-    let open = |x: f64| {
+    let open = |world: &World, x: f64| {
         let (mut area, ahead) = (0.0, [1.0, 0.0, 0.0]);
         for y in -300..=300 {
             for z in 0..150 {
@@ -77,7 +78,13 @@ fn each_wall_has_one_window() {
         area
     };
     for wall in 1..=6 {
-        assert!((open(40.0 * f64::from(wall)) - 25.0).abs() < 0.6);
+        assert!((open(&world, 40.0 * f64::from(wall)) - 25.0).abs() < 0.6);
+    }
+    let of = |window| WorldConfig { window, ..usual }.build();
+    assert!((open(&of(3.0).unwrap(), 80.0) - 9.0).abs() < 0.4);
+    for window in [0.1, 11.0, f64::NAN] {
+        let refused = of(window).unwrap_err().to_string();
+        assert!(refused.contains("give 0.5 to 10 m"), "{refused}");
     }
 }
 
