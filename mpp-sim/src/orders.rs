@@ -41,6 +41,15 @@ pub enum Order {
         /// The obstacles, as in a field file.
         field: FieldFile,
     },
+    /// Plants a trunk in the world of a flight in space, higher than anything flies.
+    Trunk {
+        /// Axis, ahead \[m\].
+        x: f64,
+        /// Axis, to the right \[m\].
+        y: f64,
+        /// Radius \[m\].
+        radius: f64,
+    },
     /// Changes the disturbances.
     Disturb {
         /// The disturbances from now on.
@@ -53,7 +62,10 @@ impl Order {
     /// Whether the order changes the world, and not the vehicle.
     #[must_use]
     pub fn changes_world(&self) -> bool {
-        matches!(self, Self::Obstacles { .. } | Self::Disturb { .. })
+        matches!(
+            self,
+            Self::Obstacles { .. } | Self::Trunk { .. } | Self::Disturb { .. }
+        )
     }
 }
 

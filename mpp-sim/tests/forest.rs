@@ -4,9 +4,12 @@ use hil_protocol::{Message, PointPacket, RejectionCause};
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::log::FlightLog;
+use mpp_sim::orders::{Mode, Order, Refused};
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::Body;
-use mpp_sim::space::{SpaceFile, SpacePipe, fly_space, fly_space_with};
+use mpp_sim::space::{
+    SpaceFile, SpaceFlight, SpacePipe, fly_space, fly_space_again, fly_space_with,
+};
 
 /// Does something on a stack on which the core in space can be built.
 fn aside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
@@ -125,6 +128,50 @@ fn a_trunk_in_the_way_is_passed_with_the_lidar_and_hit_without_sight() {
     });
     assert_eq!(blind.summary.outcome, Outcome::Collision);
     assert_eq!(blind.summary.replans, 0);
+}
+
+/// It stands in the way from its tick on, the log holds it, and the log's orders give the same flight again.
+#[test]
+fn a_trunk_that_is_planted_in_flight_is_passed_and_planted_again() {
+    let (log, again) = aside(|| {
+        let file = SpaceFile {
+            sphere: Some(0.4),
+            ..SpaceFile::default()
+        };
+        let scenario = file.build(Some(&[trunk(120.0, 30.0)])).unwrap();
+        let mut link = SpacePipe::of(&scenario);
+        let mut flight = SpaceFlight::begin(&scenario, &mut link).unwrap();
+        for _ in 0..300 {
+            flight.tick(&scenario, &mut link).unwrap();
+        }
+        let [x, y] = [flight.state().plane.x, flight.state().lateral.y];
+        let radius = 0.4;
+        let planted = |x, y, radius| Order::Trunk { x, y, radius };
+        for (order, why) in [
+            (planted(x, y, radius), Refused::Range),
+            (planted(x + 25.0, y, 0.0), Refused::Range),
+            (Order::Mode { mode: Mode::Cruise }, Refused::World),
+        ] {
+            assert_eq!(flight.obey(&scenario, &order), Err(why));
+        }
+        let order = planted(x + 25.0, y, radius);
+        flight.obey(&scenario, &order).unwrap();
+        while !flight.has_ended() {
+            flight.tick(&scenario, &mut link).unwrap();
+            assert_eq!(flight.returns().is_some(), flight.flown() % 10 == 1);
+        }
+        let log = flight.log();
+        let mut link = SpacePipe::of(&scenario);
+        let again = fly_space_again(&scenario, &mut link, &log.orders, || false).unwrap();
+        (log, again)
+    });
+    assert_eq!(log.summary.outcome, Outcome::Survived);
+    assert_eq!(log.orders.len(), 1);
+    assert_eq!(log.orders.first().unwrap().tick, 300);
+    // It went around.
+    let clearance = log.summary.min_clearance.unwrap();
+    assert!(clearance > 0.1 && clearance < 3.0, "{clearance}");
+    assert_eq!(log, again);
 }
 
 /// A lidar that falls silent leaves the map, in which plans go on.

@@ -39,7 +39,7 @@ def open_page(browser):
         own = url.split("#")[0]
         page.on("console", lambda message: complain(message, loses))
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda r: None if r.url.startswith((own, "data:")) else complaints.append(r.url))
+        page.on("request", lambda r: None if r.url.startswith((own, "data:", "blob:")) else complaints.append(r.url))
         page.goto(url)
         # A page unpacks what it holds before anybody can use it.
         page.wait_for_function("!document.body.inert")

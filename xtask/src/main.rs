@@ -58,7 +58,7 @@ enum Command {
     Faults(faults::FaultsArgs),
     /// Build the simulation for browsers, which uses no file, socket, thread or clock
     Wasm,
-    /// Build the page that flies in the browser: one file, which needs nothing else
+    /// Build the pages that fly in the browser: each is one file, which needs nothing else
     Web,
     /// Fly the example of the C interface under sanitizers, and on an emulated Cortex-M7
     C(c::CArgs),
@@ -88,7 +88,7 @@ fn main() -> ExitCode {
         Command::Budget(args) => budget::run(&args),
         Command::Faults(args) => faults::run(&args),
         Command::Wasm => wasm::build(false).map(|path| println!("{}", path.display())),
-        Command::Web => wasm::page().map(|_| ()),
+        Command::Web => wasm::pages().map(|_| ()),
         Command::C(args) => c::run(&args),
         Command::Identity(args) => identity::run(&args),
         Command::Nucleo => nucleo::run(),

@@ -1,4 +1,4 @@
-//! `wasm` and `web`: builds the simulation for browsers, and the page that flies it.
+//! `wasm` and `web`: builds the simulation for browsers, and the pages that fly it.
 
 use crate::folders::{root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
@@ -9,25 +9,62 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 const TARGET: &str = "wasm32-unknown-unknown";
-/// Greatest size of the page as a server would send it \[bytes\].
-const PAGE_MAX: usize = 500_000;
 /// The crates in which a flight in the browser spends most of its time. They are built for speed, and the rest for size.
 const FAST: [&str; 5] = ["mpp-data", "mpp-core", "hil-protocol", "libm", "nalgebra"];
-/// The parts of the page, in order. The module comes after the last one.
-const PARTS: [&str; 10] = [
+/// What every page begins with, and asks its module with.
+const FIRST: [&str; 2] = [
     "mpp-analysis/src/picture/page_head.html",
     "mpp-analysis/src/picture/page.css",
-    "bindings/web/page/body.html",
-    "mpp-analysis/src/picture/draw.js",
-    "mpp-analysis/src/picture/charts.js",
-    "mpp-analysis/src/picture/numbers.js",
-    "bindings/web/page/duel.js",
-    "bindings/web/page/point.js",
-    "bindings/web/page/link.js",
-    "bindings/web/page/fly.js",
+];
+/// The pages.
+const PAGES: [Page; 2] = [
+    Page {
+        name: "fly.html",
+        in_space: false,
+        most: 500_000,
+        parts: &[
+            "bindings/web/page/body.html",
+            "mpp-analysis/src/picture/draw.js",
+            "mpp-analysis/src/picture/charts.js",
+            "mpp-analysis/src/picture/numbers.js",
+            "bindings/web/page/ask.js",
+            "bindings/web/page/duel.js",
+            "bindings/web/page/point.js",
+            "bindings/web/page/link.js",
+            "bindings/web/page/fly.js",
+        ],
+    },
+    Page {
+        name: "forest.html",
+        in_space: true,
+        most: 900_000,
+        parts: &[
+            "bindings/web/page/forest/body.html",
+            "mpp-analysis/src/picture/draw.js",
+            "bindings/web/page/ask.js",
+            "bindings/web/page/link.js",
+            "bindings/web/page/forest/worker.js",
+            "bindings/web/page/forest/flight.js",
+            "bindings/web/page/forest/camera.js",
+            "bindings/web/page/forest/scene.js",
+            "bindings/web/page/forest/maps.js",
+            "bindings/web/page/forest/forest.js",
+        ],
+    },
 ];
 
-/// Builds the simulation and its interface for WebAssembly, with flights in space or as the page has it. Returns the path of the
+/// A page that holds all that it needs.
+struct Page {
+    name: &'static str,
+    /// Whether its module flies in space.
+    in_space: bool,
+    /// Greatest size as a server would send it \[bytes\].
+    most: usize,
+    /// Its parts, in order. The module comes after the last one.
+    parts: &'static [&'static str],
+}
+
+/// Builds the simulation and its interface for WebAssembly, with flights in space or in the vertical plane. Returns the path of the
 /// module.
 pub(crate) fn build(in_space: bool) -> Result<PathBuf> {
     let toolchain = Toolchain::find(TARGET)?;
@@ -51,18 +88,23 @@ pub(crate) fn build(in_space: bool) -> Result<PathBuf> {
     Ok(work("")?.join(TARGET).join("release/mpp_web.wasm"))
 }
 
-/// Builds the page. It holds all that it needs. Returns its file.
-pub(crate) fn page() -> Result<PathBuf> {
-    let module = gzip(&std::fs::read(build(false)?)?)?;
+/// Builds the pages. Returns their files.
+pub(crate) fn pages() -> Result<Vec<PathBuf>> {
+    PAGES.iter().map(page).collect()
+}
+
+fn page(made: &Page) -> Result<PathBuf> {
+    println!("{}: building its module ..", made.name);
+    let module = gzip(&std::fs::read(build(made.in_space)?)?)?;
     let mut page = String::new();
-    for part in PARTS {
-        page += &std::fs::read_to_string(root().join(part)).context(part)?;
+    for part in FIRST.iter().chain(made.parts) {
+        page += &std::fs::read_to_string(root().join(part)).context(*part)?;
     }
     page += &format!(
         "start(\"{}\");\n</script>\n</html>\n",
         BASE64_STANDARD.encode(&module)
     );
-    let path = work("web")?.join("fly.html");
+    let path = work("web")?.join(made.name);
     std::fs::write(&path, &page)?;
     let sent = gzip(page.as_bytes())?.len();
     println!(
@@ -73,8 +115,9 @@ pub(crate) fn page() -> Result<PathBuf> {
         module.len() / 1000
     );
     ensure!(
-        sent < PAGE_MAX,
-        "the page is larger than {PAGE_MAX} bytes as it is sent: make it smaller"
+        sent < made.most,
+        "the page is larger than {} bytes as it is sent: make it smaller",
+        made.most
     );
     Ok(path)
 }

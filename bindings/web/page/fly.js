@@ -24,22 +24,6 @@ let resume = false;
 const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, !["corridor", "reference"].includes(name)])), window: null, hover: null,
   cursor: null, marked: null, note: text => { $("occupancy").textContent = text; } };
 
-// Asks the module and returns the bytes of its answer.
-function askBytes(question, whom = module) {
-  const bytes = new TextEncoder().encode(JSON.stringify(question));
-  const at = whom.question(bytes.length);
-  new Uint8Array(whom.memory.buffer, at, bytes.length).set(bytes);
-  const length = whom.ask();
-  const answer = new Uint8Array(whom.memory.buffer, whom.answer(), length).slice();
-  // Nothing else begins with this key.
-  if (textOf(answer.subarray(0, 9)) === '{"error":') throw new Error(JSON.parse(textOf(answer)).error);
-  return answer;
-}
-
-function textOf(bytes) { return new TextDecoder().decode(bytes); }
-
-function ask(question, whom = module) { return JSON.parse(textOf(askBytes(question, whom))); }
-
 // The settings as a scenario file has them. What is usual is left out.
 function scenario() {
   const { seed, obstacles, hz, aircraft, field, duration } = settings;
@@ -343,11 +327,7 @@ async function start(packed) {
   // Nothing can be steered before it flies.
   document.body.inert = true;
   try {
-    const bytes = Uint8Array.from(atob(packed), letter => letter.charCodeAt(0));
-    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
-    const source = await new Response(stream).arrayBuffer();
-    const given = { env: { clock: () => performance.now() } };
-    const made = await WebAssembly.instantiate(source, given);
+    const made = await unpack(packed), given = { env: { clock: () => performance.now() } };
     module = made.instance.exports;
     gauge = (await WebAssembly.instantiate(made.module, given)).exports;
   } catch (error) {

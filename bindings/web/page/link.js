@@ -1,19 +1,23 @@
 // The link to a moment: settings, orders, and the tick.
-// What a click, a drag and the switches give, from the numbers of a short text; `unit` is the world's scale.
+// What a click, a drag and the switches give, from the numbers of a short text; `unit` is the world's scale. In space, a click
+// plants a trunk of this radius [m].
+const RADIUS = 0.3;
 const disturb = (name, change) => (tick, unit, value) => ({ tick, order: "disturb", [name]: change(value) });
 const SHORT = {
   c: (tick, radius, x, z) => ({ tick, order: "obstacles", field: { circle: [{ x, z, radius }] } }),
   b: (tick, unit, ...v) => ({ tick, order: "obstacles",
     field: { capsule: [{ from: v.slice(0, 2), to: v.slice(2), radius: unit / 2 }] } }),
+  p: (tick, unit, x, y) => ({ tick, order: "trunk", x, y, radius: RADIUS }),
   g: disturb("gusts", Number), d: disturb("dropouts", Number), e: disturb("elevator_stuck", Boolean) };
 
 // How many numbers follow the tick.
-const COUNTS = { c: 2, b: 4, g: 1, d: 1, e: 1 };
+const COUNTS = { c: 2, b: 4, p: 2, g: 1, d: 1, e: 1 };
 
 // The letter and the numbers of an order.
-function numbersOf({ tick, order, field, gusts, dropouts, elevator_stuck }) {
+function numbersOf({ tick, order, x, y, field, gusts, dropouts, elevator_stuck }) {
   if (order === "disturb") return gusts !== undefined ? ["g", tick, gusts] : dropouts !== undefined ? ["d", tick, dropouts]
     : ["e", tick, Number(elevator_stuck)];
+  if (order === "trunk") return ["p", tick, x, y];
   const [[kind, o]] = things(field).concat([[null, null]]);
   return kind === "circle" ? ["c", tick, o.x, o.z] : kind === "capsule" ? ["b", tick, ...o.from, ...o.to] : [];
 }

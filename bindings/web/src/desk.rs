@@ -6,19 +6,17 @@ use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::entries::{Columns, PlanEntry};
 use mpp_sim::flight::Flight;
 use mpp_sim::inspector::{Inspector, PlanDetail};
-use mpp_sim::log::{Header, Summary};
+use mpp_sim::log::{FlightLog, Header, Summary};
 use mpp_sim::orders::{Ground, Order, OrderEntry, Refused};
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
-#[cfg(feature = "space")]
-use mpp_sim::space::{SpaceFile, fly_space};
 use mpp_sim::tick_record::TickRecord;
 use mpp_sim::world::World;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Greatest number of ticks that one question flies: a minute.
-const MOST_TICKS: u32 = 6000;
+pub(crate) const MOST_TICKS: u32 = 6000;
 
 /// A question, as JSON with the key `ask`.
 #[derive(Debug, Deserialize)]
@@ -48,12 +46,6 @@ pub enum Question {
     Log,
     /// Asks for the log so far. The answer is its bytes, as `sil-harness` writes them.
     Bytes,
-    /// Flies a whole flight in space. The answer is a [`Logged`].
-    #[cfg(feature = "space")]
-    Space {
-        /// The flight, with the keys of a scenario file in space.
-        scenario: Box<SpaceFile>,
-    },
 }
 
 /// The answer to [`Question::Begin`].
@@ -201,10 +193,15 @@ impl Flying {
     }
 
     fn logged(&self) -> Result<Logged, String> {
-        let log = self.flight.log(&self.world);
-        Ok(Logged {
+        Logged::of(&self.flight.log(&self.world))
+    }
+}
+
+impl Logged {
+    pub(crate) fn of(log: &FlightLog) -> Result<Self, String> {
+        Ok(Self {
             hash: log.hash().map_err(|error| error.to_string())?,
-            ticks: self.flight.flown(),
+            ticks: log.ticks.t.len() as u32,
             summary: log.summary,
         })
     }
@@ -223,10 +220,7 @@ impl Desk {
     /// Answers a question. Both are JSON. Instead of an answer that does not exist there is an object with
     /// the key `error`.
     pub fn answer(&mut self, question: &[u8]) -> Vec<u8> {
-        self.try_to_answer(question).unwrap_or_else(|error| {
-            let error = serde_json::json!({ "error": error });
-            error.to_string().into_bytes()
-        })
+        told(self.try_to_answer(question))
     }
 
     fn try_to_answer(&mut self, question: &[u8]) -> Result<Vec<u8>, String> {
@@ -238,10 +232,6 @@ impl Desk {
         } = question
         {
             return self.begin(&scenario, orders, details);
-        }
-        #[cfg(feature = "space")]
-        if let Question::Space { scenario } = question {
-            return json(&in_space(&scenario)?);
         }
         let flying = self.flight.as_mut().ok_or("no flight has begun")?;
         match question {
@@ -282,17 +272,14 @@ impl Desk {
     }
 }
 
-#[cfg(feature = "space")]
-fn in_space(file: &SpaceFile) -> Result<Logged, String> {
-    let scenario = file.build(None).map_err(|error| error.to_string())?;
-    let log = fly_space(&scenario).map_err(|error| error.to_string())?;
-    Ok(Logged {
-        hash: log.hash().map_err(|error| error.to_string())?,
-        ticks: log.ticks.t.len() as u32,
-        summary: log.summary,
+/// The answer, or an object with the key `error`.
+pub(crate) fn told(answer: Result<Vec<u8>, String>) -> Vec<u8> {
+    answer.unwrap_or_else(|error| {
+        let error = serde_json::json!({ "error": error });
+        error.to_string().into_bytes()
     })
 }
 
-fn json(answer: &impl Serialize) -> Result<Vec<u8>, String> {
+pub(crate) fn json(answer: &impl Serialize) -> Result<Vec<u8>, String> {
     serde_json::to_vec(answer).map_err(|error| error.to_string())
 }

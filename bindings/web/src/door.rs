@@ -5,7 +5,10 @@
     reason = "the names of exports and the clock are outside of the compiler's sight"
 )]
 
+#[cfg(not(feature = "space"))]
 use crate::desk::Desk;
+#[cfg(feature = "space")]
+use crate::space::Desk;
 use std::cell::RefCell;
 
 #[link(wasm_import_module = "env")]

@@ -9,10 +9,12 @@
 //! at = answer()             where the answer stands until the next question
 //! ```
 //!
-//! [`desk::Question`] lists the questions. The module needs one function, `env.clock`: any clock in
+//! [`desk::Question`] lists the questions of the page in the plane, [`space::Question`] those of the page in space: the cargo feature `space`
+//! chooses.  The module needs one function, `env.clock`: any clock in
 //! milliseconds. It measures the planner's cycles; nothing that is flown depends on it.
 
 pub mod desk;
+pub mod space;
 
 #[cfg(target_arch = "wasm32")]
 mod door;

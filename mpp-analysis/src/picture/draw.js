@@ -44,8 +44,8 @@ function detailAt(flight, tick) {
   return plan && flight.details.get(plan.tick);
 }
 
-function canvas(id) {
-  const element = $(id), ratio = window.devicePixelRatio || 1;
+function canvas(id, sharpest = Infinity) {
+  const element = $(id), ratio = Math.min(window.devicePixelRatio || 1, sharpest);
   const width = element.clientWidth, height = element.clientHeight;
   if (element.width !== Math.round(width * ratio) || element.height !== Math.round(height * ratio)) {
     element.width = Math.round(width * ratio);

@@ -101,6 +101,7 @@ impl Steering {
             Order::Motor { on } => self.motor = *on,
             Order::Terminate => self.terminated = true,
             Order::Obstacles { field } => return Ok(place(world, field)),
+            Order::Trunk { .. } => return Ok(Err(Refused::World)),
             Order::Disturb { disturbance } => return Ok(disturb(world, disturbance)),
         }
         Ok(Ok(()))

@@ -2,6 +2,7 @@
 //! on.
 
 use super::instruments::{Instruments, Measured};
+use super::world::{Body, Vector, World};
 use super::{SpaceAircraft, SpacePipe, SpaceScenario, SpaceState, true_path};
 use crate::entries::{LateralTick, PlanEntry, Tick};
 use crate::file_error::ScenarioError;
@@ -9,6 +10,7 @@ use crate::flight::noted::{conditions, control, estimate, plan_entry, reference}
 use crate::flight::{FlyError, check, entry, own_hello};
 use crate::link::{Link, LinkError};
 use crate::log::{FlightLog, Summary};
+use crate::orders::{Order, OrderEntry, Refused};
 use crate::outcome::{Class, Outcome};
 use crate::scenario::Scenario;
 use hil_protocol::{
@@ -48,30 +50,52 @@ pub fn fly_space_with(
     link: &mut dyn Link,
     stops: impl Fn() -> bool,
 ) -> Result<FlightLog, FlyError> {
-    let mut flight = SpaceHost::begin(scenario, link)?;
-    while flight.end.is_none() {
-        if stops() {
-            flight.end = Some(Outcome::Interrupted);
-        } else {
-            flight.tick(scenario, link)?;
+    fly_space_again(scenario, link, &[], stops)
+}
+
+/// Flies a scenario in space over a link with the orders of a log at their ticks, until `stops` says so. Orders that are
+/// refused are left out.
+///
+/// # Errors
+/// [`FlyError`] when the flight has no outcome.
+pub fn fly_space_again(
+    scenario: &SpaceScenario,
+    link: &mut dyn Link,
+    orders: &[OrderEntry],
+    stops: impl Fn() -> bool,
+) -> Result<FlightLog, FlyError> {
+    let mut flight = SpaceFlight::begin(scenario, link)?;
+    let mut orders = orders.iter().peekable();
+    while !flight.has_ended() && !stops() {
+        let flown = u64::from(flight.flown());
+        while let Some(entry) = orders.next_if(|entry| entry.tick <= flown) {
+            let _ = flight.obey(scenario, &entry.order);
         }
+        flight.tick(scenario, link)?;
     }
     Ok(flight.log())
 }
 
-struct SpaceHost {
+/// A flight in space, tick by tick.
+pub struct SpaceFlight {
+    world: World,
     aircraft: SpaceAircraft,
     instruments: Instruments,
     log: FlightLog,
     flown: u32,
     end: Option<Outcome>,
+    /// Distance from the nearest thing now, and the least one so far \[m\].
+    gap: f64,
     clearance: f64,
     deviation: f64,
 }
 
-impl SpaceHost {
+impl SpaceFlight {
     /// Configures the core.
-    fn begin(scenario: &SpaceScenario, link: &mut dyn Link) -> Result<Self, FlyError> {
+    ///
+    /// # Errors
+    /// [`FlyError`] when the core takes no such flight, or it would begin in a body.
+    pub fn begin(scenario: &SpaceScenario, link: &mut dyn Link) -> Result<Self, FlyError> {
         let failed = |error: ScenarioError| FlyError::Scenario(error);
         let mut aircraft = SpaceAircraft::new(&scenario.plane, scenario.wind).map_err(failed)?;
         aircraft.start_at(scenario.altitude());
@@ -112,22 +136,84 @@ impl SpaceHost {
             }
         }
         Ok(Self {
+            world: scenario.world.clone(),
             aircraft,
             instruments: Instruments::new(scenario),
             log,
             flown: 0,
             end: None,
+            gap: MOST,
             clearance: MOST,
             deviation: 0.0,
         })
     }
 
-    fn tick(&mut self, scenario: &SpaceScenario, link: &mut dyn Link) -> Result<(), FlyError> {
+    /// Carries out an order before the next tick. The log holds it.
+    ///
+    /// # Errors
+    /// [`Refused`] of everything but a trunk, and of one that is unsound or where the aircraft is.
+    pub fn obey(&mut self, scenario: &SpaceScenario, order: &Order) -> Result<(), Refused> {
+        let Order::Trunk { x, y, radius } = *order else {
+            return Err(Refused::World);
+        };
+        let trunk = Body::Cylinder {
+            x,
+            y,
+            radius,
+            height: f64::INFINITY,
+        };
+        let world = self.world.with(trunk).map_err(|_| Refused::Range)?;
+        (scenario.hull())
+            .check_start(&world, self.aircraft.state())
+            .map_err(|_| Refused::Range)?;
+        self.world = world;
+        self.log.orders.push(OrderEntry {
+            tick: u64::from(self.flown),
+            order: order.clone(),
+        });
+        Ok(())
+    }
+
+    /// Ticks flown.
+    #[must_use]
+    pub fn flown(&self) -> u32 {
+        self.flown
+    }
+
+    /// Whether the flight has come to its end.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.end.is_some()
+    }
+
+    /// The true state.
+    #[must_use]
+    pub fn state(&self) -> &SpaceState {
+        self.aircraft.state()
+    }
+
+    /// Distance from the nearest body or the ground \[m\], at most 5 m.
+    #[must_use]
+    pub fn gap(&self) -> f64 {
+        self.gap
+    }
+
+    /// Where the beams of the last sweep have ended, by true poses; `None` in a tick without a sweep.
+    #[must_use]
+    pub fn returns(&self) -> Option<Vec<Vector>> {
+        self.instruments.returns()
+    }
+
+    /// Flies a tick.
+    ///
+    /// # Errors
+    /// [`FlyError`] when the core does not answer as it must.
+    pub fn tick(&mut self, scenario: &SpaceScenario, link: &mut dyn Link) -> Result<(), FlyError> {
         let before = *self.aircraft.state();
         let wind = self.aircraft.wind();
         let measured = self
             .instruments
-            .measure(self.flown, &self.aircraft, &scenario.world);
+            .measure(self.flown, &self.aircraft, &self.world);
         for message in &measured.messages {
             link.send(message)?;
         }
@@ -236,9 +322,10 @@ impl SpaceHost {
 
     /// Whether the flight has ended.
     fn judge(&mut self, scenario: &SpaceScenario, before: &SpaceState) {
-        let (world, hull, state) = (&scenario.world, scenario.hull(), self.aircraft.state());
+        let (world, hull, state) = (&self.world, scenario.hull(), self.aircraft.state());
         let extent = world.extent();
-        self.clearance = self.clearance.min(hull.clearance(world, state, MOST));
+        self.gap = hull.clearance(world, state, MOST);
+        self.clearance = self.clearance.min(self.gap);
         self.deviation = self
             .deviation
             .max((state.plane.z - scenario.altitude()).abs());
@@ -259,7 +346,9 @@ impl SpaceHost {
         self.end = Some(end);
     }
 
-    fn log(self) -> FlightLog {
+    /// The log of what was flown; until the end, of an interrupted flight.
+    #[must_use]
+    pub fn log(&self) -> FlightLog {
         let outcome = self.end.unwrap_or(Outcome::Interrupted);
         let strict = outcome == Outcome::Survived;
         let plans = &self.log.plans;
@@ -280,7 +369,7 @@ impl SpaceHost {
         };
         FlightLog {
             summary,
-            ..self.log
+            ..self.log.clone()
         }
     }
 }

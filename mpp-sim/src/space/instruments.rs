@@ -1,7 +1,7 @@
 //! The measurements of an aircraft in space, as the messages of the link.
 
-use super::lidar::{Beam, SpaceLidar};
-use super::world::World;
+use super::lidar::{Beam, SpaceLidar, SpaceLidarConfig};
+use super::world::{Vector, World};
 use super::{Deskew, Pose, SpaceAircraft, SpaceScenario, SpaceSensors};
 use crate::sensors::Measurement;
 use hil_protocol::{
@@ -24,6 +24,8 @@ pub(super) struct Instruments {
     sensors: SpaceSensors,
     lidar: SpaceLidar,
     deskew: Deskew,
+    /// The beams of the sweep that ended in this tick.
+    beams: Vec<Beam>,
     /// True poses, the last one at the end.
     poses: VecDeque<Pose>,
     replan_ticks: u32,
@@ -44,6 +46,7 @@ impl Instruments {
             sensors: SpaceSensors::new(plane.seed, scenario.errors()),
             lidar: SpaceLidar::new(plane.seed, scenario.lidar()),
             deskew: scenario.deskew,
+            beams: Vec::new(),
             poses: VecDeque::new(),
             replan_ticks: plane.replan_ticks,
             pitch: plane.aircraft.trim.state.pitch,
@@ -61,6 +64,7 @@ impl Instruments {
             self.poses.pop_front();
         }
         self.poses.push_back(Pose::of(aircraft.state()));
+        self.beams.clear();
         let sensed = self.sensors.step(aircraft);
         let mut messages = Vec::new();
         if let Some(sample) = &sensed.inertial {
@@ -134,6 +138,17 @@ impl Instruments {
                 points: beams.iter().map(point).collect(),
             }));
         }
+        self.beams = beams;
+    }
+
+    /// Where the beams of the sweep of this tick have ended, by true poses, if there was a sweep.
+    pub(super) fn returns(&self) -> Option<Vec<Vector>> {
+        let SpaceLidarConfig { period, offset, .. } = *self.lidar.config();
+        let ended = self.beams.iter().filter_map(|beam| {
+            let (range, pose) = (beam.range?, pose(&self.poses, period - beam.time));
+            Some(pose.place([0, 1, 2].map(|axis| offset[axis] + range * beam.direction[axis])))
+        });
+        (!self.beams.is_empty()).then(|| ended.collect())
     }
 }
 

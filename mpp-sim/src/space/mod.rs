@@ -20,7 +20,7 @@ pub mod world;
 
 pub use baseline::BaselineName;
 pub use course::CourseHold;
-pub use host::{fly_space, fly_space_with};
+pub use host::{SpaceFlight, fly_space, fly_space_again, fly_space_with};
 pub use hull::Hull;
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use mpp_core::vehicle::Quaternion;

@@ -5,19 +5,19 @@ use super::answer::{Failure, data, print_json, talk};
 use super::fly::{connect, exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
+use super::space_cell::{SpaceCell, SpaceRow};
 use super::values::{Item, baseline, lidar, number, seed, threads, whole, wind, within, world};
 use crate::campaign::pool;
-use crate::files::{read_aircraft, read_stems, try_directory};
+use crate::files::{read_aircraft, read_log, read_stems, try_directory};
 use clap::{Parser, Subcommand};
-use mpp_analysis::campaign::wilson;
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
+use mpp_sim::orders::OrderEntry;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::WorldName;
-use mpp_sim::space::{BaselineName, SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_with};
+use mpp_sim::space::{BaselineName, SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_again};
 use rayon::prelude::*;
-use serde::Serialize;
 use std::ffi::OsString;
 use std::fs::OpenOptions;
 use std::io::Write as _;
@@ -122,6 +122,9 @@ pub(super) struct FlyInSpace {
     /// Place where the core runs: tcp:HOST:PORT, or fifo:DIRECTORY with the FIFOs to-core and to-harness [default: in this process]
     #[arg(long, help_heading = CORE, conflicts_with = "baseline")]
     link: Option<String>,
+    /// Log of a flight with the same flags: plants its trunks again, each at its tick
+    #[arg(long, help_heading = WORLD, value_name = "LOG")]
+    orders: Option<PathBuf>,
     /// Directory for the log and the picture
     #[arg(long, help_heading = OUTPUT, default_value = "out")]
     out: PathBuf,
@@ -208,6 +211,7 @@ impl InSpace {
 fn flown(
     scenario: &SpaceScenario,
     link: Option<&str>,
+    orders: &[OrderEntry],
     signals: &Signals,
 ) -> Result<FlightLog, Failure> {
     let stops = || signals.raised().is_some();
@@ -215,13 +219,28 @@ fn flown(
         Some(place) => connect(place, None)?,
         None => Box::new(SpacePipe::of(scenario)),
     };
-    fly_space_with(scenario, link.as_mut(), stops)
+    fly_space_again(scenario, link.as_mut(), orders, stops)
         .map_err(|error| Failure::new(exit_code(&error), error))
+}
+
+/// The orders of the log that is flown again.
+fn orders(args: &FlyInSpace, scenario: &SpaceScenario) -> Result<Vec<OrderEntry>, Failure> {
+    let usage = |why: String| Failure::usage(format!("--orders: {why}"));
+    let Some(path) = &args.orders else {
+        return Ok(Vec::new());
+    };
+    let log = read_log(path).map_err(|error| usage(error.to_string()))?;
+    if log.header != scenario.header() {
+        let why = "the log's flight had other flags: give those that it was flown with";
+        return Err(usage(why.to_owned()));
+    }
+    Ok(log.orders)
 }
 
 fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     let seed = args.flown.seed.unwrap_or(1);
     let scenario = args.flown.scenario(args.density, seed)?;
+    let orders = orders(args, &scenario)?;
     let signals = Signals::heed()?;
     try_directory(&args.out)?;
     talk(format_args!(
@@ -229,15 +248,19 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
         scenario.world.bodies().len(),
         args.link.as_deref().unwrap_or("in this process")
     ));
-    let log = flown(&scenario, args.link.as_deref(), &signals)?;
+    let log = flown(&scenario, args.link.as_deref(), &orders, &signals)?;
     let usual = SpaceFile {
         seed: Some(seed),
         ..SpaceFile::default()
     };
     let usual = usual.build(None).map_err(Failure::failed)?;
     let mut name = format!("{SPACE}-seed{seed}");
-    if usual.header() != log.header {
-        let header = FlightLog::begin(log.header.clone()).hash();
+    if usual.header() != log.header || !log.orders.is_empty() {
+        let header = FlightLog {
+            orders: log.orders.clone(),
+            ..FlightLog::begin(log.header.clone())
+        };
+        let header = header.hash();
         name += &format!("-{}", &header.map_err(Failure::failed)?[..8]);
     }
     let kept = keep(&args.out, &name, &log)?;
@@ -246,36 +269,6 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     let was = log.summary.outcome == Outcome::Interrupted;
     let code = log.summary.outcome.exit_code();
     Ok(signals.raised().filter(|_| was).unwrap_or(code))
-}
-
-/// One flight of a campaign.
-#[derive(Clone, Debug, Serialize)]
-struct SpaceRow {
-    world: String,
-    density: Option<f64>,
-    seed: u64,
-    outcome: Outcome,
-    t_end: f64,
-    x_end: f64,
-    min_clearance: Option<f64>,
-    replans: u32,
-    log_hash: String,
-}
-
-/// The flights of a density.
-#[derive(Clone, Debug, Serialize)]
-struct SpaceCell {
-    world: String,
-    density: Option<f64>,
-    flights: u32,
-    arrived: u32,
-    /// Wilson's interval of 95 % [-].
-    interval: (f64, f64),
-    collisions: u32,
-    not_arrived: u32,
-    extreme: u32,
-    /// Median of the least clearance of those that arrived \[m\], where it is less than 5 m.
-    median_clearance: Option<f64>,
 }
 
 fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
@@ -324,7 +317,7 @@ fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
 }
 
 fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRow, Failure> {
-    let log = flown(scenario, None, signals)?;
+    let log = flown(scenario, None, &[], signals)?;
     if let Some(code) = signals.raised() {
         return Err(Failure::new(
             code,
@@ -346,55 +339,4 @@ fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRo
         replans: log.summary.replans,
         log_hash,
     })
-}
-
-impl SpaceCell {
-    fn of(rows: &[SpaceRow]) -> Self {
-        let count = |outcome: &[Outcome]| {
-            rows.iter()
-                .filter(|row| outcome.contains(&row.outcome))
-                .count() as u32
-        };
-        let (flights, arrived) = (rows.len() as u32, count(&[Outcome::Survived]));
-        let through = rows.iter().filter(|row| row.outcome == Outcome::Survived);
-        let mut clearances: Vec<f64> = through.filter_map(|row| row.min_clearance).collect();
-        clearances.sort_by(f64::total_cmp);
-        let first = rows.first();
-        Self {
-            world: first.map_or_else(String::new, |row| row.world.clone()),
-            density: first.and_then(|row| row.density),
-            flights,
-            arrived,
-            interval: wilson(arrived, flights),
-            collisions: count(&[Outcome::Collision]),
-            not_arrived: count(&[Outcome::NotArrived]),
-            extreme: count(&[Outcome::FlightPathLimit, Outcome::PitchLimit]),
-            median_clearance: clearances.get(clearances.len() / 2).copied(),
-        }
-    }
-}
-
-impl std::fmt::Display for SpaceCell {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (low, high) = self.interval;
-        write!(f, "{}", self.world)?;
-        if let Some(density) = self.density {
-            write!(f, " {density}")?;
-        }
-        write!(
-            f,
-            ": {} of {} flights arrived [{:.1}, {:.1} %]; {} collisions, {} not arrived, {} extreme",
-            self.arrived,
-            self.flights,
-            100.0 * low,
-            100.0 * high,
-            self.collisions,
-            self.not_arrived,
-            self.extreme
-        )?;
-        match self.median_clearance {
-            Some(clearance) => write!(f, "; median clearance {clearance:.2} m"),
-            None => Ok(()),
-        }
-    }
 }

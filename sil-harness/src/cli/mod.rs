@@ -28,6 +28,7 @@ mod replay;
 mod scenario;
 mod signals;
 mod space;
+mod space_cell;
 mod values;
 mod worlds;
 

@@ -248,10 +248,7 @@ impl Vehicle {
             match order {
                 Order::Mode { mode } => self.enter(*mode),
                 Order::Motor { on } => self.armed = *on,
-                Order::Parameter { .. }
-                | Order::Terminate
-                | Order::Obstacles { .. }
-                | Order::Disturb { .. } => {}
+                _ => {}
             }
         }
         match self.waiting.pop_front() {

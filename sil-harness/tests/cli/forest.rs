@@ -42,6 +42,34 @@ fn a_light_forest_is_flown_logged_and_exported() {
     std::fs::remove_dir_all(out).unwrap();
 }
 
+/// As a page saves it: the trees of a log are planted again, in the same flight alone.
+#[test]
+fn the_trees_of_a_log_are_planted_again() {
+    let out = folder("planted");
+    let flags = format!("fly --preset space --density 0.005 --seed 5 --json --out {out}");
+    let hash = |flags: &str| {
+        let (code, text) = told(flags);
+        assert_eq!(code, Some(0), "{text}");
+        let object = &text[text.find('{').unwrap()..text.rfind('}').unwrap() + 1];
+        serde_json::from_str::<Value>(object).unwrap()
+    };
+    let plain = hash(&flags);
+    let log = std::fs::read_to_string(plain["log"].as_str().unwrap()).unwrap();
+    let tree = r#""orders":[{"tick":100,"order":"trunk","x":60.0,"y":0.5,"radius":0.3}],"summary""#;
+    let file = format!("{out}/trees.json");
+    std::fs::write(&file, log.replace(r#""summary""#, tree)).unwrap();
+    let planted = hash(&format!("{flags} --orders {file}"));
+    assert_ne!(planted["log_hash"], plain["log_hash"]);
+    let again = planted["log"].as_str().unwrap();
+    assert_ne!(again, plain["log"]);
+    let again = hash(&format!("{flags} --orders {again}"));
+    assert_eq!(again["log_hash"], planted["log_hash"]);
+    let (code, text) = told(&format!("{flags} --gusts 1 --orders {file}"));
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("other flags"), "{text}");
+    std::fs::remove_dir_all(out).unwrap();
+}
+
 #[test]
 fn a_campaign_counts_its_cells_and_writes_its_rows() {
     let out = folder("campaign-in-space");

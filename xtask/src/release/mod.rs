@@ -47,7 +47,11 @@ pub(crate) fn run(args: &ReleaseArgs) -> Result<()> {
             "c" => library(&place)?,
             "deb" => take(&deb::package(&static_harness()?)?, &place)?,
             "wheel" => wheel(&place)?,
-            _ => take(&wasm::page()?, &place)?,
+            _ => {
+                for page in wasm::pages()? {
+                    take(&page, &place)?;
+                }
+            }
         }
     }
     notes::write(&place)?;

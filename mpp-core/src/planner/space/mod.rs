@@ -228,6 +228,11 @@ impl SpacePlanner {
         Some((&best.plan, &best.judgement))
     }
 
+    /// The candidates of this cycle so far, as they were proposed: each flown, before programs and refinement.
+    pub fn candidates(&self) -> impl Iterator<Item = &SpacePlan> {
+        self.candidates.iter().map(|candidate| &candidate.plan)
+    }
+
     /// Number of candidates of this cycle so far.
     #[must_use]
     pub fn proposed(&self) -> usize {

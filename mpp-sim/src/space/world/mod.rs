@@ -141,6 +141,15 @@ impl World {
         Self::new(bodies, extent)
     }
 
+    /// This world and one more body.
+    ///
+    /// # Errors
+    /// [`WorldError::Body`], as [`Self::new`].
+    pub fn with(&self, body: Body) -> Result<Self, WorldError> {
+        let bodies = self.bodies.iter().copied().chain([body]);
+        Self::new(bodies.collect(), self.extent)
+    }
+
     /// Its bodies.
     #[must_use]
     pub fn bodies(&self) -> &[Body] {

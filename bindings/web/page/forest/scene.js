@@ -1,0 +1,260 @@
+// The scene behind the aircraft, on a plain canvas: whole things are sorted by their depth and painted from far to near.
+// Farthest trunk that is drawn, where haze begins, and over how many metres it closes [m].
+const FAR = 95, HAZE = [10, 82], SHADES = 32;
+// Direction to the sun [rad, from ahead to the right], the length of a shadow as a share of the height [-], and how much of a trunk's is
+// drawn [m].
+const SUN = 2.9, SHADE = 2.4, SHADOW = 9;
+// Height up to which trunks are drawn, and where crowns begin [m]. In the simulation they have no end.
+const TOP = 23, CROWN = 19;
+const EARTH = ["sky", "haze", "earth", "bark", "bark-dark", "pale", "pale-dark", "crown", "crown-pale", "wing", "wing-dark", "placed", "bad",
+  "plan", "candidate", "flown"];
+const paint = {};
+
+const channels = text => [1, 3, 5].map(at => parseInt(text.slice(at, at + 2), 16));
+const mixed = (a, b, share) => `rgb(${a.map((part, i) => Math.round(part + share * (b[i] - part))).join()})`;
+
+// Shades of each colour from near to far.
+function readPaint() {
+  const style = getComputedStyle(document.documentElement), hex = name => channels(style.getPropertyValue("--" + name).trim());
+  const haze = hex("haze");
+  for (const name of EARTH) paint[name] = Array.from({ length: SHADES + 1 }, (_, i) => mixed(hex(name), haze, i / SHADES));
+}
+
+const shadeOf = depth => Math.max(0, Math.min(SHADES, Math.round((depth - HAZE[0]) / HAZE[1] * SHADES)));
+
+// The aircraft in spans: ahead, right, down. A fuselage of rings, surfaces of quads.
+const AIRCRAFT = (() => {
+  const faces = [], rings = [[0.4, 0.018], [0.34, 0.045], [0.1, 0.055], [-0.12, 0.04], [-0.4, 0.012]], sides = 6;
+  const ring = ([x, r]) => Array.from({ length: sides }, (_, i) => [x, r * Math.cos(i * 2 * Math.PI / sides), r * Math.sin(i * 2 * Math.PI / sides)]);
+  for (let at = 0; at + 1 < rings.length; at++) {
+    const [a, b] = [ring(rings[at]), ring(rings[at + 1])];
+    for (let i = 0; i < sides; i++) faces.push(["wing", [a[i], a[(i + 1) % sides], b[(i + 1) % sides], b[i]]]);
+  }
+  for (const s of [1, -1]) {
+    faces.push(["wing", [[0.15, 0, -0.06], [0.135, s * 0.36, -0.08], [-0.06, s * 0.36, -0.08], [-0.07, 0, -0.06]]]);
+    faces.push(["tip", [[0.135, s * 0.36, -0.08], [0.1, s * 0.5, -0.09], [-0.03, s * 0.5, -0.09], [-0.06, s * 0.36, -0.08]]]);
+    faces.push(["wing", [[-0.3, 0, -0.01], [-0.33, s * 0.17, -0.01], [-0.41, s * 0.17, -0.01], [-0.42, 0, -0.01]]]);
+  }
+  faces.push(["tip", [[-0.29, 0, -0.02], [-0.37, 0, -0.14], [-0.43, 0, -0.14], [-0.42, 0, -0.02]]]);
+  return faces;
+})();
+// Its outline from above, for the shadow and the map.
+const OUTLINE = [[0.4, 0], [0.34, 0.04], [0.15, 0.05], [0.1, 0.5], [-0.03, 0.5], [-0.07, 0.05], [-0.3, 0.03], [-0.33, 0.17], [-0.41, 0.17], [-0.42, 0]];
+const BOTH = [...OUTLINE, ...OUTLINE.map(([a, b]) => [a, -b]).reverse()];
+
+function fillPath(pen, points, style) {
+  pen.fillStyle = style;
+  pen.beginPath();
+  points.forEach(([u, v], i) => i ? pen.lineTo(u, v) : pen.moveTo(u, v));
+  pen.fill();
+}
+
+function drawGround(pen, camera) {
+  const { width, height, put, f, eye, roll } = camera, flat = Math.hypot(f[0], f[1]);
+  const [, v] = put(eye[0] + f[0] / flat * 1e4, eye[1] + f[1] / flat * 1e4, eye[2]), size = width + height;
+  pen.save();
+  pen.translate(width / 2, v);
+  pen.rotate(-roll);
+  const sky = pen.createLinearGradient(0, -0.6 * height, 0, 0), earth = pen.createLinearGradient(0, 0, 0, 0.3 * height);
+  sky.addColorStop(0, paint.sky[0]); sky.addColorStop(1, paint.haze[0]);
+  earth.addColorStop(0, paint.haze[0]); earth.addColorStop(0.25, paint.earth[SHADES / 2]); earth.addColorStop(1, paint.earth[0]);
+  pen.fillStyle = sky; pen.fillRect(-size, -size, 2 * size, size);
+  pen.fillStyle = earth; pen.fillRect(-size, 0, 2 * size, size);
+  pen.restore();
+}
+
+// Squares of 10 m, and tufts between them that tell of the speed.
+function drawGrid(pen, { eye, depth, put }) {
+  const step = 10, reach = 70, [x0, y0] = [0, 1].map(axis => Math.floor(eye[axis] / step) * step);
+  pen.strokeStyle = colour.faint; pen.fillStyle = colour.faint; pen.lineWidth = 1;
+  for (const [least, most, alpha] of [[0.5, 25, 0.3], [25, 45, 0.18], [45, 70, 0.09]]) {
+    pen.globalAlpha = alpha;
+    pen.beginPath();
+    for (let a = -reach; a <= reach; a += step) for (let b = -reach; b < reach; b += step)
+      for (const [xa, ya, xb, yb] of [[a, b, a, b + step], [b, a, b + step, a]]) {
+        const [p, q, s, t] = [x0 + xa, y0 + ya, x0 + xb, y0 + yb], near = depth(p, q, 0), far = depth(s, t, 0), middle = (near + far) / 2;
+        if (middle < least || middle >= most || near < 0.5 || far < 0.5) continue;
+        pen.moveTo(...put(p, q, 0)); pen.lineTo(...put(s, t, 0));
+      }
+    pen.stroke();
+  }
+  pen.globalAlpha = 0.5;
+  for (let column = -10; column < 11; column++) for (let row = -10; row < 11; row++) {
+    const [i, j] = [Math.round(eye[0] / 3) + column, Math.round(eye[1] / 3) + row], chance = Math.abs(Math.sin(i * 12.9898 + j * 78.233) * 43758.5453) % 1;
+    const [x, y] = [3 * i + 3 * chance, 3 * j + 3 * (chance * 7 % 1)], away = depth(x, y, 0);
+    if (away < 1 || away > 30) continue;
+    const [u, v, d] = put(x, y, 0), size = 40 / d;
+    pen.fillRect(u - size / 2, v - size / 4, size, size / 2);
+  }
+  pen.globalAlpha = 1;
+}
+
+// Shadows of the trunks near by, all in one path.
+function drawShadows(pen, trunks, { depth, put, focus }) {
+  const [x, y] = [-Math.cos(SUN) * SHADOW, -Math.sin(SUN) * SHADOW];
+  pen.globalAlpha = 0.22; pen.fillStyle = "#000";
+  pen.beginPath();
+  for (const { trunk: t } of trunks) {
+    if (depth(t.x, t.y, 0) < 1 || depth(t.x + x, t.y + y, 0) < 1) continue;
+    const [u, v, d] = put(t.x, t.y, 0), [u2, v2, d2] = put(t.x + x, t.y + y, 0), w = focus * t.r / d, w2 = focus * t.r / d2;
+    if (d > 45) continue;
+    pen.moveTo(u - w, v); pen.lineTo(u + w, v); pen.lineTo(u2 + w2, v2); pen.lineTo(u2 - w2, v2);
+  }
+  pen.fill();
+  pen.globalAlpha = 1;
+}
+
+// The trunks in sight, each with its depth.
+function inSight({ trunks }, tick, { eye, f, r, width, focus }) {
+  const flat = Math.hypot(f[0], f[1]), seen = [], slope = 0.62 * width / focus;
+  for (const trunk of trunks) {
+    if (trunk.mine > tick) continue;
+    const a = trunk.x - eye[0], b = trunk.y - eye[1], depth = (a * f[0] + b * f[1]) / flat;
+    if (depth > 0.5 && depth < FAR && Math.abs(a * r[0] + b * r[1]) < depth * slope + 4) seen.push({ depth, trunk });
+  }
+  return seen;
+}
+
+function drawTrunk(pen, { trunk: { x, y, r, seen, mine, crown }, depth }, tick, camera, nearer, hit = false) {
+  const { put, focus, f, eye, r: right } = camera, flat = (x - eye[0]) * f[0] + (y - eye[1]) * f[1], shade = shadeOf(depth);
+  let low = 0, high = TOP + 3 * crown;
+  // What is behind the picture has no place in it.
+  const limit = eye[2] + (0.4 - flat) / (f[2] || -1e-6);
+  if (f[2] < 0) high = Math.min(high, limit); else low = Math.max(low, limit);
+  if (high <= low) return;
+  const [u, v, d] = put(x, y, low), [u2, v2, d2] = put(x, y, high), w = focus * r / d, w2 = focus * r / d2;
+  const known = seen !== null && seen <= tick, kind = known ? "bark" : "pale";
+  // Between the camera and the aircraft it is glass.
+  pen.globalAlpha = nearer ? 0.25 : 1;
+  if (low === 0 && d < 60) {
+    pen.fillStyle = paint[kind + "-dark"][shade];
+    pen.beginPath(); pen.ellipse(u, v, w * 1.5, w * 0.5, 0, 0, 7); pen.fill();
+  }
+  const strip = (a, b, style) => fillPath(pen, [[u + a * w, v], [u + b * w, v], [u2 + b * w2, v2], [u2 + a * w2, v2]], style);
+  const [sx, sy] = [Math.cos(SUN), Math.sin(SUN)], side = sx * right[0] + sy * right[1] > 0 ? 1 : -1;
+  const edge = Math.max(-0.7, Math.min(0.8, sx * f[0] + sy * f[1]));
+  const lit = hit ? "bad" : mine !== null ? "placed" : kind, pale = Math.min(SHADES, shade + 3);
+  // Thin ones are of one piece; the strips of others overlap a little, or their seams would show.
+  if (w < 2.5) strip(-1, 1, paint[lit][pale]);
+  else {
+    strip(-side, side * (edge + 0.05), paint[kind + "-dark"][shade]);
+    strip(side * edge, side * (edge + 0.5), paint[lit][pale]);
+    strip(side * (edge + 0.45), side, paint[lit][shade]);
+  }
+  if (high > CROWN) {
+    pen.fillStyle = paint[known ? "crown" : "crown-pale"][shade];
+    for (let part = 0; part < (depth < 45 ? 3 : 1); part++) {
+      const [cu, cv, cd] = put(x + (crown - 0.5) * 2 + part - 1, y + (part === 1 ? 0.8 : -0.6), CROWN + 1.3 * part + 2 * crown), size = focus * (1.9 + crown - 0.3 * part) / cd;
+      pen.beginPath(); pen.ellipse(cu, cv, size, size * 0.62, 0, 0, 7); pen.fill();
+    }
+  }
+  pen.globalAlpha = 1;
+}
+
+// The places of a path from a tick on, a quarter of a knot apart: ahead, right, up, bank.
+function placesOf(path, due, tick) {
+  const places = [], last = path.length - 1;
+  for (let at = Math.max(0, (tick - due) / 25); at <= last; at += 0.25) {
+    const i = Math.min(last - 1, Math.floor(at)), t = at - i, [a, b, c, d] = [-1, 0, 1, 2].map(step => path[Math.max(0, Math.min(last, i + step))]);
+    places.push([0, 1, 2, 3].map(k => b[k] + 0.5 * t * (c[k] - a[k] + t * (2 * a[k] - 5 * b[k] + 4 * c[k] - d[k] + t * (3 * (b[k] - c[k]) + d[k] - a[k])))));
+  }
+  return places;
+}
+
+// A ribbon as wide as `half` to both sides, banked as the wing will be, from a depth on. Thinner ones lie beneath broader ones.
+function ribbon(pen, items, places, half, name, from, { depth, put }) {
+  const edges = places.map(([x, y, z, bank], i) => {
+    const [p, q] = [places[Math.max(0, i - 1)], places[Math.min(places.length - 1, i + 1)]], way = Math.hypot(q[0] - p[0], q[1] - p[1]) || 1;
+    const side = [-(q[1] - p[1]) / way * Math.cos(bank), (q[0] - p[0]) / way * Math.cos(bank), -Math.sin(bank)];
+    return [-half, half].map(width => [x, y, z].map((part, axis) => part + width * side[axis]));
+  });
+  for (let i = 0; i + 1 < edges.length; i++) {
+    const [[a, b], [c, d]] = [edges[i], edges[i + 1]], away = depth(...places[i].slice(0, 3));
+    if (away < from) continue;
+    items.push([away + 0.1 / half, () => {
+      const style = paint[name][Math.round(0.6 * SHADES * i / edges.length)];
+      fillPath(pen, [a, b, d, c].map(place => put(...place)), style);
+      // Closes the seams.
+      pen.strokeStyle = style; pen.lineWidth = 0.7; pen.stroke();
+    }]);
+  }
+}
+
+function drawAircraft(pen, state, span, { put }) {
+  const sun = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8], faces = AIRCRAFT.map(([kind, points]) => {
+    const places = points.map(point => { const way = turned(state.attitude, point); return way.map((part, axis) => state.at[axis] + span * part); });
+    const [a, b, c] = [0, 1, 3].map(i => places[i]), [p, q] = [b, c].map(other => other.map((part, axis) => part - a[axis]));
+    const normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]], length = Math.hypot(...normal) || 1;
+    const light = Math.abs(normal.reduce((sum, part, axis) => sum + part * sun[axis], 0)) / length, pixels = places.map(place => put(...place));
+    return { kind, light, pixels, depth: pixels.reduce((sum, [, , d]) => sum + d, 0) / pixels.length };
+  });
+  faces.sort((a, b) => b.depth - a.depth);
+  const [bright, dark] = ["wing", "wing-dark"].map(name => channelsOf(paint[name][0])), tip = channels(colour.flown);
+  for (const { kind, light, pixels } of faces) {
+    const full = kind === "tip" ? tip : bright, style = mixed(full, kind === "tip" ? full.map(part => part * 0.6) : dark, 1 - light);
+    fillPath(pen, pixels, style);
+    pen.strokeStyle = style; pen.lineWidth = 0.7; pen.stroke();
+  }
+  const nose = turned(state.attitude, [0.41, 0, 0]).map((part, axis) => state.at[axis] + span * part);
+  const disc = Array.from({ length: 16 }, (_, i) => turned(state.attitude, [0, 0.1 * Math.cos(i * Math.PI / 8), 0.1 * Math.sin(i * Math.PI / 8)])
+    .map((part, axis) => nose[axis] + span * part)).map(place => put(...place));
+  pen.globalAlpha = 0.15; fillPath(pen, disc, colour.text); pen.globalAlpha = 1;
+}
+
+const channelsOf = style => style.slice(4, -1).split(",").map(Number);
+
+// The shadow on the ground, which shows the height.
+function drawUnder(pen, state, span, { put, depth }) {
+  const [x, y, z] = state.at, shape = BOTH.map(([a, b]) => {
+    const way = turned(state.attitude, [a, b, 0]);
+    return [x + span * way[0] - SHADE * z * Math.cos(SUN), y + span * way[1] - SHADE * z * Math.sin(SUN), 0];
+  });
+  if (shape.some(place => depth(...place) < 0.5)) return;
+  pen.globalAlpha = 0.6; fillPath(pen, shape.map(place => put(...place)), "#000"); pen.globalAlpha = 1;
+}
+
+// Streaks behind the tips of the wing: the last quarter of a second.
+function drawStreaks(pen, items, flight, tick, { put, depth }) {
+  for (const tip of [0.5, -0.5]) for (let back = 0; back < 24; back += 3) {
+    const ends = [back, back + 3].map(ticks => {
+      const { at, attitude } = stateAt(flight, Math.max(0, tick - ticks)), way = turned(attitude, [-0.03, tip, -0.09]);
+      return at.map((part, axis) => part + flight.span * way[axis]);
+    });
+    if (ends.some(place => depth(...place) < 0.6) || tick - back <= 3) continue;
+    items.push([depth(...ends[1]), () => line(pen, ends.map(place => put(...place)), paint.flown[Math.round(SHADES * back / 24)], 1.2)]);
+  }
+}
+
+// Draws the scene. Returns the camera, which knows what is under a pixel.
+function drawScene(flight, tick, look) {
+  const [pen, width, height] = canvas("view", look.sharpest), state = stateAt(flight, tick), camera = cameraAt(flight, tick, width, height, look.around);
+  const { put, depth, eye, f, focus } = camera, trunks = inSight(flight, tick, camera), own = depth(...state.at);
+  drawGround(pen, camera);
+  drawGrid(pen, camera);
+  drawShadows(pen, trunks, camera);
+  drawUnder(pen, state, flight.span, camera);
+  const items = trunks.map(sight => [sight.depth, () => drawTrunk(pen, sight, tick, camera, sight.depth < own - 1, sight.trunk === flight.crash)]);
+  const plan = newest(flight.cycles, tick, cycle => cycle.due), scan = newest(flight.cycles, tick, cycle => cycle.tick);
+  if (plan?.paths.length) {
+    const all = plan.paths.map(path => placesOf(path, plan.due, tick));
+    for (const places of all.slice(0, -1)) ribbon(pen, items, places, 0.02, "candidate", own + 2, camera);
+    ribbon(pen, items, all[all.length - 1], 0.22, "plan", own + 0.6, camera);
+  }
+  for (let at = 0; at < (scan ? scan.hits.length : 0); at += 3) {
+    const [x, y, z] = scan.hits.subarray(at, at + 3), away = (x - eye[0]) * f[0] + (y - eye[1]) * f[1] + (z - eye[2]) * f[2];
+    if (away < 1) continue;
+    items.push([away - 0.45, () => {
+      const [u, v, d] = put(x, y, z), size = Math.max(1.6, Math.min(4, 0.07 * focus / d));
+      pen.fillStyle = colour.scan; pen.fillRect(u - size / 2, v - size / 2, size, size);
+    }]);
+  }
+  drawStreaks(pen, items, flight, tick, camera);
+  if (look.ghost) {
+    const trunk = { ...look.ghost, r: RADIUS, seen: null, mine: 0, crown: 0.5 };
+    items.push([depth(trunk.x, trunk.y, eye[2]), () => { pen.globalAlpha = 0.5; drawTrunk(pen, { trunk, depth: Math.max(1, depth(trunk.x, trunk.y, 0)) }, tick, camera, true); }]);
+  }
+  items.push([own, () => drawAircraft(pen, state, flight.span, camera)]);
+  items.sort((a, b) => b[0] - a[0]);
+  for (const [, draw] of items) draw();
+  return { camera, shown: trunks.length, items: items.length };
+}
