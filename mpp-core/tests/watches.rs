@@ -3,10 +3,12 @@
 use crate::common::draw::gaussian;
 use crate::common::sensors::frame;
 use mpp_core::config::TICK_PERIOD;
-use mpp_core::estimate::{AirspeedBias, Before, BiasMonitor, PitchBias, SensorMonitor, Trust};
+use mpp_core::estimate::{
+    AirspeedBias, Before, BiasMonitor, CalmFlight, PitchBias, Seen, SensorMonitor, Trust,
+};
 use mpp_core::flight::FlightLoop;
 use mpp_core::settings::Settings;
-use mpp_core::vehicle::{AirState, VehicleState};
+use mpp_core::vehicle::{AirState, Airframe, GRAVITY, Trim, VehicleState};
 use rand_pcg::Pcg64Mcg;
 use rand_pcg::rand_core::SeedableRng;
 
@@ -101,9 +103,9 @@ fn a_growing_error_of_the_airspeed_is_found_by_wind_and_lift_together() {
 /// known airframe than both can be, and the pitch, which seems tilted by it, is not blamed.
 #[test]
 fn an_airspeed_that_is_wrong_from_the_start_is_found_and_the_pitch_is_not_blamed() {
-    let level_lift = 1.4;
+    let level_lift = Airframe::REFERENCE.level_lift(12.0);
     let found = |wind: f64, lift: f64| {
-        let mut biases = BiasMonitor::new(level_lift);
+        let mut biases = BiasMonitor::new(&Airframe::REFERENCE, 12.0);
         let before = (0..500).find_map(|_| {
             biases.see_tilt(0.09, 0.1, TICK_PERIOD);
             biases.see_wind(wind, lift * level_lift, 12.0, TICK_PERIOD)
@@ -129,6 +131,62 @@ fn an_airspeed_that_is_wrong_from_the_start_is_found_and_the_pitch_is_not_blamed
             assert_eq!(before, None, "{wind}, {lift}");
             assert!(biases.pitch().found(), "{wind}, {lift}");
         }
+    }
+}
+
+/// While commands and forces explain the motion over ground, an airspeed and a pitch that are both off are both wrong, whatever
+/// their signs. One of them alone is left to its own watch. A wind along the way, a downdraught, or another weight leave
+/// something unexplained.
+#[test]
+fn an_airspeed_and_a_pitch_that_are_both_wrong_are_found_by_the_motion_over_ground() {
+    let known = Airframe::REFERENCE;
+    let trim = Trim::at_speed(&known, 12.0, 0.0).unwrap();
+    let found = |airspeed: f64, pitch: f64, wind: (f64, f64), push: (f64, f64)| {
+        let mut random = Pcg64Mcg::seed_from_u64(7);
+        let mut watch = CalmFlight::new(&known);
+        let mut velocity = (12.0 + wind.0, wind.1);
+        (0..600).find_map(|tick| {
+            (velocity.0, velocity.1) = (
+                velocity.0 + push.0 * TICK_PERIOD,
+                velocity.1 + push.1 * TICK_PERIOD,
+            );
+            let seen = Seen {
+                velocity,
+                airspeed: 12.0 + airspeed + 0.5 * gaussian(&mut random),
+                pitch: trim.state.pitch + pitch + 0.004 * gaussian(&mut random),
+                angle_of_attack: trim.state.pitch,
+                thrust: trim.control.thrust,
+            };
+            let angle = watch.update(&seen, TICK_PERIOD)?;
+            Some((tick, angle))
+        })
+    };
+    let still = (0.0, 0.0);
+    for (airspeed, pitch) in [(-3.0, 0.09), (3.0, -0.09), (3.0, 0.09), (-3.0, -0.09)] {
+        let (tick, angle) = found(airspeed, pitch, still, still).unwrap();
+        assert!(
+            tick < 150 && (angle - pitch).abs() < 0.005,
+            "{tick} {angle}"
+        );
+        assert_eq!(found(airspeed, 0.0, still, still), None);
+        assert_eq!(found(0.0, pitch, still, still), None);
+        // What the sensors then say is right: the air moves, or something pushes.
+        assert_eq!(found(0.0, pitch, (airspeed, 0.0), still), None);
+        assert_eq!(found(0.0, 0.0, (airspeed, -12.0 * pitch), still), None);
+        let lift = (0.0, 0.2 * GRAVITY);
+        assert_eq!(found(airspeed, pitch, still, lift), None);
+    }
+    let mut watch = CalmFlight::new(&known);
+    for value in [f64::NAN, f64::INFINITY, -1e300, 0.0] {
+        let seen = Seen {
+            velocity: (value, value),
+            airspeed: value,
+            pitch: value,
+            angle_of_attack: value,
+            thrust: value,
+        };
+        assert_eq!(watch.update(&seen, TICK_PERIOD), None);
+        assert_eq!(watch.update(&seen, value), None);
     }
 }
 

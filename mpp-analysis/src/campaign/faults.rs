@@ -46,6 +46,7 @@ impl NamedFault {
         "airspeed-bias": Some(3.0),
         "airspeed-bias-low": Some(3.0),
         "airspeed-pitch-bias": Some(3.0),
+        "airspeed-pitch-bias-high": Some(3.0),
         "airspeed-ramp": Some(3.0),
         "airspeed-ramp-low": Some(3.0),
         "pitot-blocked": Some(3.0),

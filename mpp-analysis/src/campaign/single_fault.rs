@@ -18,7 +18,12 @@ const TIMED: [(&str, &[&str], bool); 9] = [
     ("thrust", &["motor"], true),
 ];
 /// Names of faults that are no single ones, or that are none.
-const NO_SINGLE: [&str; 3] = ["rtk", "both-frozen", "airspeed-pitch-bias"];
+const NO_SINGLE: [&str; 4] = [
+    "rtk",
+    "both-frozen",
+    "airspeed-pitch-bias",
+    "airspeed-pitch-bias-high",
+];
 
 /// One fault that can be a half of a pair.
 #[derive(Clone, Debug)]

@@ -78,7 +78,7 @@ impl AirspeedBias {
         let agree = from_start || self.agree(mean, wind, lift, airspeed, FOUND_BY_LIFT);
         self.beyond = if agree { self.beyond + period } else { 0.0 };
         if self.beyond >= FOUND_FOR {
-            (self.found, self.off, self.agrees) = (true, 2.0 * AGREES, 0.0);
+            self.set_found();
             return Some(if from_start { calm } else { mean });
         }
         let share = period / MEMORY;
@@ -93,6 +93,11 @@ impl AirspeedBias {
         let wind = (before.wind - wind) / airspeed / FOUND_BY_WIND;
         let lift = (before.lift - lift) / (2.0 * self.level_lift) / by_lift;
         (wind > 1.0 && lift > 1.0) || (wind < -1.0 && lift < -1.0)
+    }
+
+    /// Takes the airspeed for wrong, because something else has shown it.
+    pub fn set_found(&mut self) {
+        (self.found, self.off, self.agrees) = (true, 2.0 * AGREES, 0.0);
     }
 
     /// Compares the sensor with the estimate [m/s] after a further `period` \[s\], while it is not believed. The sensor is

@@ -4,22 +4,25 @@
 //! airspeed. So the watch of the pitch pauses while the airspeed may be wrong. Once the airspeed is found wrong, this watch
 //! drops what it has collected.
 
-use super::{AirspeedBias, Before, PitchBias};
+use super::{AirspeedBias, Before, CalmFlight, PitchBias, Seen};
+use crate::vehicle::Airframe;
 
 /// The watches of both sensors.
 #[derive(Clone, Copy, Debug)]
 pub struct BiasMonitor {
     airspeed: AirspeedBias,
     pitch: PitchBias,
+    calm: CalmFlight,
 }
 
 impl BiasMonitor {
-    /// Watches without observations, for an aircraft with this lift coefficient in level flight [-].
+    /// Watches without observations, for an aircraft with this known airframe and cruising airspeed [m/s].
     #[must_use]
-    pub const fn new(level_lift: f64) -> Self {
+    pub fn new(known: &Airframe, cruise: f64) -> Self {
         Self {
-            airspeed: AirspeedBias::new(level_lift),
+            airspeed: AirspeedBias::new(known.level_lift(cruise)),
             pitch: PitchBias::new(),
+            calm: CalmFlight::new(known),
         }
     }
 
@@ -37,6 +40,19 @@ impl BiasMonitor {
             self.pitch = PitchBias::new();
         }
         found
+    }
+
+    /// Takes in the motion over ground; see [`CalmFlight::update`]. Tells whether both sensors have just been found wrong.
+    pub fn see_ground(&mut self, seen: &Seen, period: f64) -> bool {
+        if self.airspeed.found() && self.pitch.found() {
+            return false;
+        }
+        let Some(angle) = self.calm.update(seen, period) else {
+            return false;
+        };
+        self.airspeed.set_found();
+        self.pitch.set_found(angle);
+        true
     }
 
     /// Compares the airspeed sensor with the estimate; see [`AirspeedBias::compare`].

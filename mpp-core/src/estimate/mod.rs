@@ -8,7 +8,7 @@
 //! | [`Navigation`], [`WindFilter`] | position and wind |
 //! | [`LiftEstimator`] | lift beyond that of the known airframe |
 //! | [`Actuators`] | the model of motor and elevator, with [`CommandLine`], [`MotorWatch`] and [`ElevatorEffect`] |
-//! | [`BiasMonitor`] | the watches for slow errors: [`AirspeedBias`], [`PitchBias`] |
+//! | [`BiasMonitor`] | the watches for slow errors: [`AirspeedBias`], [`PitchBias`], and [`CalmFlight`] for both at once |
 //! | [`PitchMonitor`] | a pitch sensor that the altitude contradicts |
 //! | [`SensorMonitor`] | the trust in a sensor |
 //! | [`StuckDetector`], [`SteadyTurn`] | whether a sensor repeats its values, and whether refused values show a steady turn |
@@ -17,6 +17,7 @@ mod actuators;
 mod airspeed_bias;
 mod answer;
 mod bias_monitor;
+mod calm_flight;
 mod command_line;
 mod ekf;
 mod elevator_effect;
@@ -37,6 +38,7 @@ mod wind_filter;
 pub use actuators::Actuators;
 pub use airspeed_bias::{AirspeedBias, Before};
 pub use bias_monitor::BiasMonitor;
+pub use calm_flight::{CalmFlight, Seen};
 pub use command_line::CommandLine;
 pub use ekf::{Diverged, Ekf, EkfTuning};
 pub use elevator_effect::ElevatorEffect;

@@ -64,6 +64,11 @@ impl PitchBias {
         };
     }
 
+    /// Takes this for the bias \[rad\], because something else has shown it.
+    pub fn set_found(&mut self, angle: f64) {
+        (self.mean, self.by_airspeed, self.found) = (angle, angle, true);
+    }
+
     /// Whether wind and airspeed show the same tilt, beyond the fluctuations of the wind.
     fn both_show(&self) -> bool {
         let [by_wind, by_airspeed] = [self.mean, self.by_airspeed].map(libm::fabs);

@@ -17,7 +17,9 @@ pub use space::{
     space_refinement, space_take_over,
 };
 pub use space_estimate::{space_air, space_inertial};
-pub use watches::{airspeed_bias, elevator, leave, motor, pitch_bias, pitch_monitor, sensors};
+pub use watches::{
+    airspeed_bias, calm_flight, elevator, leave, motor, pitch_bias, pitch_monitor, sensors,
+};
 
 /// Clearance that an aircraft which turns little should have where there is room for it \[m\]. The lack of
 /// this clearance costs something in lattice and judgement. More room costs longer ways; with 1.6 m fewer

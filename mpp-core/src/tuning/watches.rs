@@ -103,6 +103,31 @@ pub mod airspeed_bias {
     pub const MOST_LIFT: f64 = 0.18;
 }
 
+/// Airspeed and pitch that are wrong at once, told by the motion over ground.
+pub mod calm_flight {
+    /// Rate at which the observed velocity follows the one over ground [1/s]. With 2 the noise of positions weighs twice as much.
+    /// Source: D63.
+    pub const FOLLOWS: f64 = 1.0;
+    /// Time after which the first estimate of the velocity is settled \[s\]. Source: D63.
+    pub const SETTLED: f64 = 0.5;
+    /// Time over which the differences are averaged \[s\]. Source: chosen.
+    pub const MEMORY: f64 = 0.5;
+    /// Time over which the difference of the airspeed is averaged \[s\]. With half a second gusts look like an error more often. Source: D63.
+    pub const LONG: f64 = 10.0;
+    /// Acceleration that the forces may leave unexplained, as a share of the weight [-]: three times that of noise, and half of
+    /// that in gusts of 1 m/s. With 0.08 gusts on a wrong airframe look so more often. Source: D63.
+    pub const UNEXPLAINED: f64 = 0.06;
+    /// Least error of the airspeed, as a share of it [-]: 2.2 m/s at 12 m/s. Source: D63.
+    pub const LEAST_AIRSPEED: f64 = 0.18;
+    /// Least error of the pitch \[rad\]: 3.2 degrees. With 0.042 one of 80 flights with all conditions together shows it.
+    /// Source: D63.
+    pub const LEAST_PITCH: f64 = 0.055;
+    /// Standard deviations of its difference that an error of the pitch exceeds [-]. Source: D63.
+    pub const STEADY: f64 = 2.5;
+    /// Time for which both sensors must be off \[s\]. Source: chosen.
+    pub const FOUND_FOR: f64 = 0.4;
+}
+
 /// Effect of the elevator, seen by the turns that commands miss. Times and lengths are those of the reference aircraft; others have
 /// them in their own units. Source: D55.
 pub mod elevator {

@@ -73,7 +73,7 @@ impl Estimator {
             airspeed: SensorMonitor::new(1),
             pitch: SensorMonitor::new(1),
             position: SensorMonitor::new(POSITION_PERIOD),
-            biases: BiasMonitor::new(airframe.level_lift(trim.state.airspeed)),
+            biases: BiasMonitor::new(&airframe, trim.state.airspeed),
             pitch_error: 0.0,
             corrected: 0.0,
             behind: None,
@@ -259,6 +259,7 @@ impl Estimator {
         count_verdict(innovation.pitch, health);
         let position = self.locate(elapsed, frame.position.as_ref());
         count_position(position, health);
+        self.watch_ground(elapsed, frame.air.as_ref());
         (innovation, position)
     }
 

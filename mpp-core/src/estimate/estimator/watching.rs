@@ -1,7 +1,7 @@
 //! The inputs of the watches of elevator and motor, from the estimators.
 
 use super::Estimator;
-use crate::estimate::{Innovation, MeasurementStatus, PositionVerdict, Progress};
+use crate::estimate::{Innovation, MeasurementStatus, PositionVerdict, Progress, Seen};
 use crate::sense::AirData;
 use crate::tuning::sensors::LONGEST_PREDICTION;
 
@@ -63,6 +63,31 @@ impl Estimator {
         if elapsed > 0.0 {
             self.corrected = 0.0;
             (self.actuators).see_speed((right && settled).then_some(&progress), elapsed);
+        }
+    }
+
+    /// Compares the air data with the motion over ground. If both sensors are wrong, the air is calm, and the airframe is the
+    /// known one.
+    pub(super) fn watch_ground(&mut self, elapsed: f64, air: Option<&AirData>) {
+        let frozen = self.airspeed_changes.frozen() || self.pitch_changes.frozen();
+        let usable = self.navigation.is_settled() && self.air.lag() == 0 && !frozen;
+        let (Some(air), Some(lift)) = (air.filter(|_| usable), &mut self.lift) else {
+            return;
+        };
+        let velocity = (self.navigation.quick().wind()).ground_velocity(self.air.present());
+        let seen = Seen {
+            velocity,
+            airspeed: air.measurement.airspeed,
+            pitch: air.measurement.pitch,
+            angle_of_attack: self.actuators.elevator().angle_of_attack(),
+            thrust: self.actuators.effective().thrust,
+        };
+        if self.biases.see_ground(&seen, elapsed) {
+            let speed = libm::hypot(velocity.0, velocity.1);
+            self.air.shift_airspeed(speed - self.air.present().airspeed);
+            self.navigation.set_wind_along(0.0);
+            lift.set_offset(0.0);
+            self.actuators.see_speed(None, 0.0);
         }
     }
 }
