@@ -24,10 +24,10 @@ pub const REGIONS: [Region; 4] = [
     Region::device(0x4000_0000, 16),
 ];
 
-/// What the image of the planner in space may use: its memory goes on behind what an STM32H743 has.
+/// What the image of the planner in space may use: the SRAM behind AXI too.
 pub const SPACE_REGIONS: [Region; 4] = {
     let [code, near, _, device] = REGIONS;
-    [code, near, Region::data(0x6000_0000, 22), device]
+    [code, near, Region::data(0x6000_0000, 20), device]
 };
 
 /// Starts the free-running timer.

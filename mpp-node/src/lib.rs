@@ -51,7 +51,7 @@ pub use convert::sensor_frame;
 pub use mail::{Plan, PlanReply, PlanRequest};
 pub use node::FlightNode;
 pub use plan_task::{PlanTask, Progress};
-pub use space::{MOST_POINTS, SpaceNode, SpaceSlice};
+pub use space::{MOST_POINTS, SpaceMemory, SpaceNode, SpaceSlice, SpaceTask};
 pub use step_task::{Pace, StepTask};
 
 use hil_protocol::{Hello, Role};

@@ -344,11 +344,17 @@ fn a_node_that_is_reset_gives_the_same_answers_slice_by_slice() {
         }
         assert!(decoded(&sent) == wanted);
         let count = |wanted| slices.iter().filter(|slice| **slice == wanted).count();
-        assert_eq!(count(SpaceSlice::Map), 6);
-        let cycles = count(SpaceSlice::Planner(Field));
-        // At ticks 3 and 33: a cycle begins with a sweep, or waits twice as long.
+        // The points of a sweep are few: one slice for their hits, and one for what they passed.
+        assert_eq!(count(SpaceSlice::Sweep), 6);
+        assert_eq!(count(SpaceSlice::Map), 12);
+        // Cycles begin at ticks 3 and 33: with a sweep, or after twice the time.
+        let begins = |pair: &&[SpaceSlice]| {
+            let field = SpaceSlice::Planner(Field);
+            pair[1] == field && pair[0] != field
+        };
+        let cycles = slices.windows(2).filter(begins).count();
         assert_eq!(cycles, 2);
-        for stage in [Lattice, Candidate, Program, Solve, Refine] {
+        for stage in [Field, Lattice, Candidate, Program, Solve, Refine] {
             assert!(count(SpaceSlice::Planner(stage)) >= cycles, "{stage:?}");
         }
     });

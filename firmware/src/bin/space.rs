@@ -1,7 +1,7 @@
 //! The image of the planner in space, over two FIFOs by semihosting, in lockstep.
 //!
-//! One thread makes the step and then all slices that it granted, so the order of all work is fixed and no interrupt comes. The
-//! memory of the planner is more than an STM32H743 has: the image shows bits and costs, and flies no aircraft.
+//! One thread makes the step and then all slices that it granted, so the order of all work is fixed and no interrupt comes. Task,
+//! map and planner lie in the memories of an STM32H743.
 #![no_std]
 #![no_main]
 
@@ -10,13 +10,18 @@ use firmware::host::{self, Host};
 use firmware::mark::{self, Region};
 use firmware::owned::{self, Owned};
 use firmware::{board, image, protection, report};
-use mpp_core::planner::space::SpaceStage;
-use mpp_node::{SpaceNode, SpaceSlice};
+use mpp_core::map::VoxelGrid;
+use mpp_core::planner::space::{SpacePlanner, SpaceStage};
+use mpp_node::{SpaceMemory, SpaceSlice, SpaceTask};
 
-#[unsafe(link_section = ".psram")]
-static NODE: Owned<SpaceNode> = Owned::uninit();
-// SAFETY: this is a constant, and the compiler checks it.
-const _: SpaceNode = unsafe { owned::zeros() };
+static TASK: Owned<SpaceTask> = Owned::uninit();
+#[unsafe(link_section = ".axisram")]
+static PLANNER: Owned<SpacePlanner> = Owned::uninit();
+#[unsafe(link_section = ".sram")]
+static MAP: Owned<VoxelGrid> = Owned::uninit();
+// SAFETY: these are constants, and the compiler checks them.
+const _: (SpaceTask, SpacePlanner, VoxelGrid) =
+    unsafe { (owned::zeros(), owned::zeros(), owned::zeros()) };
 
 #[entry]
 fn main() -> ! {
@@ -24,33 +29,36 @@ fn main() -> ! {
         protection::start(&mut peripherals.MPU, &board::SPACE_REGIONS);
     }
     board::start_timer();
-    // SAFETY: no interrupt is enabled, so there is one user. Zeros are a valid node, as the constant proves.
-    let (node, host) = unsafe {
-        NODE.write_zeros();
+    // SAFETY: no interrupt is enabled, so there is one user. Zeros are valid values, as the constant proves.
+    let (task, mut memory, host) = unsafe {
+        TASK.write_zeros();
+        PLANNER.write_zeros();
+        MAP.write_zeros();
         host::open();
-        (NODE.get(), host::get())
+        let (map, planner) = (MAP.get(), PLANNER.get());
+        (TASK.get(), SpaceMemory { map, planner }, host::get())
     };
-    node.reset();
+    task.reset(&mut memory);
     if !image::is_whole() {
         report::finish(0);
     }
     // The harness ends the loop.
     while host.has_bytes() || host.read() {
         while let Some(byte) = host.next() {
-            take(node, byte, host);
-            while let Some(slice) = node.slice() {
-                advance(node, slice);
+            take(task, byte, &mut memory, host);
+            while let Some(slice) = task.slice(memory.planner) {
+                advance(task, slice, &mut memory);
             }
         }
     }
     report::finish(0)
 }
 
-fn take(node: &mut SpaceNode, byte: u8, host: &Host) {
-    let before = node.last_tick();
+fn take(task: &mut SpaceTask, byte: u8, memory: &mut SpaceMemory<'_>, host: &Host) {
+    let before = task.last_tick();
     mark::begin();
-    node.take(byte, &mut |bytes| host.send(bytes));
-    mark::end(if node.last_tick() != before {
+    task.take(byte, memory, &mut |bytes| host.send(bytes));
+    mark::end(if task.last_tick() != before {
         Region::Step
     } else if byte == 0 {
         Region::Frame
@@ -60,15 +68,15 @@ fn take(node: &mut SpaceNode, byte: u8, host: &Host) {
 }
 
 /// Does a slice. A cycle goes from its sweep to its last slice.
-fn advance(node: &mut SpaceNode, slice: SpaceSlice) {
-    if slice == SpaceSlice::Map {
+fn advance(task: &mut SpaceTask, slice: SpaceSlice, memory: &mut SpaceMemory<'_>) {
+    if slice == SpaceSlice::Sweep {
         mark::begin();
         mark::end(Region::Order);
     }
     mark::begin();
-    node.advance();
+    task.advance(memory);
     mark::end(match slice {
-        SpaceSlice::Map => Region::Map,
+        SpaceSlice::Sweep | SpaceSlice::Map => Region::Map,
         SpaceSlice::Planner(stage) => match stage {
             SpaceStage::Field => Region::Remember,
             SpaceStage::Lattice => Region::Lattice,
@@ -79,7 +87,7 @@ fn advance(node: &mut SpaceNode, slice: SpaceSlice) {
         },
     });
     let last = matches!(slice, SpaceSlice::Planner(SpaceStage::Refine));
-    if last && node.slice() != Some(slice) {
+    if last && task.slice(memory.planner) != Some(slice) {
         mark::begin();
         mark::end(Region::Answer);
     }

@@ -3,19 +3,19 @@
 use super::voxels::CELLS;
 use crate::tuning::grid::CELL;
 
-/// A column of the field, and the squared distance that counts as clear.
+/// A column of the field, and the distance that counts as clear.
 pub(crate) struct ClearColumn<'a> {
-    /// Squared distances of the centres of voxels, in parts of a voxel.
-    pub(super) squares: Option<&'a [u16; CELLS[2]]>,
-    pub(super) needed: u16,
+    /// Distances of the centres of voxels, in units of the field.
+    pub(super) distances: Option<&'a [u8; CELLS[2]]>,
+    pub(super) needed: u8,
 }
 
 impl ClearColumn<'_> {
     /// Whether the point at a height \[m\] is clear.
     pub(crate) fn is_clear(&self, z: f64) -> bool {
         let (z, _) = along(z / CELL - 0.5, CELLS[2]);
-        let square = self.squares.and_then(|squares| squares.get(z));
-        square.is_some_and(|square| *square >= self.needed)
+        let distance = self.distances.and_then(|distances| distances.get(z));
+        distance.is_some_and(|distance| *distance >= self.needed)
     }
 }
 

@@ -10,6 +10,7 @@
 pub(crate) mod cell;
 mod clear_column;
 mod distance_field;
+mod evidence;
 mod extent;
 mod fan;
 mod rolling_grid;

@@ -369,7 +369,7 @@ impl RollingGrid {
 
 /// The log-odds of a cell after a beam, within the limits. It is never 0, because 0 means that no beam has seen
 /// the cell.
-pub(super) fn updated(log_odds: i8, change: i8) -> i8 {
+fn updated(log_odds: i8, change: i8) -> i8 {
     match log_odds.saturating_add(change).clamp(-FREE, LIMIT) {
         0 => -1,
         sum => sum,

@@ -2,26 +2,46 @@
 
 use super::clear_column::{ClearColumn, along};
 use super::extent::{Extent, PART, PARTS};
-use super::voxels::{CELLS, VoxelGrid, row_centre, row_of, voxel};
-use crate::tuning::grid::{CELL, OCCUPIED};
+use super::voxels::{CELLS, VoxelGrid, voxel};
+use crate::tuning::grid::CELL;
+use core::ops::Range;
 
 /// Length of the window along x, and its width along y, in voxels. The height is that of the map.
-const LENGTH: usize = 104;
-const WIDTH: usize = 68;
+pub(crate) const LENGTH: usize = 104;
+const WIDTH: usize = 64;
 const HEIGHT: usize = CELLS[2];
-/// Voxels of the window behind the aircraft.
+/// Voxels of the window behind the aircraft, and to its left.
 const BEHIND: i64 = 8;
+const LEFT: i64 = WIDTH as i64 / 2;
 /// Greatest distance that the field tells, in voxels: 3 m.
 const REACH: i32 = 6;
 /// Greatest distance that the field tells \[m\].
 pub const MOST_CLEARANCE: f64 = REACH as f64 * CELL;
-/// Diagonal of a voxel, and a little more against rounding \[m\].
-const DIAGONAL: f64 = 1.733 * CELL;
+/// Unit of distances \[m\], and how many of them are a part of a voxel.
+const UNIT: f64 = PART / UNITS as f64;
+const UNITS: u32 = 2;
+/// Diagonal of a voxel, and a little more against rounding: half a unit at either end \[m\].
+const DIAGONAL: f64 = 1.733 * CELL + UNIT;
 /// Square of a distance beyond the reach, in parts of a voxel.
 const FAR: u16 = (REACH * PARTS * REACH * PARTS) as u16;
+/// The distance of each square, rounded.
+static ROOTS: [u8; FAR as usize + 1] = {
+    let mut roots = [0; FAR as usize + 1];
+    let (mut square, mut root) = (0, 0);
+    while square < roots.len() {
+        // The next one is nearer: twice the root, and 1, is at most four times the distance in units.
+        while (2 * root + 1) * (2 * root + 1) <= 4 * UNITS * UNITS * square as u32 {
+            root += 1;
+        }
+        roots[square] = root as u8;
+        square += 1;
+    }
+    roots
+};
+const FARTHEST: u8 = ROOTS[FAR as usize];
 
 type Columns = [[u32; WIDTH]; LENGTH];
-type Squares = [[[u16; HEIGHT]; WIDTH]; LENGTH];
+type Slice<T> = [[T; HEIGHT]; WIDTH];
 
 /// Distances \[m\] to what hits have shown of the nearest occupied voxel, and what nobody has seen.
 #[derive(Clone, Debug)]
@@ -30,9 +50,9 @@ pub struct VoxelField {
     occupied: Columns,
     unknown: Columns,
     extents: [[Extent; WIDTH]; LENGTH],
-    /// Squared distances of the centres of voxels, in parts of a voxel.
-    squares: Squares,
-    /// First x and first row of the window.
+    /// Distances of the centres of voxels, in units.
+    distances: [Slice<u8>; LENGTH],
+    /// First x and y of the window, in voxels.
     first: [i64; 2],
 }
 
@@ -44,58 +64,76 @@ impl VoxelField {
             occupied: [[0; WIDTH]; LENGTH],
             unknown: [[0; WIDTH]; LENGTH],
             extents: [[Extent::FULL; WIDTH]; LENGTH],
-            squares: [[[FAR; HEIGHT]; WIDTH]; LENGTH],
+            distances: [[[FARTHEST; HEIGHT]; WIDTH]; LENGTH],
             first: [0; 2],
         }
     }
 
     /// Takes the occupancy of the map around a position \[m\], and computes the distances.
     pub fn update(&mut self, map: &VoxelGrid, position: &[f64; 3]) {
-        let rows = (CELLS[1] - WIDTH) as i64;
-        let row = (row_of(position[1]) - WIDTH as i64 / 2).max(0).min(rows);
-        self.first = [(voxel(position[0]) - BEHIND).max(map.first()), row];
-        let slices = self.occupied.iter_mut().zip(&mut self.unknown);
-        for ((x, (occupied, unknown)), extents) in
-            (self.first[0]..).zip(slices).zip(&mut self.extents)
-        {
-            for ((row, (occupied, unknown)), extent) in (row as usize..)
-                .zip(occupied.iter_mut().zip(unknown))
-                .zip(extents)
-            {
-                (*occupied, *unknown) = map.column(x, row).map_or((0, u32::MAX), bits);
-                *extent = map.extent(x, row);
-            }
+        self.begin(map, position);
+        self.look(map, 0..LENGTH);
+        for slice in 0..LENGTH {
+            self.measure(slice);
         }
-        self.measure();
     }
 
-    /// Lowers the squared distances around every occupied column.
-    fn measure(&mut self) {
-        self.squares.as_flattened_mut().as_flattened_mut().fill(FAR);
-        for at in 0..LENGTH {
+    /// Moves the window to a position \[m\]. Then come all slices by [`look`](Self::look), then all by [`measure`](Self::measure).
+    pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3]) {
+        self.first = [(voxel(*x) - BEHIND).max(map.first()), voxel(*y) - LEFT];
+    }
+
+    /// Takes the occupancy of some slices from the map.
+    pub(crate) fn look(&mut self, map: &VoxelGrid, slices: Range<usize>) {
+        let [x, y] = self.first;
+        for slice in slices {
+            let (Some(occupied), Some(unknown), Some(extents)) = (
+                self.occupied.get_mut(slice),
+                self.unknown.get_mut(slice),
+                self.extents.get_mut(slice),
+            ) else {
+                return;
+            };
+            for (y, ((occupied, unknown), extent)) in
+                (y..).zip(occupied.iter_mut().zip(unknown).zip(extents))
+            {
+                ([*occupied, *unknown], *extent) = map.column(x + slice as i64, y);
+            }
+        }
+    }
+
+    /// Computes the distances in a slice, from every occupied column within reach.
+    pub(crate) fn measure(&mut self, slice: usize) {
+        let mut squares: Slice<u16> = [[FAR; HEIGHT]; WIDTH];
+        for (offset, from) in around(slice, LENGTH) {
             for row in 0..WIDTH {
-                let column = self.column(at, row);
+                let column = self.column(from, row);
                 if column == 0 {
+                    continue;
+                }
+                let sides = self.extent(from, row).sides();
+                // The slice lies on the other side of the column.
+                let ahead = off(-offset, sides[0]);
+                if ahead * ahead >= i32::from(FAR) {
                     continue;
                 }
                 let mut heights = [FAR; HEIGHT];
                 along_column(column, &mut heights);
-                let sides = self.extent(at, row).sides();
-                for (x, slice) in around(at, LENGTH) {
-                    let ahead = off(x, sides[0]);
-                    for (y, row) in around(row, WIDTH) {
-                        let right = off(y, sides[1]);
-                        let square = ahead * ahead + right * right;
-                        let to = self
-                            .squares
-                            .get_mut(slice)
-                            .and_then(|slice| slice.get_mut(row));
-                        if let Some(to) = to.filter(|_| square < i32::from(FAR)) {
-                            lower(to, &heights, square as u16);
-                        }
+                for (y, row) in around(row, WIDTH) {
+                    let right = off(y, sides[1]);
+                    let square = ahead * ahead + right * right;
+                    let to = squares.get_mut(row);
+                    if let Some(to) = to.filter(|_| square < i32::from(FAR)) {
+                        lower(to, &heights, square as u16);
                     }
                 }
             }
+        }
+        let distances = self.distances.get_mut(slice);
+        let distances = distances.map_or(&mut [][..], |it| it.as_flattened_mut());
+        for (distance, square) in distances.iter_mut().zip(squares.as_flattened()) {
+            let root = ROOTS.get(usize::from(*square));
+            *distance = root.copied().unwrap_or(FARTHEST);
         }
     }
 
@@ -114,7 +152,7 @@ impl VoxelField {
         let within = |at: i64, length: usize| at.max(0).min(length as i64 - 1) as usize;
         [
             within(voxel(*x) - self.first[0], LENGTH),
-            within(row_of(*y) - self.first[1], WIDTH),
+            within(voxel(*y) - self.first[1], WIDTH),
             within(voxel(*z), HEIGHT),
         ]
     }
@@ -128,12 +166,7 @@ impl VoxelField {
     /// The voxel with the least numbers of the eight whose centres lie around a point, and the place of the point among them [-].
     fn cube(&self, point: &[f64; 3]) -> ([usize; 3], [f64; 3]) {
         let [x, y, z] = point.map(|it| it / CELL - 0.5);
-        let middle = CELLS[1] as f64 / 2.0;
-        let at = [
-            x - self.first[0] as f64,
-            y + middle - self.first[1] as f64,
-            z,
-        ];
+        let at = [x - self.first[0] as f64, y - self.first[1] as f64, z];
         let mut low = [0; 3];
         let mut share = [0.0; 3];
         for (axis, length) in [LENGTH, WIDTH, HEIGHT].into_iter().enumerate() {
@@ -145,10 +178,10 @@ impl VoxelField {
     /// [`is_clear`](Self::is_clear) for the points of a vertical line.
     pub(crate) fn clear_column(&self, x: f64, y: f64, distance: f64) -> ClearColumn<'_> {
         let ([x, y, _], _) = self.cube(&[x, y, 0.0]);
-        let needed = (distance + DIAGONAL) / PART;
+        let needed = libm::ceil((distance + DIAGONAL) / UNIT);
         ClearColumn {
-            squares: self.squares.get(x).and_then(|slice| slice.get(y)),
-            needed: libm::ceil(needed * needed).min(f64::from(u16::MAX)) as u16,
+            distances: self.distances.get(x).and_then(|slice| slice.get(y)),
+            needed: needed.min(f64::from(u8::MAX)) as u8,
         }
     }
 
@@ -167,10 +200,10 @@ impl VoxelField {
         // Value and slopes along z, then y, then x.
         let mix = |a: f64, b: f64, share: f64| a + (b - a) * share;
         let column = |x: usize, y: usize| {
-            let squares = self.squares.get(x).and_then(|slice| slice.get(y));
+            let column = self.distances.get(x).and_then(|slice| slice.get(y));
             let [below, above] = [z, z + 1].map(|z| {
-                let square = squares.and_then(|squares| squares.get(z));
-                root(square.copied().unwrap_or(FAR))
+                let distance = column.and_then(|column| column.get(z));
+                UNIT * f64::from(distance.copied().unwrap_or(FARTHEST))
             });
             [mix(below, above, share[2]), above - below]
         };
@@ -215,7 +248,7 @@ impl VoxelField {
                 let mut left = all & layers & !inner;
                 let corner = [
                     (x as i64 + self.first[0]) as f64 * CELL,
-                    row_centre(y + self.first[1] as usize) - 0.5 * CELL,
+                    (y as i64 + self.first[1]) as f64 * CELL,
                 ];
                 let sides = self.extent(x, y).sides();
                 let side =
@@ -242,16 +275,6 @@ impl VoxelField {
     pub fn covers(&self, x: f64) -> bool {
         voxel(x) < self.first[0] + LENGTH as i64
     }
-}
-
-/// Occupied and unknown voxels of a column.
-fn bits(evidence: &[i8; HEIGHT]) -> (u32, u32) {
-    let (mut occupied, mut unknown) = (0, 0);
-    for (z, evidence) in evidence.iter().enumerate() {
-        occupied |= u32::from(*evidence >= OCCUPIED) << z;
-        unknown |= u32::from(*evidence == 0) << z;
-    }
-    (occupied, unknown)
 }
 
 /// Squared distances of the centres of voxels along z.
@@ -287,103 +310,5 @@ fn lower(to: &mut [u16; HEIGHT], from: &[u16; HEIGHT], square: u16) {
     }
 }
 
-/// Distance \[m\] of a square.
-fn root(square: u16) -> f64 {
-    libm::sqrt(f64::from(square)) * PART
-}
-
 #[cfg(test)]
-mod tests {
-    extern crate std;
-
-    use super::{CELL, MOST_CLEARANCE, VoxelField};
-    use crate::map::voxels::{SpaceBeam, VoxelGrid};
-    use rand_core::{Rng, SeedableRng};
-    use rand_pcg::Pcg64Mcg;
-    use std::boxed::Box;
-    use std::vec::Vec;
-
-    /// Beams at random points, one a column: the field has the distance to the nearest part of a column that one of them shows,
-    /// the surface has them all, and the slope is that of the clearance.
-    #[test]
-    fn the_field_has_the_distance_to_what_hits_have_shown() {
-        let mut random = Pcg64Mcg::seed_from_u64(5);
-        let mut draw = |low: f64, high: f64| {
-            low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        let (mut map, mut field) = (Box::new(VoxelGrid::new()), Box::new(VoxelField::new()));
-        map.clear(0.0);
-        let from = [0.25, 0.25, 8.25];
-        // Least and greatest coordinates of a sixteenth of a column, and of a voxel in height.
-        let part = |at: f64, edge: f64| [0.0, 1.0].map(|end| (libm::floor(at / edge) + end) * edge);
-        let mut shown: Vec<[[f64; 2]; 3]> = Vec::new();
-        let mut columns: Vec<[i64; 2]> = Vec::new();
-        let mut beams = Vec::new();
-        while shown.len() < 60 {
-            let to = [draw(3.0, 40.0), draw(-12.0, 12.0), draw(1.0, 15.0)];
-            let column = [to[0], to[1]].map(|at| libm::floor(at / CELL) as i64);
-            if columns.contains(&column) {
-                continue;
-            }
-            columns.push(column);
-            let way: Vec<f64> = to.iter().zip(&from).map(|(to, from)| to - from).collect();
-            let range = libm::sqrt(way.iter().map(|it| it * it).sum());
-            let direction = core::array::from_fn(|axis| way[axis] / range);
-            beams.push(SpaceBeam {
-                direction,
-                range: Some(range),
-            });
-            let fine = CELL / 16.0;
-            shown.push([part(to[0], fine), part(to[1], fine), part(to[2], CELL)]);
-        }
-        map.insert(&from, beams.iter().copied(), 45.0);
-        field.update(&map, &from);
-        let mut seen = 0;
-        field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |[least, most]| {
-            let same = |shown: &[[f64; 2]; 3]| {
-                (0..3).all(|axis| {
-                    let [low, high] = shown[axis];
-                    (low - least[axis]).abs() < 1e-9 && (high - most[axis]).abs() < 1e-9
-                })
-            };
-            assert!(shown.iter().any(same), "{least:?} {most:?}");
-            seen += 1;
-        });
-        assert!(seen > 50, "{seen}");
-        let distance = |point: &[f64; 3], shown: &[[f64; 2]; 3]| {
-            let off = point.iter().zip(shown);
-            let squares = off.map(|(at, [low, high])| {
-                let off = (low - at).max(at - high).max(0.0);
-                off * off
-            });
-            libm::sqrt(squares.sum())
-        };
-        let mut clear = 0;
-        for _ in 0..2000 {
-            let point = [draw(0.0, 42.0), draw(-14.0, 14.0), draw(0.5, 15.0)];
-            let centre = point.map(|it| (libm::floor(it / CELL) + 0.5) * CELL);
-            let all = shown.iter().map(|shown| distance(&centre, shown));
-            let nearest = all.fold(MOST_CLEARANCE, f64::min);
-            assert!(
-                (field.clearance(&centre) - nearest).abs() < 1e-9,
-                "{point:?}"
-            );
-            // Within a cell between centres the clearance is linear along an axis.
-            let (_, slope) = field.clearance_and_slope(&point);
-            for axis in 0..3 {
-                let mut moved = point;
-                let middle = libm::floor(point[axis] / CELL - 0.5) * CELL + CELL;
-                moved[axis] += if point[axis] < middle { 0.01 } else { -0.01 };
-                let by = field.clearance(&moved) - field.clearance(&point);
-                let expected = slope[axis] * (moved[axis] - point[axis]);
-                assert!((by - expected).abs() < 1e-9, "{point:?} {axis}");
-            }
-            let wanted = draw(0.3, 2.0);
-            if field.is_clear(&point, wanted) {
-                assert!(field.clearance(&point) >= wanted, "{point:?} {wanted}");
-                clear += 1;
-            }
-        }
-        assert!(clear > 500, "{clear}");
-    }
-}
+mod tests;

@@ -1,21 +1,17 @@
 //! The map in space: voxels of occupancy log-odds, which roll ahead with the aircraft.
 //!
-//! The window is `CELLS[0]` voxels long in x and covers a fixed band in y and z. The ground is no part of it: floor and ceiling
-//! are rows of programs.
+//! The window goes with the aircraft in x and y, and covers a fixed band in z. The ground is no part of it: floor and ceiling are
+//! rows of programs.
 
+use super::evidence::{Change, Evidence, HIT_ONCE, LAYERS, PASSED_ONCE, UNANSWERED_ONCE};
 use super::extent::Extent;
-use super::rolling_grid::updated;
-use crate::tuning::grid::{
-    CELL, HIT, HIT_DOUBT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
-};
+use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
 use crate::vehicle::between;
 
-/// Number of voxels along x, y and z. A column along z is one word of bits.
-pub const CELLS: [usize; 3] = [128, 128, 32];
-/// Voxels behind the aircraft that the window keeps.
-const BEHIND: i64 = 16;
-/// Row of y = 0.
-const MIDDLE: i64 = CELLS[1] as i64 / 2;
+/// Number of voxels along x, y and z.
+pub const CELLS: [usize; 3] = [112, 96, LAYERS];
+/// Voxels behind the aircraft, and to its left, that the window keeps.
+const BEHIND: [i64; 2] = [16, CELLS[1] as i64 / 2];
 /// Most voxels that one beam passes: the window's extent along all axes.
 const MOST_STEPS: usize = CELLS[0] + CELLS[1] + CELLS[2];
 
@@ -31,14 +27,16 @@ pub struct SpaceBeam {
 /// Occupancy log-odds of the voxels around the aircraft.
 #[derive(Clone, Debug)]
 pub struct VoxelGrid {
-    /// By x modulo the length, y and z; 0 is unknown, positive occupied.
-    evidence: [[[i8; CELLS[2]]; CELLS[1]]; CELLS[0]],
+    /// By x and y, each modulo its length.
+    evidence: [[Evidence; CELLS[1]]; CELLS[0]],
     /// Voxels that this scan has hit: a bit for each z.
     hit: [[u32; CELLS[1]]; CELLS[0]],
     /// What hits show of each column.
     extents: [[Extent; CELLS[1]]; CELLS[0]],
-    /// First x in the window, in voxels.
-    first: i64,
+    /// First x and y in the window, in voxels.
+    first: [i64; 2],
+    /// Where the beams of this scan begin \[m\].
+    origin: [f64; 3],
 }
 
 impl VoxelGrid {
@@ -46,26 +44,25 @@ impl VoxelGrid {
     #[must_use]
     pub const fn new() -> Self {
         Self {
-            evidence: [[[0; CELLS[2]]; CELLS[1]]; CELLS[0]],
+            evidence: [[Evidence::NONE; CELLS[1]]; CELLS[0]],
             hit: [[0; CELLS[1]]; CELLS[0]],
             extents: [[Extent::FULL; CELLS[1]]; CELLS[0]],
-            first: 0,
+            first: [0; 2],
+            origin: [0.0; 3],
         }
     }
 
-    /// Forgets everything, and begins at this x \[m\].
+    /// Forgets everything, and begins at this x \[m\] and y = 0.
     pub fn clear(&mut self, x: f64) {
-        for slice in &mut self.evidence {
-            slice.as_flattened_mut().fill(0);
-        }
+        self.evidence.as_flattened_mut().fill(Evidence::NONE);
         self.extents.as_flattened_mut().fill(Extent::FULL);
-        self.first = voxel(x) - BEHIND;
+        self.first = [voxel(x) - BEHIND[0], -BEHIND[1]];
     }
 
     /// First x in the window, in voxels.
     #[must_use]
     pub fn first(&self) -> i64 {
-        self.first
+        self.first[0]
     }
 
     /// Takes up a scan from a position \[m\], by a lidar with the range `sight` \[m\]. The beams are passed twice: first for
@@ -76,87 +73,107 @@ impl VoxelGrid {
         beams: impl Iterator<Item = SpaceBeam> + Clone,
         sight: f64,
     ) {
-        self.roll(position[0]);
-        for slice in &mut self.hit {
-            slice.fill(0);
-        }
-        for beam in beams.clone() {
-            if let Some(range) = beam.range {
-                let end =
-                    core::array::from_fn(|axis| position[axis] + range * beam.direction[axis]);
-                self.mark(&end, range);
-            }
-        }
-        for beam in beams {
-            let (end, miss) = match beam.range {
-                // The last voxels before a hit may hold the obstacle: the attitude is not exact.
-                Some(range) => (range * (1.0 - RANGE_DOUBT) - HIT_DOUBT, PASSED),
-                None => (UNANSWERED_SHARE * sight, PASSED_UNANSWERED),
-            };
-            self.pass(position, &beam.direction, end, miss);
-        }
+        self.begin(position);
+        beams.clone().for_each(|beam| self.mark(&beam));
+        beams.for_each(|beam| self.pass(&beam, sight));
     }
 
-    fn roll(&mut self, x: f64) {
-        let first = voxel(x) - BEHIND;
-        let length = CELLS[0] as i64;
-        // A jump beyond the window clears all of it, and no more than that.
-        for x in (self.first + length).max(first)..(first + length) {
+    /// Begins a scan from a position \[m\].
+    pub fn begin(&mut self, position: &[f64; 3]) {
+        self.roll(position);
+        self.hit.as_flattened_mut().fill(0);
+        self.origin = *position;
+    }
+
+    /// Moves the window: in x ahead, in y to both sides. A jump beyond the window clears all of it, and no more than that.
+    fn roll(&mut self, [x, y, _]: &[f64; 3]) {
+        let [length, width] = [CELLS[0] as i64, CELLS[1] as i64];
+        let [old, side] = self.first;
+        let first = (voxel(*x) - BEHIND[0]).max(old);
+        for x in (old + length).max(first)..first + length {
             let at = x.rem_euclid(length) as usize;
-            if let Some(slice) = self.evidence.get_mut(at) {
-                slice.as_flattened_mut().fill(0);
-            }
-            if let Some(slice) = self.extents.get_mut(at) {
-                slice.fill(Extent::FULL);
+            if let (Some(evidence), Some(extents)) =
+                (self.evidence.get_mut(at), self.extents.get_mut(at))
+            {
+                evidence.fill(Evidence::NONE);
+                extents.fill(Extent::FULL);
             }
         }
-        self.first = self.first.max(first);
+        let left = voxel(*y) - BEHIND[1];
+        let entered = if left > side {
+            (side + width).max(left)..left + width
+        } else {
+            left..side.min(left + width)
+        };
+        for y in entered {
+            let at = y.rem_euclid(width) as usize;
+            for (evidence, extents) in self.evidence.iter_mut().zip(&mut self.extents) {
+                if let (Some(evidence), Some(extent)) = (evidence.get_mut(at), extents.get_mut(at))
+                {
+                    (*evidence, *extent) = (Evidence::NONE, Extent::FULL);
+                }
+            }
+        }
+        self.first = [first, left];
     }
 
-    /// Places of a voxel in the window.
-    fn place(&self, [x, y, z]: [i64; 3]) -> Option<[usize; 3]> {
-        let inside = x >= self.first && x < self.first + CELLS[0] as i64;
-        let [_, rows, layers] = CELLS.map(|cells| cells as i64);
-        let y = y + MIDDLE;
-        let inside = inside && (0..rows).contains(&y) && (0..layers).contains(&z);
-        inside.then(|| {
-            [
-                x.rem_euclid(CELLS[0] as i64) as usize,
-                y as usize,
-                z as usize,
-            ]
-        })
+    /// Places of a column in the window.
+    fn place(&self, x: i64, y: i64) -> Option<[usize; 2]> {
+        let [length, width] = [CELLS[0] as i64, CELLS[1] as i64];
+        let [first, left] = self.first;
+        let inside = (first..first + length).contains(&x) && (left..left + width).contains(&y);
+        inside.then(|| [x.rem_euclid(length) as usize, y.rem_euclid(width) as usize])
     }
 
-    fn mark(&mut self, point: &[f64; 3], range: f64) {
-        let at = point.map(voxel);
+    /// Marks what a beam has hit. All beams of a scan are marked before the first one [passes](Self::pass).
+    pub fn mark(&mut self, beam: &SpaceBeam) {
+        let Some(range) = beam.range else {
+            return;
+        };
+        let end = core::array::from_fn(|axis| self.origin[axis] + range * beam.direction[axis]);
+        let [x, y, z] = end.map(voxel);
         // The lowest layer is the ground's.
-        let Some([x, y, z]) = self.place(at).filter(|[_, _, z]| *z > 0) else {
+        let Some([x, y]) = self
+            .place(x, y)
+            .filter(|_| (1..CELLS[2] as i64).contains(&z))
+        else {
             return;
         };
-        if let (Some(evidence), Some(hit)) = (
-            cell(&mut self.evidence, x, y, z),
+        if let (Some(evidence), Some(hit), Some(extent)) = (
+            column(&mut self.evidence, x, y),
             column(&mut self.hit, x, y),
+            column(&mut self.extents, x, y),
         ) {
-            *evidence = updated(*evidence, HIT);
+            evidence.add(z as usize, &HIT_ONCE);
             *hit |= 1 << z;
-        }
-        let extent = self.extents.get_mut(x).and_then(|slice| slice.get_mut(y));
-        if let Some(extent) = extent {
-            extent.take(point, range);
+            extent.take(&end, range);
         }
     }
 
-    /// Lowers the evidence of the voxels that a beam passes on its first `end` metres, by steps from face to face (Amanatides,
-    /// Woo: "A fast voxel traversal algorithm for ray tracing", 1987).
-    fn pass(&mut self, from: &[f64; 3], direction: &[f64; 3], end: f64, miss: i8) {
-        let start = from.map(voxel);
-        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
-        let first = self.first.rem_euclid(CELLS[0] as i64) as usize;
-        let (Some(_), [x, y, z]) = (self.place(start), start) else {
+    /// Lowers the evidence of the voxels that a beam passes.
+    pub fn pass(&mut self, beam: &SpaceBeam, sight: f64) {
+        let (end, change) = match beam.range {
+            // The last voxels before a hit may hold the obstacle: the attitude is not exact.
+            Some(range) => (range * (1.0 - RANGE_DOUBT) - HIT_DOUBT, &PASSED_ONCE),
+            None => (UNANSWERED_SHARE * sight, &UNANSWERED_ONCE),
+        };
+        self.pass_until(&beam.direction, end, change);
+    }
+
+    /// Changes the voxels on the first `end` metres of a beam, by steps from face to face (Amanatides, Woo: "A fast voxel
+    /// traversal algorithm for ray tracing", 1987).
+    fn pass_until(&mut self, direction: &[f64; 3], end: f64, change: &Change) {
+        let from = self.origin;
+        let start @ [x, y, z] = from.map(voxel);
+        let [first, left] = self.first;
+        let inside = self
+            .place(x, y)
+            .filter(|_| (0..CELLS[2] as i64).contains(&z));
+        let (Some(_), Some([corner_x, corner_y])) = (inside, self.place(first, left)) else {
             return;
         };
-        let mut at = [x - self.first, y + MIDDLE, z].map(|it| it as i32);
+        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
+        let mut at = [x - first, y - left, z].map(|it| it as i32);
         let mut next = [f64::INFINITY; 3];
         let mut each = [f64::INFINITY; 3];
         let mut step = [-1; 3];
@@ -176,10 +193,11 @@ impl VoxelGrid {
             if x >= CELLS[0] || y >= CELLS[1] || z >= CELLS[2] {
                 return;
             }
-            let x = (first + x) % CELLS[0];
+            let x = wrapped(corner_x + x, CELLS[0]);
+            let y = wrapped(corner_y + y, CELLS[1]);
             let hit = column(&mut self.hit, x, y).is_some_and(|hit| *hit >> z & 1 == 1);
-            if let Some(evidence) = cell(&mut self.evidence, x, y, z).filter(|_| !hit) {
-                *evidence = updated(*evidence, -miss);
+            if let Some(evidence) = column(&mut self.evidence, x, y).filter(|_| !hit) {
+                evidence.add(z, change);
             }
             let axis = if next[0] < next[1] {
                 if next[0] < next[2] { 0 } else { 2 }
@@ -196,20 +214,14 @@ impl VoxelGrid {
         }
     }
 
-    /// The evidence of the column at a voxel's x and row; `None` outside of the window.
-    pub(crate) fn column(&self, x: i64, row: usize) -> Option<&[i8; CELLS[2]]> {
-        let inside = x >= self.first && x < self.first + CELLS[0] as i64;
-        let slice = self.evidence.get(x.rem_euclid(CELLS[0] as i64) as usize);
-        slice.filter(|_| inside)?.get(row)
-    }
-}
-
-impl VoxelGrid {
-    /// What hits show of the column at a voxel's x and row.
-    pub(crate) fn extent(&self, x: i64, row: usize) -> Extent {
-        let slice = self.extents.get(x.rem_euclid(CELLS[0] as i64) as usize);
-        let extent = slice.and_then(|slice| slice.get(row));
-        extent.copied().unwrap_or(Extent::FULL)
+    /// Occupied and unknown voxels of the column at an x and y in voxels, a bit for each z, and what hits show of it. Outside of
+    /// the window nothing is known.
+    pub(super) fn column(&self, x: i64, y: i64) -> ([u32; 2], Extent) {
+        let found = self.place(x, y).and_then(|[x, y]| {
+            let evidence = self.evidence.get(x)?.get(y)?;
+            Some((evidence.bits(), *self.extents.get(x)?.get(y)?))
+        });
+        found.unwrap_or(([0, u32::MAX], Extent::FULL))
     }
 }
 
@@ -219,25 +231,11 @@ pub(crate) fn voxel(coordinate: f64) -> i64 {
     between(libm::floor(coordinate / CELL), [-FARTHEST, FARTHEST]) as i64
 }
 
-/// Row of the window that holds a y \[m\], unbounded.
-pub(crate) fn row_of(y: f64) -> i64 {
-    voxel(y) + MIDDLE
+/// The place of a number below twice a length.
+fn wrapped(at: usize, length: usize) -> usize {
+    if at < length { at } else { at - length }
 }
 
-/// The y of the centre of a row \[m\].
-pub(crate) fn row_centre(row: usize) -> f64 {
-    (row as i64 - MIDDLE) as f64 * CELL + 0.5 * CELL
-}
-
-fn cell<const Y: usize, const Z: usize>(
-    all: &mut [[[i8; Z]; Y]],
-    x: usize,
-    y: usize,
-    z: usize,
-) -> Option<&mut i8> {
-    all.get_mut(x)?.get_mut(y)?.get_mut(z)
-}
-
-fn column<const Y: usize>(all: &mut [[u32; Y]], x: usize, y: usize) -> Option<&mut u32> {
+fn column<T, const Y: usize>(all: &mut [[T; Y]], x: usize, y: usize) -> Option<&mut T> {
     all.get_mut(x)?.get_mut(y)
 }

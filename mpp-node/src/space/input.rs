@@ -1,9 +1,9 @@
 //! What comes before a sensor frame: attitude, position and points.
 
-use super::SpaceNode;
+use super::SpaceTask;
 use hil_protocol::{DecodeError, InertialFrame, PointPacket, RejectionCause, SpacePosition};
 
-impl SpaceNode {
+impl SpaceTask {
     pub(super) fn take_inertial(&mut self, told: &InertialFrame, send: &mut impl FnMut(&[u8])) {
         match &mut self.session {
             Some(session) => session.inertial = Some(*told),

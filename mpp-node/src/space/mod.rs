@@ -1,4 +1,4 @@
-//! The node of the planner in space: bytes in, bytes out, as [`FlightNode`](crate::FlightNode) is for the vertical plane.
+//! The planner in space: bytes in, bytes out, as [`FlightNode`](crate::FlightNode) is for the vertical plane.
 //!
 //! ```text
 //! ConfigureLateral, ConfigureSpace, Configure   each answered by a ConfigureReply
@@ -16,6 +16,7 @@
 //!
 //! | file | what it does |
 //! |---|---|
+//! | `node.rs` | the task with its memory in one value, for hosts |
 //! | `set_up.rs` | checks a configuration, and makes models, regulator and planner from it |
 //! | `input.rs` | takes measurements, or says why not |
 //! | `tick.rs` | the step |
@@ -24,6 +25,8 @@
 
 mod cycle;
 mod input;
+mod intake;
+mod node;
 mod planning;
 mod set_up;
 mod sweep;
@@ -35,6 +38,7 @@ use hil_protocol::{
     Body, Configure, ConfigureLateral, ConfigureSpace, DecodeError, Decoder, Hello, InertialFrame,
     MAX_FRAME, PlanReport, Rejection, RejectionCause, Role, SpacePosition, encode_body, id,
 };
+use intake::Intake;
 use mpp_core::control::SpaceRegulator;
 use mpp_core::estimate::SpaceEstimator;
 use mpp_core::map::VoxelGrid;
@@ -42,6 +46,7 @@ use mpp_core::planner::space::{SpacePlanner, SpaceStage};
 use mpp_core::vehicle::{LateralControl, SpaceModel};
 use sweep::Sweep;
 
+pub use node::SpaceNode;
 pub use sweep::MOST_POINTS;
 
 /// A flight after its configuration.
@@ -65,18 +70,16 @@ struct Session {
     untold: Option<PlanReport>,
 }
 
-/// The core in space and its side of the link. The value is large: place it in a `static` or a box.
-pub struct SpaceNode {
+/// The core in space and its side of the link, without the memory of map and planner: a flight computer has no one memory that
+/// holds all.
+pub struct SpaceTask {
     decoder: Decoder,
     buffer: [u8; MAX_FRAME],
     lateral: Option<ConfigureLateral>,
     limits: Option<ConfigureSpace>,
     session: Option<Session>,
-    map: VoxelGrid,
-    planner: SpacePlanner,
     sweep: Sweep,
-    /// Tick and position \[m\] of points that wait for their way into the map.
-    intake: Option<(u32, [f64; 3])>,
+    intake: Option<Intake>,
     /// Slices that the planner may still use in this tick.
     granted: u32,
 }
@@ -84,17 +87,31 @@ pub struct SpaceNode {
 /// What a slice between two ticks does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SpaceSlice {
-    /// Takes the points of a sweep into the map.
+    /// Begins to take points into the map.
+    Sweep,
+    /// Takes some points into the map.
     Map,
     /// A slice of the planner.
     Planner(SpaceStage),
 }
 
-// Whoever places it counts on 2 MB, as docs say.
-const _: () = assert!(size_of::<SpaceNode>() < 2_100_000);
+/// Map and planner of a [`SpaceTask`]. It is given the same ones in every call.
+pub struct SpaceMemory<'a> {
+    /// What the scans have shown.
+    pub map: &'a mut VoxelGrid,
+    /// The workspace of the planner.
+    pub planner: &'a mut SpacePlanner,
+}
 
-impl SpaceNode {
-    /// A node that waits for a hello.
+// The memories of an STM32H743 hold them: D2, AXI, and DTCM beside 40 kB of stack.
+const _: () = assert!(
+    size_of::<VoxelGrid>() <= 288 << 10
+        && size_of::<SpacePlanner>() <= 512 << 10
+        && size_of::<SpaceTask>() <= 88 << 10
+);
+
+impl SpaceTask {
+    /// A task that waits for a hello.
     #[must_use]
     pub const fn new() -> Self {
         Self {
@@ -103,38 +120,27 @@ impl SpaceNode {
             lateral: None,
             limits: None,
             session: None,
-            map: VoxelGrid::new(),
-            planner: SpacePlanner::new(),
             sweep: Sweep::new(),
             intake: None,
             granted: 0,
         }
     }
 
-    /// Makes a node out of memory of zeros, which is a node whose contents mean nothing, without a copy on the stack.
-    pub fn reset(&mut self) {
+    /// Forgets session, points and map: also memory of zeros becomes a task that waits for a hello.
+    pub fn reset(&mut self, memory: &mut SpaceMemory<'_>) {
         self.decoder = Decoder::new();
         self.forget();
         self.sweep.clear();
-        self.map.clear(0.0);
+        memory.map.clear(0.0);
     }
 
-    /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function returns, the planner has
-    /// used all slices granted so far.
-    pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
-        for byte in bytes {
-            self.take(*byte, &mut send);
-            // The grant of a tick bounds the loop.
-            while self.advance() {}
-        }
-    }
-
-    /// Takes a byte from the link. The caller then calls [`advance`](Self::advance) until it returns false.
-    pub fn take(&mut self, byte: u8, send: &mut impl FnMut(&[u8])) {
+    /// Takes a byte from the link. `send` gets each frame of the answer as a whole. The caller then calls
+    /// [`advance`](Self::advance) until it returns false.
+    pub fn take(&mut self, byte: u8, memory: &mut SpaceMemory<'_>, send: &mut impl FnMut(&[u8])) {
         let Some(taken) = self.decoder.take(byte) else {
             return;
         };
-        if let Err(fault) = taken.and_then(|id| self.handle(id, send)) {
+        if let Err(fault) = taken.and_then(|id| self.handle(id, memory, send)) {
             self.reject(RejectionCause::Frame(fault), send);
         }
     }
@@ -145,22 +151,20 @@ impl SpaceNode {
         self.session.as_ref()?.last_tick
     }
 
-    /// The planner and its map, for inspection between ticks.
+    /// Whether a flight is configured.
     #[must_use]
-    pub fn planner(&self) -> Option<(&SpacePlanner, &VoxelGrid)> {
-        self.session.as_ref()?;
-        Some((&self.planner, &self.map))
+    pub fn is_configured(&self) -> bool {
+        self.session.is_some()
     }
 
-    /// The planner, for a host that compares it with others.
-    pub fn planner_mut(&mut self) -> Option<&mut SpacePlanner> {
-        self.session.as_ref()?;
-        Some(&mut self.planner)
-    }
-
-    fn handle(&mut self, id: u8, send: &mut impl FnMut(&[u8])) -> Result<(), DecodeError> {
+    fn handle(
+        &mut self,
+        id: u8,
+        memory: &mut SpaceMemory<'_>,
+        send: &mut impl FnMut(&[u8]),
+    ) -> Result<(), DecodeError> {
         match id {
-            id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, send),
+            id::SENSOR_FRAME => self.sensor_frame(&self.decoder.body()?, memory, send),
             id::INERTIAL_FRAME => self.take_inertial(&self.decoder.body()?, send),
             id::SPACE_POSITION => self.take_position(&self.decoder.body()?, send),
             id::POINT_PACKET => self.take_points(send)?,
@@ -170,7 +174,7 @@ impl SpaceNode {
             },
             id::CONFIGURE_LATERAL => self.take_lateral(&self.decoder.body()?, send),
             id::CONFIGURE_SPACE => self.take_limits(&self.decoder.body()?, send),
-            id::CONFIGURE => self.configure(&self.decoder.body()?, send),
+            id::CONFIGURE => self.configure(&self.decoder.body()?, memory, send),
             id if (id::HELLO..=id::LAST).contains(&id) => {
                 self.reject(RejectionCause::UnexpectedMessage { id }, send);
             }

@@ -1,22 +1,31 @@
 //! The work of the planner in space: where cycles begin, what they may use, and when their plan is taken over.
 
 use super::cycle::{Cycle, Flown};
-use super::{Session, SpaceNode, SpaceSlice};
+use super::intake::{Intake, IntakeStage};
+use super::{Session, SpaceMemory, SpaceSlice, SpaceTask};
 use crate::{duration, ticks};
 use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
+use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner};
 use mpp_core::vehicle::SpaceControl;
 
-impl SpaceNode {
+/// Points that go into the map in one slice.
+const SLICE_POINTS: usize = 24;
+
+impl SpaceTask {
     /// After the step: points wait for the map, a cycle begins when its time has come, and slices are granted.
-    pub(super) fn plan(&mut self, tick: u32, motion: &SpaceMotion) {
+    pub(super) fn plan(&mut self, tick: u32, motion: &SpaceMotion, planner: &mut SpacePlanner) {
         let Some(session) = &mut self.session else {
             return;
         };
         let seen = !self.sweep.is_empty();
         if seen {
-            self.intake = Some((tick, motion.path.position));
+            self.intake = Some(Intake {
+                tick,
+                position: motion.path.position,
+                stage: IntakeStage::Begin,
+            });
         }
         // A silent lidar leaves the map as it is, and plans go on in it.
         let period = session.configure.replan_period_ticks;
@@ -30,7 +39,7 @@ impl SpaceNode {
             None => seen,
         };
         if due {
-            session.begin(&mut self.planner, tick, motion);
+            session.begin(planner, tick, motion);
         }
         self.granted = session
             .configure
@@ -40,31 +49,67 @@ impl SpaceNode {
 
     /// What [`advance`](Self::advance) does next; `None` until the next tick.
     #[must_use]
-    pub fn slice(&self) -> Option<SpaceSlice> {
-        if self.intake.is_some() {
-            return Some(SpaceSlice::Map);
+    pub fn slice(&self, planner: &SpacePlanner) -> Option<SpaceSlice> {
+        if let Some(intake) = self.intake {
+            return Some(match intake.stage {
+                IntakeStage::Begin => SpaceSlice::Sweep,
+                IntakeStage::Mark(_) | IntakeStage::Pass(_) => SpaceSlice::Map,
+            });
         }
         self.session.as_ref()?.cycle.filter(|it| !it.complete)?;
-        let stage = self.planner.stage().filter(|_| self.granted > 0);
+        let stage = planner.stage().filter(|_| self.granted > 0);
         stage.map(SpaceSlice::Planner)
     }
 
     /// Does a slice of the work between two ticks. Returns false if there is none.
-    pub fn advance(&mut self) -> bool {
-        let (Some(_), Some(session)) = (self.slice(), &mut self.session) else {
+    pub fn advance(&mut self, memory: &mut SpaceMemory<'_>) -> bool {
+        let (Some(_), Some(session)) = (self.slice(memory.planner), &mut self.session) else {
             return false;
         };
-        if let Some((tick, position)) = self.intake.take() {
-            let sight = f64::from(session.configure.range_max);
-            let beams = self.sweep.beams(tick, &session.estimator);
-            self.map.insert(&position, beams, sight);
-            self.sweep.clear_points();
+        if let Some(intake) = self.intake.take() {
+            self.take_in(intake, memory.map);
         } else if let Some(cycle) = &mut session.cycle {
             self.granted = self.granted.saturating_sub(1);
             cycle.slices = cycle.slices.saturating_add(1);
-            cycle.complete = self.planner.advance(&self.map);
+            cycle.complete = memory.planner.advance(memory.map);
         }
         true
+    }
+
+    /// Takes some points into the map: first all hits, then what the beams passed.
+    fn take_in(&mut self, intake: Intake, map: &mut VoxelGrid) {
+        let Some(session) = &self.session else {
+            return;
+        };
+        let end = |first: usize| (first + SLICE_POINTS).min(self.sweep.len());
+        let beams = |first| {
+            let points = first..end(first);
+            self.sweep.beams(intake.tick, &session.estimator, points)
+        };
+        let stage = match intake.stage {
+            IntakeStage::Begin => {
+                map.begin(&intake.position);
+                IntakeStage::Mark(0)
+            }
+            IntakeStage::Mark(first) => {
+                beams(first).for_each(|beam| map.mark(&beam));
+                if end(first) < self.sweep.len() {
+                    IntakeStage::Mark(end(first))
+                } else {
+                    IntakeStage::Pass(0)
+                }
+            }
+            IntakeStage::Pass(first) => {
+                let sight = f64::from(session.configure.range_max);
+                beams(first).for_each(|beam| map.pass(&beam, sight));
+                if end(first) == self.sweep.len() {
+                    self.sweep.clear_points();
+                    return;
+                }
+                IntakeStage::Pass(end(first))
+            }
+        };
+        self.intake = Some(Intake { stage, ..intake });
     }
 }
 

@@ -1,6 +1,6 @@
 //! The set-up of a flight in space: what comes before the configuration, the configuration, and what follows from it.
 
-use super::{Session, SpaceNode};
+use super::{Session, SpaceMemory, SpaceTask};
 use crate::convert::{check, trim_verdict};
 use hil_protocol::{
     Configure, ConfigureLateral, ConfigureReply, ConfigureSpace, ConfigureVerdict, Preset,
@@ -15,7 +15,7 @@ const LEAST_ROOM: f64 = 1.0;
 /// Greatest bank of plans \[rad\]: the lift of a steeper turn is beyond that of any wing.
 const MOST_BANK: f64 = 1.4;
 
-impl SpaceNode {
+impl SpaceTask {
     pub(super) fn take_lateral(&mut self, told: &ConfigureLateral, send: &mut impl FnMut(&[u8])) {
         let sound = is_sound(&told.airframe)
             && (told.surfaces_max.iter().flatten()).all(|most| *most >= 0.0 && most.is_finite())
@@ -45,8 +45,13 @@ impl SpaceNode {
         self.emit(&ConfigureReply { verdict }, send);
     }
 
-    pub(super) fn configure(&mut self, told: &Configure, send: &mut impl FnMut(&[u8])) {
-        let verdict = match self.prepare(told) {
+    pub(super) fn configure(
+        &mut self,
+        told: &Configure,
+        memory: &mut SpaceMemory<'_>,
+        send: &mut impl FnMut(&[u8]),
+    ) {
+        let verdict = match self.prepare(told, memory) {
             Ok(()) => ConfigureVerdict::Accepted,
             Err(verdict) => verdict,
         };
@@ -55,7 +60,11 @@ impl SpaceNode {
 
     // Not inlined, so that a new flight is not on the stack of each tick.
     #[inline(never)]
-    fn prepare(&mut self, told: &Configure) -> Result<(), ConfigureVerdict> {
+    fn prepare(
+        &mut self,
+        told: &Configure,
+        memory: &mut SpaceMemory<'_>,
+    ) -> Result<(), ConfigureVerdict> {
         if self.session.is_some() {
             return Err(ConfigureVerdict::AlreadyConfigured);
         }
@@ -85,11 +94,12 @@ impl SpaceNode {
             half_width: limits.half_width,
             altitude: told.altitude,
         };
-        self.planner.set_up(model, keep);
-        self.planner
+        memory.planner.set_up(model, keep);
+        memory
+            .planner
             .choose(usize::from(told.paths), limits.programs);
         self.sweep.clear();
-        self.map.clear(0.0);
+        memory.map.clear(0.0);
         self.session = Some(Session {
             configure: *told,
             model,

@@ -1,5 +1,6 @@
 //! The points between two sensor frames, and the clock of their sensor.
 
+use core::ops::Range;
 use hil_protocol::{PointPacket, RejectionCause};
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::estimate::SpaceEstimator;
@@ -79,16 +80,21 @@ impl Sweep {
         Ok(())
     }
 
-    /// All points as seen from the present position, each by the pose of its own time. A point whose pose is not known shows
+    pub(super) fn len(&self) -> usize {
+        self.points.len()
+    }
+
+    /// Points as seen from the present position, each by the pose of its own time. A point whose pose is not known shows
     /// nothing.
     pub(super) fn beams<'a>(
         &'a self,
         tick: u32,
         estimator: &'a SpaceEstimator,
-    ) -> impl Iterator<Item = SpaceBeam> + Clone + 'a {
+        points: Range<usize>,
+    ) -> impl Iterator<Item = SpaceBeam> + 'a {
         let known = estimator.position().zip(self.clock);
-        let points = self.points.iter();
-        points.filter_map(move |point| {
+        let points = self.points.get(points).unwrap_or(&[]);
+        points.iter().filter_map(move |point| {
             let (origin, clock) = known?;
             let now = tick.wrapping_mul(TICK_US).wrapping_add(clock);
             let age = f64::from(now.wrapping_sub(point.time).cast_signed()) * 1e-6;

@@ -1,6 +1,6 @@
 //! The step in space, 100 times a second.
 
-use super::{Session, SpaceNode};
+use super::{Session, SpaceMemory, SpaceTask};
 use crate::convert::sensor_states;
 use crate::ticks;
 use hil_protocol::{
@@ -15,9 +15,14 @@ use mpp_core::vehicle::{Control, LateralControl, SpaceControl, SpaceModel, Space
 /// follows late. Source: decision 46.
 const AHEAD: f64 = 0.12;
 
-impl SpaceNode {
+impl SpaceTask {
     /// Makes the tick of a sensor frame, unless the frame is old.
-    pub(super) fn sensor_frame(&mut self, frame: &SensorFrame, send: &mut impl FnMut(&[u8])) {
+    pub(super) fn sensor_frame(
+        &mut self,
+        frame: &SensorFrame,
+        memory: &mut SpaceMemory<'_>,
+        send: &mut impl FnMut(&[u8]),
+    ) {
         let Some(session) = &mut self.session else {
             return self.reject(RejectionCause::NotConfigured, send);
         };
@@ -31,11 +36,16 @@ impl SpaceNode {
             self.reject(RejectionCause::TickOrder { expected, found }, send);
         }
         if !old {
-            self.tick(frame, send);
+            self.tick(frame, memory, send);
         }
     }
 
-    fn tick(&mut self, frame: &SensorFrame, send: &mut impl FnMut(&[u8])) {
+    fn tick(
+        &mut self,
+        frame: &SensorFrame,
+        memory: &mut SpaceMemory<'_>,
+        send: &mut impl FnMut(&[u8]),
+    ) {
         let tick = frame.tick;
         let Some(session) = &mut self.session else {
             return;
@@ -46,7 +56,7 @@ impl SpaceNode {
             .untold
             .take()
             .map(|report| (report, session.flown.filter(|_| report.outcome.is_new())));
-        session.take_over(&self.planner, tick);
+        session.take_over(memory.planner, tick);
         let estimate = session.estimator.motion();
         // A plan is followed in the wind for which it was made, so that a change of the wind is no error of the velocity.
         let model = session.flown.map_or(session.model, |flown| flown.model);
@@ -74,7 +84,7 @@ impl SpaceNode {
         self.emit(&answer.surfaces, send);
         self.emit(&answer.command, send);
         match &estimate {
-            Some(motion) => self.plan(tick, motion),
+            Some(motion) => self.plan(tick, motion, memory.planner),
             // Points without a place show nothing.
             None => self.sweep.clear(),
         }

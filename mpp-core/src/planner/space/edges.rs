@@ -32,84 +32,105 @@ pub(super) const fn up(climb: usize, next: usize) -> u16 {
     ((steady + change) * UNIT) as u16
 }
 
-pub(super) fn least(costs: [u16; 2]) -> u16 {
-    let [one, other] = costs;
-    one.min(other)
+/// Costs of the states of a row and slope while edges compete: sixteen times the cost, and the number of the edge. Of equal
+/// costs the edge with the least number wins.
+pub(super) type Contest = [[u32; LAYERS]; CLIMBS];
+/// The edge that won, for each state of a row and slope: four bits each.
+pub(super) type Choices = [[u8; LAYERS.div_ceil(2)]; CLIMBS];
+/// No edge has come.
+pub(super) const OPEN: Contest = [[u32::MAX; LAYERS]; CLIMBS];
+const NO_EDGE: u32 = u32::MAX / 2;
+
+/// What an edge adds: a cost, and a part of its number.
+const fn adds(cost: u16, number: u32) -> u32 {
+    (cost as u32) << 4 | number
 }
 
-/// Lowers the costs `to` by paths that come from the costs `from`.
+fn shifted(cost: u16) -> u32 {
+    u32::from(cost) << 4
+}
+
+/// Number of an edge by the slope at its other end, and by the climb there: the change of each, and one.
+pub(super) fn number(slope: usize, other: usize) -> u32 {
+    3 * (other + 1).saturating_sub(slope) as u32
+}
+
+/// Lets edges to the states `to` compete that come from states with the costs `from`. `own` has their cost and number by slopes.
 pub(super) fn forward(
     from: &[Layers; CLIMBS],
-    to: &mut [Layers; CLIMBS],
+    to: &mut Contest,
     node: &Layers,
     half: &[Layers; 2],
-    own: u16,
+    (cost, number): (u16, u32),
 ) {
     let ([low, level, high], [at, between]) = (from, half);
     let [down, straight, rise] = to;
-    let turn = const { up(0, 1) };
+    let own = adds(cost, number);
+    let (from_low, from_high) = const { (adds(up(0, 1), 0), adds(up(2, 1), 2)) };
     for i in 0..LAYERS {
-        let best = least([low[i], high[i]]).saturating_add(turn).min(level[i]);
-        let cost = best
-            .saturating_add(at[i])
-            .saturating_add(node[i])
-            .saturating_add(own);
-        straight[i] = straight[i].min(cost);
+        let ends = (shifted(low[i]) + from_low).min(shifted(high[i]) + from_high);
+        let best = ends.min(shifted(level[i]) + 1);
+        let edge = shifted(at[i]) + shifted(node[i]) + own;
+        straight[i] = straight[i].min(best + edge);
     }
-    let (steady, change) = const { (up(0, 0), up(1, 0)) };
+    let (go_down, turn_down) = const { (adds(up(0, 0), 1), adds(up(1, 0), 2)) };
+    let (turn_up, go_up) = const { (adds(up(1, 2), 0), adds(up(2, 2), 1)) };
     for i in 1..LAYERS {
-        let best = low[i]
-            .saturating_add(steady)
-            .min(level[i].saturating_add(change));
-        let cost = best
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i - 1])
-            .saturating_add(own);
-        down[i - 1] = down[i - 1].min(cost);
-        let best = high[i - 1]
-            .saturating_add(steady)
-            .min(level[i - 1].saturating_add(change));
-        let cost = best
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i])
-            .saturating_add(own);
-        rise[i] = rise[i].min(cost);
+        let edge = shifted(between[i - 1]) + own;
+        let best = (shifted(low[i]) + go_down).min(shifted(level[i]) + turn_down);
+        down[i - 1] = down[i - 1].min(best + edge + shifted(node[i - 1]));
+        let best = (shifted(high[i - 1]) + go_up).min(shifted(level[i - 1]) + turn_up);
+        rise[i] = rise[i].min(best + edge + shifted(node[i]));
     }
 }
 
-/// Lowers the costs-to-go `to` by edges to states with the costs-to-go `from`.
+/// Lets edges from the states `to` compete that lead to states with the costs-to-go `from`.
 pub(super) fn backward(
     from: &[Layers; CLIMBS],
-    to: &mut [Layers; CLIMBS],
+    to: &mut Contest,
     node: &Layers,
     half: &[Layers; 2],
-    own: u16,
+    (cost, number): (u16, u32),
 ) {
     let ([down, straight, rise], [at, between]) = (from, half);
-    let (turn, steady, change) = const { (up(0, 1), up(0, 0), up(1, 0)) };
-    let (mut ahead, mut below, mut above) = ([NONE; LAYERS], [NONE; LAYERS], [NONE; LAYERS]);
+    let own = adds(cost, number);
+    let (mut ahead, mut below, mut above) = ([0; LAYERS], [NO_EDGE; LAYERS], [NO_EDGE; LAYERS]);
     for i in 0..LAYERS {
-        ahead[i] = straight[i]
-            .saturating_add(at[i])
-            .saturating_add(node[i])
-            .saturating_add(own);
+        ahead[i] = shifted(straight[i]) + shifted(at[i]) + shifted(node[i]) + own;
     }
     for i in 1..LAYERS {
-        below[i] = down[i - 1]
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i - 1])
-            .saturating_add(own);
-        above[i - 1] = rise[i]
-            .saturating_add(between[i - 1])
-            .saturating_add(node[i])
-            .saturating_add(own);
+        let edge = shifted(between[i - 1]) + own;
+        below[i] = shifted(down[i - 1]) + shifted(node[i - 1]) + edge;
+        above[i - 1] = shifted(rise[i]) + shifted(node[i]) + edge;
     }
     let [low, level, high] = to;
+    let (go_down, leave_down) = const { (adds(up(0, 0), 1), adds(up(0, 1), 2)) };
+    let (leave_up, go_up) = const { (adds(up(2, 1), 0), adds(up(2, 2), 1)) };
+    let (turn_down, turn_up) = const { (adds(up(1, 0), 0), adds(up(1, 2), 2)) };
     for i in 0..LAYERS {
-        let turned = ahead[i].saturating_add(turn);
-        low[i] = low[i].min(below[i].saturating_add(steady)).min(turned);
-        high[i] = high[i].min(above[i].saturating_add(steady)).min(turned);
-        let away = least([below[i], above[i]]).saturating_add(change);
-        level[i] = level[i].min(ahead[i]).min(away);
+        low[i] = low[i].min((below[i] + go_down).min(ahead[i] + leave_down));
+        high[i] = high[i].min((above[i] + go_up).min(ahead[i] + leave_up));
+        let away = (below[i] + turn_down).min(above[i] + turn_up);
+        level[i] = level[i].min(away.min(ahead[i] + 1));
     }
+}
+
+/// Ends the contest of a row and slope. Returns whether a path reaches one of its states.
+pub(super) fn settle(
+    contest: &Contest,
+    costs: &mut [Layers; CLIMBS],
+    choices: &mut Choices,
+) -> bool {
+    let mut least = NONE;
+    for (contest, (costs, choices)) in contest.iter().zip(costs.iter_mut().zip(choices)) {
+        for (cost, word) in costs.iter_mut().zip(contest) {
+            *cost = (word >> 4).min(u32::from(NONE)) as u16;
+            least = least.min(*cost);
+        }
+        for (pair, words) in choices.iter_mut().zip(contest.chunks(2)) {
+            let number = |index: usize| words.get(index).map_or(0, |word| (word & 15) as u8);
+            *pair = number(0) | number(1) << 4;
+        }
+    }
+    least < NONE
 }

@@ -2,7 +2,6 @@
 
 use super::candidate::{SpacePlan, dot};
 use super::keep::Keep;
-use crate::config::STAGES;
 use crate::map::VoxelField;
 use crate::qp::space::Faces;
 use crate::tuning::space_program::{BEHIND, FACES, REACH};
@@ -13,38 +12,41 @@ const TOUCHES: f64 = 0.05;
 /// Distance from floor, ceiling and sides from which they are faces \[m\].
 const NEAR_BAND: f64 = 8.0;
 
-/// Separates each segment of a candidate from the obstacles around it. A plane holds at both ends of its segment. Its normal
-/// points from the segment to the nearest voxel, and the voxels behind it give no planes of their own.
-pub(super) fn separate(field: &VoxelField, plan: &SpacePlan, keep: &Keep, faces: &mut Faces) {
-    faces.clear();
-    for stage in 0..STAGES {
-        let (Some(from), Some(to)) = (plan.knots.get(stage), plan.knots.get(stage + 1)) else {
-            return;
-        };
-        if field.covers(from.position[0].min(to.position[0]) - REACH) {
-            let wings = [from.wing(), to.wing()];
-            separate_segment(
-                field,
-                [&from.position, &to.position],
-                &wings,
-                keep,
-                |boundary, normal, bound| {
-                    faces.push(stage + boundary, normal, bound);
-                },
-            );
-        }
-        let [_, y, z] = to.position;
-        let [low, high] = keep.heights;
-        if z - low < NEAR_BAND {
-            faces.push(stage + 1, [0.0, 0.0, -1.0], -low);
-        }
-        if high - z < NEAR_BAND {
-            faces.push(stage + 1, [0.0, 0.0, 1.0], high);
-        }
-        if keep.half_width - libm::fabs(y) < NEAR_BAND {
-            let side = if y < 0.0 { -1.0 } else { 1.0 };
-            faces.push(stage + 1, [0.0, side, 0.0], keep.half_width);
-        }
+/// Separates the segment of a stage from the obstacles around it. A plane holds at both ends of its segment. Its normal points
+/// from the segment to the nearest voxel, and the voxels behind it give no planes of their own.
+pub(super) fn separate(
+    field: &VoxelField,
+    plan: &SpacePlan,
+    keep: &Keep,
+    stage: usize,
+    faces: &mut Faces,
+) {
+    let (Some(from), Some(to)) = (plan.knots.get(stage), plan.knots.get(stage + 1)) else {
+        return;
+    };
+    if field.covers(from.position[0].min(to.position[0]) - REACH) {
+        let wings = [from.wing(), to.wing()];
+        separate_segment(
+            field,
+            [&from.position, &to.position],
+            &wings,
+            keep,
+            |boundary, normal, bound| {
+                faces.push(stage + boundary, normal, bound);
+            },
+        );
+    }
+    let [_, y, z] = to.position;
+    let [low, high] = keep.heights;
+    if z - low < NEAR_BAND {
+        faces.push(stage + 1, [0.0, 0.0, -1.0], -low);
+    }
+    if high - z < NEAR_BAND {
+        faces.push(stage + 1, [0.0, 0.0, 1.0], high);
+    }
+    if keep.half_width - libm::fabs(y) < NEAR_BAND {
+        let side = if y < 0.0 { -1.0 } else { 1.0 };
+        faces.push(stage + 1, [0.0, side, 0.0], keep.half_width);
     }
 }
 

@@ -1,8 +1,8 @@
 //! What a trajectory in space is worth.
 
 use super::candidate::SpacePlan;
+use super::cost_to_go::CostToGo;
 use super::keep::Keep;
-use super::lattice::Lattice;
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelField;
 use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, SHORT};
@@ -43,7 +43,7 @@ impl Tally {
 /// What a trajectory is judged by.
 pub(super) struct Judge<'a> {
     pub(super) field: &'a VoxelField,
-    pub(super) lattice: &'a Lattice,
+    pub(super) to_go: &'a CostToGo,
     pub(super) model: &'a SpaceModel,
     pub(super) keep: &'a Keep,
 }
@@ -75,7 +75,7 @@ impl Judge<'_> {
         let (Some(from), Some(to)) = (plan.knots.get(stage), plan.knots.get(stage + 1)) else {
             return;
         };
-        let (field, keep, via) = (self.field, self.keep, self.lattice.via());
+        let (field, keep, via) = (self.field, self.keep, self.to_go.via());
         let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
         let [_, after] = velocities;
@@ -85,7 +85,7 @@ impl Judge<'_> {
             let point = between(from, to, &velocities, share);
             let later = if point[0] <= via { 1.0 } else { LATER };
             if tally.to_go.is_none() && point[0] >= via {
-                tally.to_go = Some(self.lattice.cost_to_go(&point, &after));
+                tally.to_go = Some(self.to_go.cost(&point, &after));
             }
             let (mut lack, mut room) = (0.0, 0.0);
             if !field.is_clear(&point, keep.margin + keep.half_span + ROOM) {

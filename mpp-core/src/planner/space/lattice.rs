@@ -2,40 +2,22 @@
 //!
 //! From the aircraft to the *via* station it runs forward, from the last station back to the via station it gives the
 //! cost-to-go. A path goes through each local minimum of the sum at the via station, so paths differ by the side on which they
-//! pass. Costs are whole numbers of 1/32.
+//! pass. Costs are whole numbers of 1/32. A station's costs are kept until the next but one has its own; what stays is the edge
+//! that won at each state.
 
+use super::cost_to_go::{ACROSS, CostToGo, STATIONS, State, Station, UP, VIA, within};
 use super::edges::{
-    CLIMBS, LAYERS, Layers, NONE, ROWS, SLOPES, UNIT, across, backward, forward, units,
+    CLIMBS, Choices, LAYERS, Layers, NONE, OPEN, ROWS, SLOPES, across, backward, forward, number,
+    settle, units,
 };
 use crate::map::{ClearColumn, VoxelField};
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
-use crate::vehicle::{SpaceModel, between};
 use core::ops::Range;
 
-/// Stations, that of the aircraft included.
-pub(super) const STATIONS: usize = 14;
-/// The via station.
-pub(super) const VIA: usize = 5;
-/// Distance of places across \[m\]: to the sides and in height.
-pub(super) const ACROSS: f64 = 0.5;
-pub(super) const UP: f64 = 1.0;
-/// A slope of the track moves a path by so much from station to station, for each place of it \[m\].
-const SLOPE_STEP: f64 = 2.0 * ACROSS;
-/// Least and greatest distance of stations \[m\]. Near stations need small steps, far ones time.
-const LEAST_STEP: f64 = 2.8;
-const MOST_STEP: f64 = 6.0;
-/// How much more tightly paths bend than level turns: roll-outs follow them under all limits [-].
-const TIGHTER: f64 = 1.15;
-/// Greatest cost-to-go that counts [-].
-const MOST_TO_GO: f64 = 500.0;
-
-/// Costs of all states at a station.
-pub(super) type Station = [[[Layers; CLIMBS]; SLOPES]; ROWS];
-
-/// A path through the lattice: a point at each station \[m\].
-pub(super) type Path = [[f64; 3]; STATIONS];
-
+/// Rows in a slice, and the slices that all rows take.
+pub(super) const SLICE_ROWS: usize = 4;
+pub(super) const ROW_SLICES: usize = ROWS.div_ceil(SLICE_ROWS);
 /// What the cost of a place depends on beside the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Rules {
@@ -49,93 +31,87 @@ pub(super) struct Rules {
     pub(super) half_width: f64,
 }
 
+/// What the search needs until its paths are found: memory that programs take over.
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
-    pub(super) forward: [Station; VIA + 1],
-    pub(super) backward: [Station; STATIONS - VIA],
-    /// Costs of the places at the next station, by the station before it.
-    pub(super) nodes: [[Layers; ROWS]; STATIONS - 1],
-    /// Costs halfway between two stations: by twice the mean row, then at and between layers.
-    pub(super) halfway: [[[Layers; 2]; 2 * ROWS - 1]; STATIONS - 1],
-    pub(super) origin: [f64; 3],
-    pub(super) step: f64,
+    /// Costs at the even stations, and at the odd ones up to the via station: each when it is the last one. The memory of the
+    /// cost-to-go has those of the odd stations from there on.
+    costs: [Station; 2],
+    /// The edge between two stations that won, by the station before it: at its end before the via station, at its beginning
+    /// beyond.
+    choices: [[[Choices; SLOPES]; ROWS]; STATIONS - 1],
+    /// Rows and slopes that paths reach, at the last station of the way to the via station.
+    reached: [[bool; SLOPES]; ROWS],
+    /// Costs of the places at a station.
+    nodes: [Layers; ROWS],
+    /// Costs halfway to it: by twice the mean row, then at and between layers.
+    halfway: [[Layers; 2]; 2 * ROWS - 1],
 }
 
 impl Lattice {
-    pub(super) const fn new() -> Self {
-        Self {
-            forward: [[[[[NONE; LAYERS]; CLIMBS]; SLOPES]; ROWS]; VIA + 1],
-            backward: [[[[[NONE; LAYERS]; CLIMBS]; SLOPES]; ROWS]; STATIONS - VIA],
-            nodes: [[[0; LAYERS]; ROWS]; STATIONS - 1],
-            halfway: [[[[0; LAYERS]; 2]; 2 * ROWS - 1]; STATIONS - 1],
-            origin: [0.0; 3],
-            step: LEAST_STEP,
-        }
-    }
+    /// Memory of zeros, which waits for [`begin`](Self::begin). A constant is written in place.
+    pub(super) const ZEROS: Self = Self {
+        costs: [[[[[0; LAYERS]; CLIMBS]; SLOPES]; ROWS]; 2],
+        choices: [[[[[0; LAYERS.div_ceil(2)]; CLIMBS]; SLOPES]; ROWS]; STATIONS - 1],
+        reached: [[false; SLOPES]; ROWS],
+        nodes: [[0; LAYERS]; ROWS],
+        halfway: [[[0; LAYERS]; 2]; 2 * ROWS - 1],
+    };
 
-    /// Distance of stations \[m\] for an aircraft: a change of the slope by one place a station is its tightest turn.
-    pub(super) fn set_up(&mut self, model: &SpaceModel) {
-        let curvature = TIGHTER * model.curvature();
-        let step = libm::sqrt(2.0 * ACROSS / curvature);
-        self.step = between(step, [LEAST_STEP, MOST_STEP]);
-    }
-
-    /// Begins at a position with the velocity over ground.
-    pub(super) fn begin(&mut self, position: &[f64; 3], velocity: &[f64; 3]) {
-        self.origin = *position;
-        let ahead = velocity[0].max(2.0);
-        let slope = place(velocity[1] / ahead * self.step / SLOPE_STEP + 3.0, SLOPES);
-        let climb = place(velocity[2] / ahead * self.step / UP + 1.0, CLIMBS);
-        let [first, ..] = &mut self.forward;
-        clear(first);
+    /// Begins where the costs-to-go begin, with the velocity over ground.
+    pub(super) fn begin(&mut self, to_go: &mut CostToGo, velocity: &[f64; 3]) {
+        let [slope, climb] = to_go.slopes(velocity).map(libm::round);
+        let (slope, climb) = (within(slope, SLOPES), within(climb, CLIMBS));
+        let [first, _] = &mut self.costs;
+        fill(first, NONE);
+        fill(&mut to_go.states, 0);
         let states = first.get_mut(ROWS / 2).and_then(|row| row.get_mut(slope));
         if let Some(start) = states.and_then(|row| row.get_mut(climb)) {
             start[LAYERS / 2] = 0;
         }
-        let [.., last] = &mut self.backward;
-        last.as_flattened_mut()
-            .as_flattened_mut()
-            .as_flattened_mut()
-            .fill(0);
+        self.reached = [[false; SLOPES]; ROWS];
+        let reached = self.reached.get_mut(ROWS / 2);
+        if let Some(reached) = reached.and_then(|row| row.get_mut(slope)) {
+            *reached = true;
+        }
     }
 
-    /// The x of the via station \[m\].
-    pub(super) fn via(&self) -> f64 {
-        self.origin[0] + VIA as f64 * self.step
+    /// Rows of a slice.
+    pub(super) fn rows(slice: usize) -> Range<usize> {
+        let first = (slice * SLICE_ROWS).min(ROWS);
+        first..(first + SLICE_ROWS).min(ROWS)
     }
 
-    /// Rows that paths reach at the station after `station`, before the via station.
-    pub(super) fn reached(&self, station: usize) -> Range<usize> {
-        let free = |row: &[[Layers; CLIMBS]; SLOPES]| {
-            let costs = row.as_flattened().as_flattened();
-            costs.iter().any(|cost| *cost < NONE)
-        };
-        let rows = self.forward.get(station).map_or(&[][..], |rows| rows);
+    /// Rows that paths need at the end of the edges from a station.
+    fn needed(&self, station: usize) -> Range<usize> {
+        if station >= VIA {
+            return 0..ROWS;
+        }
+        let free = |row: &[bool; SLOPES]| row.contains(&true);
+        let rows = &self.reached;
         let (first, last) = (rows.iter().position(free), rows.iter().rposition(free));
         let (first, last) = (first.unwrap_or(0), last.unwrap_or(0));
         first.saturating_sub(SLOPES - 1)..(last + SLOPES).min(ROWS)
     }
 
-    /// Prices the places in some rows at the station after `station`, and those halfway to it.
+    /// Prices the places in those of some rows that are needed at the station after `station`, and those halfway to it.
     pub(super) fn price(
         &mut self,
+        to_go: &CostToGo,
         station: usize,
-        field: &VoxelField,
-        rules: &Rules,
+        (field, rules): (&VoxelField, &Rules),
         rows: Range<usize>,
     ) {
-        let half = (station as f64 + 0.5) * self.step;
-        let line = |ahead: f64, row: f64| Line::new(&self.origin, field, rules, ahead, row);
-        let (Some(nodes), Some(halfway)) =
-            (self.nodes.get_mut(station), self.halfway.get_mut(station))
-        else {
+        let needed = self.needed(station);
+        let rows = rows.start.max(needed.start)..rows.end.min(needed.end);
+        if rows.is_empty() {
             return;
-        };
-        let halves = 2 * rows.start..2 * rows.end - 1;
-        for (row, parts) in halves
-            .clone()
-            .zip(halfway.get_mut(halves).unwrap_or(&mut []))
-        {
+        }
+        let half = (station as f64 + 0.5) * to_go.step;
+        let line = |ahead: f64, row: f64| Line::new(&to_go.origin, field, rules, ahead, row);
+        let halves = 2 * rows.start..(2 * rows.end).min(2 * needed.end - 1);
+        let parts = self.halfway.get_mut(halves.clone());
+        for (row, parts) in halves.zip(parts.unwrap_or(&mut [])) {
             let line = line(half, row as f64 / 2.0);
             for (between, layers) in parts.iter_mut().enumerate() {
                 for (layer, cost) in layers.iter_mut().enumerate() {
@@ -143,8 +119,9 @@ impl Lattice {
                 }
             }
         }
-        for (row, layers) in rows.clone().zip(nodes.get_mut(rows).unwrap_or(&mut [])) {
-            let line = line(half + 0.5 * self.step, row as f64);
+        let nodes = self.nodes.get_mut(rows.clone());
+        for (row, layers) in rows.zip(nodes.unwrap_or(&mut [])) {
+            let line = line(half + 0.5 * to_go.step, row as f64);
             for (layer, cost) in layers.iter_mut().enumerate() {
                 let (place, [_, side, z]) = line.cost(layer as f64);
                 let off = z - rules.altitude;
@@ -154,126 +131,118 @@ impl Lattice {
         }
     }
 
-    /// Extends the paths from a station before the via station to the next one.
-    pub(super) fn extend(&mut self, station: usize) {
-        let Some([from, to, ..]) = self.forward.get_mut(station..) else {
+    /// Extends the paths to the station after `station`, into some rows. All rows are priced.
+    pub(super) fn extend(&mut self, station: usize, rows: Range<usize>) {
+        let [even, odd] = &mut self.costs;
+        let (from, to) = if station.is_multiple_of(2) {
+            (even, odd)
+        } else {
+            (odd, even)
+        };
+        let Some(choices) = self.choices.get_mut(station) else {
             return;
         };
-        let (Some(nodes), Some(halfway)) = (self.nodes.get(station), self.halfway.get(station))
-        else {
-            return;
-        };
-        clear(to);
-        for (row, slopes) in from.iter().enumerate() {
-            for (slope, from) in slopes.iter().enumerate() {
-                if from.as_flattened().iter().all(|cost| *cost == NONE) {
-                    continue;
-                }
-                for next in slope.saturating_sub(1)..(slope + 2).min(SLOPES) {
-                    let Some(end) = (row + slope + next).checked_sub(6) else {
+        for row in rows {
+            for next in 0..SLOPES {
+                let mut contest = OPEN;
+                for slope in next.saturating_sub(1)..(next + 2).min(SLOPES) {
+                    let begin = (row + 6).checked_sub(slope + next);
+                    let Some(begin) = begin.filter(|row| *row < ROWS) else {
                         continue;
                     };
-                    let to = to.get_mut(end).and_then(|row| row.get_mut(next));
-                    if let (Some(to), Some(node), Some(half)) =
-                        (to, nodes.get(end), halfway.get(row + end))
-                    {
-                        forward(from, to, node, half, across(slope, next));
+                    let is_reached = self.reached.get(begin).and_then(|row| row.get(slope));
+                    let from = from.get(begin).and_then(|row| row.get(slope));
+                    if let (Some(true), Some(from), Some(node), Some(half)) = (
+                        is_reached,
+                        from,
+                        self.nodes.get(row),
+                        self.halfway.get(row + begin),
+                    ) {
+                        let own = (across(slope, next), number(next, slope));
+                        forward(from, &mut contest, node, half, own);
                     }
+                }
+                if let (Some(to), Some(choices)) = (
+                    to.get_mut(row).and_then(|row| row.get_mut(next)),
+                    choices.get_mut(row).and_then(|row| row.get_mut(next)),
+                ) {
+                    settle(&contest, to, choices);
                 }
             }
         }
     }
 
-    /// Computes the cost-to-go at a station from the via station on, from that of the next one.
-    pub(super) fn retreat(&mut self, station: usize) {
-        let Some([to, from, ..]) = station
-            .checked_sub(VIA)
-            .and_then(|index| self.backward.get_mut(index..))
-        else {
+    /// Notes which rows and slopes paths reach at a station.
+    pub(super) fn note_reached(&mut self, station: usize) {
+        let rows = self.costs.get(station % 2);
+        let rows = rows.map_or(&[][..], |rows| rows);
+        for (reached, slopes) in self.reached.iter_mut().zip(rows) {
+            for (reached, states) in reached.iter_mut().zip(slopes) {
+                *reached = states.as_flattened().iter().any(|cost| *cost < NONE);
+            }
+        }
+    }
+
+    /// Computes the cost-to-go at some rows of a station from the via station on, from that of the next one. All rows are priced.
+    pub(super) fn retreat(&mut self, to_go: &mut CostToGo, station: usize, rows: Range<usize>) {
+        let ([even, _], odd) = (&mut self.costs, &mut to_go.states);
+        let (from, to) = if station.is_multiple_of(2) {
+            (odd, even)
+        } else {
+            (even, odd)
+        };
+        let Some(choices) = self.choices.get_mut(station) else {
             return;
         };
-        let (Some(nodes), Some(halfway)) = (self.nodes.get(station), self.halfway.get(station))
-        else {
-            return;
-        };
-        clear(to);
-        for (row, slopes) in to.iter_mut().enumerate() {
-            for (slope, to) in slopes.iter_mut().enumerate() {
+        for row in rows {
+            for slope in 0..SLOPES {
+                let mut contest = OPEN;
                 for next in slope.saturating_sub(1)..(slope + 2).min(SLOPES) {
                     let Some(end) = (row + slope + next).checked_sub(6) else {
                         continue;
                     };
                     let from = from.get(end).and_then(|row| row.get(next));
                     if let (Some(from), Some(node), Some(half)) =
-                        (from, nodes.get(end), halfway.get(row + end))
+                        (from, self.nodes.get(end), self.halfway.get(row + end))
                     {
-                        backward(from, to, node, half, across(slope, next));
+                        let own = (across(slope, next), number(slope, next));
+                        backward(from, &mut contest, node, half, own);
                     }
+                }
+                if let (Some(to), Some(choices)) = (
+                    to.get_mut(row).and_then(|row| row.get_mut(slope)),
+                    choices.get_mut(row).and_then(|row| row.get_mut(slope)),
+                ) {
+                    settle(&contest, to, choices);
                 }
             }
         }
     }
 
-    /// Cost-to-go of a point at the via station with a velocity over ground.
-    pub(super) fn cost_to_go(&self, [_, y, z]: &[f64; 3], velocity: &[f64; 3]) -> f64 {
-        let ahead = velocity[0].max(2.0);
-        let split = |value: f64, count: usize| {
-            let inside = value.max(0.0).min(count as f64 - 1.01);
-            let low = libm::floor(inside);
-            (low as usize, inside - low)
-        };
-        let (row, by_row) = split((y - self.origin[1]) / ACROSS + (ROWS / 2) as f64, ROWS);
-        let (layer, by_layer) = split((z - self.origin[2]) / UP + (LAYERS / 2) as f64, LAYERS);
-        let (slope, by_slope) = split(velocity[1] / ahead * self.step / SLOPE_STEP + 3.0, SLOPES);
-        let climb = place(velocity[2] / ahead * self.step / UP + 1.0, CLIMBS);
-        let mut sum = 0.0;
-        for corner in 0..8 {
-            let high = [corner & 1, corner >> 1 & 1, corner >> 2];
-            let weight = |high: usize, share: f64| if high == 1 { share } else { 1.0 - share };
-            let state = State {
-                row: row + high[0],
-                slope: slope + high[2],
-                climb,
-                layer: layer + high[1],
-            };
-            let cost = f64::from(cost_at(self.backward.first(), &state)) / UNIT;
-            let share =
-                weight(high[0], by_row) * weight(high[1], by_layer) * weight(high[2], by_slope);
-            sum += share * cost.min(MOST_TO_GO);
-        }
-        sum
+    /// Costs of the ways to the via station.
+    pub(super) fn to_via(&self) -> &Station {
+        let [_, odd] = &self.costs;
+        odd
+    }
+
+    /// The edge that won at a state: the slope and the climb at its other end.
+    pub(super) fn choice(&self, station: usize, state: &State) -> (usize, usize) {
+        let rows = self.choices.get(station);
+        let choices = rows.and_then(|rows| rows.get(state.row)?.get(state.slope)?.get(state.climb));
+        let pair = choices.and_then(|choices| choices.get(state.layer / 2));
+        let number = pair.map_or(0, |pair| usize::from(pair >> (state.layer % 2 * 4) & 15));
+        let other = |at: usize, change: usize| (at + change).saturating_sub(1);
+        (
+            other(state.slope, number / 3),
+            other(state.climb, number % 3),
+        )
     }
 }
 
-/// A state at a station.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct State {
-    pub(super) row: usize,
-    pub(super) slope: usize,
-    pub(super) climb: usize,
-    pub(super) layer: usize,
-}
-
-fn clear(station: &mut Station) {
+fn fill(station: &mut Station, cost: u16) {
     (station.as_flattened_mut().as_flattened_mut())
         .as_flattened_mut()
-        .fill(NONE);
-}
-
-pub(super) fn cost_at(station: Option<&Station>, state: &State) -> u32 {
-    let states = station.and_then(|rows| rows.get(state.row));
-    let layers = states.and_then(|slopes| slopes.get(state.slope)?.get(state.climb));
-    u32::from(
-        layers
-            .and_then(|layers| layers.get(state.layer))
-            .copied()
-            .unwrap_or(NONE),
-    )
-}
-
-/// The nearest of `count` places.
-fn place(value: f64, count: usize) -> usize {
-    libm::round(value).max(0.0).min(count as f64 - 1.0) as usize
+        .fill(cost);
 }
 
 /// Places above each other.

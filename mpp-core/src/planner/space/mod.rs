@@ -3,7 +3,7 @@
 //! | phase | file | what it does |
 //! |---|---|---|
 //! | field | [`VoxelField`] | distances to what the map knows |
-//! | lattice | `lattice.rs` | paths on different sides of obstacles, and the cost-to-go |
+//! | lattice | `lattice.rs`, `paths.rs`, `cost_to_go.rs` | paths on different sides of obstacles, and the cost-to-go |
 //! | candidates | `candidate.rs`, `judge.rs` | the previous plan (warm start) and the paths, flown under all limits, with their price |
 //! | programs | `faces.rs`, `program.rs` | each candidate gets a corridor and a QP that improves it; its controls are flown out |
 //! | refinement | `refine.rs` | a direct search moves the bank of the cheapest trajectory |
@@ -14,6 +14,7 @@
 //! World: x ahead, y to the right, z up \[m\].
 
 mod candidate;
+mod cost_to_go;
 mod edges;
 mod faces;
 mod judge;
@@ -24,34 +25,44 @@ mod paths;
 mod program;
 mod refine;
 mod slices;
+mod workspace;
 
 pub use candidate::{SpacePlan, towards};
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
 
+use crate::config::STAGES;
+use crate::map::voxel_field::LENGTH;
 use crate::map::{VoxelField, VoxelGrid};
-use crate::qp::space::{Condensed, Faces, Problem, Solution, Solver};
+use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceModel, SpacePath};
-use lattice::{Lattice, Path, STATIONS};
+use cost_to_go::{CostToGo, Path, STATIONS};
+use lattice::ROW_SLICES;
 use refine::Unmoved;
+use workspace::{Program, Workspace};
 
 /// Most candidates: the previous plan and paths of the lattice.
 pub const SPACE_CANDIDATES: usize = 7;
 /// Least distance of the minima of paths, in places of the lattice.
 const APART: usize = 2;
+/// Slices of the map that a slice of the cycle looks at.
+const LOOK_SLICES: usize = 8;
+/// Stages of a candidate that get faces in a slice.
+const FACE_STAGES: usize = 3;
 /// Steps of the solver in a slice, and in a program.
-const SLICE_STEPS: usize = 8;
+const SLICE_STEPS: usize = 1;
 const MOST_STEPS: usize = 120;
-/// Roll-outs of the refinement in a slice.
-const SLICE_TRIALS: usize = 4;
-/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice, candidates with the one straight on, programs with
-/// their solves, and the refinement.
+/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice with its paths, candidates with the previous plan and the
+/// one straight on, programs with their solves, and the refinement, in which each move may find a new best plan.
 pub const MOST_SPACE_SLICES: usize = 1
-    + STATIONS
-    + SPACE_CANDIDATES
+    + LENGTH.div_ceil(LOOK_SLICES)
+    + LENGTH
+    + 2 * ROW_SLICES * (STATIONS - 1)
+    + 3
+    + SPACE_CANDIDATES * AIMS.len()
     + 2
-    + SPACE_CANDIDATES * (2 + MOST_STEPS / SLICE_STEPS + 1)
-    + refine::TRIALS / SLICE_TRIALS
+    + SPACE_CANDIDATES * (STAGES.div_ceil(FACE_STAGES) + MOST_STEPS / SLICE_STEPS + 3)
+    + 2 * refine::TRIALS
     + 1;
 /// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of `tuning/space.rs`.
 const LEVEL_SPAN: f64 = 0.75;
@@ -59,15 +70,26 @@ const LEVEL_SPAN: f64 = 0.75;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
     Idle,
-    Field,
-    Forward(usize),
-    Backward(usize),
+    Begin,
+    /// Slices of the field: what the map has, and the distances.
+    Look(usize),
+    Measure(usize),
+    /// Edges of the lattice: their station, and a slice of rows.
+    Price(usize, usize),
+    Choose(usize, usize),
     /// The lattice is done, and others bring the plans.
     Offers,
+    /// The previous plan by its controls, and as a path.
     Previous,
-    Candidate(usize),
-    Pose(usize),
+    PreviousPath,
+    Paths,
+    /// A path, and a distance of the aim.
+    Pursue(usize, usize),
+    /// A candidate, and a stage.
+    Faces(usize, usize),
+    Linearise(usize),
     Solve(usize),
+    FlyOut(usize),
     Refine(usize),
 }
 
@@ -104,9 +126,12 @@ pub struct SpacePlanner {
     wanted: usize,
     programs: bool,
     field: VoxelField,
-    lattice: Lattice,
+    to_go: CostToGo,
+    workspace: Workspace,
     paths: heapless::Vec<Path, SPACE_CANDIDATES>,
     candidates: heapless::Vec<Candidate, SPACE_CANDIDATES>,
+    /// The cheapest flight of a path so far.
+    tried: Option<Candidate>,
     best: Option<Candidate>,
     /// The best plan as moves begin with it, once one was tried.
     unmoved: Option<Unmoved>,
@@ -114,11 +139,6 @@ pub struct SpacePlanner {
     /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
     previous: Option<(SpacePlan, f64)>,
     phase: Phase,
-    faces: Faces,
-    problem: Problem,
-    shared: Condensed,
-    solver: Solver,
-    solution: Solution,
     steps: usize,
 }
 
@@ -132,19 +152,16 @@ impl SpacePlanner {
             wanted: 0,
             programs: true,
             field: VoxelField::new(),
-            lattice: Lattice::new(),
+            to_go: CostToGo::new(),
+            workspace: Workspace::PROGRAM,
             paths: heapless::Vec::new(),
             candidates: heapless::Vec::new(),
+            tried: None,
             best: None,
             unmoved: None,
             start: SpacePath::ORIGIN,
             previous: None,
             phase: Phase::Idle,
-            faces: Faces::none(),
-            problem: Problem::EMPTY,
-            shared: Condensed::new(),
-            solver: Solver::new(),
-            solution: Solution::new(),
             steps: 0,
         }
     }
@@ -153,7 +170,7 @@ impl SpacePlanner {
     pub fn set_up(&mut self, model: SpaceModel, keep: Keep) {
         (self.model, self.keep) = (model, keep);
         self.choose(SPACE_CANDIDATES, true);
-        self.lattice.set_up(&model);
+        self.to_go.set_up(&model);
         self.phase = Phase::Idle;
         self.candidates.clear();
         (self.best, self.previous) = (None, None);
@@ -179,28 +196,29 @@ impl SpacePlanner {
     /// Begins a cycle at the state in which the plan will be taken over, `shift` \[s\] after the first knot of the last plan.
     pub fn begin(&mut self, start: &SpacePath, shift: f64) {
         self.previous = self.best.map(|best| (best.plan, shift));
-        (self.best, self.unmoved) = (None, None);
+        (self.tried, self.best, self.unmoved) = (None, None, None);
         self.start = *start;
         self.candidates.clear();
         self.paths.clear();
-        self.phase = Phase::Field;
+        self.phase = Phase::Begin;
     }
 
     /// Does a slice of the cycle. Returns true when it is done.
     pub fn advance(&mut self, map: &VoxelGrid) -> bool {
         self.phase = match self.phase {
             Phase::Idle | Phase::Offers => return true,
-            Phase::Field => {
-                self.field.update(map, &self.start.position);
-                let velocity = self.start.ground_velocity(&self.model.wind);
-                self.lattice.begin(&self.start.position, &velocity);
-                Phase::Forward(0)
-            }
-            Phase::Forward(station) => self.extend(station),
-            Phase::Backward(station) => self.retreat(station),
+            Phase::Begin => self.begin_search(map),
+            Phase::Look(first) => self.look(map, first),
+            Phase::Measure(slice) => self.measure(slice),
+            Phase::Price(station, slice) => self.price(station, slice),
+            Phase::Choose(station, slice) => self.choose_edges(station, slice),
             Phase::Previous => self.propose_previous(),
-            Phase::Candidate(path) => self.propose(path),
-            Phase::Pose(candidate) => self.pose(candidate),
+            Phase::PreviousPath => self.propose_previous_path(),
+            Phase::Paths => self.find_paths(),
+            Phase::Pursue(path, aim) => self.propose(path, aim),
+            Phase::Faces(candidate, stage) => self.separate(candidate, stage),
+            Phase::Linearise(candidate) => self.pose(candidate),
+            Phase::FlyOut(candidate) => self.fly_out(candidate),
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
         };
@@ -212,11 +230,14 @@ impl SpacePlanner {
     pub fn stage(&self) -> Option<SpaceStage> {
         match self.phase {
             Phase::Idle | Phase::Offers => None,
-            Phase::Field => Some(SpaceStage::Field),
-            Phase::Forward(_) | Phase::Backward(_) => Some(SpaceStage::Lattice),
-            Phase::Previous | Phase::Candidate(_) => Some(SpaceStage::Candidate),
-            Phase::Pose(_) => Some(SpaceStage::Program),
-            Phase::Solve(_) => Some(SpaceStage::Solve),
+            Phase::Begin | Phase::Look(_) | Phase::Measure(_) => Some(SpaceStage::Field),
+            Phase::Price(..) | Phase::Choose(..) => Some(SpaceStage::Lattice),
+            Phase::Paths => Some(SpaceStage::Lattice),
+            Phase::Previous | Phase::PreviousPath | Phase::Pursue(..) => {
+                Some(SpaceStage::Candidate)
+            }
+            Phase::Faces(..) | Phase::Linearise(_) => Some(SpaceStage::Program),
+            Phase::Solve(_) | Phase::FlyOut(_) => Some(SpaceStage::Solve),
             Phase::Refine(_) => Some(SpaceStage::Refine),
         }
     }

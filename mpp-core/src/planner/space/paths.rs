@@ -1,14 +1,20 @@
-//! Paths through the lattice, from the costs of its stations.
+//! Paths through the lattice, from the costs at its via station and the edges that won.
 
-use super::edges::{CLIMBS, LAYERS, NONE, ROWS, SLOPES, across, up};
-use super::lattice::{ACROSS, Lattice, Path, STATIONS, State, UP, VIA, cost_at};
+use super::cost_to_go::{CostToGo, Path, STATIONS, State, VIA};
+use super::edges::{LAYERS, NONE, ROWS};
+use super::lattice::Lattice;
 
 impl Lattice {
     /// Paths through the local minima at the via station, at least `apart` places from each other, cheapest first.
-    pub(super) fn paths<const N: usize>(&self, apart: usize, paths: &mut heapless::Vec<Path, N>) {
+    pub(super) fn paths<const N: usize>(
+        &self,
+        to_go: &CostToGo,
+        apart: usize,
+        paths: &mut heapless::Vec<Path, N>,
+    ) {
         paths.clear();
         let mut totals = [[(NONE, 0, 0); LAYERS]; ROWS];
-        let (forward, backward) = (&self.forward[VIA], &self.backward[0]);
+        let (forward, backward) = (self.to_via(), &to_go.states);
         for (totals, (ahead, back)) in totals.iter_mut().zip(forward.iter().zip(backward)) {
             for (slope, (ahead, back)) in ahead.iter().zip(back).enumerate() {
                 for (climb, (ahead, back)) in ahead.iter().zip(back).enumerate() {
@@ -36,34 +42,25 @@ impl Lattice {
             }
         }
         for (_, state) in &minima {
-            let _ = paths.push(self.trace(*state));
+            let _ = paths.push(self.trace(to_go, *state));
         }
     }
 
-    fn point(&self, station: usize, state: &State) -> [f64; 3] {
-        let [x, y, z] = self.origin;
-        [
-            x + station as f64 * self.step,
-            y + (state.row as f64 - (ROWS / 2) as f64) * ACROSS,
-            z + (state.layer as f64 - (LAYERS / 2) as f64) * UP,
-        ]
-    }
-
     /// The cheapest path through a state at the via station.
-    fn trace(&self, via: State) -> Path {
-        let mut path = [self.point(VIA, &via); STATIONS];
+    fn trace(&self, to_go: &CostToGo, via: State) -> Path {
+        let mut path = [to_go.point(VIA, &via); STATIONS];
         let mut state = via;
         for station in (0..VIA).rev() {
             state = self.before(station, &state);
             if let Some(point) = path.get_mut(station) {
-                *point = self.point(station, &state);
+                *point = to_go.point(station, &state);
             }
         }
         state = via;
         for station in VIA..STATIONS - 1 {
             state = self.after(station, &state);
             if let Some(point) = path.get_mut(station + 1) {
-                *point = self.point(station + 1, &state);
+                *point = to_go.point(station + 1, &state);
             }
         }
         path
@@ -71,72 +68,23 @@ impl Lattice {
 
     /// The cheapest state at a station from which a path leads to a state at the next one.
     fn before(&self, station: usize, to: &State) -> State {
-        let mut best = (u32::MAX, *to);
-        for slope in to.slope.saturating_sub(1)..(to.slope + 2).min(SLOPES) {
-            for climb in to.climb.saturating_sub(1)..(to.climb + 2).min(CLIMBS) {
-                let row = (to.row + 6).checked_sub(slope + to.slope);
-                let layer = (to.layer + 1).checked_sub(to.climb);
-                let (Some(row), Some(layer)) = (row, layer) else {
-                    continue;
-                };
-                let from = State {
-                    row,
-                    slope,
-                    climb,
-                    layer,
-                };
-                let cost =
-                    cost_at(self.forward.get(station), &from) + self.edge(station, &from, to);
-                if cost < best.0 {
-                    best = (cost, from);
-                }
-            }
+        let (slope, climb) = self.choice(station, to);
+        State {
+            row: (to.row + 6).saturating_sub(slope + to.slope),
+            slope,
+            climb,
+            layer: (to.layer + 1).saturating_sub(to.climb),
         }
-        best.1
     }
 
     /// The cheapest state at the next station.
     fn after(&self, station: usize, from: &State) -> State {
-        let mut best = (u32::MAX, *from);
-        for slope in from.slope.saturating_sub(1)..(from.slope + 2).min(SLOPES) {
-            for climb in from.climb.saturating_sub(1)..(from.climb + 2).min(CLIMBS) {
-                let row = (from.row + from.slope + slope).checked_sub(6);
-                let layer = (from.layer + climb).checked_sub(1);
-                let (Some(row), Some(layer)) = (row, layer) else {
-                    continue;
-                };
-                let to = State {
-                    row,
-                    slope,
-                    climb,
-                    layer,
-                };
-                let next = self.backward.get(station + 1 - VIA);
-                let cost = cost_at(next, &to) + self.edge(station, from, &to);
-                if cost < best.0 {
-                    best = (cost, to);
-                }
-            }
-        }
-        best.1
-    }
-
-    /// Cost of an edge from a station to the next one.
-    fn edge(&self, station: usize, from: &State, to: &State) -> u32 {
-        let node = self.nodes.get(station).and_then(|rows| rows.get(to.row));
-        let half = self
-            .halfway
-            .get(station)
-            .and_then(|rows| rows.get(from.row + to.row));
-        let layers = from.layer + to.layer;
-        let node = node.and_then(|layers| layers.get(to.layer));
-        let half = half.and_then(|parts| parts[layers % 2].get(layers / 2));
-        match (node, half) {
-            (Some(node), Some(half)) => {
-                let own = across(from.slope, to.slope) + up(from.climb, to.climb);
-                u32::from(*node) + u32::from(*half) + u32::from(own)
-            }
-            _ => u32::from(NONE),
+        let (slope, climb) = self.choice(station, from);
+        State {
+            row: (from.row + from.slope + slope).saturating_sub(6),
+            slope,
+            climb,
+            layer: (from.layer + climb).saturating_sub(1),
         }
     }
 }

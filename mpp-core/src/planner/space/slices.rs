@@ -1,16 +1,19 @@
 //! What each slice of a cycle does, and which phase comes next.
 
 use super::candidate::{Pursuit, SpacePlan, limited, towards};
-use super::edges::ROWS;
+use super::cost_to_go::{STATIONS, VIA};
 use super::faces;
 use super::judge::Judge;
-use super::lattice::{Rules, STATIONS, VIA};
+use super::lattice::{Lattice, ROW_SLICES, Rules};
 use super::program::{Frame, WEIGHTS};
 use super::refine::{self, Unmoved};
 use super::{
-    APART, Candidate, LEVEL_SPAN, MOST_STEPS, Phase, SLICE_STEPS, SLICE_TRIALS, SpacePlanner,
+    APART, Candidate, FACE_STAGES, LEVEL_SPAN, LOOK_SLICES, MOST_STEPS, Phase, Program,
+    SLICE_STEPS, SpacePlanner, Workspace,
 };
-use crate::config::{KNOTS, STAGE_PERIOD};
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::map::VoxelGrid;
+use crate::map::voxel_field::LENGTH;
 use crate::qp::Status;
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
@@ -27,24 +30,77 @@ impl SpacePlanner {
         }
     }
 
-    pub(super) fn extend(&mut self, station: usize) -> Phase {
-        let rules = self.rules();
-        let rows = self.lattice.reached(station);
-        self.lattice.price(station, &self.field, &rules, rows);
-        self.lattice.extend(station);
-        if station + 1 < VIA {
-            Phase::Forward(station + 1)
+    /// Begins field and lattice.
+    pub(super) fn begin_search(&mut self, map: &VoxelGrid) -> Phase {
+        self.field.begin(map, &self.start.position);
+        let velocity = self.start.ground_velocity(&self.model.wind);
+        self.to_go.origin = self.start.position;
+        self.workspace = Workspace::Search(Lattice::ZEROS);
+        if let Workspace::Search(lattice) = &mut self.workspace {
+            lattice.begin(&mut self.to_go, &velocity);
+        }
+        Phase::Look(0)
+    }
+
+    /// Looks at some slices of the map.
+    pub(super) fn look(&mut self, map: &VoxelGrid, first: usize) -> Phase {
+        let end = (first + LOOK_SLICES).min(LENGTH);
+        self.field.look(map, first..end);
+        if end < LENGTH {
+            Phase::Look(end)
         } else {
-            Phase::Backward(STATIONS - 2)
+            Phase::Measure(0)
         }
     }
 
-    pub(super) fn retreat(&mut self, station: usize) -> Phase {
+    pub(super) fn measure(&mut self, slice: usize) -> Phase {
+        self.field.measure(slice);
+        if slice + 1 < LENGTH {
+            Phase::Measure(slice + 1)
+        } else {
+            Phase::Price(0, 0)
+        }
+    }
+
+    /// Prices some rows for the edges from a station.
+    pub(super) fn price(&mut self, station: usize, slice: usize) -> Phase {
         let rules = self.rules();
-        (self.lattice).price(station, &self.field, &rules, 0..ROWS);
-        self.lattice.retreat(station);
-        if station > VIA {
-            Phase::Backward(station - 1)
+        let Workspace::Search(lattice) = &mut self.workspace else {
+            return Phase::Idle;
+        };
+        let by = (&self.field, &rules);
+        lattice.price(&self.to_go, station, by, Lattice::rows(slice));
+        if slice + 1 < ROW_SLICES {
+            Phase::Price(station, slice + 1)
+        } else {
+            Phase::Choose(station, 0)
+        }
+    }
+
+    /// Chooses the edges from a station, in some rows. Then comes the next station on the way to the via station, and beyond it
+    /// the one before.
+    pub(super) fn choose_edges(&mut self, station: usize, slice: usize) -> Phase {
+        let Workspace::Search(lattice) = &mut self.workspace else {
+            return Phase::Idle;
+        };
+        let rows = Lattice::rows(slice);
+        if station < VIA {
+            lattice.extend(station, rows);
+        } else {
+            lattice.retreat(&mut self.to_go, station, rows);
+        }
+        if slice + 1 < ROW_SLICES {
+            return Phase::Choose(station, slice + 1);
+        }
+        if station < VIA {
+            lattice.note_reached(station + 1);
+        }
+        if station + 1 < VIA {
+            Phase::Price(station + 1, 0)
+        } else if station < VIA {
+            Phase::Price(STATIONS - 2, 0)
+        } else if station > VIA {
+            Phase::Price(station - 1, 0)
         } else if self.wanted == 0 {
             Phase::Offers
         } else {
@@ -54,80 +110,105 @@ impl SpacePlanner {
 
     /// The previous plan is flown twice from where the aircraft is: by its controls, and as a path. The better one counts.
     pub(super) fn propose_previous(&mut self) -> Phase {
-        if let Some((plan, shift)) = self.previous.filter(|_| self.wanted > 1) {
-            let model = self.model;
-            let at = |stage: usize| plan.at(&model, shift + stage as f64 * STAGE_PERIOD);
-            let mut flown = SpacePlan::new();
-            flown.fly(&model, &self.start, |stage, state| {
-                let ((now, control), (next, _)) = (at(stage), at(stage + 1));
-                let wanted = SpaceControl {
-                    bank_rate: (next.bank - now.bank) / STAGE_PERIOD,
-                    angle_of_attack_rate: (next.angle_of_attack - now.angle_of_attack)
-                        / STAGE_PERIOD,
-                    thrust: control.thrust,
-                };
-                limited(&model, state, &wanted)
-            });
-            let points: [[f64; 3]; KNOTS] = core::array::from_fn(|stage| at(stage).0.position);
-            let [aim, ..] = AIMS;
-            let (flown, pursued) = (self.judged(flown), self.pursued(&points, aim));
-            let better = if pursued.judgement.price < flown.judgement.price {
-                pursued
-            } else {
-                flown
+        let Some((plan, shift)) = self.previous.filter(|_| self.wanted > 1) else {
+            return Phase::Paths;
+        };
+        let model = self.model;
+        let at = |stage: usize| plan.at(&model, shift + stage as f64 * STAGE_PERIOD);
+        let mut flown = SpacePlan::new();
+        flown.fly(&model, &self.start, |stage, state| {
+            let ((now, control), (next, _)) = (at(stage), at(stage + 1));
+            let wanted = SpaceControl {
+                bank_rate: (next.bank - now.bank) / STAGE_PERIOD,
+                angle_of_attack_rate: (next.angle_of_attack - now.angle_of_attack) / STAGE_PERIOD,
+                thrust: control.thrust,
             };
-            self.take(better);
-        }
-        self.lattice.paths(APART, &mut self.paths);
-        self.paths
-            .truncate(self.wanted - self.candidates.len().min(self.wanted));
-        Phase::Candidate(0)
+            limited(&model, state, &wanted)
+        });
+        self.attempt(flown);
+        Phase::PreviousPath
     }
 
-    pub(super) fn propose(&mut self, path: usize) -> Phase {
-        let candidate = if let Some(points) = self.paths.get(path) {
-            let [first, more @ ..] = AIMS;
-            let mut best = self.pursued(points, first);
-            for aim in more {
-                let other = self.pursued(points, aim);
-                if other.judgement.price < best.judgement.price {
-                    best = other;
-                }
+    pub(super) fn propose_previous_path(&mut self) -> Phase {
+        if let Some((plan, shift)) = self.previous {
+            let points: [[f64; 3]; KNOTS] = core::array::from_fn(|stage| {
+                let time = shift + stage as f64 * STAGE_PERIOD;
+                plan.at(&self.model, time).0.position
+            });
+            let [aim, ..] = AIMS;
+            self.attempt(self.pursuit(&points, aim));
+        }
+        self.take_tried();
+        Phase::Paths
+    }
+
+    pub(super) fn find_paths(&mut self) -> Phase {
+        if let Workspace::Search(lattice) = &self.workspace {
+            lattice.paths(&self.to_go, APART, &mut self.paths);
+        }
+        self.paths
+            .truncate(self.wanted - self.candidates.len().min(self.wanted));
+        Phase::Pursue(0, 0)
+    }
+
+    /// Pursues a path with one of the aims; the cheapest one counts.
+    pub(super) fn propose(&mut self, path: usize, aim: usize) -> Phase {
+        if let (Some(points), Some(ahead)) = (self.paths.get(path), AIMS.get(aim)) {
+            self.attempt(self.pursuit(points, *ahead));
+            if aim + 1 < AIMS.len() {
+                return Phase::Pursue(path, aim + 1);
             }
-            best
-        } else if self.candidates.is_empty() {
+            self.take_tried();
+            return Phase::Pursue(path + 1, 0);
+        }
+        if self.candidates.is_empty() {
             // No way through the lattice: straight on and level is something to start from.
             let (model, mut plan) = (self.model, SpacePlan::new());
             plan.fly(&model, &self.start, |_, state| {
                 let up = crate::vehicle::GRAVITY - state.flight_path * state.airspeed;
                 towards(&model, state, [up, 0.0], STAGE_PERIOD)
             });
-            self.judged(plan)
+            self.attempt(plan);
+            self.take_tried();
+        }
+        if self.programs {
+            self.workspace = Workspace::PROGRAM;
+            Phase::Faces(0, 0)
         } else {
-            return if self.programs {
-                Phase::Pose(0)
-            } else {
-                Phase::Refine(0)
-            };
-        };
-        self.take(candidate);
-        Phase::Candidate(path + 1)
+            Phase::Refine(0)
+        }
+    }
+
+    /// Judges a flight of a path. The cheapest one stays.
+    fn attempt(&mut self, plan: SpacePlan) {
+        let flown = self.judged(plan);
+        let price = flown.judgement.price;
+        if (self.tried).is_none_or(|tried| price < tried.judgement.price) {
+            self.tried = Some(flown);
+        }
+    }
+
+    fn take_tried(&mut self) {
+        if let Some(candidate) = self.tried.take() {
+            self.consider(candidate);
+            let _ = self.candidates.push(candidate);
+        }
     }
 
     /// The pursuit of a path.
-    pub(super) fn pursued(&self, points: &[[f64; 3]], aim: f64) -> Candidate {
+    fn pursuit(&self, points: &[[f64; 3]], aim: f64) -> SpacePlan {
         let (model, mut plan) = (self.model, SpacePlan::new());
         let mut pursuit = Pursuit::new(points, aim);
         plan.fly(&model, &self.start, |_, state| {
             pursuit.control(&model, state)
         });
-        self.judged(plan)
+        plan
     }
 
     pub(super) fn judge(&self) -> Judge<'_> {
         Judge {
             field: &self.field,
-            lattice: &self.lattice,
+            to_go: &self.to_go,
             model: &self.model,
             keep: &self.keep,
         }
@@ -136,11 +217,6 @@ impl SpacePlanner {
     pub(super) fn judged(&self, plan: SpacePlan) -> Candidate {
         let judgement = self.judge().judge(&plan);
         Candidate { plan, judgement }
-    }
-
-    pub(super) fn take(&mut self, candidate: Candidate) {
-        self.consider(candidate);
-        let _ = self.candidates.push(candidate);
     }
 
     pub(super) fn consider(&mut self, candidate: Candidate) {
@@ -153,69 +229,105 @@ impl SpacePlanner {
         }
     }
 
-    /// Tries the next moves of the best plan.
-    pub(super) fn refine(&mut self, first: usize) -> Phase {
-        let end = (first + SLICE_TRIALS).min(refine::TRIALS);
-        for number in first..end {
-            let Some(best) = self.best else {
-                continue;
-            };
-            if self.unmoved.is_none() {
-                self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan));
-            }
-            let by = refine::Move::of(number);
-            let moved = (self.unmoved.as_ref()).and_then(|unmoved| {
-                unmoved.moved(&self.judge(), &best.plan, best.judgement.price, &by)
-            });
-            if let Some((plan, judgement)) = moved {
-                self.consider(Candidate { plan, judgement });
-            }
+    /// Tries the next move of the best plan. A new best plan is flown first as moves begin with it.
+    pub(super) fn refine(&mut self, number: usize) -> Phase {
+        let Some(best) = self.best else {
+            return Phase::Idle;
+        };
+        let Some(unmoved) = &self.unmoved else {
+            self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan));
+            return Phase::Refine(number);
+        };
+        let (by, price) = (refine::Move::of(number), best.judgement.price);
+        let moved = unmoved.moved(&self.judge(), &best.plan, price, &by);
+        if let Some((plan, judgement)) = moved {
+            self.consider(Candidate { plan, judgement });
         }
-        if end < refine::TRIALS {
-            Phase::Refine(end)
+        if number + 1 < refine::TRIALS {
+            Phase::Refine(number + 1)
         } else {
             Phase::Idle
         }
     }
 
-    /// Poses the program of a candidate.
-    pub(super) fn pose(&mut self, index: usize) -> Phase {
-        let Some(candidate) = self.candidates.get(index) else {
+    /// Separates some stages of a candidate from what the map knows.
+    pub(super) fn separate(&mut self, index: usize, stage: usize) -> Phase {
+        let (Some(candidate), Workspace::Program(program)) =
+            (self.candidates.get(index), &mut self.workspace)
+        else {
             return Phase::Refine(0);
         };
-        let plan = candidate.plan;
+        let faces = &mut program.faces;
+        if stage == 0 {
+            faces.clear();
+        }
+        let end = (stage + FACE_STAGES).min(STAGES);
+        for stage in stage..end {
+            faces::separate(&self.field, &candidate.plan, &self.keep, stage, faces);
+        }
+        if end < STAGES {
+            Phase::Faces(index, end)
+        } else {
+            Phase::Linearise(index)
+        }
+    }
+
+    /// Poses the program of a candidate.
+    pub(super) fn pose(&mut self, index: usize) -> Phase {
+        let (Some(candidate), Workspace::Program(program)) =
+            (self.candidates.get(index), &mut self.workspace)
+        else {
+            return Phase::Refine(0);
+        };
+        let Program {
+            faces,
+            shared,
+            solver,
+            ..
+        } = program;
+        let plan = &candidate.plan;
         let frame = Frame {
             model: &self.model,
             start: self.start,
         };
-        faces::separate(&self.field, &plan, &self.keep, &mut self.faces);
-        frame.pose(&plan, &self.faces, &self.keep, &mut self.problem);
-        let condensed = self
-            .shared
-            .condense_varying(&WEIGHTS, |dynamics| frame.linearise(&plan, dynamics));
+        frame.pose(plan, faces, &self.keep, &mut solver.problem);
+        let condensed =
+            shared.condense_varying(&WEIGHTS, |dynamics| frame.linearise(plan, dynamics));
         if condensed.is_err() {
-            return Phase::Pose(index + 1);
+            return Phase::Faces(index + 1, 0);
         }
-        self.shared.set_faces(&self.faces);
-        self.solver.start(&self.shared, &self.problem);
+        shared.set_faces(faces);
+        solver.begin(shared);
         self.steps = 0;
         Phase::Solve(index)
     }
 
     pub(super) fn solve(&mut self, index: usize) -> Phase {
+        let Workspace::Program(Program { shared, solver, .. }) = &mut self.workspace else {
+            return Phase::Refine(0);
+        };
         self.steps += SLICE_STEPS;
-        let status = self.solver.advance(&self.shared, SLICE_STEPS);
+        let status = solver.advance(shared, SLICE_STEPS);
         if status.is_none() && self.steps < MOST_STEPS {
-            return Phase::Solve(index);
+            Phase::Solve(index)
+        } else {
+            Phase::FlyOut(index)
         }
-        // The controls of a program that is not finished are flown out too: a roll-out keeps the limits.
-        let ended = self.solver.solution(&self.shared, &mut self.solution);
+    }
+
+    /// Flies the controls of a program out, of one that is not finished too: a roll-out keeps the limits.
+    pub(super) fn fly_out(&mut self, index: usize) -> Phase {
+        let Workspace::Program(program) = &mut self.workspace else {
+            return Phase::Refine(0);
+        };
+        let solution = &mut program.solution;
+        let ended = program.solver.solution(&program.shared, solution);
         if ended != Status::NumericalFailure {
             let frame = Frame {
                 model: &self.model,
                 start: self.start,
             };
-            let controls = frame.controls(&self.solution);
+            let controls = frame.controls(solution);
             let model = self.model;
             let mut plan = SpacePlan::new();
             plan.fly(&model, &self.start, |stage, state| {
@@ -225,6 +337,6 @@ impl SpacePlanner {
             let candidate = self.judged(plan);
             self.consider(candidate);
         }
-        Phase::Pose(index + 1)
+        Phase::Faces(index + 1, 0)
     }
 }

@@ -25,6 +25,13 @@ impl Faces {
         }
     }
 
+    /// Memory of zeros, which waits for [`clear`](Self::clear).
+    pub(crate) const ZEROS: Self = Self {
+        normals: NO_NORMALS,
+        bounds: [[0.0; FACES]; STAGES],
+        len: [0; STAGES],
+    };
+
     /// Removes every face.
     pub fn clear(&mut self) {
         self.bounds.as_flattened_mut().fill(f64::INFINITY);

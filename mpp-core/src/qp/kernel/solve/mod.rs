@@ -126,7 +126,7 @@ pub struct Solver {
     free_cost: f64,
     active: heapless::Vec<Active, CAPACITY>,
     /// Bounds of the rows that may enter, with the tolerance added; infinite for rows that must not enter.
-    open: Bounds,
+    pub(crate) open: Bounds,
     /// Whether the program has attitude rows.
     attitude_rows: bool,
     entering: Option<Entering>,
@@ -141,7 +141,7 @@ pub struct Solver {
     /// of such a program do not contradict each other.
     absurd_rise: f64,
     iterations: usize,
-    status: Option<Status>,
+    pub(crate) status: Option<Status>,
     certificate: heapless::Vec<(usize, f64), { CAPACITY + 1 }>,
 }
 

@@ -1,0 +1,134 @@
+//! Occupancy log-odds of the voxels of a column, four bits each.
+
+use crate::tuning::grid::{FREE, HIT, LIMIT, OCCUPIED, PASSED, PASSED_UNANSWERED};
+
+/// Voxels of a column. A word has a bit for each.
+pub(super) const LAYERS: usize = 32;
+/// Log-odds of a step: all numbers of the map in the plane are whole steps, but for the limit of free cells.
+const STEP: i8 = 10;
+const _: () = assert!(
+    HIT % STEP == 0 && LIMIT % STEP == 0 && PASSED % STEP == 0 && PASSED_UNANSWERED % STEP == 0
+);
+/// Greatest steps against an obstacle, and for one.
+const LEAST: i8 = -(FREE / STEP);
+const MOST: i8 = LIMIT / STEP;
+// Sixteen codes hold all steps, and one hit makes any voxel occupied.
+const _: () = assert!(MOST - LEAST < 16 && (LEAST + HIT / STEP) * STEP >= OCCUPIED);
+
+/// What a beam does to the codes of voxels. A code is the number of steps, modulo 16.
+pub(super) type Change = [u8; 16];
+pub(super) const HIT_ONCE: Change = change(HIT);
+pub(super) const PASSED_ONCE: Change = change(-PASSED);
+pub(super) const UNANSWERED_ONCE: Change = change(-PASSED_UNANSWERED);
+
+/// Steps of a code.
+const fn steps(code: usize) -> i8 {
+    if code as i8 > MOST {
+        code as i8 - 16
+    } else {
+        code as i8
+    }
+}
+
+/// The codes after a change of the log-odds, within the limits. They are never 0, because 0 means that no beam has seen the voxel.
+const fn change(log_odds: i8) -> Change {
+    let mut codes = [0; 16];
+    let mut code = 0;
+    while code < codes.len() {
+        let sum = steps(code) + log_odds / STEP;
+        let sum = if sum > MOST {
+            MOST
+        } else if sum < LEAST {
+            LEAST
+        } else if sum == 0 {
+            -1
+        } else {
+            sum
+        };
+        codes[code] = (sum & 15) as u8;
+        code += 1;
+    }
+    codes
+}
+
+/// For two codes in a byte: which of them are occupied, and from the third bit on which are unknown.
+const PAIRS: [u8; 256] = {
+    let mut pairs = [0; 256];
+    let mut byte = 0;
+    while byte < pairs.len() {
+        let codes = [byte & 15, byte >> 4];
+        let mut half = 0;
+        while half < 2 {
+            let code = codes[half];
+            pairs[byte] |= ((steps(code) * STEP >= OCCUPIED) as u8) << half;
+            pairs[byte] |= ((code == 0) as u8) << (2 + half);
+            half += 1;
+        }
+        byte += 1;
+    }
+    pairs
+};
+
+/// The evidence of a column: two voxels a byte, from the ground upwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Evidence([u8; LAYERS / 2]);
+
+impl Evidence {
+    /// No beam has seen a voxel.
+    pub(super) const NONE: Self = Self([0; LAYERS / 2]);
+
+    /// Changes the voxel at a height.
+    pub(super) fn add(&mut self, z: usize, change: &Change) {
+        if let Some(pair) = self.0.get_mut(z / 2) {
+            let shift = z % 2 * 4;
+            let code = *pair >> shift & 15;
+            let new = change[usize::from(code)];
+            *pair ^= (code ^ new) << shift;
+        }
+    }
+
+    /// Occupied and unknown voxels: a bit for each z.
+    pub(super) fn bits(&self) -> [u32; 2] {
+        let (mut occupied, mut unknown) = (0, 0);
+        for pair in self.0.iter().rev() {
+            let found = PAIRS.get(usize::from(*pair)).copied().unwrap_or(0);
+            occupied = occupied << 2 | u32::from(found & 3);
+            unknown = unknown << 2 | u32::from(found >> 2);
+        }
+        [occupied, unknown]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Evidence, HIT_ONCE, PASSED_ONCE, UNANSWERED_ONCE};
+
+    fn after(beams: &[&super::Change]) -> [u32; 2] {
+        let mut column = Evidence::NONE;
+        for beam in beams {
+            column.add(5, beam);
+        }
+        let [occupied, unknown] = column.bits();
+        // No other voxel changes.
+        assert_eq!((occupied & !32, unknown | 32), (0, u32::MAX));
+        [occupied >> 5, unknown >> 5 & 1]
+    }
+
+    #[test]
+    fn hits_and_passes_add_up_within_the_limits() {
+        let (hit, passed, unanswered) = (&HIT_ONCE, &PASSED_ONCE, &UNANSWERED_ONCE);
+        assert_eq!(after(&[]), [0, 1]);
+        assert_eq!(after(&[hit]), [1, 0]);
+        assert_eq!(after(&[hit, passed]), [1, 0]);
+        // Free, but seen.
+        assert_eq!(after(&[hit, passed, passed]), [0, 0]);
+        assert_eq!(after(&[passed; 40]), [0, 0]);
+        // However many have passed: one hit.
+        assert_eq!(after(&[&[passed; 40][..], &[hit]].concat()), [1, 0]);
+        // However many have hit: three passes, or eight of beams without return.
+        assert_eq!(after(&[&[hit; 40][..], &[passed; 2]].concat()), [1, 0]);
+        assert_eq!(after(&[&[hit; 40][..], &[passed; 3]].concat()), [0, 0]);
+        assert_eq!(after(&[&[hit; 40][..], &[unanswered; 7]].concat()), [1, 0]);
+        assert_eq!(after(&[&[hit; 40][..], &[unanswered; 8]].concat()), [0, 0]);
+    }
+}

@@ -1,0 +1,74 @@
+//! The task with its memory in one value.
+
+use super::{SpaceMemory, SpaceSlice, SpaceTask};
+use mpp_core::map::VoxelGrid;
+use mpp_core::planner::space::SpacePlanner;
+
+/// The core in space, for hosts. The value is large: place it in a `static` or a box.
+pub struct SpaceNode {
+    task: SpaceTask,
+    map: VoxelGrid,
+    planner: SpacePlanner,
+}
+
+impl SpaceNode {
+    /// A node that waits for a hello.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            task: SpaceTask::new(),
+            map: VoxelGrid::new(),
+            planner: SpacePlanner::new(),
+        }
+    }
+
+    fn parts(&mut self) -> (&mut SpaceTask, SpaceMemory<'_>) {
+        let Self { task, map, planner } = self;
+        (task, SpaceMemory { map, planner })
+    }
+
+    /// [`SpaceTask::reset`]
+    pub fn reset(&mut self) {
+        let (task, mut memory) = self.parts();
+        task.reset(&mut memory);
+    }
+
+    /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function returns, the planner has
+    /// used all slices granted so far.
+    pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
+        for byte in bytes {
+            self.take(*byte, &mut send);
+            // The grant of a tick bounds the loop.
+            while self.advance() {}
+        }
+    }
+
+    /// [`SpaceTask::take`]
+    pub fn take(&mut self, byte: u8, send: &mut impl FnMut(&[u8])) {
+        let (task, mut memory) = self.parts();
+        task.take(byte, &mut memory, send);
+    }
+
+    /// [`SpaceTask::slice`]
+    #[must_use]
+    pub fn slice(&self) -> Option<SpaceSlice> {
+        self.task.slice(&self.planner)
+    }
+
+    /// [`SpaceTask::advance`]
+    pub fn advance(&mut self) -> bool {
+        let (task, mut memory) = self.parts();
+        task.advance(&mut memory)
+    }
+
+    /// The planner and its map, for inspection between ticks.
+    #[must_use]
+    pub fn planner(&self) -> Option<(&SpacePlanner, &VoxelGrid)> {
+        (self.task.is_configured()).then_some((&self.planner, &self.map))
+    }
+
+    /// The planner, for a host that compares it with others.
+    pub fn planner_mut(&mut self) -> Option<&mut SpacePlanner> {
+        (self.task.is_configured()).then_some(&mut self.planner)
+    }
+}
