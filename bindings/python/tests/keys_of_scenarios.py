@@ -75,6 +75,9 @@ class Written:
             return BESIDES.get(name) or self.table(path, preset)
         if wanted.startswith("a whole number"):
             return "int"
+        if preset and name == "lidar":
+            # In space a lidar is the name of one.
+            return "str"
         known = {"a number": "float", "True or False": "bool", "a text": "str"}
         return BESIDES.get(name) or known.get(wanted) or {"a list": "Sequence[float]"}[wanted[:6]]
 

@@ -52,8 +52,7 @@ CommonKeys = TypedDict("CommonKeys", {"scenario": Path, "aircraft": Aircraft | P
 SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
     Any], "airspeed": float, "world": str, "density": float, "window": float, "lidar": str, "sphere": float,
     "exact": bool, "candidates": int, "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float,
-    "deskew": bool, "lidar_clock": float,
-    "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
+    "deskew": bool, "lidar_clock": float, "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 
 class ScenarioKeys(CommonKeys, total=False):
