@@ -1,14 +1,11 @@
 //! The core, linked in: the same bytes as over the link, without a socket.
 
-use crate::CompanionError;
 use hil_protocol::{
-    ActuatorCommand, Configure, ConfigureVerdict, ControlMode, Hello, LidarScan, Message, Role,
-    SensorFrame, SensorState, StepReport,
+    ActuatorCommand, Configure, ControlMode, LidarScan, Message, SensorFrame, SensorState,
+    StepReport,
 };
-use mpp_core::config::STAGES;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::pipe::PipeLink;
-use mpp_sim::scenario::TICK_US;
 
 /// What the core said in a tick.
 #[derive(Clone, Copy, Debug)]
@@ -56,34 +53,17 @@ impl Brain {
     /// A configured core.
     ///
     /// # Errors
-    /// [`CompanionError`] when the core refuses.
-    pub(crate) fn new(configure: &Configure) -> Result<Self, CompanionError> {
-        let mut link = PipeLink::new();
-        let hello = Hello {
-            role: Role::Harness,
-            software: [0; 3],
-            tick_period_us: TICK_US,
-            beams_max: hil_protocol::MAX_BEAMS as u16,
-            stages: STAGES as u16,
-        };
-        link.send(&Message::Hello(hello))?;
-        link.send(&Message::Configure(*configure))?;
-        loop {
-            if let Message::ConfigureReply(reply) = link.receive("the reply to a configuration")? {
-                if reply.verdict != ConfigureVerdict::Accepted {
-                    return Err(CompanionError::Refused(reply.verdict));
-                }
-                return Ok(Self {
-                    link,
-                    next: 0,
-                    scanned: None,
-                    plans: 0,
-                    planless: 0,
-                    unsure: 0,
-                    last: None,
-                });
-            }
-        }
+    /// [`LinkError`] when the core refuses.
+    pub(crate) fn new(configure: &Configure) -> Result<Self, LinkError> {
+        Ok(Self {
+            link: PipeLink::configured(configure)?,
+            next: 0,
+            scanned: None,
+            plans: 0,
+            planless: 0,
+            unsure: 0,
+            last: None,
+        })
     }
 
     /// Does the next tick. The frame's tick is `next`.

@@ -1,6 +1,5 @@
 //! Why the companion cannot start or go on.
 
-use hil_protocol::ConfigureVerdict;
 use mpp_sim::link::LinkError;
 use mpp_sim::scenario::ScenarioError;
 
@@ -19,12 +18,9 @@ pub enum CompanionError {
     /// The elevator of the aircraft is no angle of attack, so its command is no pitch.
     #[error("the aircraft file has moments: a companion needs a `pitch_loop` in their place")]
     NoPitchLoop,
-    /// The core does not answer.
-    #[error("the core does not answer: {0}")]
+    /// The core does not answer, or refuses its configuration.
+    #[error("{0}")]
     Core(#[from] LinkError),
-    /// The core refuses its configuration.
-    #[error("the core refuses the configuration: {0}")]
-    Refused(ConfigureVerdict),
     /// The operating system reports an error. The text names the action that failed.
     #[error("{0}: {1}")]
     Io(String, #[source] std::io::Error),

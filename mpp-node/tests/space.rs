@@ -11,8 +11,9 @@ use hil_protocol::{
     ConfigureVerdict, ControlMode, Decoder, Derivatives, InertialFrame, LateralAirframe, MAX_FRAME,
     Message, PlanOutcome, PointPacket, Preset, RejectionCause, SensorFrame, SpacePosition, encode,
 };
-use mpp_core::planner::space::SpaceStage;
-use mpp_node::{FlightNode, SpaceNode, SpaceSlice};
+use mpp_core::map::VoxelGrid;
+use mpp_core::planner::space::{SpacePlanner, SpaceStage};
+use mpp_node::{FlightNode, SpaceMemory, SpaceNode, SpaceSlice, SpaceTask};
 
 /// Does something on a stack on which the node can be built.
 fn aside(work: impl FnOnce() + Send + 'static) {
@@ -93,12 +94,16 @@ fn ready(configure: Configure) -> Box<SpaceNode> {
     node
 }
 
-fn configured(node: &mut SpaceNode, configure: Configure) {
-    for message in [
+fn configuration(configure: Configure) -> [Message; 3] {
+    [
         Message::ConfigureLateral(lateral()),
         Message::ConfigureSpace(LIMITS),
         Message::Configure(configure),
-    ] {
+    ]
+}
+
+fn configured(node: &mut SpaceNode, configure: Configure) {
+    for message in configuration(configure) {
         assert_eq!(verdict(node, message), ConfigureVerdict::Accepted);
     }
 }
@@ -320,7 +325,7 @@ fn a_cycle_gets_its_slices_and_no_more() {
 
 /// As an image does it, in memory that it has used before: byte by byte, and each slice on its own.
 #[test]
-fn a_node_that_is_reset_gives_the_same_answers_slice_by_slice() {
+fn a_task_that_is_reset_gives_the_nodes_answers_slice_by_slice() {
     use SpaceStage::{Candidate, Field, Lattice, Program, Refine, Solve};
     aside(|| {
         let mut node = ready(CONFIGURE);
@@ -328,21 +333,36 @@ fn a_node_that_is_reset_gives_the_same_answers_slice_by_slice() {
         let wanted: Vec<_> = (0..60)
             .flat_map(|tick| fly(&mut node, tick, sees(tick)))
             .collect();
-        node.reset();
-        assert_eq!((node.slice(), node.advance()), (None, false));
-        configured(&mut node, CONFIGURE);
+        let mut task = Box::new(SpaceTask::new());
+        let (mut map, mut planner) = (Box::new(VoxelGrid::new()), Box::new(SpacePlanner::new()));
+        let mut memory = SpaceMemory {
+            map: &mut map,
+            planner: &mut planner,
+        };
         let (mut sent, mut slices) = (Vec::new(), Vec::new());
-        for message in (0..60).flat_map(|tick| level(tick, sees(tick))) {
-            let mut buffer = [0; MAX_FRAME];
-            for byte in encode(&message, &mut buffer).unwrap() {
-                node.take(*byte, &mut |frame: &[u8]| sent.extend_from_slice(frame));
-                while let Some(slice) = node.slice() {
-                    assert!(node.advance());
-                    slices.push(slice);
+        for _ in 0..2 {
+            task.reset(&mut memory);
+            assert_eq!(task.slice(memory.planner), None);
+            assert!(!task.advance(&mut memory));
+            sent.clear();
+            slices.clear();
+            let flight = (0..60).flat_map(|tick| level(tick, sees(tick)));
+            for message in configuration(CONFIGURE).into_iter().chain(flight) {
+                let mut buffer = [0; MAX_FRAME];
+                for byte in encode(&message, &mut buffer).unwrap() {
+                    let mut send = |frame: &[u8]| sent.extend_from_slice(frame);
+                    task.take(*byte, &mut memory, &mut send);
+                    while let Some(slice) = task.slice(memory.planner) {
+                        assert!(task.advance(&mut memory));
+                        slices.push(slice);
+                    }
                 }
             }
         }
-        assert!(decoded(&sent) == wanted);
+        let [_, _, _, told @ ..] = &decoded(&sent)[..] else {
+            panic!("three replies to the configuration come first");
+        };
+        assert!(told == wanted);
         let count = |wanted| slices.iter().filter(|slice| **slice == wanted).count();
         // The points of a sweep are few: one slice for their hits, and one for what they passed.
         assert_eq!(count(SpaceSlice::Sweep), 6);

@@ -1,10 +1,11 @@
 //! The core in the harness's own process, behind a pipe of bytes, or without a link.
 
 use crate::field::Field;
+use crate::flight::own_hello;
 use crate::link::{Link, LinkError};
 use crate::oracle::Oracle;
 use crate::scenario::Scenario;
-use hil_protocol::{Decoder, MAX_FRAME, Message, encode};
+use hil_protocol::{Configure, ConfigureVerdict, Decoder, MAX_FRAME, Message, encode};
 use mpp_core::vehicle::{VehicleState, Wind};
 use mpp_node::FlightNode;
 use std::collections::VecDeque;
@@ -61,6 +62,28 @@ impl PipeLink {
             node: Box::new(FlightNode::new()),
             oracle: None,
             inbox: Inbox::new(),
+        }
+    }
+
+    /// A core that has accepted a configuration.
+    ///
+    /// # Errors
+    /// [`LinkError::Refused`] when it does not accept it.
+    pub fn configured(configure: &Configure) -> Result<Self, LinkError> {
+        let mut link = Self::new();
+        link.send(&Message::Hello(own_hello()))?;
+        link.receive("hello")?;
+        link.send(&Message::Configure(*configure))?;
+        let awaited = "the reply to the configuration";
+        match link.receive(awaited)? {
+            Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => {
+                Ok(link)
+            }
+            Message::ConfigureReply(reply) => Err(LinkError::Refused(reply.verdict)),
+            other => Err(LinkError::Unexpected {
+                awaited: awaited.to_owned(),
+                id: other.id(),
+            }),
         }
     }
 

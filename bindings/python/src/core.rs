@@ -6,14 +6,12 @@ use crate::input::{argument, finite};
 use crate::planner::scan;
 use crate::{look, scenario};
 use hil_protocol::{
-    ActuatorCommand, AirData, ConfigureVerdict, ControlMode, GroundVelocity, Hello, Message,
-    Position, Role, SensorFrame, StepReport,
+    ActuatorCommand, AirData, ControlMode, GroundVelocity, Message, Position, SensorFrame,
+    StepReport,
 };
-use mpp_core::config::STAGES;
-use mpp_sim::flight::FlyError;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::pipe::PipeLink;
-use mpp_sim::scenario::{Scenario, TICK_US};
+use mpp_sim::scenario::Scenario;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::VecDeque;
@@ -49,7 +47,8 @@ impl Core {
     fn new(py: Python<'_>, keys: Option<&Bound<'_, PyDict>>) -> PyResult<Self> {
         let none = PyDict::new(py);
         let scenario = scenario::sensed(keys.unwrap_or(&none))?;
-        let link = aside(py, |_| configured(&scenario))?.map_err(errors::flight)?;
+        let link = aside(py, |_| PipeLink::configured(&scenario.configure()))?
+            .map_err(|error| errors::flight(error.into()))?;
         let guarded = Mutex::new(Stepped {
             link,
             tick: 0,
@@ -121,7 +120,7 @@ impl Core {
         let core = &mut *core;
         let inputs = (frame, scan);
         let stepped = py.detach(|| core.step(&inputs));
-        let command = stepped.map_err(|error| errors::flight(FlyError::Link(error)))?;
+        let command = stepped.map_err(|error| errors::flight(error.into()))?;
         let command = command.ok_or_else(|| FlightError::new_err("the core gave no command"))?;
         Ok((command.thrust, command.elevator))
     }
@@ -250,29 +249,6 @@ impl Stepped {
                 _ => {}
             }
         }
-    }
-}
-
-/// A core that accepted the configuration of a scenario.
-fn configured(scenario: &Scenario) -> Result<PipeLink, FlyError> {
-    let mut link = PipeLink::new();
-    link.send(&Message::Hello(Hello {
-        role: Role::Harness,
-        software: [0; 3],
-        tick_period_us: TICK_US,
-        beams_max: hil_protocol::MAX_BEAMS as u16,
-        stages: STAGES as u16,
-    }))?;
-    link.receive("hello")?;
-    link.send(&Message::Configure(scenario.configure()))?;
-    match link.receive("the reply to the configuration")? {
-        Message::ConfigureReply(reply) if reply.verdict == ConfigureVerdict::Accepted => Ok(link),
-        Message::ConfigureReply(reply) => Err(LinkError::Refused(reply.verdict).into()),
-        other => Err(LinkError::Unexpected {
-            awaited: "the reply to the configuration".to_owned(),
-            id: other.id(),
-        }
-        .into()),
     }
 }
 

@@ -2,11 +2,9 @@
 
 use crate::settings::Settings;
 use hil_protocol::{
-    ActuatorCommand, Configure, ConfigureVerdict, HealthReport, Hello, LidarScan, Message,
-    ParameterVerdict, PlanReport, PlanTrajectory, RejectionCause, Role, SensorFrame, SetParameter,
-    StepReport,
+    ActuatorCommand, Configure, HealthReport, LidarScan, Message, ParameterVerdict, PlanReport,
+    PlanTrajectory, RejectionCause, SensorFrame, SetParameter, StepReport,
 };
-use mpp_core::config::STAGES;
 use mpp_core::planner::plane::PlanePlanner;
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::pipe::PipeLink;
@@ -34,12 +32,9 @@ pub(crate) struct Flight {
 /// Why the core does not fly.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum FlightError {
-    /// The core does not answer.
-    #[error("the core does not answer: {0}")]
+    /// The core does not answer, or refuses its configuration.
+    #[error("{0}")]
     Link(#[from] LinkError),
-    /// The core refuses its configuration.
-    #[error("the core refuses the configuration: {0}")]
-    Refused(ConfigureVerdict),
     /// The core refuses a parameter.
     #[error("the core refuses parameter {0}: {1}")]
     Parameter(u8, ParameterVerdict),
@@ -65,8 +60,14 @@ impl Flight {
         start: i64,
         (beams, range_max): (usize, f32),
     ) -> Result<Self, FlightError> {
+        let configure = Configure {
+            altitude,
+            beams: beams as u16,
+            range_max,
+            ..settings.configure
+        };
         let mut flight = Self {
-            link: PipeLink::new(),
+            link: PipeLink::configured(&configure)?,
             start,
             next: 0,
             scanned: None,
@@ -75,28 +76,6 @@ impl Flight {
             plan: None,
             last: None,
         };
-        let configure = Configure {
-            altitude,
-            beams: beams as u16,
-            range_max,
-            ..settings.configure
-        };
-        flight.link.send(&Message::Hello(Hello {
-            role: Role::Harness,
-            software: [0; 3],
-            tick_period_us: TICK_US,
-            beams_max: hil_protocol::MAX_BEAMS as u16,
-            stages: STAGES as u16,
-        }))?;
-        flight.link.send(&Message::Configure(configure))?;
-        loop {
-            if let Message::ConfigureReply(reply) = flight.link.receive("the configuration")? {
-                if reply.verdict != ConfigureVerdict::Accepted {
-                    return Err(FlightError::Refused(reply.verdict));
-                }
-                break;
-            }
-        }
         for (parameter, value) in &settings.tuned {
             flight.set(*parameter, *value)?;
         }

@@ -4,8 +4,8 @@
 //! wrong pitch does not tilt wind and airspeed alike. This observer uses neither of both sensors: the generalised observer
 //! scheme (Frank, "Fault diagnosis in dynamic systems using analytical and knowledge-based redundancy", Automatica 26,
 //! 1990). Its hypothesis is calm air and the known airframe. Then airspeed and path are those over ground, and commands and
-//! known forces explain how both change. Of the weight of an aircraft at 12 m/s a wind of 1 m/s leaves a sixth unexplained. While nothing is, an
-//! airspeed and a pitch that are both off are both wrong, and by as much as they are off.
+//! known forces explain how both change. Of the weight of an aircraft at 12 m/s a wind of 1 m/s leaves a sixth unexplained.
+//! While nothing is, an airspeed and a pitch that are both off are both wrong, and by as much as they are off.
 
 use crate::tuning::calm_flight::{
     FOLLOWS, FOUND_FOR, LEAST_AIRSPEED, LEAST_PITCH, LONG, MEMORY, SETTLED, STEADY, UNEXPLAINED,

@@ -69,15 +69,6 @@ impl VoxelField {
         }
     }
 
-    /// Takes the occupancy of the map around a position \[m\], and computes the distances.
-    pub fn update(&mut self, map: &VoxelGrid, position: &[f64; 3]) {
-        self.begin(map, position);
-        self.look(map, 0..LENGTH);
-        for slice in 0..LENGTH {
-            self.measure(slice);
-        }
-    }
-
     /// Moves the window to a position \[m\]. Then come all slices by [`look`](Self::look), then all by [`measure`](Self::measure).
     pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3]) {
         self.first = [(voxel(*x) - BEHIND).max(map.first()), voxel(*y) - LEFT];

@@ -1,6 +1,6 @@
 //! The task with its memory in one value.
 
-use super::{SpaceMemory, SpaceSlice, SpaceTask};
+use super::{SpaceMemory, SpaceTask};
 use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::SpacePlanner;
 
@@ -22,43 +22,16 @@ impl SpaceNode {
         }
     }
 
-    fn parts(&mut self) -> (&mut SpaceTask, SpaceMemory<'_>) {
-        let Self { task, map, planner } = self;
-        (task, SpaceMemory { map, planner })
-    }
-
-    /// [`SpaceTask::reset`]
-    pub fn reset(&mut self) {
-        let (task, mut memory) = self.parts();
-        task.reset(&mut memory);
-    }
-
     /// Takes bytes from the link. `send` gets each frame of the answer as a whole. When the function returns, the planner has
     /// used all slices granted so far.
     pub fn receive(&mut self, bytes: &[u8], mut send: impl FnMut(&[u8])) {
+        let Self { task, map, planner } = self;
+        let mut memory = SpaceMemory { map, planner };
         for byte in bytes {
-            self.take(*byte, &mut send);
+            task.take(*byte, &mut memory, &mut send);
             // The grant of a tick bounds the loop.
-            while self.advance() {}
+            while task.advance(&mut memory) {}
         }
-    }
-
-    /// [`SpaceTask::take`]
-    pub fn take(&mut self, byte: u8, send: &mut impl FnMut(&[u8])) {
-        let (task, mut memory) = self.parts();
-        task.take(byte, &mut memory, send);
-    }
-
-    /// [`SpaceTask::slice`]
-    #[must_use]
-    pub fn slice(&self) -> Option<SpaceSlice> {
-        self.task.slice(&self.planner)
-    }
-
-    /// [`SpaceTask::advance`]
-    pub fn advance(&mut self) -> bool {
-        let (task, mut memory) = self.parts();
-        task.advance(&mut memory)
     }
 
     /// The planner and its map, for inspection between ticks.

@@ -1,7 +1,6 @@
 //! The vehicle that a ground station sees: a fixed wing that answers as such vehicles do.
 //!
-//! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks
-//! since the start; ticks before the flight count too.
+//! Frames and moments of the flight go in, frames and orders come out. Time is the number of ticks, those before the flight too.
 
 pub use super::channels::Outgoing;
 use super::channels::{Channels, Turn};
@@ -248,7 +247,11 @@ impl Vehicle {
             match order {
                 Order::Mode { mode } => self.enter(*mode),
                 Order::Motor { on } => self.armed = *on,
-                _ => {}
+                Order::Parameter { .. }
+                | Order::Terminate
+                | Order::Obstacles { .. }
+                | Order::Trunk { .. }
+                | Order::Disturb { .. } => {}
             }
         }
         match self.waiting.pop_front() {

@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use super::{CELL, MOST_CLEARANCE, UNIT, VoxelField};
+use super::{CELL, LENGTH, MOST_CLEARANCE, UNIT, VoxelField};
 use crate::map::voxels::{SpaceBeam, VoxelGrid};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -43,7 +43,9 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
         shown.push([part(to[0], fine), part(to[1], fine), part(to[2], CELL)]);
     }
     map.insert(&from, beams.iter().copied(), 45.0);
-    field.update(&map, &from);
+    field.begin(&map, &from);
+    field.look(&map, 0..LENGTH);
+    (0..LENGTH).for_each(|slice| field.measure(slice));
     let mut seen = 0;
     field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |[least, most]| {
         let same = |shown: &[[f64; 2]; 3]| {
