@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
 
-/// Stack of the thread [bytes]. The core, of 2 MB in space, is built on the stack before it moves to its box, and threads of
+/// Stack of the thread [bytes]. The core, of 0.8 MB in space, is built on the stack before it moves to its box, and threads of
 /// Python may have little.
 const STACK: usize = 32 << 20;
 /// Time between two looks at the signals [s]: a person does not notice it, and it costs nothing.
