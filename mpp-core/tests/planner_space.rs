@@ -1,7 +1,9 @@
 //! The planner in space: plans keep clear of what the map knows, keep the limits, and cost a bounded amount of work.
 
+use mpp_core::config::STAGES;
 use mpp_core::map::{SpaceBeam, VoxelGrid};
 use mpp_core::planner::space::{Keep, MOST_SPACE_SLICES, SpacePlan, SpacePlanner};
+use mpp_core::qp::space::{INPUTS, MAX_ITERATIONS};
 use mpp_core::vehicle::{
     Airframe, GRAVITY, PathControl, PathState, SpaceControl, SpaceModel, SpacePath,
 };
@@ -95,13 +97,24 @@ pub(crate) fn plan(
     shift: f64,
 ) -> (SpacePlan, usize) {
     planner.begin(start, shift);
-    let mut slices = 1;
-    while !planner.advance(map) {
-        slices += 1;
-        assert!(slices <= MOST_SPACE_SLICES, "{slices}");
-    }
+    let slices = finish(planner, map);
     let (plan, _) = planner.best().unwrap();
     (*plan, slices)
+}
+
+/// Ends a cycle. Returns the number of its slices, which is bounded as that of the parts of each is: a step of the solver takes
+/// up rows, settles them, and drops some.
+fn finish(planner: &mut SpacePlanner, map: &VoxelGrid) -> usize {
+    let (mut slices, mut parts) = (1, 1);
+    while !planner.advance(map) {
+        parts += 1;
+        if planner.is_between_slices() {
+            (slices, parts) = (slices + 1, 1);
+        }
+        assert!(slices <= MOST_SPACE_SLICES, "{slices}");
+        assert!(parts <= MAX_ITERATIONS + 3 * INPUTS * STAGES, "{parts}");
+    }
+    slices
 }
 
 fn in_bounds(plan: &SpacePlan, model: &SpaceModel) {
@@ -294,11 +307,7 @@ fn hostile_scans_and_starts_end_within_the_bound() {
             let start = SpacePath::of(numbers);
             map.insert(&start.position, beams.iter().copied(), 45.0);
             planner.begin(&start, odd);
-            let mut slices = 1;
-            while !planner.advance(map) {
-                slices += 1;
-                assert!(slices <= MOST_SPACE_SLICES);
-            }
+            finish(planner, map);
         }
     });
 }

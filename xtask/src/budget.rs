@@ -68,7 +68,7 @@ fn with_air(value: u64) -> u64 {
 }
 
 fn measure() -> Result<Vec<Figure>> {
-    firmware::build(&[Image::Uart, Image::Fifo, Image::Comparison])?;
+    firmware::build(&[Image::Uart, Image::Fifo, Image::Comparison, Image::Space])?;
     let mut figures = Vec::new();
     let mut add = |table, name, value| figures.push(Figure { table, name, value });
 
@@ -122,7 +122,30 @@ fn measure() -> Result<Vec<Figure>> {
         "flight_40_worst",
         cycles.last().copied().unwrap_or_default(),
     );
+    figures.extend(in_space()?);
     Ok(figures)
+}
+
+/// The figures of the planner in space.
+fn in_space() -> Result<[Figure; 7]> {
+    let Flown { counts, report } = fly(Image::Space, "--preset space --density 0.02")?;
+    let (flash, static_ram) = sizes(Image::Space)?;
+    let slice = counts.slices_worst().map(|(_, count)| count).max();
+    let cycles = counts.cycles();
+    let figures = [
+        ("flash", flash),
+        ("static_ram", static_ram),
+        ("stack_painted", u64::from(report.stack)),
+        ("step_worst", counts.step_worst()),
+        ("slice_worst", slice.unwrap_or_default()),
+        ("cycle_median", median(&cycles)),
+        ("cycle_worst", cycles.last().copied().unwrap_or_default()),
+    ];
+    Ok(figures.map(|(name, value)| Figure {
+        table: "space",
+        name,
+        value,
+    }))
 }
 
 /// Flash and static RAM of the image that flies \[bytes\].
@@ -135,7 +158,7 @@ pub(crate) fn sizes(image: Image) -> Result<(u64, u64)> {
     };
     Ok((
         size(&[".vector_table", ".text", ".rodata", ".data"]),
-        size(&[".data", ".bss", ".uninit", ".axisram"]),
+        size(&[".data", ".bss", ".uninit", ".axisram", ".sram"]),
     ))
 }
 

@@ -8,7 +8,6 @@
 //! | [`DistanceField`] | the truncated distance field \(ESDF\): from a point to the nearest centre of an occupied cell of the grid |
 
 pub(crate) mod cell;
-mod clear_column;
 mod distance_field;
 mod evidence;
 mod extent;
@@ -17,10 +16,10 @@ mod rolling_grid;
 mod scan_age;
 mod scan_fit;
 mod scan_monitor;
+mod upright;
 pub(crate) mod voxel_field;
 pub(crate) mod voxels;
 
-pub(crate) use clear_column::ClearColumn;
 pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
 pub(crate) use fan::sees_below;
@@ -28,6 +27,7 @@ pub(crate) use rolling_grid::has_return;
 pub use rolling_grid::{IsolatedHits, RollingGrid};
 pub use scan_fit::{Prediction, Predictions};
 pub use scan_monitor::{ScanMonitor, ScanVerdict};
+pub(crate) use upright::{Storey, Upright};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
 pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
 

@@ -1,7 +1,7 @@
 //! The truncated distance field in space, in a window of the map around the aircraft.
 
-use super::clear_column::{ClearColumn, along};
 use super::extent::{Extent, PART, PARTS};
+use super::upright::{Around, FARTHEST, REACH, UNIT, UNITS, Upright, along, distance, mixed};
 use super::voxels::{CELLS, VoxelGrid, voxel};
 use crate::tuning::grid::CELL;
 use core::ops::Range;
@@ -13,13 +13,8 @@ const HEIGHT: usize = CELLS[2];
 /// Voxels of the window behind the aircraft, and to its left.
 const BEHIND: i64 = 8;
 const LEFT: i64 = WIDTH as i64 / 2;
-/// Greatest distance that the field tells, in voxels: 3 m.
-const REACH: i32 = 6;
 /// Greatest distance that the field tells \[m\].
 pub const MOST_CLEARANCE: f64 = REACH as f64 * CELL;
-/// Unit of distances \[m\], and how many of them are a part of a voxel.
-const UNIT: f64 = PART / UNITS as f64;
-const UNITS: u32 = 2;
 /// Diagonal of a voxel, and a little more against rounding: half a unit at either end \[m\].
 const DIAGONAL: f64 = 1.733 * CELL + UNIT;
 /// Square of a distance beyond the reach, in parts of a voxel.
@@ -38,10 +33,15 @@ static ROOTS: [u8; FAR as usize + 1] = {
     }
     roots
 };
-const FARTHEST: u8 = ROOTS[FAR as usize];
+const _: () = assert!(ROOTS[FAR as usize] == FARTHEST);
 
 type Columns = [[u32; WIDTH]; LENGTH];
-type Slice<T> = [[T; HEIGHT]; WIDTH];
+/// Squares of the distances of a column, two in a word.
+type Pairs = [u32; HEIGHT / 2];
+const NO_HIT: u32 = (FAR as u32) << 16 | FAR as u32;
+/// The top bits of a pair. Those of the least squares so far are set.
+const TOPS: u32 = 0x8000_8000;
+const _: () = assert!(2 * (FAR as u32) < 0x8000);
 
 /// Distances \[m\] to what hits have shown of the nearest occupied voxel, and what nobody has seen.
 #[derive(Clone, Debug)]
@@ -51,9 +51,10 @@ pub struct VoxelField {
     unknown: Columns,
     extents: [[Extent; WIDTH]; LENGTH],
     /// Distances of the centres of voxels, in units.
-    distances: [Slice<u8>; LENGTH],
-    /// First x and y of the window, in voxels.
+    distances: [[[u8; HEIGHT]; WIDTH]; LENGTH],
+    /// First x and y of the window, in voxels, as two kinds of numbers.
     first: [i64; 2],
+    start: [f64; 2],
 }
 
 impl VoxelField {
@@ -66,12 +67,14 @@ impl VoxelField {
             extents: [[Extent::FULL; WIDTH]; LENGTH],
             distances: [[[FARTHEST; HEIGHT]; WIDTH]; LENGTH],
             first: [0; 2],
+            start: [0.0; 2],
         }
     }
 
     /// Moves the window to a position \[m\]. Then come all slices by [`look`](Self::look), then all by [`measure`](Self::measure).
     pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3]) {
         self.first = [(voxel(*x) - BEHIND).max(map.first()), voxel(*y) - LEFT];
+        self.start = self.first.map(|it| it as f64);
     }
 
     /// Takes the occupancy of some slices from the map.
@@ -95,36 +98,47 @@ impl VoxelField {
 
     /// Computes the distances in a slice, from every occupied column within reach.
     pub(crate) fn measure(&mut self, slice: usize) {
-        let mut squares: Slice<u16> = [[FAR; HEIGHT]; WIDTH];
+        let mut squares = [[NO_HIT | TOPS; HEIGHT / 2]; WIDTH];
         for (offset, from) in around(slice, LENGTH) {
-            for row in 0..WIDTH {
-                let column = self.column(from, row);
-                if column == 0 {
+            let (Some(columns), Some(extents)) = (self.occupied.get(from), self.extents.get(from))
+            else {
+                continue;
+            };
+            // Columns beside each other are often the same.
+            let (mut last, mut heights) = (0, [NO_HIT; HEIGHT / 2]);
+            for (row, (column, extent)) in columns.iter().zip(extents).enumerate() {
+                if *column == 0 {
                     continue;
                 }
-                let sides = self.extent(from, row).sides();
+                let sides = extent.sides();
                 // The slice lies on the other side of the column.
                 let ahead = off(-offset, sides[0]);
                 if ahead * ahead >= i32::from(FAR) {
                     continue;
                 }
-                let mut heights = [FAR; HEIGHT];
-                along_column(column, &mut heights);
-                for (y, row) in around(row, WIDTH) {
-                    let right = off(y, sides[1]);
+                if *column != last {
+                    (last, heights) = (*column, along_column(*column));
+                }
+                let first = row.saturating_sub(REACH as usize);
+                let rows = squares.get_mut(first..(row + REACH as usize + 1).min(WIDTH));
+                let offsets = first as i32 - row as i32..;
+                for (offset, squares) in offsets.zip(rows.unwrap_or(&mut [])) {
+                    let right = off(offset, sides[1]);
                     let square = ahead * ahead + right * right;
-                    let to = squares.get_mut(row);
-                    if let Some(to) = to.filter(|_| square < i32::from(FAR)) {
-                        lower(to, &heights, square as u16);
+                    if square < i32::from(FAR) {
+                        lower(squares, &heights, square as u32);
                     }
                 }
             }
         }
         let distances = self.distances.get_mut(slice);
         let distances = distances.map_or(&mut [][..], |it| it.as_flattened_mut());
-        for (distance, square) in distances.iter_mut().zip(squares.as_flattened()) {
-            let root = ROOTS.get(usize::from(*square));
-            *distance = root.copied().unwrap_or(FARTHEST);
+        let pairs = distances.as_chunks_mut::<2>().0.iter_mut();
+        for (distances, pair) in pairs.zip(squares.as_flattened()) {
+            *distances = [pair & 0x7fff, pair >> 16 & 0x7fff].map(|square| {
+                let root = ROOTS.get(square as usize);
+                root.copied().unwrap_or(FARTHEST)
+            });
         }
     }
 
@@ -157,7 +171,7 @@ impl VoxelField {
     /// The voxel with the least numbers of the eight whose centres lie around a point, and the place of the point among them [-].
     fn cube(&self, point: &[f64; 3]) -> ([usize; 3], [f64; 3]) {
         let [x, y, z] = point.map(|it| it / CELL - 0.5);
-        let at = [x - self.first[0] as f64, y - self.first[1] as f64, z];
+        let at = [x - self.start[0], y - self.start[1], z];
         let mut low = [0; 3];
         let mut share = [0.0; 3];
         for (axis, length) in [LENGTH, WIDTH, HEIGHT].into_iter().enumerate() {
@@ -166,50 +180,42 @@ impl VoxelField {
         (low, share)
     }
 
-    /// [`is_clear`](Self::is_clear) for the points of a vertical line.
-    pub(crate) fn clear_column(&self, x: f64, y: f64, distance: f64) -> ClearColumn<'_> {
-        let ([x, y, _], _) = self.cube(&[x, y, 0.0]);
-        let needed = libm::ceil((distance + DIAGONAL) / UNIT);
-        ClearColumn {
-            distances: self.distances.get(x).and_then(|slice| slice.get(y)),
-            needed: needed.min(f64::from(u8::MAX)) as u8,
+    /// The columns of centres around a point.
+    fn around(&self, x: usize, y: usize) -> Around<'_> {
+        [x, x + 1].map(|x| {
+            let slice = self.distances.get(x);
+            [y, y + 1].map(|y| slice.and_then(|slice| slice.get(y)))
+        })
+    }
+
+    /// The points above and below each other at `x` and `y` \[m\], of which [`is_clear`](Self::is_clear) tells at a distance
+    /// \[m\].
+    pub(crate) fn upright(&self, x: f64, y: f64, distance: f64) -> Upright<'_> {
+        let ([column, row, _], [ahead, right, _]) = self.cube(&[x, y, 0.0]);
+        let [slice, place, _] = self.place(&[x, y, 0.0]);
+        let unknown = self.unknown.get(slice).and_then(|slice| slice.get(place));
+        Upright {
+            around: self.around(column, row),
+            share: [ahead, right],
+            unknown: unknown.copied().unwrap_or(0),
+            needed: needed(distance),
         }
     }
 
     /// Whether [`clearance`](Self::clearance) is at least a distance \[m\], as far as one voxel tells: distances of the centres
     /// around a point differ by the diagonal of a voxel at most.
     #[must_use]
-    pub fn is_clear(&self, point: &[f64; 3], distance: f64) -> bool {
-        let [x, y, z] = *point;
-        self.clear_column(x, y, distance).is_clear(z)
+    pub fn is_clear(&self, point: &[f64; 3], least: f64) -> bool {
+        let ([x, y, z], _) = self.cube(point);
+        let column = self.distances.get(x).and_then(|slice| slice.get(y));
+        distance(column, z).is_some_and(|distance| distance >= needed(least))
     }
 
     /// [`clearance`](Self::clearance), and its slope [-].
     #[must_use]
     pub fn clearance_and_slope(&self, point: &[f64; 3]) -> (f64, [f64; 3]) {
         let ([x, y, z], share) = self.cube(point);
-        // Value and slopes along z, then y, then x.
-        let mix = |a: f64, b: f64, share: f64| a + (b - a) * share;
-        let column = |x: usize, y: usize| {
-            let column = self.distances.get(x).and_then(|slice| slice.get(y));
-            let [below, above] = [z, z + 1].map(|z| {
-                let distance = column.and_then(|column| column.get(z));
-                UNIT * f64::from(distance.copied().unwrap_or(FARTHEST))
-            });
-            [mix(below, above, share[2]), above - below]
-        };
-        let slice = |x| {
-            let ([near, near_up], [far, far_up]) = (column(x, y), column(x, y + 1));
-            [
-                mix(near, far, share[1]),
-                far - near,
-                mix(near_up, far_up, share[1]),
-            ]
-        };
-        let (from, to) = (slice(x), slice(x + 1));
-        let [value, right, up] =
-            core::array::from_fn(|index| mix(from[index], to[index], share[0]));
-        let slope = [to[0] - from[0], right, up];
+        let (value, slope) = mixed(&self.around(x, y), z, share);
         (value, slope.map(|it| it / CELL))
     }
 
@@ -268,17 +274,26 @@ impl VoxelField {
     }
 }
 
+/// Distance of the centre before a point, in units, from which on the point has a distance \[m\].
+fn needed(distance: f64) -> u8 {
+    let needed = libm::ceil((distance + DIAGONAL) / UNIT);
+    needed.min(f64::from(u8::MAX)) as u8
+}
+
 /// Squared distances of the centres of voxels along z.
-fn along_column(occupied: u32, squares: &mut [u16; HEIGHT]) {
-    for (z, square) in squares.iter_mut().enumerate() {
+fn along_column(occupied: u32) -> Pairs {
+    let square = |z: usize| {
         // Bits above z and z itself, bits up to z.
         let above = (occupied >> z).trailing_zeros() as i32;
         let below = (occupied << (HEIGHT - 1 - z)).leading_zeros() as i32;
         let distance = (above.min(below) * PARTS - PARTS / 2).max(0);
         if distance < REACH * PARTS {
-            *square = (distance * distance) as u16;
+            (distance * distance) as u32
+        } else {
+            u32::from(FAR)
         }
-    }
+    };
+    core::array::from_fn(|pair| square(2 * pair) | square(2 * pair + 1) << 16)
 }
 
 /// The places within reach of one, with their distances from it in voxels.
@@ -295,9 +310,16 @@ fn off(offset: i32, [low, high]: [i32; 2]) -> i32 {
     (low - centre).max(centre - high).max(0)
 }
 
-fn lower(to: &mut [u16; HEIGHT], from: &[u16; HEIGHT], square: u16) {
+/// Lowers squares to those of another column with `square` added, if they are less. No sum reaches [`TOPS`], so pairs are
+/// compared at once.
+fn lower(to: &mut Pairs, from: &Pairs, square: u32) {
+    let both = square << 16 | square;
     for (to, from) in to.iter_mut().zip(from) {
-        *to = (*to).min(from.saturating_add(square));
+        let other = from + both;
+        // The top bit stays where the other one is not greater.
+        let tops = (*to - other) & TOPS;
+        let less = tops - (tops >> 15);
+        *to ^= (*to ^ other) & less;
     }
 }
 

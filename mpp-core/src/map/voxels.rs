@@ -33,8 +33,9 @@ pub struct VoxelGrid {
     hit: [[u32; CELLS[1]]; CELLS[0]],
     /// What hits show of each column.
     extents: [[Extent; CELLS[1]]; CELLS[0]],
-    /// First x and y in the window, in voxels.
+    /// First x and y in the window, in voxels, and where they lie in the memory.
     first: [i64; 2],
+    corner: [usize; 2],
     /// Where the beams of this scan begin \[m\].
     origin: [f64; 3],
 }
@@ -48,6 +49,7 @@ impl VoxelGrid {
             hit: [[0; CELLS[1]]; CELLS[0]],
             extents: [[Extent::FULL; CELLS[1]]; CELLS[0]],
             first: [0; 2],
+            corner: [0; 2],
             origin: [0.0; 3],
         }
     }
@@ -56,7 +58,7 @@ impl VoxelGrid {
     pub fn clear(&mut self, x: f64) {
         self.evidence.as_flattened_mut().fill(Evidence::NONE);
         self.extents.as_flattened_mut().fill(Extent::FULL);
-        self.first = [voxel(x) - BEHIND[0], -BEHIND[1]];
+        self.place_window([voxel(x) - BEHIND[0], -BEHIND[1]]);
     }
 
     /// First x in the window, in voxels.
@@ -114,15 +116,25 @@ impl VoxelGrid {
                 }
             }
         }
-        self.first = [first, left];
+        self.place_window([first, left]);
+    }
+
+    fn place_window(&mut self, first: [i64; 2]) {
+        let at = |axis: usize| first[axis].rem_euclid(CELLS[axis] as i64) as usize;
+        (self.first, self.corner) = (first, [at(0), at(1)]);
     }
 
     /// Places of a column in the window.
     fn place(&self, x: i64, y: i64) -> Option<[usize; 2]> {
-        let [length, width] = [CELLS[0] as i64, CELLS[1] as i64];
-        let [first, left] = self.first;
-        let inside = (first..first + length).contains(&x) && (left..left + width).contains(&y);
-        inside.then(|| [x.rem_euclid(length) as usize, y.rem_euclid(width) as usize])
+        let ([first, left], [corner_x, corner_y]) = (self.first, self.corner);
+        // A number below zero is a very large one here.
+        let (x, y) = ((x - first) as u64, (y - left) as u64);
+        (x < CELLS[0] as u64 && y < CELLS[1] as u64).then(|| {
+            [
+                wrapped(corner_x + x as usize, CELLS[0]),
+                wrapped(corner_y + y as usize, CELLS[1]),
+            ]
+        })
     }
 
     /// Marks what a beam has hit. All beams of a scan are marked before the first one [passes](Self::pass).
@@ -162,6 +174,8 @@ impl VoxelGrid {
 
     /// Changes the voxels on the first `end` metres of a beam, by steps from face to face (Amanatides, Woo: "A fast voxel
     /// traversal algorithm for ray tracing", 1987).
+    // Not inlined, so that the numbers of its loop stay in registers.
+    #[inline(never)]
     fn pass_until(&mut self, direction: &[f64; 3], end: f64, change: &Change) {
         let from = self.origin;
         let start @ [x, y, z] = from.map(voxel);
@@ -169,48 +183,45 @@ impl VoxelGrid {
         let inside = self
             .place(x, y)
             .filter(|_| (0..CELLS[2] as i64).contains(&z));
-        let (Some(_), Some([corner_x, corner_y])) = (inside, self.place(first, left)) else {
+        if inside.is_none() {
             return;
-        };
-        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
-        let mut at = [x - first, y - left, z].map(|it| it as i32);
-        let mut next = [f64::INFINITY; 3];
-        let mut each = [f64::INFINITY; 3];
-        let mut step = [-1; 3];
-        for axis in 0..3 {
-            let speed = direction[axis];
-            let corner = start[axis] as f64 * CELL;
-            if speed > 1e-12 {
-                (each[axis], next[axis]) = (CELL / speed, (corner + CELL - from[axis]) / speed);
-                step[axis] = 1;
-            } else if speed < -1e-12 {
-                (each[axis], next[axis]) = (-CELL / speed, (corner - from[axis]) / speed);
-            }
         }
+        let [corner_x, corner_y] = self.corner;
+        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
+        let at = [x - first, y - left, z];
+        let [mut x, mut y, mut z] = core::array::from_fn(|axis| {
+            let corner = start[axis] as f64 * CELL;
+            Walk::new(at[axis] as usize, [corner, from[axis]], direction[axis])
+        });
+        let (evidence, hit) = (self.evidence.as_flattened_mut(), self.hit.as_flattened());
+        let place = |x: &Walk, y: &Walk| {
+            let row = wrapped(corner_x + x.at, CELLS[0]);
+            row * CELLS[1] + wrapped(corner_y + y.at, CELLS[1])
+        };
+        let mut column = place(&x, &y);
         for _ in 0..MOST_STEPS {
-            let [x, y, z] = at.map(|it| it as usize);
-            // A number below zero is a very large one here.
-            if x >= CELLS[0] || y >= CELLS[1] || z >= CELLS[2] {
+            let (Some(evidence), Some(hit)) = (evidence.get_mut(column), hit.get(column)) else {
                 return;
-            }
-            let x = wrapped(corner_x + x, CELLS[0]);
-            let y = wrapped(corner_y + y, CELLS[1]);
-            let hit = column(&mut self.hit, x, y).is_some_and(|hit| *hit >> z & 1 == 1);
-            if let Some(evidence) = column(&mut self.evidence, x, y).filter(|_| !hit) {
-                evidence.add(z, change);
-            }
-            let axis = if next[0] < next[1] {
-                if next[0] < next[2] { 0 } else { 2 }
-            } else if next[1] < next[2] {
-                1
-            } else {
-                2
             };
-            if next[axis] > end {
+            if hit >> z.at & 1 == 0 {
+                evidence.add(z.at, change);
+            }
+            let ahead = x.next < y.next;
+            if (if ahead { x.next } else { y.next }) >= z.next {
+                if !z.step(end, CELLS[2]) {
+                    return;
+                }
+                continue;
+            }
+            let goes_on = if ahead {
+                x.step(end, CELLS[0])
+            } else {
+                y.step(end, CELLS[1])
+            };
+            if !goes_on {
                 return;
             }
-            at[axis] += step[axis];
-            next[axis] += each[axis];
+            column = place(&x, &y);
         }
     }
 
@@ -225,10 +236,50 @@ impl VoxelGrid {
     }
 }
 
+/// The way of a beam along an axis.
+struct Walk {
+    /// Number of the voxel.
+    at: usize,
+    /// What a step adds to it: one, or the number that wraps it around to one less.
+    by: usize,
+    /// Distances along the beam: of the next face, and between faces \[m\].
+    next: f64,
+    each: f64,
+}
+
+impl Walk {
+    /// From a place in a voxel with a corner \[m\], by a share of the beam [-].
+    fn new(at: usize, [corner, from]: [f64; 2], speed: f64) -> Self {
+        let (next, each, by) = if speed > 1e-12 {
+            ((corner + CELL - from) / speed, CELL / speed, 1)
+        } else if speed < -1e-12 {
+            ((corner - from) / speed, -CELL / speed, usize::MAX)
+        } else {
+            (f64::INFINITY, f64::INFINITY, usize::MAX)
+        };
+        Self { at, by, next, each }
+    }
+
+    /// Steps to the next voxel, if its face comes before the end \[m\]. Returns false there, and outside of the window.
+    fn step(&mut self, end: f64, length: usize) -> bool {
+        let ends = self.next > end;
+        self.at = self.at.wrapping_add(self.by);
+        self.next += self.each;
+        // A number below zero is a very large one here.
+        !ends && self.at < length
+    }
+}
+
 /// Number of the voxel that holds a coordinate \[m\]. Coordinates that make no sense are far away.
 pub(crate) fn voxel(coordinate: f64) -> i64 {
     const FARTHEST: f64 = 1e12;
-    between(libm::floor(coordinate / CELL), [-FARTHEST, FARTHEST]) as i64
+    let at = coordinate / CELL;
+    // Small numbers need neither a library nor 64 bits.
+    if libm::fabs(at) < 1e9 {
+        let whole = at as i32;
+        return i64::from(whole - i32::from(at < f64::from(whole)));
+    }
+    between(libm::floor(at), [-FARTHEST, FARTHEST]) as i64
 }
 
 /// The place of a number below twice a length.

@@ -242,9 +242,28 @@ impl SpacePath {
         let end = moved(&start, &k3, dt);
         let k4 = rate(&end, &Angles::of(&end), model, control);
         Self::of(core::array::from_fn(|state| {
-            start[state] + dt / 6.0 * (k1[state] + 2.0 * (k2[state] + k3[state]) + k4[state])
+            combined(
+                start[state],
+                [k1[state], k2[state], k3[state], k4[state]],
+                dt,
+            )
         }))
     }
+
+    /// The state after `dt` \[s\] as far as it does not depend on forces: its bank and its angle of attack.
+    pub(crate) fn turned(&self, control: &SpaceControl, dt: f64) -> Self {
+        let (bank, attack) = (control.bank_rate, control.angle_of_attack_rate);
+        Self {
+            bank: combined(self.bank, [bank; 4], dt),
+            angle_of_attack: combined(self.angle_of_attack, [attack; 4], dt),
+            ..*self
+        }
+    }
+}
+
+/// The end of a step of the method of Runge and Kutta, from its four rates.
+fn combined(start: f64, [k1, k2, k3, k4]: [f64; 4], dt: f64) -> f64 {
+    start + dt / 6.0 * (k1 + 2.0 * (k2 + k3) + k4)
 }
 
 /// The nearest value of a range; its lower end for what is no number. Unlike `clamp` it has no panic.

@@ -61,7 +61,7 @@ impl SpaceTask {
         stage.map(SpaceSlice::Planner)
     }
 
-    /// Does a slice of the work between two ticks. Returns false if there is none.
+    /// Does a slice of the work between two ticks, or a part of one. Returns false if there is none.
     pub fn advance(&mut self, memory: &mut SpaceMemory<'_>) -> bool {
         let (Some(_), Some(session)) = (self.slice(memory.planner), &mut self.session) else {
             return false;
@@ -69,9 +69,11 @@ impl SpaceTask {
         if let Some(intake) = self.intake.take() {
             self.take_in(intake, memory.map);
         } else if let Some(cycle) = &mut session.cycle {
-            self.granted = self.granted.saturating_sub(1);
-            cycle.slices = cycle.slices.saturating_add(1);
             cycle.complete = memory.planner.advance(memory.map);
+            if memory.planner.is_between_slices() {
+                self.granted = self.granted.saturating_sub(1);
+                cycle.slices = cycle.slices.saturating_add(1);
+            }
         }
         true
     }
@@ -82,9 +84,10 @@ impl SpaceTask {
             return;
         };
         let end = |first: usize| (first + SLICE_POINTS).min(self.sweep.len());
-        let beams = |first| {
+        let beams = |first, hits| {
             let points = first..end(first);
-            self.sweep.beams(intake.tick, &session.estimator, points)
+            self.sweep
+                .beams(intake.tick, &session.estimator, points, hits)
         };
         let stage = match intake.stage {
             IntakeStage::Begin => {
@@ -92,7 +95,7 @@ impl SpaceTask {
                 IntakeStage::Mark(0)
             }
             IntakeStage::Mark(first) => {
-                beams(first).for_each(|beam| map.mark(&beam));
+                beams(first, true).for_each(|beam| map.mark(&beam));
                 if end(first) < self.sweep.len() {
                     IntakeStage::Mark(end(first))
                 } else {
@@ -101,7 +104,7 @@ impl SpaceTask {
             }
             IntakeStage::Pass(first) => {
                 let sight = f64::from(session.configure.range_max);
-                beams(first).for_each(|beam| map.pass(&beam, sight));
+                beams(first, false).for_each(|beam| map.pass(&beam, sight));
                 if end(first) == self.sweep.len() {
                     self.sweep.clear_points();
                     return;

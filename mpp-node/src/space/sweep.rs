@@ -84,24 +84,28 @@ impl Sweep {
         self.points.len()
     }
 
-    /// Points as seen from the present position, each by the pose of its own time. A point whose pose is not known shows
-    /// nothing.
+    /// Points as seen from the present position, each by the pose of its own time, all or only those that have hit. A point whose
+    /// pose is not known shows nothing.
     pub(super) fn beams<'a>(
         &'a self,
         tick: u32,
         estimator: &'a SpaceEstimator,
         points: Range<usize>,
+        hits: bool,
     ) -> impl Iterator<Item = SpaceBeam> + 'a {
         let known = estimator.position().zip(self.clock);
         let points = self.points.get(points).unwrap_or(&[]);
         points.iter().filter_map(move |point| {
             let (origin, clock) = known?;
-            let now = tick.wrapping_mul(TICK_US).wrapping_add(clock);
-            let age = f64::from(now.wrapping_sub(point.time).cast_signed()) * 1e-6;
-            let pose = estimator.pose(age)?;
             let at = point.at.map(f64::from);
             let length = libm::sqrt(at.iter().map(|it| it * it).sum());
             let answered = libm::fabs(length - NO_RETURN) > ROUNDING;
+            if hits && !answered {
+                return None;
+            }
+            let now = tick.wrapping_mul(TICK_US).wrapping_add(clock);
+            let age = f64::from(now.wrapping_sub(point.time).cast_signed()) * 1e-6;
+            let pose = estimator.pose(age)?;
             let direction = at.map(|it| it / length);
             Some(pose.beam(direction, answered.then_some(length), &origin))
         })

@@ -115,22 +115,15 @@ pub(super) fn backward(
     }
 }
 
-/// Ends the contest of a row and slope. Returns whether a path reaches one of its states.
-pub(super) fn settle(
-    contest: &Contest,
-    costs: &mut [Layers; CLIMBS],
-    choices: &mut Choices,
-) -> bool {
-    let mut least = NONE;
+/// Ends the contest of a row and slope.
+pub(super) fn settle(contest: &Contest, costs: &mut [Layers; CLIMBS], choices: &mut Choices) {
     for (contest, (costs, choices)) in contest.iter().zip(costs.iter_mut().zip(choices)) {
         for (cost, word) in costs.iter_mut().zip(contest) {
             *cost = (word >> 4).min(u32::from(NONE)) as u16;
-            least = least.min(*cost);
         }
         for (pair, words) in choices.iter_mut().zip(contest.chunks(2)) {
             let number = |index: usize| words.get(index).map_or(0, |word| (word & 15) as u8);
             *pair = number(0) | number(1) << 4;
         }
     }
-    least < NONE
 }

@@ -8,7 +8,7 @@ use crate::map::VoxelField;
 use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, SHORT};
 use crate::tuning::space_program::CONTROL;
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
-use crate::vehicle::{SpaceModel, SpacePath};
+use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
 
 /// Points at which a stage is judged.
 const POINTS: usize = 4;
@@ -104,17 +104,21 @@ impl Judge<'_> {
         }
     }
 
+    /// Cost of a control.
+    pub(super) fn effort(&self, control: &SpaceControl) -> f64 {
+        let [bank, attack, thrust] = CONTROL;
+        let extra = control.thrust - self.model.trim.control.thrust;
+        0.5 * (bank * control.bank_rate * control.bank_rate
+            + attack * control.angle_of_attack_rate * control.angle_of_attack_rate
+            + thrust * extra * extra)
+    }
+
     /// Adds effort, end and cost-to-go.
     pub(super) fn end(&self, plan: &SpacePlan, tally: &Tally) -> SpaceJudgement {
         let (trim, [.., last]) = (&self.model.trim, &plan.knots);
         let mut price = tally.price;
         for control in &plan.controls {
-            let [bank, attack, thrust] = CONTROL;
-            let extra = control.thrust - trim.control.thrust;
-            price += 0.5
-                * (bank * control.bank_rate * control.bank_rate
-                    + attack * control.angle_of_attack_rate * control.angle_of_attack_rate
-                    + thrust * extra * extra);
+            price += self.effort(control);
         }
         let off = last.position[2] - self.keep.altitude;
         let fast = last.airspeed - trim.state.airspeed;

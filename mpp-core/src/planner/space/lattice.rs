@@ -10,7 +10,7 @@ use super::edges::{
     CLIMBS, Choices, LAYERS, Layers, NONE, OPEN, ROWS, SLOPES, across, backward, forward, number,
     settle, units,
 };
-use crate::map::{ClearColumn, VoxelField};
+use crate::map::{Storey, Upright, VoxelField};
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use core::ops::Range;
@@ -108,25 +108,23 @@ impl Lattice {
             return;
         }
         let half = (station as f64 + 0.5) * to_go.step;
+        let levels = levels(to_go.origin[2], rules);
         let line = |ahead: f64, row: f64| Line::new(&to_go.origin, field, rules, ahead, row);
         let halves = 2 * rows.start..(2 * rows.end).min(2 * needed.end - 1);
         let parts = self.halfway.get_mut(halves.clone());
         for (row, parts) in halves.zip(parts.unwrap_or(&mut [])) {
             let line = line(half, row as f64 / 2.0);
-            for (between, layers) in parts.iter_mut().enumerate() {
-                for (layer, cost) in layers.iter_mut().enumerate() {
-                    *cost = units(line.cost(layer as f64 + 0.5 * between as f64).0);
+            for (layers, levels) in parts.iter_mut().zip(&levels) {
+                for (cost, level) in layers.iter_mut().zip(levels) {
+                    *cost = units(line.cost(level));
                 }
             }
         }
         let nodes = self.nodes.get_mut(rows.clone());
         for (row, layers) in rows.zip(nodes.unwrap_or(&mut [])) {
             let line = line(half + 0.5 * to_go.step, row as f64);
-            for (layer, cost) in layers.iter_mut().enumerate() {
-                let (place, [_, side, z]) = line.cost(layer as f64);
-                let off = z - rules.altitude;
-                let far = HEIGHT * off * off + SIDE * side * side;
-                *cost = units(place + far);
+            for (cost, level) in layers.iter_mut().zip(&levels[0]) {
+                *cost = units(line.cost(level) + (level.off + line.aside));
             }
         }
     }
@@ -144,7 +142,7 @@ impl Lattice {
         };
         for row in rows {
             for next in 0..SLOPES {
-                let mut contest = OPEN;
+                let (mut contest, mut met) = (OPEN, false);
                 for slope in next.saturating_sub(1)..(next + 2).min(SLOPES) {
                     let begin = (row + 6).checked_sub(slope + next);
                     let Some(begin) = begin.filter(|row| *row < ROWS) else {
@@ -160,13 +158,18 @@ impl Lattice {
                     ) {
                         let own = (across(slope, next), number(next, slope));
                         forward(from, &mut contest, node, half, own);
+                        met = true;
                     }
                 }
                 if let (Some(to), Some(choices)) = (
                     to.get_mut(row).and_then(|row| row.get_mut(next)),
                     choices.get_mut(row).and_then(|row| row.get_mut(next)),
                 ) {
-                    settle(&contest, to, choices);
+                    if met {
+                        settle(&contest, to, choices);
+                    } else {
+                        to.as_flattened_mut().fill(NONE);
+                    }
                 }
             }
         }
@@ -245,61 +248,74 @@ fn fill(station: &mut Station, cost: u16) {
         .fill(cost);
 }
 
+/// A height at which places are priced.
+#[derive(Clone, Copy)]
+struct Level {
+    storey: Storey,
+    /// Distance beyond the band \[m\].
+    beyond: f64,
+    /// Cost of the distance from the wanted height [-].
+    off: f64,
+}
+
+/// The heights of the layers, and those half a layer above them.
+fn levels(origin: f64, rules: &Rules) -> [[Level; LAYERS]; 2] {
+    let [low, high] = rules.heights;
+    [0.0, 0.5].map(|above| {
+        core::array::from_fn(|layer| {
+            let z = origin + (layer as f64 + above - (LAYERS / 2) as f64) * UP;
+            let off = z - rules.altitude;
+            Level {
+                storey: Storey::of(z),
+                beyond: (low - z).max(z - high).max(0.0),
+                off: HEIGHT * off * off,
+            }
+        })
+    })
+}
+
 /// Places above each other.
 struct Line<'a> {
-    field: &'a VoxelField,
-    rules: &'a Rules,
-    /// The place of the middle layer.
-    foot: [f64; 3],
+    upright: Upright<'a>,
+    /// Clearance that a path keeps \[m\].
+    margin: f64,
     /// Distance beyond the sides of the band \[m\].
     outside: f64,
-    /// Weight of the unknown [-].
-    near: f64,
-    column: ClearColumn<'a>,
+    /// Cost of the distance from the middle of the band [-].
+    aside: f64,
+    /// Cost of the unknown, where it has one [-].
+    unknown: Option<f64>,
 }
 
 impl<'a> Line<'a> {
     /// The places at a distance ahead of the origin \[m\], and at a row.
     fn new(
-        origin: &[f64; 3],
+        [x, y, _]: &[f64; 3],
         field: &'a VoxelField,
-        rules: &'a Rules,
+        rules: &Rules,
         ahead: f64,
         row: f64,
     ) -> Self {
-        let (x, y) = (
-            origin[0] + ahead,
-            origin[1] + (row - (ROWS / 2) as f64) * ACROSS,
-        );
+        let y = y + (row - (ROWS / 2) as f64) * ACROSS;
+        let near = 1.0 - ahead / UNKNOWN_AHEAD;
         Self {
-            field,
-            rules,
-            foot: [x, y, origin[2]],
+            upright: field.upright(x + ahead, y, rules.margin),
+            margin: rules.margin,
             outside: (libm::fabs(y) - rules.half_width).max(0.0),
-            near: 1.0 - ahead / UNKNOWN_AHEAD,
-            column: field.clear_column(x, y, rules.margin),
+            aside: SIDE * y * y,
+            unknown: (near > 0.0).then_some(UNKNOWN_COST * near),
         }
     }
 
-    /// Cost of the place at a layer [-], without that of its distance from the middle, and the place.
-    fn cost(&self, layer: f64) -> (f64, [f64; 3]) {
-        let [x, y, origin] = self.foot;
-        let (field, rules) = (self.field, self.rules);
-        let z = origin + (layer - (LAYERS / 2) as f64) * UP;
-        let point = [x, y, z];
-        let [low, high] = rules.heights;
-        let beyond = (low - z).max(z - high).max(0.0);
-        let near_obstacle = if self.column.is_clear(z) {
+    /// Cost of the place at a height [-], without that of its distance from the middle.
+    fn cost(&self, level: &Level) -> f64 {
+        let near_obstacle = if self.upright.is_clear(&level.storey) {
             0.0
         } else {
-            (rules.margin - field.clearance(&point)).max(0.0)
+            (self.margin - self.upright.clearance(&level.storey)).max(0.0)
         };
-        let lack = near_obstacle + beyond + self.outside;
-        let unknown = if self.near > 0.0 && field.is_unknown(&point) {
-            UNKNOWN_COST * self.near
-        } else {
-            0.0
-        };
-        (LACK * lack * lack + unknown, point)
+        let lack = near_obstacle + level.beyond + self.outside;
+        let unknown = (self.unknown).filter(|_| self.upright.is_unknown(&level.storey));
+        LACK * lack * lack + unknown.unwrap_or(0.0)
     }
 }

@@ -49,10 +49,9 @@ const APART: usize = 2;
 const LOOK_SLICES: usize = 8;
 /// Stages of a candidate that get faces in a slice.
 const FACE_STAGES: usize = 3;
-/// Steps of the solver in a slice, and in a program.
-const SLICE_STEPS: usize = 1;
+/// Steps of the solver in a program, each a slice.
 const MOST_STEPS: usize = 120;
-/// Most calls of [`SpacePlanner::advance`] in a cycle: field, lattice with its paths, candidates with the previous plan and the
+/// Most slices of a cycle: field, lattice with its paths, candidates with the previous plan and the
 /// one straight on, programs with their solves, and the refinement, in which each move may find a new best plan.
 pub const MOST_SPACE_SLICES: usize = 1
     + LENGTH.div_ceil(LOOK_SLICES)
@@ -61,7 +60,7 @@ pub const MOST_SPACE_SLICES: usize = 1
     + 3
     + SPACE_CANDIDATES * AIMS.len()
     + 2
-    + SPACE_CANDIDATES * (STAGES.div_ceil(FACE_STAGES) + MOST_STEPS / SLICE_STEPS + 3)
+    + SPACE_CANDIDATES * (STAGES.div_ceil(FACE_STAGES) + MOST_STEPS + 3)
     + 2 * refine::TRIALS
     + 1;
 /// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of `tuning/space.rs`.
@@ -87,7 +86,8 @@ enum Phase {
     Pursue(usize, usize),
     /// A candidate, and a stage.
     Faces(usize, usize),
-    Linearise(usize),
+    /// A candidate, and a part of its program's set-up.
+    Pose(usize, usize),
     Solve(usize),
     FlyOut(usize),
     Refine(usize),
@@ -203,7 +203,7 @@ impl SpacePlanner {
         self.phase = Phase::Begin;
     }
 
-    /// Does a slice of the cycle. Returns true when it is done.
+    /// Does a slice of the cycle, or a part of one. Returns true when the cycle is done.
     pub fn advance(&mut self, map: &VoxelGrid) -> bool {
         self.phase = match self.phase {
             Phase::Idle | Phase::Offers => return true,
@@ -217,12 +217,23 @@ impl SpacePlanner {
             Phase::Paths => self.find_paths(),
             Phase::Pursue(path, aim) => self.propose(path, aim),
             Phase::Faces(candidate, stage) => self.separate(candidate, stage),
-            Phase::Linearise(candidate) => self.pose(candidate),
+            Phase::Pose(candidate, part) => self.pose(candidate, part),
             Phase::FlyOut(candidate) => self.fly_out(candidate),
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
         };
         matches!(self.phase, Phase::Idle | Phase::Offers)
+    }
+
+    /// Whether the last call of [`advance`](Self::advance) ended a slice: to set a program up takes several calls, and some
+    /// steps of the solver do.
+    #[must_use]
+    pub fn is_between_slices(&self) -> bool {
+        match (self.phase, &self.workspace) {
+            (Phase::Pose(_, part), _) => part == 0,
+            (Phase::Solve(_), Workspace::Program(program)) => program.solver.is_between_steps(),
+            _ => true,
+        }
     }
 
     /// What the next slice does; `None` if the cycle is done.
@@ -236,7 +247,7 @@ impl SpacePlanner {
             Phase::Previous | Phase::PreviousPath | Phase::Pursue(..) => {
                 Some(SpaceStage::Candidate)
             }
-            Phase::Faces(..) | Phase::Linearise(_) => Some(SpaceStage::Program),
+            Phase::Faces(..) | Phase::Pose(..) => Some(SpaceStage::Program),
             Phase::Solve(_) | Phase::FlyOut(_) => Some(SpaceStage::Solve),
             Phase::Refine(_) => Some(SpaceStage::Refine),
         }

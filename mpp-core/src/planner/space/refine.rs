@@ -13,6 +13,8 @@ const FIRST: [usize; 8] = [1, 2, 3, 4, 5, 6, 8, 10];
 const WIDTHS: [usize; 3] = [1, 2, 3];
 /// Number of different moves: both sides, and with and without the way back.
 const MOVES: usize = FIRST.len() * WIDTHS.len() * 4;
+/// A little below one, for sums whose terms are added in another order.
+const ROUNDED: f64 = 1.0 - 1e-12;
 /// Number of moves that a cycle tries.
 pub(super) const TRIALS: usize = ROUNDS * MOVES;
 
@@ -52,6 +54,8 @@ pub(super) struct Unmoved {
     plan: SpacePlan,
     tallies: heapless::Vec<Tally, STAGES>,
     lifts: Lifts,
+    /// The first move that was tried.
+    since: usize,
 }
 
 /// For each stage of the best plan: its lift upwards [m/s^2], and the angle of attack of its whole lift \[rad\].
@@ -59,8 +63,8 @@ pub(super) struct Unmoved {
 struct Lifts([[f64; 2]; STAGES]);
 
 impl Unmoved {
-    /// Of the best plan.
-    pub(super) fn of(judge: &Judge<'_>, best: &SpacePlan) -> Self {
+    /// Of the best plan, before a move.
+    pub(super) fn of(judge: &Judge<'_>, best: &SpacePlan, since: usize) -> Self {
         let lifts = Lifts::of(judge.model, best);
         let (mut plan, mut tally) = (*best, judge.begin(best));
         let mut tallies = heapless::Vec::new();
@@ -76,10 +80,17 @@ impl Unmoved {
             plan,
             tallies,
             lifts,
+            since,
         }
     }
 
-    /// The best plan with its bank moved, and its worth; `None` where the costs of its beginning are a `price` already.
+    /// Whether the move of a number was tried already: sizes come again.
+    pub(super) fn knows(&self, number: usize) -> bool {
+        number >= self.since + SIZES * MOVES
+    }
+
+    /// The best plan with its bank moved, and its worth; `None` where it is found before its end that it costs the `price` of
+    /// the best plan.
     pub(super) fn moved(
         &self,
         judge: &Judge<'_>,
@@ -90,13 +101,25 @@ impl Unmoved {
         // The first stage that the move changes.
         let first = by.0.iter().skip(1).position(|change| *change != 0.0)?;
         let (mut plan, mut tally) = (self.plan, *self.tallies.get(first)?);
-        for stage in first..STAGES {
+        let (begun, rest) = plan.controls.split_at_mut_checked(first)?;
+        let mut efforts: f64 = begun.iter().map(|control| judge.effort(control)).sum();
+        let (known, limit) = (tally.least_price(), price / ROUNDED);
+        // Bank and angle of attack, and so all controls, do not depend on forces.
+        let mut state = *plan.knots.get(first)?;
+        for (stage, control) in (first..).zip(rest) {
             let change = by.0.get(stage + 1).copied().unwrap_or(0.0);
-            plan.fly_stage(stage, judge.model, |state| {
-                self.lifts.control(judge.model, best, stage, state, change)
-            });
+            *control = (self.lifts).control(judge.model, best, stage, &state, change);
+            state = state.turned(control, STAGE_PERIOD);
+            efforts += judge.effort(control);
+            if known + efforts >= limit {
+                return None;
+            }
+        }
+        let controls = plan.controls;
+        for (stage, control) in controls.iter().enumerate().skip(first) {
+            plan.fly_stage(stage, judge.model, |_| *control);
             judge.add(&plan, stage, &mut tally);
-            if tally.least_price() >= price {
+            if tally.least_price() + efforts >= limit {
                 return None;
             }
         }
@@ -154,4 +177,52 @@ impl Lifts {
 /// The share of the lift that goes upwards at a bank \[rad\].
 fn upwards(bank: f64) -> f64 {
     libm::cos(bank).max(0.3)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::super::SpacePlanner;
+    use super::*;
+    use crate::planner::space::Keep;
+    use crate::vehicle::Airframe;
+    use std::boxed::Box;
+
+    /// Of every move of a plan: the controls are those of its knots, the costs those of its flight, and a move that costs less
+    /// than the best plan is found, by however little.
+    #[test]
+    fn a_move_is_what_its_controls_fly_and_no_cheaper_one_is_missed() {
+        let model = SpaceModel::new(&Airframe::PAPER, 12.0, 0.45, 20.0, [0.96, 1.57]).unwrap();
+        let mut planner = Box::new(SpacePlanner::new());
+        planner.set_up(model, Keep::NONE);
+        let judge = planner.judge();
+        let level = SpacePath {
+            airspeed: 12.0,
+            angle_of_attack: model.trim.state.angle_of_attack(),
+            ..SpacePath::ORIGIN
+        };
+        let mut best = SpacePlan::new();
+        best.fly(&model, &level, |stage, state| {
+            let wanted = SpaceControl {
+                bank_rate: libm::sin(stage as f64),
+                angle_of_attack_rate: 0.2 * libm::cos(2.0 * stage as f64),
+                thrust: model.trim.control.thrust,
+            };
+            limited(&model, state, &wanted)
+        });
+        let unmoved = Unmoved::of(&judge, &best, 0);
+        for by in (0..MOVES * SIZES).map(Move::of) {
+            let at = |price: f64| unmoved.moved(&judge, &best, price, &by);
+            let (moved, worth) = at(f64::INFINITY).unwrap();
+            assert_eq!(judge.judge(&moved), worth);
+            for (stage, control) in moved.controls.iter().enumerate() {
+                let (knot, change) = (&moved.knots[stage], by.0[stage + 1]);
+                let chosen = unmoved.lifts.control(&model, &best, stage, knot, change);
+                assert_eq!(chosen, *control);
+            }
+            assert!(at(worth.price).is_none_or(|found| found == (moved, worth)));
+            assert_eq!(at(worth.price * (1.0 + 1e-9)), Some((moved, worth)));
+        }
+    }
 }

@@ -9,7 +9,7 @@ use super::program::{Frame, WEIGHTS};
 use super::refine::{self, Unmoved};
 use super::{
     APART, Candidate, FACE_STAGES, LEVEL_SPAN, LOOK_SLICES, MOST_STEPS, Phase, Program,
-    SLICE_STEPS, SpacePlanner, Workspace,
+    SpacePlanner, Workspace,
 };
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::VoxelGrid;
@@ -235,11 +235,15 @@ impl SpacePlanner {
             return Phase::Idle;
         };
         let Some(unmoved) = &self.unmoved else {
-            self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan));
+            self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan, number));
             return Phase::Refine(number);
         };
         let (by, price) = (refine::Move::of(number), best.judgement.price);
-        let moved = unmoved.moved(&self.judge(), &best.plan, price, &by);
+        let moved = if unmoved.knows(number) {
+            None
+        } else {
+            unmoved.moved(&self.judge(), &best.plan, price, &by)
+        };
         if let Some((plan, judgement)) = moved {
             self.consider(Candidate { plan, judgement });
         }
@@ -268,12 +272,12 @@ impl SpacePlanner {
         if end < STAGES {
             Phase::Faces(index, end)
         } else {
-            Phase::Linearise(index)
+            Phase::Pose(index, 0)
         }
     }
 
-    /// Poses the program of a candidate.
-    pub(super) fn pose(&mut self, index: usize) -> Phase {
+    /// Sets the program of a candidate up, in four parts: its models, their feedback, the responses, its rows.
+    pub(super) fn pose(&mut self, index: usize, part: usize) -> Phase {
         let (Some(candidate), Workspace::Program(program)) =
             (self.candidates.get(index), &mut self.workspace)
         else {
@@ -290,25 +294,34 @@ impl SpacePlanner {
             model: &self.model,
             start: self.start,
         };
-        frame.pose(plan, faces, &self.keep, &mut solver.problem);
-        let condensed =
-            shared.condense_varying(&WEIGHTS, |dynamics| frame.linearise(plan, dynamics));
-        if condensed.is_err() {
-            return Phase::Faces(index + 1, 0);
+        match part {
+            0 => shared.linearise(|dynamics| frame.linearise(plan, dynamics)),
+            1 => {
+                if shared.design(&WEIGHTS).is_err() {
+                    return Phase::Faces(index + 1, 0);
+                }
+            }
+            2 => shared.respond_to_controls(),
+            _ => {
+                frame.pose(plan, faces, &self.keep, &mut solver.problem);
+                shared.set_faces(faces);
+                solver.begin(shared);
+                self.steps = 0;
+                return Phase::Solve(index);
+            }
         }
-        shared.set_faces(faces);
-        solver.begin(shared);
-        self.steps = 0;
-        Phase::Solve(index)
+        Phase::Pose(index, part + 1)
     }
 
     pub(super) fn solve(&mut self, index: usize) -> Phase {
         let Workspace::Program(Program { shared, solver, .. }) = &mut self.workspace else {
             return Phase::Refine(0);
         };
-        self.steps += SLICE_STEPS;
-        let status = solver.advance(shared, SLICE_STEPS);
-        if status.is_none() && self.steps < MOST_STEPS {
+        if !solver.advance_part(shared) {
+            return Phase::Solve(index);
+        }
+        self.steps += 1;
+        if solver.status.is_none() && self.steps < MOST_STEPS {
             Phase::Solve(index)
         } else {
             Phase::FlyOut(index)

@@ -62,16 +62,34 @@ impl Condensed {
         weights: &Weights,
         linearise: impl FnOnce(&mut [Dynamics; STAGES]),
     ) -> Result<(), CondenseError> {
-        linearise(&mut self.dynamics);
+        self.linearise(linearise);
         self.condense_stages(weights)
     }
 
     fn condense_stages(&mut self, weights: &Weights) -> Result<(), CondenseError> {
+        self.design(weights)?;
+        self.respond_to_controls();
+        Ok(())
+    }
+
+    /// Writes models in place. All of them written, [`design`](Self::design) is the next part of condensing.
+    pub fn linearise(&mut self, write: impl FnOnce(&mut [Dynamics; STAGES])) {
+        write(&mut self.dynamics);
+    }
+
+    /// Computes the feedback of the models. Then comes [`respond_to_controls`](Self::respond_to_controls), the last part.
+    ///
+    /// # Errors
+    /// [`CondenseError`] if the cost has no single optimum.
+    pub fn design(&mut self, weights: &Weights) -> Result<(), CondenseError> {
         self.weights = *weights;
-        feedback::design(&self.dynamics, weights, &mut self.feedback).ok_or(CondenseError)?;
+        feedback::design(&self.dynamics, weights, &mut self.feedback).ok_or(CondenseError)
+    }
+
+    /// Writes responses and prices.
+    pub fn respond_to_controls(&mut self) {
         self.write_response();
         write_prices(&self.response, &self.normals, &mut self.prices);
-        Ok(())
     }
 
     /// Writes the response of the outputs to the normalised controls. It follows the response of the state

@@ -3,11 +3,13 @@
 use super::super::super::layout::{LAST_ROWS, ROWS};
 use super::super::controls::add_all;
 use super::super::dot;
-use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver};
+use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver, Stands};
 use crate::qp::Status;
 
 /// Greatest number of rows in a block: one of each of the last pairs.
-const PAIRED: usize = (ROWS - LAST_ROWS) / 2;
+pub(super) const PAIRED: usize = (ROWS - LAST_ROWS) / 2;
+/// Rows of a block that are taken up in one part of a step.
+const PART_ROWS: usize = 6;
 /// Share of its norm that a row of a block has to have apart from the rows before it.
 const APART: f64 = 0.1;
 /// Least crossing \[m\] of faces between which a program starts.
@@ -40,18 +42,19 @@ impl Solver {
         self.start_settle(shared);
     }
 
-    /// Takes up all violated rows of inputs at once, if the worst row is one. They hardly depend on each other. Returns
-    /// `None`, and changes nothing, if there is only one.
+    /// Begins to take up all violated rows of inputs at once, if the worst row is one. They hardly depend on each other.
+    /// Returns false, and changes nothing, if there is only one.
     #[inline(never)]
-    pub(super) fn take_up_block(
+    pub(super) fn begin_block(
         &mut self,
         shared: &Condensed,
         worst: Active,
-    ) -> Option<Option<Status>> {
+        violation: f64,
+    ) -> bool {
         if worst.row < LAST_ROWS {
-            return None;
+            return false;
         }
-        let mut rows: heapless::Vec<usize, PAIRED> = heapless::Vec::new();
+        self.block.clear();
         let limits = self.open.0.get(LAST_ROWS..).unwrap_or(&[]);
         for (pair, [rise, reserve]) in limits.as_chunks::<2>().0.iter().enumerate() {
             let row = LAST_ROWS + 2 * pair;
@@ -64,32 +67,62 @@ impl Solver {
                 pattern.value(&self.outputs)
             };
             if input - rise > 0.0 {
-                let _ = rows.push(row);
+                let _ = self.block.push(row);
             } else if -input - reserve > 0.0 {
-                let _ = rows.push(row + 1);
+                let _ = self.block.push(row + 1);
             }
         }
-        if rows.len() < 2 {
-            return None;
+        let begins = self.block.len() >= 2;
+        if begins {
+            self.stands = Stands::TakingUp(worst, violation, 0);
         }
-        let before = self.active.len();
-        for row in &rows {
-            let _ = self.take_up(shared, *row, false, APART);
+        begins
+    }
+
+    /// Takes up some rows of a block, from one on. Returns false, and drops the block, if fewer than two have room.
+    #[inline(never)]
+    pub(super) fn take_up_rows(
+        &mut self,
+        shared: &Condensed,
+        (worst, violation): (Active, f64),
+        from: usize,
+    ) -> bool {
+        let end = (from + PART_ROWS).min(self.block.len());
+        for index in from..end {
+            if let Some(row) = self.block.get(index).copied() {
+                let _ = self.take_up(shared, row, false, APART);
+            }
         }
+        if end < self.block.len() {
+            self.stands = Stands::TakingUp(worst, violation, end);
+            return true;
+        }
+        let before = self.active.iter().take_while(|own| !own.fresh).count();
         if self.active.len() < before + 2 {
             self.drop_from(before);
-            return None;
+            return false;
         }
-        if let Some(status) = self.settle(shared) {
-            return Some(Some(status));
+        self.stands = Stands::Settling(worst);
+        true
+    }
+
+    /// Moves the multipliers of a block to the next event.
+    pub(super) fn settle_block(&mut self, shared: &Condensed, worst: Active) -> Option<Status> {
+        match self.settle(shared) {
+            Err(status) => return Some(status),
+            Ok(false) => {
+                self.stands = Stands::Settling(worst);
+                return None;
+            }
+            Ok(true) => {}
         }
         if self.dual > self.problem.cost_limit {
-            return Some(Some(Status::Dominated));
+            return Some(Status::Dominated);
         }
         if self.dual > 2.0 * self.absurd_rise {
-            return Some(Some(self.excessive_multipliers(shared, &worst)));
+            return Some(self.excessive_multipliers(shared, &worst));
         }
-        Some((!self.dual.is_finite()).then_some(Status::NumericalFailure))
+        (!self.dual.is_finite()).then_some(Status::NumericalFailure)
     }
 
     /// Appends a row to the active rows, if more than a share `apart` of its norm does not depend on them.
@@ -116,53 +149,61 @@ impl Solver {
         })
     }
 
-    /// Moves the multipliers until all fresh rows are tight, from event to event: rows whose multiplier reaches zero
-    /// leave, and rows whose multiplier reaches their price change sides. The dual objective only rises.
+    /// Moves the multipliers towards where all fresh rows are tight, to the next event: rows whose multiplier reaches zero
+    /// leave, and rows whose multiplier reaches their price change sides. The dual objective only rises. Returns true when
+    /// all rows are tight.
     #[inline(never)]
-    fn settle(&mut self, shared: &Condensed) -> Option<Status> {
-        loop {
-            if self.iterations >= super::MAX_ITERATIONS {
-                return Some(Status::IterationLimit);
+    fn settle(&mut self, shared: &Condensed) -> Result<bool, Status> {
+        if self.drop_falling() {
+            return Ok(false);
+        }
+        if self.iterations >= super::MAX_ITERATIONS {
+            return Err(Status::IterationLimit);
+        }
+        self.iterations += 1;
+        let Some(first) = self.active.iter().position(|own| own.fresh) else {
+            return Ok(true);
+        };
+        let violations = self.fresh_violations(shared, first);
+        let mut moves = violations;
+        self.factor.forward_from(&mut moves, first);
+        let mut rises = moves;
+        self.factor.backward(&mut rises);
+        self.mark_falling(&rises);
+        if self.drop_falling() {
+            return Ok(false);
+        }
+        let (length, event) = self.first_change(&rises);
+        let active = self.active.iter_mut().zip(&rises);
+        for (own, rise) in active {
+            own.multiplier = (own.multiplier + length * rise).max(0.0);
+        }
+        self.move_controls(first, &moves, length);
+        let slope: f64 = rises
+            .iter()
+            .zip(&violations)
+            .map(|(rise, by)| rise * by)
+            .sum();
+        self.dual += slope * length * (1.0 - 0.5 * length);
+        let Some((index, toggles)) = event else {
+            for own in &mut self.active {
+                own.fresh = false;
             }
-            self.iterations += 1;
-            let first = self.active.iter().position(|own| own.fresh)?;
-            let violations = self.fresh_violations(shared, first);
-            let mut moves = violations;
-            self.factor.forward_from(&mut moves, first);
-            let mut rises = moves;
-            self.factor.backward(&mut rises);
-            if self.drop_falling(first, &rises) {
-                continue;
-            }
-            let (length, event) = self.first_change(&rises);
-            let active = self.active.iter_mut().zip(&rises);
-            for (own, rise) in active {
-                own.multiplier = (own.multiplier + length * rise).max(0.0);
-            }
-            self.move_controls(first, &moves, length);
-            let slope: f64 = rises
-                .iter()
-                .zip(&violations)
-                .map(|(rise, by)| rise * by)
-                .sum();
-            self.dual += slope * length * (1.0 - 0.5 * length);
-            let Some((index, toggles)) = event else {
-                for own in &mut self.active {
-                    own.fresh = false;
-                }
-                return None;
+            return Ok(true);
+        };
+        let Some(row) = self.deactivate(index) else {
+            return Ok(true);
+        };
+        if toggles {
+            let row = Active {
+                yielded: !row.yielded,
+                ..row
             };
-            let row = self.deactivate(index)?;
-            if toggles {
-                let row = Active {
-                    yielded: !row.yielded,
-                    ..row
-                };
-                if !self.append(shared, row, None) {
-                    return Some(Status::IterationLimit);
-                }
+            if !self.append(shared, row, None) {
+                return Err(Status::IterationLimit);
             }
         }
+        Ok(false)
     }
 
     /// Violations of the fresh rows, of which `first` is the first; zero for the others.
@@ -175,19 +216,17 @@ impl Solver {
         violations
     }
 
-    /// Drops the fresh rows whose multipliers would fall below zero at once.
-    fn drop_falling(&mut self, first: usize, rises: &[f64; CAPACITY]) -> bool {
-        let before = self.active.len();
-        for index in (first..before).rev() {
-            let row = self.active.get(index).zip(rises.get(index));
-            let falls = row.is_some_and(|(own, rise)| {
-                own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0
-            });
-            if falls {
-                self.deactivate(index);
-            }
+    /// Marks the fresh rows whose multipliers would fall below zero at once.
+    fn mark_falling(&mut self, rises: &[f64; CAPACITY]) {
+        for (own, rise) in self.active.iter_mut().zip(rises) {
+            own.falls = own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0;
         }
-        self.active.len() < before
+    }
+
+    /// Drops the last row that falls, if there is one.
+    fn drop_falling(&mut self) -> bool {
+        let last = self.active.iter().rposition(|own| own.falls);
+        last.and_then(|index| self.deactivate(index)).is_some()
     }
 
     /// Share of a step up to the first row that leaves or changes sides, and this row: its index and whether it changes

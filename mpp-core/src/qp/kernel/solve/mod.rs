@@ -26,6 +26,7 @@ use super::shortlist::Shortlist;
 use super::{CONTROLS, Condensed, ControlVector, RowPattern, Solution};
 use crate::config::STAGES;
 use crate::qp::Status;
+use block::PAIRED;
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
@@ -55,6 +56,8 @@ struct Active {
     price: f64,
     /// Whether the row is part of a block that enters, and not tight yet.
     fresh: bool,
+    /// Whether the row leaves before the multipliers of its block move.
+    falls: bool,
 }
 
 /// The row that enters.
@@ -65,6 +68,21 @@ struct Entering {
     violation: f64,
     /// Squared norm of the row's response, `|Y' c_p|^2`.
     norm: f64,
+}
+
+/// Where the solver stands between two parts of its work.
+// A number of its own, zero at the beginning of a solve: memory of zeros is a solver that waits.
+#[derive(Clone, Copy, Debug)]
+#[repr(u8)]
+enum Stands {
+    /// Between two steps: no row enters.
+    Free,
+    /// Between two steps: a row enters, and has not done so in the last one.
+    Entering(Entering),
+    /// Within a step: rows of a block are taken up, from one on. The row that counts most, and its violation, wait.
+    TakingUp(Active, f64, usize),
+    /// Within a step: the multipliers of a block move.
+    Settling(Active),
 }
 
 /// Workspace of the solver.
@@ -129,7 +147,8 @@ pub struct Solver {
     pub(crate) open: Bounds,
     /// Whether the program has attitude rows.
     attitude_rows: bool,
-    entering: Option<Entering>,
+    stands: Stands,
+    block: heapless::Vec<usize, PAIRED>,
     /// The vector `L^-1 C_A Y Y' c_p` of the entering row, and the rest of its response.
     products: [f64; CAPACITY],
     rest: Aligned,
@@ -165,7 +184,8 @@ impl Solver {
             active: heapless::Vec::new(),
             open: Bounds::none(),
             attitude_rows: false,
-            entering: None,
+            stands: Stands::Free,
+            block: heapless::Vec::new(),
             products: [0.0; CAPACITY],
             rest: Aligned([0.0; CONTROLS]),
             rates: [0.0; CAPACITY],
@@ -198,7 +218,7 @@ impl Solver {
         if self.status.is_some() {
             return;
         }
-        self.entering = None;
+        self.stands = Stands::Free;
         self.factor.clear();
         self.list.clear();
         self.drift = 0;
@@ -255,21 +275,36 @@ impl Solver {
     }
 
     /// Makes up to `iterations` steps. Returns the status as soon as there is one.
-    // Not inlined, so that the steps do not lie on the stack beneath what follows the last of them.
-    #[inline(never)]
     pub fn advance(&mut self, shared: &Condensed, iterations: usize) -> Option<Status> {
         for _ in 0..iterations {
+            // Rows and iterations bound the parts of a step.
+            while !self.advance_part(shared) {}
             if self.status.is_some() {
                 break;
             }
-            self.status = if self.iterations >= MAX_ITERATIONS {
+        }
+        self.status
+    }
+
+    /// Does a part of a step. Returns true at the end of the step.
+    // Not inlined, so that the steps do not lie on the stack beneath what follows the last of them.
+    #[inline(never)]
+    pub(crate) fn advance_part(&mut self, shared: &Condensed) -> bool {
+        let begins = self.is_between_steps();
+        if self.status.is_none() {
+            self.status = if begins && self.iterations >= MAX_ITERATIONS {
                 Some(Status::IterationLimit)
             } else {
-                self.iterations += 1;
+                self.iterations += usize::from(begins);
                 self.step(shared)
             };
         }
-        self.status
+        self.status.is_some() || self.is_between_steps()
+    }
+
+    /// Whether the last part was the last one of its step.
+    pub(crate) fn is_between_steps(&self) -> bool {
+        matches!(self.stands, Stands::Free | Stands::Entering(_))
     }
 
     /// Solves to the end.

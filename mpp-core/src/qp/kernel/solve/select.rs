@@ -57,6 +57,7 @@ impl Solver {
             yielded: false,
             price,
             fresh: false,
+            falls: false,
         })
     }
 

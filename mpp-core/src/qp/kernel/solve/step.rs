@@ -2,7 +2,7 @@
 
 use super::super::controls::add_all;
 use super::direction::{Direction, Stand};
-use super::{Active, Condensed, Entering, Solver};
+use super::{Active, Condensed, Entering, Solver, Stands};
 use crate::qp::Status;
 
 /// Share of a row's own norm below which its Schur complement is zero up to rounding. The row then
@@ -27,20 +27,27 @@ enum Event {
 }
 
 impl Solver {
-    /// One step of the method: from one event to the next.
+    /// A part of a step of the method, which goes from one event to the next. Only blocks take more than one part.
     pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
-        let mut entering = match self.entering.take() {
-            Some(entering) => entering,
-            None => {
+        let mut entering = match core::mem::replace(&mut self.stands, Stands::Free) {
+            Stands::Entering(entering) => entering,
+            Stands::Free => {
                 let (row, violation) = match self.select(shared) {
                     Ok(selected) => selected,
                     Err(status) => return Some(status),
                 };
-                if let Some(status) = self.take_up_block(shared, row) {
-                    return status;
+                if self.begin_block(shared, row, violation) {
+                    return None;
                 }
                 self.meet(shared, row, violation)
             }
+            Stands::TakingUp(row, violation, from) => {
+                if self.take_up_rows(shared, (row, violation), from) {
+                    return None;
+                }
+                self.meet(shared, row, violation)
+            }
+            Stands::Settling(row) => return self.settle_block(shared, row),
         };
         let mut direction = self.direction(&entering.row, entering.norm);
         let mut full = (entering.violation / direction.complement).max(0.0);
@@ -240,7 +247,7 @@ impl Solver {
                 }
             }
         }
-        self.entering = Some(entering);
+        self.stands = Stands::Entering(entering);
         None
     }
 }
