@@ -194,6 +194,7 @@ pub const ROWS: Schema = Schema {
         column("known_collision", Kind::Truth, "", "", "whether it hit an obstacle that a beam had met more than 1 s before"),
         column("log_hash", Kind::Text, "", "", "hash of the flight's log"),
         column("core_ms", Kind::Real, "ms", "", "wall time of the core's work; null unless the campaign measured it"),
+        column("avoidable", Kind::Truth, "", "", "whether commands of the last 2 s could have avoided a known collision; null if undecided or without one"),
     ],
 };
 

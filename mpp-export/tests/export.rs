@@ -164,9 +164,9 @@ fn every_value_of_a_row_has_a_column() {
     let log = flown("preset = \"reference\"\nduration = 8\nobstacles = 60\nseed = 2");
     assert!(log.summary.failure.is_some());
     let row = Row::new(
-        cell,
-        &log,
-        &FlightObserver::default(),
+        cell.clone(),
+        &campaign.scenario(&cell, 2).unwrap(),
+        (&log, &FlightObserver::default()),
         log.hash().unwrap(),
         Some(1.25),
     );

@@ -1,12 +1,15 @@
 //! What an observer of a flight notes beside its log, for a campaign.
 
+use crate::aircraft::Aircraft;
 use crate::field::Point;
 use crate::inquest::Inquest;
 use crate::log::FlightLog;
 use crate::outcome::Outcome;
+use crate::plant::Plant;
 use crate::scenario::Scenario;
 use crate::tick_record::TickRecord;
 use hil_protocol::{SensorState, SensorStates};
+use mpp_core::vehicle::{Control, TrimError};
 use std::collections::BTreeSet;
 
 /// Time from which on an obstacle counts as known \[s\]: the aircraft can avoid it with time to spare.
@@ -21,6 +24,8 @@ pub struct FlightObserver {
     /// Ticks watched.
     ticks: u32,
     place: Point,
+    /// What the core commanded in each tick.
+    commands: Vec<Control>,
     /// Inputs refused so far.
     rejections: usize,
     /// Names of the sensors and actuators that the core has told as failed.
@@ -44,6 +49,7 @@ impl FlightObserver {
     pub fn watch(&mut self, record: &TickRecord<'_>) {
         self.inquest.watch(record);
         self.place = (record.tick.state.x, record.tick.state.z);
+        self.commands.push(record.tick.control);
         let since = self.ticks.checked_sub(self.onset);
         self.ticks += 1;
         let tells = failed(&record.sensors);
@@ -81,6 +87,27 @@ impl FlightObserver {
             .inquest
             .seen_before(&field, self.place, log.summary.t_end);
         seen.is_some_and(|time| time > KNOWN)
+    }
+
+    /// The aircraft with its actuators and its air, as it was this number of ticks before the end: it flies the
+    /// commands up to there again.
+    ///
+    /// # Errors
+    /// [`TrimError`] when the aircraft has no level flight.
+    pub fn aircraft_before(&self, scenario: &Scenario, ticks: u32) -> Result<Aircraft, TrimError> {
+        let mut aircraft = Aircraft::new(scenario)?;
+        let flown = self.commands.len().saturating_sub(ticks as usize);
+        for command in &self.commands[..flown] {
+            // A plant that does not step keeps its state, as in the flight.
+            let _ = aircraft.step(*command);
+        }
+        Ok(aircraft)
+    }
+
+    /// Where the last tick began \[m\].
+    #[must_use]
+    pub fn place(&self) -> Point {
+        self.place
     }
 }
 

@@ -145,7 +145,13 @@ fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let mut link = DirectLink::of(&scenario);
     let log = fly(&scenario, &mut link, |record| observer.watch(record)).map_err(errors::flight)?;
     let hash = log.hash().map_err(input)?;
-    Ok(Row::new(cell.clone(), &log, &observer, hash, None))
+    Ok(Row::new(
+        cell.clone(),
+        &scenario,
+        (&log, &observer),
+        hash,
+        None,
+    ))
 }
 
 /// Each of these values of one name.

@@ -49,6 +49,10 @@ pub struct CellReport {
     pub strict_wilson_high: f64,
     /// Number of collisions with an obstacle that a beam had met more than 1 s before.
     pub known_collisions: u32,
+    /// Number of these that commands of the last two seconds could have avoided.
+    pub avoidable_collisions: u32,
+    /// Number of these that none could have avoided. The rest is undecided.
+    pub unavoidable_collisions: u32,
     /// Number of flights in each class.
     pub outcomes: Outcomes,
     /// Failures by cause, the most frequent first.
@@ -160,6 +164,8 @@ impl CellReport {
             strict_wilson_low,
             strict_wilson_high,
             known_collisions: count(|row| row.known_collision),
+            avoidable_collisions: count(|row| row.avoidable == Some(true)),
+            unavoidable_collisions: count(|row| row.avoidable == Some(false)),
             outcomes,
             causes: causes(&rows, oracle.as_deref()),
             against_oracle: oracle

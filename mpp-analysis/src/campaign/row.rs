@@ -1,9 +1,11 @@
 //! One flight of a campaign.
 
 use super::grid::Cell;
+use crate::ceiling::avoidable;
 use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::log::{FlightLog, Summary};
 use mpp_sim::outcome::Outcome;
+use mpp_sim::scenario::Scenario;
 use serde::{Deserialize, Serialize};
 
 /// One flight: its cell, its seed and its summary.
@@ -22,6 +24,9 @@ pub struct Row {
     /// Whether it collided with an obstacle that a beam had met more than 1 s before; not written if not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub known_collision: bool,
+    /// Whether commands of its last two seconds could have avoided such a collision; not written if that is undecided.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub avoidable: Option<bool>,
     /// The flight log's hash; empty in a campaign that keeps no rows.
     pub log_hash: String,
     /// Wall time of the core's work \[ms\], if it was measured. A seed does not determine it.
@@ -34,17 +39,23 @@ impl Row {
     #[must_use]
     pub fn new(
         cell: Cell,
-        log: &FlightLog,
-        observer: &FlightObserver,
+        scenario: &Scenario,
+        (log, observer): (&FlightLog, &FlightObserver),
         log_hash: String,
         core_ms: Option<f64>,
     ) -> Self {
+        let known_collision = observer.known_collision(log);
+        // Of a field that cannot be judged nothing is proven.
+        let avoidable = known_collision
+            .then(|| avoidable(scenario, observer).ok().flatten())
+            .flatten();
         Self {
             cell,
             seed: log.header.seed,
             success: log.summary.outcome == Outcome::Survived,
             summary: log.summary,
-            known_collision: observer.known_collision(log),
+            known_collision,
+            avoidable,
             log_hash,
             core_ms,
         }

@@ -30,5 +30,18 @@ fn write_cell(f: &mut fmt::Formatter<'_>, cell: &CellReport) -> fmt::Result {
         }
         writeln!(f, ", such as --seed {}", report.seed)?;
     }
+    let (known, avoidable, unavoidable) = (
+        cell.known_collisions,
+        cell.avoidable_collisions,
+        cell.unavoidable_collisions,
+    );
+    if known > 0 {
+        writeln!(
+            f,
+            "  known collisions {known}; from two seconds before {unavoidable} are proven unavoidable, \
+             {avoidable} avoidable, {} undecided",
+            known.saturating_sub(avoidable + unavoidable)
+        )?;
+    }
     Ok(())
 }

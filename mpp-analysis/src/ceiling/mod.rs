@@ -10,6 +10,7 @@
 //!     +-----> Guide --------> Search -> commands ---> Passable
 //! ```
 
+mod avoidable;
 mod envelope;
 mod error;
 mod free;
@@ -21,6 +22,7 @@ mod witness;
 #[cfg(test)]
 mod tests;
 
+pub use avoidable::{BEFORE, avoidable};
 pub use envelope::Envelope;
 pub use error::CeilingError;
 pub use report::{CeilingCell, CeilingReport};
@@ -29,7 +31,8 @@ use free::Interval;
 use guide::{Guide, Way};
 use mpp_sim::aircraft::Aircraft;
 use mpp_sim::faults::Faults;
-use mpp_sim::field::{Field, ObstacleField};
+use mpp_sim::field::{Field, ObstacleField, Point};
+use mpp_sim::plant::Plant;
 use mpp_sim::scenario::{ALTITUDE, Scenario};
 use reach::Reach;
 use serde::{Deserialize, Serialize};
@@ -122,22 +125,7 @@ const EFFORTS: [Effort; 4] = [
 /// # Errors
 /// [`CeilingError`] if the field or the aircraft is none that can be judged.
 pub fn decide(scenario: &Scenario, margin: f64) -> Result<Feasibility, CeilingError> {
-    let question = Question::new(scenario, margin)?;
-    let [first, harder @ ..] = &EFFORTS;
-    if question.witness(first).is_some() {
-        return Ok(Feasibility::Passable);
-    }
-    if let Some(place) = PROOFS.iter().find_map(|proof| question.blocked_at(proof)) {
-        return Ok(Feasibility::Blocked(place));
-    }
-    let passes = harder
-        .iter()
-        .any(|effort| question.witness(effort).is_some());
-    Ok(if passes {
-        Feasibility::Passable
-    } else {
-        Feasibility::Undecided
-    })
+    Ok(Question::new(scenario, margin)?.verdict())
 }
 
 /// The question whether a field can be passed.
@@ -145,11 +133,13 @@ struct Question {
     scenario: Scenario,
     field: ObstacleField,
     envelope: Envelope,
-    /// The aircraft at its start.
+    /// The aircraft where it starts from.
     aircraft: Aircraft,
     end: f64,
     band: Interval,
     margin: f64,
+    /// Whether the bounds of the envelope hold for the aircraft, so that a proof can be given.
+    provable: bool,
 }
 
 impl Question {
@@ -177,8 +167,36 @@ impl Question {
             end: END * scenario.world_scale,
             band: (ALTITUDE - scenario.band(), ALTITUDE + scenario.band()),
             margin: margin + scenario.body_radius,
+            provable: true,
             scenario,
         })
+    }
+
+    fn verdict(&self) -> Feasibility {
+        let passes = |effort| self.witness(effort).is_some();
+        let [first, harder @ ..] = &EFFORTS;
+        if passes(first) {
+            return Feasibility::Passable;
+        }
+        if let Some(place) = self.blocked() {
+            return Feasibility::Blocked(place);
+        }
+        if harder.iter().any(passes) {
+            Feasibility::Passable
+        } else {
+            Feasibility::Undecided
+        }
+    }
+
+    /// The place at which the field is proven to be blocked \[m\], if a proof would hold.
+    fn blocked(&self) -> Option<f64> {
+        let mut proofs = PROOFS.iter().filter(|_| self.provable);
+        proofs.find_map(|proof| self.blocked_at(proof))
+    }
+
+    fn start(&self) -> Point {
+        let state = self.aircraft.state();
+        (state.x, state.z)
     }
 
     /// The place that no flight of the envelope reaches \[m\], if there is one.
@@ -186,7 +204,8 @@ impl Question {
         let reach = Reach {
             obstacles: self.field.obstacles(),
             envelope: &self.envelope,
-            start: (0.0, ALTITUDE),
+            start: self.start(),
+            sine: libm::sin(self.aircraft.state().air.flight_path),
             end: self.end,
             band: self.band,
             margin: self.margin,
@@ -201,7 +220,7 @@ impl Question {
         let scale = self.scenario.world_scale;
         let guide = Guide::new(&Way {
             obstacles: self.field.obstacles(),
-            start: (0.0, ALTITUDE),
+            start: self.start(),
             end: self.end,
             band: self.band,
             margin: self.margin,

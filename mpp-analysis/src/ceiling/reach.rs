@@ -32,6 +32,8 @@ pub(super) struct Reach<'a> {
     pub(super) obstacles: &'a [Obstacle],
     pub(super) envelope: &'a Envelope,
     pub(super) start: Point,
+    /// Sine of the flight path angle at the start [-].
+    pub(super) sine: f64,
     /// Place that a flight has to reach \[m\].
     pub(super) end: f64,
     pub(super) band: Interval,
@@ -77,13 +79,13 @@ impl Reach<'_> {
     }
 
     /// The sines of a bin in a layer, as far as they are in the envelope; `None` if they are not. The first layer has the
-    /// single sine 0.
+    /// single sine of the start.
     fn sines(&self, bin: i64, layer: i64) -> Option<[f64; 2]> {
         if layer == 0 {
-            return Some([0.0, 0.0]);
+            return Some([self.sine; 2]);
         }
         let width = self.half_rate() * self.step / self.bins as f64;
-        let shift = self.middle_rate() * self.step * layer as f64;
+        let shift = self.sine + self.middle_rate() * self.step * layer as f64;
         let most = libm::sin(FLIGHT_PATH_LIMIT);
         let low = bin as f64 * width + shift - ROUNDING;
         let high = (bin + 1) as f64 * width + shift + ROUNDING;

@@ -4,9 +4,11 @@ use super::*;
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, air_rate};
 use mpp_sim::field::{Obstacle, Shape};
+use mpp_sim::flight::fly;
+use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::generator::{Generator, GeneratorName};
 use mpp_sim::outcome::Score;
-use mpp_sim::plant::Plant;
+use mpp_sim::pipe::DirectLink;
 use mpp_sim::scenario::Preset;
 use proptest::prelude::*;
 
@@ -77,6 +79,54 @@ fn a_step_is_blocked_where_the_tightest_turn_does_not_reach_its_edge() {
     }
 }
 
+/// From two seconds before a collision: what no turn reaches is proven, and a circle alone has a witness.
+#[test]
+fn a_wall_too_near_is_unavoidable_and_a_circle_two_seconds_ahead_is_not() {
+    let verdict = |scenario: &Scenario, place| {
+        let aircraft = Aircraft::new(scenario).unwrap();
+        let question = Question::before(scenario, aircraft, place).unwrap();
+        question.verdict()
+    };
+    // The gap is 10 m higher, and the wall 12 m ahead. A flight that may take 50 m gets there.
+    let [near, far] = [12.0, 50.0].map(|x| walls(&[(x, 59.0, 61.0)]));
+    assert!(matches!(verdict(&near, 11.5), Feasibility::Blocked(_)));
+    assert_eq!(verdict(&far, 49.5), Feasibility::Passable);
+    let mut circle = walls(&[]);
+    circle.placed = vec![Obstacle::circle(25.0, ALTITUDE, 1.0)];
+    assert_eq!(verdict(&circle, 24.0), Feasibility::Passable);
+    // What stands farther on than a second of flight does not count.
+    circle.placed.extend(walls(&[(40.0, 51.0, 49.0)]).placed);
+    assert_eq!(verdict(&circle, 24.0), Feasibility::Passable);
+    // A proof about still air says nothing about gusts.
+    let mut gusty = near.clone();
+    gusty.faults.gusts.intensity = 1.0;
+    assert_eq!(verdict(&gusty, 11.5), Feasibility::Undecided);
+}
+
+/// The aircraft before a collision is that of the flight, with its actuators and its air.
+#[test]
+fn the_aircraft_before_the_end_is_that_of_the_flight() {
+    let mut scenario = scenario(GeneratorName::Paper, 160, 7);
+    scenario.ticks = 400;
+    scenario.faults.gusts.intensity = 1.0;
+    scenario.faults.actuators.elevator_rate = Some(20.0);
+    scenario.faults.actuators.thrust_lag = Some(0.2);
+    let mut observer = FlightObserver::of(&scenario);
+    let mut ticks = Vec::new();
+    fly(&scenario, &mut DirectLink::of(&scenario), |record| {
+        observer.watch(record);
+        ticks.push(*record.tick);
+    })
+    .unwrap();
+    let mut aircraft = observer.aircraft_before(&scenario, 200).unwrap();
+    let place = ticks.len() - 200;
+    assert_eq!(*aircraft.state(), ticks[place].state);
+    for (before, after) in ticks[place..].iter().zip(&ticks[place + 1..]) {
+        assert_eq!(aircraft.step(before.control), Ok(before.applied));
+        assert_eq!(*aircraft.state(), after.state);
+    }
+}
+
 #[test]
 fn the_papers_fields_are_passable() {
     for seed in 1..4 {
@@ -137,11 +187,12 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A field from which everything is taken that a random flight of the envelope hits is not blocked as far as this flight
-    /// goes.
+    /// goes, from any of its states on.
     #[test]
     fn no_flight_passes_a_blocked_field(
         seed in 0_u64..1000,
         margin in 0.0_f64..0.4,
+        from in 0_usize..30,
         tried in proptest::collection::vec((0.0_f64..1.0, 0.0_f64..1.0), 60),
     ) {
         let mut scenario = scenario(GeneratorName::Sealed, 600, seed);
@@ -150,8 +201,12 @@ proptest! {
         let airframe = scenario.aircraft.known.airframe;
         let [low, high] = envelope.angle_of_attack;
         let mut aircraft = Aircraft::new(&scenario).unwrap();
-        let mut path = vec![(0.0, ALTITUDE)];
-        'flight: for (angle, thrust) in tried {
+        let (mut start, mut path) = (aircraft.clone(), vec![(0.0, ALTITUDE)]);
+        'flight: for (number, (angle, thrust)) in tried.into_iter().enumerate() {
+            if number == from {
+                let state = *aircraft.state();
+                (start, path) = (aircraft.clone(), vec![(state.x, state.z)]);
+            }
             for _ in 0..15 {
                 // A flight that climbs or sinks already turns back.
                 let slope = aircraft.state().air.flight_path;
@@ -176,9 +231,36 @@ proptest! {
             })
         }).cloned().collect();
         scenario.obstacles = 0;
-        let question = Question { end, ..Question::new(&scenario, margin).unwrap() };
+        let question = Question { end, aircraft: start, ..Question::new(&scenario, margin).unwrap() };
         prop_assert_eq!(question.blocked_at(&PROOFS[0]), None);
         prop_assert_eq!(question.blocked_at(&PROOFS[1]), None);
+    }
+
+    /// What has a witness is not proven to be unavoidable, whatever the aircraft flew before.
+    #[test]
+    fn an_avoidable_collision_is_not_proven_unavoidable(
+        seed in 0_u64..1000,
+        rate in proptest::option::of(10.0_f64..60.0),
+        tried in proptest::collection::vec((-0.8_f64..0.8, 0.0_f64..1.0), 1..40),
+    ) {
+        let mut scenario = scenario(GeneratorName::Paper, 400, seed);
+        scenario.faults.actuators.elevator_rate = rate;
+        let mut aircraft = Aircraft::new(&scenario).unwrap();
+        let trim = scenario.aircraft.trim;
+        let airframe = scenario.aircraft.known.airframe;
+        for (turn, thrust) in tried {
+            let slope = aircraft.state().air.flight_path;
+            let angle = trim.state.angle_of_attack() + 0.3 * (turn - slope).clamp(-0.8, 0.8);
+            for _ in 0..15 {
+                let elevator = airframe.elevator_for(angle);
+                aircraft.step(Control { thrust: 3.0 * thrust * trim.control.thrust, elevator }).unwrap();
+            }
+        }
+        let place = aircraft.state().x + 24.0;
+        let question = Question::before(&scenario, aircraft, place).unwrap();
+        if question.witness(&EFFORTS[0]).is_some() {
+            prop_assert_eq!(question.blocked(), None);
+        }
     }
 
     /// The turn of every state and control of the envelope lies within its bounds, for aircraft with every term.

@@ -63,7 +63,8 @@ impl Search<'_> {
             leg: (0, 0.0),
         }];
         let mut legs: Vec<Vec<Leg>> = Vec::new();
-        let longest = 3.0 * self.end / (self.cruise * self.hold * self.units.time);
+        let way = self.end - self.start.state().x;
+        let longest = 3.0 * way / (self.cruise * self.hold * self.units.time);
         for _ in 0..longest as usize {
             let near = self.near(&layer);
             let mut next = Vec::new();

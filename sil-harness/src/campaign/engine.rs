@@ -225,7 +225,13 @@ fn flown(
     let hash = hash.map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
     let core_ms = extras.timed.then_some(elapsed.as_secs_f64() * 1e3);
     let hash = hash.unwrap_or_default();
-    Ok(Row::new(cell.clone(), &log, &observer, hash, core_ms))
+    Ok(Row::new(
+        cell.clone(),
+        &scenario,
+        (&log, &observer),
+        hash,
+        core_ms,
+    ))
 }
 
 /// A link that measures how long the core works, if it is asked to. In this process the core works during `send`.
@@ -287,7 +293,10 @@ mod tests {
                 let mut wire = PipeLink::of(&scenario);
                 let log = fly(&scenario, &mut wire, |record| observer.watch(record)).unwrap();
                 let hash = log.hash().unwrap();
-                assert_eq!(row, Row::new(cell.clone(), &log, &observer, hash, None));
+                assert_eq!(
+                    row,
+                    Row::new(cell.clone(), &scenario, (&log, &observer), hash, None)
+                );
                 let brief = flown(&mut link, &campaign, &cell, 77, Extras::NONE).unwrap();
                 let log_hash = String::new();
                 assert_eq!(brief, Row { log_hash, ..row });
