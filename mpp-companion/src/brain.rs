@@ -7,6 +7,9 @@ use hil_protocol::{
 use mpp_sim::link::{Link, LinkError};
 use mpp_sim::pipe::PipeLink;
 
+/// The most ticks of a core that takes over: it has a plan, and has learnt nothing wrong yet.
+const FRESH: u32 = 30;
+
 /// What the core said in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Thought {
@@ -64,6 +67,11 @@ impl Brain {
             unsure: 0,
             last: None,
         })
+    }
+
+    /// Whether it may take over.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.next <= FRESH && self.planless == 0
     }
 
     /// Does the next tick. The frame's tick is `next`.

@@ -44,6 +44,35 @@ impl Clock {
     }
 }
 
+/// How much the clocks of two machines drift apart, at most \[parts in 10,000\].
+const DRIFT: u64 = 1;
+/// A time that is so much before the last one is that of a sender that restarted \[us\].
+const RESTART: u64 = 1_000_000;
+
+/// The clock of a sender that answers no questions: its quickest message so far is taken to have come at once.
+#[derive(Debug, Default)]
+pub(crate) struct SenderClock {
+    /// Our time less the sender's \[us\].
+    offset: Option<i64>,
+    /// Our time and the sender's of the last message.
+    last: (u64, u64),
+}
+
+impl SenderClock {
+    /// When a message was sent, by our clock. The sender took it for `theirs` \[us\].
+    pub(crate) fn sent(&mut self, now: u64, theirs: u64) -> u64 {
+        let offset = now.cast_signed().wrapping_sub(theirs.cast_signed());
+        let (before, last) = self.last;
+        let known = self
+            .offset
+            .filter(|_| theirs.saturating_add(RESTART) >= last);
+        let drift = (now.saturating_sub(before) * DRIFT / 10_000).cast_signed();
+        let quickest = known.map_or(offset, |known| offset.min(known.saturating_add(drift)));
+        (self.offset, self.last) = (Some(quickest), (now, theirs));
+        now.saturating_sub(offset.abs_diff(quickest))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -60,5 +89,22 @@ mod tests {
         assert!(clock.is_in_step());
         let age = clock.age(1_020_000, 6_000).unwrap();
         assert!((age - 0.02).abs() < 1e-9, "{age}");
+    }
+
+    #[test]
+    fn a_late_message_is_dated_back_and_a_restart_begins_anew() {
+        let mut clock = SenderClock::default();
+        for (now, theirs, sent) in [
+            (1_000_000, 77_000, 1_000_000),
+            (1_400_000, 177_000, 1_100_040),
+            // Quicker than ever.
+            (1_490_000, 577_000, 1_490_000),
+            (9_000_000, 5_000_000, 5_913_751),
+            (9_100_000, 3_000, 9_100_000),
+        ] {
+            assert_eq!(clock.sent(now, theirs), sent);
+        }
+        clock.sent(9_200_000, u64::MAX);
+        assert_eq!(clock.sent(9_300_000, 203_000), 9_300_000);
     }
 }

@@ -27,6 +27,17 @@ pub enum CompanionError {
     /// An address makes no sense.
     #[error("`{0}` is no address: give {1}")]
     Address(String, &'static str),
+    /// A mounting or a slice makes no sense.
+    #[error(
+        "{0}: give roll, pitch and yaw of the lidar in deg, as --mounting 90,0,0, and 0.1 to 30 deg as --slice"
+    )]
+    Mounting(String),
+    /// The lidar does not see the vertical plane.
+    #[error(
+        "as it is mounted the lidar sees {0} of {1} beams of the vertical plane, of 100 deg about the body axis: lay it on its \
+         side and say so with --mounting, as 90,0,0"
+    )]
+    Unseen(usize, usize),
     /// A log is damaged.
     #[error("the log is damaged at record {0}: record the flight anew")]
     Log(usize),

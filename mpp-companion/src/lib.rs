@@ -22,4 +22,5 @@ pub use autopilot::Kind;
 pub use companion::{Companion, Config, Side, Told};
 pub use error::CompanionError;
 pub use guard::{Reason, State};
+pub use lidar::{Mounting, ScanSource};
 pub use log::{LogWriter, Replayed, replay};

@@ -5,7 +5,8 @@ mod stream;
 
 use clap::{Parser, Subcommand};
 use mpp_companion::{
-    Companion, CompanionError, Config, Kind, LogWriter, Side, Told, replay, stand_in,
+    Companion, CompanionError, Config, Kind, LogWriter, Mounting, ScanSource, Side, Told, replay,
+    stand_in,
 };
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use port::Port;
@@ -16,6 +17,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
+
+/// The forms of `--lidar`.
+const LIDARS: &str = "udp:PORT, livox:PORT, obstacles:PORT or obstacles:autopilot";
+/// The usual slice of a Mid-360 \[deg\].
+const SLICE: f64 = 2.0;
 
 /// The flight core beside an autopilot.
 #[derive(Parser)]
@@ -39,9 +45,16 @@ enum Order {
         /// tcp:HOST:PORT or serial:DEVICE:BAUD.
         #[arg(long)]
         autopilot: String,
-        /// Port for scans of the lidar: udp:PORT.
+        /// Where scans come from: udp:PORT (frames of our link), livox:PORT (point data of a Mid-360), obstacles:PORT or
+        /// obstacles:autopilot (OBSTACLE_DISTANCE).
         #[arg(long)]
         lidar: String,
+        /// Roll, pitch and yaw of a Mid-360, or of the sensor of OBSTACLE_DISTANCE, against the aircraft [deg].
+        #[arg(long, default_value = "90,0,0", allow_hyphen_values = true)]
+        mounting: Mounting,
+        /// Points of a Mid-360 count that lie so near to the vertical plane of the course [deg].
+        #[arg(long, default_value_t = SLICE)]
+        slice: f64,
         /// Longest range of the lidar [m].
         #[arg(long)]
         range: f32,
@@ -66,6 +79,9 @@ enum Order {
         /// Kind of the autopilot.
         #[arg(long, default_value = "arduplane")]
         kind: Kind,
+        /// Source of the scans: udp, livox or obstacles.
+        #[arg(long, default_value = "udp")]
+        lidar: String,
         /// Flights of each set; a fault gets an eighth of them.
         #[arg(long, default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..))]
         flights: u64,
@@ -91,10 +107,12 @@ fn run(order: Order) -> Result<(), CompanionError> {
     match order {
         Order::StandIn {
             kind,
+            lidar,
             flights,
             seed,
         } => {
-            println!("{}", stand_in::figures(kind, flights, seed)?);
+            let source = source(&lidar, Mounting::SIDE, SLICE)?;
+            println!("{}", stand_in::figures(kind, source, flights, seed)?);
             Ok(())
         }
         Order::Latency => {
@@ -108,6 +126,8 @@ fn run(order: Order) -> Result<(), CompanionError> {
             aircraft,
             autopilot,
             lidar,
+            mounting,
+            slice,
             range,
             beams,
             replan_hz,
@@ -117,8 +137,10 @@ fn run(order: Order) -> Result<(), CompanionError> {
         } => {
             let text = std::fs::read_to_string(&aircraft).map_err(io("read the aircraft file"))?;
             let file = AircraftFile::parse(&aircraft.display().to_string(), &text)?;
+            let (name, port) = lidar.split_once(':').unwrap_or((&lidar, ""));
             let config = Config {
                 kind,
+                source: source(name, mounting, slice)?,
                 beams,
                 replan_ticks: 100 / replan_hz,
                 slices,
@@ -130,7 +152,7 @@ fn run(order: Order) -> Result<(), CompanionError> {
                 println!("{}", replay(&mut companion, BufReader::new(file))?);
                 return Ok(());
             }
-            let mut inputs = inputs(&autopilot, &lidar)?;
+            let mut inputs = inputs(&autopilot, &lidar, port)?;
             let log = log
                 .map(File::create)
                 .transpose()
@@ -153,18 +175,30 @@ struct Inputs {
     come: mpsc::Receiver<Input>,
 }
 
-fn inputs(autopilot: &str, lidar: &str) -> Result<Inputs, CompanionError> {
-    let port: Option<u16> = lidar
-        .strip_prefix("udp:")
-        .and_then(|port| port.parse().ok());
-    let port = port.ok_or_else(|| CompanionError::Address(lidar.to_owned(), "udp:PORT"))?;
+/// The source of this name.
+fn source(name: &str, mounting: Mounting, slice: f64) -> Result<ScanSource, CompanionError> {
+    match name {
+        "udp" => Ok(ScanSource::Frames),
+        "livox" => Ok(ScanSource::Livox(mounting, slice)),
+        "obstacles" => Ok(ScanSource::Obstacles(mounting)),
+        _ => Err(CompanionError::Address(name.to_owned(), LIDARS)),
+    }
+}
+
+fn inputs(autopilot: &str, lidar: &str, port: &str) -> Result<Inputs, CompanionError> {
+    let scans = match port.parse::<u16>() {
+        Ok(port) => Some(UdpSocket::bind(("0.0.0.0", port)).map_err(io("open the lidar's port"))?),
+        Err(_) if lidar == "obstacles:autopilot" => None,
+        Err(_) => return Err(CompanionError::Address(lidar.to_owned(), LIDARS)),
+    };
     let Port { mut read, write } = Port::open(autopilot, stream::USUAL)?;
-    let scans = UdpSocket::bind(("0.0.0.0", port)).map_err(io("open the lidar's port"))?;
     let (send, come) = mpsc::channel();
     let hears = send.clone();
     std::thread::spawn(move || hear(Side::Autopilot, &hears, &mut *read));
-    let mut listens = move |buffer: &mut [u8]| Ok(scans.recv(buffer).unwrap_or(0));
-    std::thread::spawn(move || hear(Side::Lidar, &send, &mut listens));
+    if let Some(scans) = scans {
+        let mut listens = move |buffer: &mut [u8]| Ok(scans.recv(buffer).unwrap_or(0));
+        std::thread::spawn(move || hear(Side::Lidar, &send, &mut listens));
+    }
     Ok(Inputs { write, come })
 }
 
@@ -230,7 +264,7 @@ fn fly(
         for told in companion.told() {
             match told {
                 Told::State(state, reason) => println!("{state:?}: {reason:?}"),
-                Told::Verified(text) | Told::Core(text) => println!("{text}"),
+                Told::Verified(text) | Told::Lidar(text) | Told::Core(text) => println!("{text}"),
             }
         }
     }

@@ -1,7 +1,9 @@
 //! Flights of the companion with the stand-in: what holds whatever the exchange does.
 
 use mpp_companion::stand_in::{Fault, Flight};
-use mpp_companion::{Companion, CompanionError, Config, Kind, Reason, State, Told};
+use mpp_companion::{
+    Companion, CompanionError, Config, Kind, Mounting, Reason, ScanSource, State, Told,
+};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 
 const KINDS: [Kind; 2] = [Kind::ArduPlane, Kind::Px4];
@@ -34,6 +36,35 @@ fn it_flies_past_obstacles_and_the_log_replays_to_the_last_bit() {
         ..flight
     };
     assert!(other.replay(&log).is_err());
+}
+
+/// Points in space and distances in one plane show what frames of the link show.
+#[test]
+fn other_sources_of_scans_fly_it_past_obstacles() {
+    let livox = ScanSource::Livox(Mounting::SIDE, 2.0);
+    let obstacles = ScanSource::Obstacles(Mounting::SIDE);
+    for (kind, source) in KINDS.into_iter().zip([livox, obstacles]) {
+        let fly = |fault| {
+            let flight = Flight {
+                kind,
+                source,
+                fault,
+                ..Flight::forty(12)
+            };
+            let mut log = Vec::new();
+            let outcome = flight.fly(Some(&mut log)).unwrap();
+            assert!(flight.replay(&log).unwrap().same > 300);
+            (outcome, flight.scenario().unwrap())
+        };
+        let (outcome, scenario) = fly(None);
+        assert!(outcome.is_strict(&scenario), "{outcome:?}");
+        let trouble = |told: &Told| matches!(told, Told::Lidar(_));
+        assert!(!outcome.told.iter().any(trouble), "{outcome:?}");
+        for fault in [Fault::LidarSilent, Fault::LidarFrozen] {
+            let back = Told::State(State::GiveBack, Reason::Climbed);
+            assert!(fly(Some(fault)).0.told.contains(&back), "{fault:?}");
+        }
+    }
 }
 
 /// PX4 banks as it is told, and its wings hang: without a loop of the companion it would be tens of metres from its course.

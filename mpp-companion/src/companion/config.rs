@@ -1,6 +1,7 @@
 //! What a companion flies.
 
 use crate::autopilot::Kind;
+use crate::lidar::{ScanSource, Wanted};
 use hil_protocol::{Configure, MAX_BEAMS};
 use mpp_sim::aircraft_file::AircraftModel;
 
@@ -11,6 +12,8 @@ pub struct Config {
     pub kind: Option<Kind>,
     /// The aircraft.
     pub model: AircraftModel,
+    /// What sends scans.
+    pub source: ScanSource,
     /// Beams of a scan.
     pub beams: u16,
     /// Longest range of the lidar \[m\].
@@ -31,6 +34,7 @@ impl Config {
     pub fn new(model: AircraftModel, range: f32) -> Self {
         Self {
             kind: None,
+            source: ScanSource::Frames,
             beams: 100,
             range,
             replan_ticks: 50,
@@ -39,6 +43,15 @@ impl Config {
             // The command is pitch above the path, and the path turns on until the command acts.
             lead: model.actuators.elevator_delay.unwrap_or(0.0),
             model,
+        }
+    }
+
+    /// The scan that the core wants.
+    pub(crate) fn wanted(&self) -> Wanted {
+        Wanted {
+            body: self.model.known.body_radius,
+            range: f64::from(self.range),
+            beams: usize::from(self.beams).clamp(2, MAX_BEAMS),
         }
     }
 

@@ -2,8 +2,9 @@
 
 use super::{Companion, Flown, Told};
 use crate::brain::Brain;
-use crate::frames::{CourseFrame, true_airspeed};
+use crate::frames::{CourseFrame, over_ground, true_airspeed};
 use crate::guard::State;
+use crate::lidar::{Pose, Rotation};
 use crate::setpoint::Setpoint;
 use hil_protocol::{AirData, GroundVelocity, LidarScan, Position, SensorFrame};
 use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
@@ -15,8 +16,6 @@ const MOST_TICKS: u32 = 50;
 /// A core that nobody obeys learns a wrong lift, and then takes its sensors for wrong. While the companion listens it begins
 /// anew after so many ticks.
 const DISOBEYED: u32 = 100;
-/// The most ticks of a core that takes over: it has a plan, and has learnt nothing wrong yet.
-pub(super) const FRESH: u32 = 30;
 
 impl Companion {
     pub(super) fn hear_position(&mut self, position: &LOCAL_POSITION_NED_DATA) {
@@ -95,6 +94,9 @@ impl Companion {
             }
         }
         let fresh = self.fresh_airspeed(now);
+        let pose = self.pose(0.0);
+        let old = self.clock.age(now, attitude.time_boot_ms).unwrap_or(0.0);
+        let at = now.saturating_sub((1e6 * old) as u64);
         let Some(flown) = &mut self.flown else {
             return;
         };
@@ -128,7 +130,7 @@ impl Companion {
                 frame.position = position(flown, tick);
                 let due = |scanned| next - scanned >= self.config.replan_ticks;
                 if flown.brain.scanned.is_none_or(due) {
-                    scan = self.lidar.take(now).map(|(age, scan)| {
+                    scan = self.lidar.take(now, at, pose.as_ref()).map(|(age, scan)| {
                         let ticks = (age / 1000) as u32 / TICK_MS;
                         let tick = tick.saturating_sub(ticks);
                         LidarScan { tick, ..scan }
@@ -141,6 +143,27 @@ impl Companion {
                 return;
             }
         }
+    }
+
+    /// Attitude and speed against the course, so long after the last attitude \[s\].
+    pub(super) fn pose(&self, later: f64) -> Option<Pose> {
+        let (attitude, position) = (self.heard.attitude.as_ref()?, self.heard.position.as_ref()?);
+        let (heading, speed) = over_ground(position);
+        let course = self
+            .flown
+            .as_ref()
+            .map_or(heading, |flown| flown.frame.course);
+        let turned = |angle: f32, rate: f32| f64::from(angle) + later * f64::from(rate);
+        let pitch = turned(attitude.pitch, attitude.pitchspeed);
+        let yaw = turned(attitude.yaw, attitude.yawspeed) - course;
+        let angles = [turned(attitude.roll, attitude.rollspeed), pitch, yaw];
+        let velocity = [speed * libm::cos(heading - course), -f64::from(position.vz)];
+        let is_finite = angles.iter().chain(&velocity).all(|it| it.is_finite());
+        is_finite.then(|| Pose {
+            attitude: Rotation::new(angles),
+            pitch,
+            velocity,
+        })
     }
 
     /// The setpoint that the core wants.

@@ -1,5 +1,6 @@
 //! The companion: inputs with their times go in, frames to the autopilot come out.
 
+mod asked;
 mod config;
 mod core_side;
 mod level;
@@ -14,15 +15,19 @@ use crate::checks::Checked;
 use crate::clock::Clock;
 use crate::frames::{CourseFrame, Placed};
 use crate::guard::{Guard, Reason, Sight, State};
-use crate::lidar::Lidar;
+use crate::lidar::{Lidar, Pose};
 use crate::setpoint::{Gate, Setpoint};
 use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
+use asked::Asked;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag, SET_ATTITUDE_TARGET_DATA,
 };
 
 /// Ticks for which the core may be without trust in a sensor: it flies on without that sensor.
 const UNSURE: u32 = 100;
+
+/// For how long an attitude is turned on by its rates, at most \[s\].
+const LATEST: f64 = 0.15;
 
 /// Where an input comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +47,8 @@ pub enum Told {
     State(State, Reason),
     /// What was verified, or why the companion is not ready.
     Verified(String),
+    /// What of the lidar is not used, and why.
+    Lidar(String),
     /// The core cannot fly.
     Core(String),
 }
@@ -91,7 +98,7 @@ pub struct Companion {
     /// Height \[m\] and line that PX4 was given on.
     held: Option<(f64, CourseFrame)>,
     flown: Option<Flown>,
-    asked: questions::Asked,
+    asked: Asked,
     told: Vec<Told>,
 }
 
@@ -100,7 +107,7 @@ impl Companion {
     ///
     /// # Errors
     /// [`CompanionError::Lacks`] or [`CompanionError::NoPitchLoop`] when the aircraft is not one that an autopilot flies,
-    /// [`CompanionError::Range`].
+    /// [`CompanionError::Range`], [`CompanionError::Mounting`] or [`CompanionError::Unseen`].
     pub fn new(config: Config) -> Result<Self, CompanionError> {
         if !(config.range > 0.0 && config.range.is_finite()) {
             return Err(CompanionError::Range(config.range));
@@ -115,19 +122,19 @@ impl Companion {
         }
         let kind = config.kind;
         Ok(Self {
+            lidar: Lidar::new(config.source, config.wanted())?,
             config,
             kind,
             thrust_max,
             framer: Framer::default(),
             sender: Sender::new(SYSTEM, OWN_COMPONENT),
             heard: Heard::default(),
-            lidar: Lidar::new(),
             clock: Clock::default(),
             checked: Checked::new(kind.unwrap_or(Kind::ArduPlane)),
             guard: Guard::new(0.0),
             held: None,
             flown: None,
-            asked: questions::Asked::default(),
+            asked: Asked::default(),
             told: Vec::new(),
         })
     }
@@ -149,16 +156,23 @@ impl Companion {
             Side::Autopilot => {
                 let mut messages = Vec::new();
                 self.framer.receive(bytes, |system, component, message| {
-                    if (system, component) == (u32::from(SYSTEM), AUTOPILOT) {
-                        messages.push(message);
+                    let autopilot = (system, component) == (u32::from(SYSTEM), AUTOPILOT);
+                    // A sensor may speak through the autopilot.
+                    if autopilot || matches!(message, Mav::OBSTACLE_DISTANCE(_)) {
+                        messages.push((autopilot, message));
                     }
                 });
-                for message in messages {
-                    self.heard.at = Some(now);
+                for (autopilot, message) in messages {
+                    if autopilot {
+                        self.heard.at = Some(now);
+                    }
                     self.hear(now, &message, send);
                 }
             }
-            Side::Lidar => self.lidar.receive(now, bytes),
+            Side::Lidar => {
+                let pose = self.pose_at(now);
+                self.lidar.receive(now, bytes, pose.as_ref());
+            }
             Side::Time => {
                 self.look(now, send);
                 self.ask(now, send);
@@ -192,9 +206,19 @@ impl Companion {
                 let origin = origin.filter(|origin| origin.is_finite());
                 self.heard.origin = origin.or(self.heard.origin);
             }
+            Mav::OBSTACLE_DISTANCE(told) => {
+                let pose = self.pose_at(now);
+                self.lidar.hear(now, told, pose.as_ref());
+            }
             Mav::ATTITUDE(attitude) => self.hear_attitude(now, attitude, send),
             _ => {}
         }
+    }
+
+    /// Attitude and speed at this time.
+    fn pose_at(&self, now: u64) -> Option<Pose> {
+        let told = self.heard.attitude.as_ref()?.time_boot_ms;
+        self.pose(self.clock.age(now, told)?.clamp(0.0, LATEST))
     }
 
     /// Before a heartbeat came the companion asks what it asks ArduPlane for.
@@ -212,7 +236,7 @@ impl Companion {
         self.kind = self.config.kind.or_else(|| Kind::of(beat));
         if self.asked_kind() != before {
             self.checked = Checked::new(self.asked_kind());
-            self.asked = questions::Asked::default();
+            self.asked = Asked::default();
         }
     }
 
@@ -290,7 +314,7 @@ impl Companion {
             verified: self.flaw().is_none(),
             ours: self.heard.armed && self.heard.mode == Some(self.asked_kind().manners().mode),
             level: self.is_level(),
-            fresh: brain.is_some_and(|brain| brain.next <= core_side::FRESH && brain.planless == 0),
+            fresh: brain.is_some_and(Brain::is_fresh),
             plans: brain.map_or(0, |brain| brain.plans),
             planless: brain.map_or(f64::INFINITY, |brain| f64::from(brain.planless) * 0.01),
             unseen: seconds(self.lidar.heard),

@@ -12,16 +12,6 @@ use mavlink::dialects::common::{
 /// Time between two questions \[us\].
 const SECOND: u64 = 1_000_000;
 
-/// When what was asked for.
-#[derive(Default)]
-pub(super) struct Asked {
-    second: Option<u64>,
-    sync: Option<u64>,
-    /// Whether the user was told what was verified.
-    pub(super) told: bool,
-    flaw: Option<String>,
-}
-
 impl Companion {
     /// Asks what is due.
     pub(super) fn ask(&mut self, now: u64, send: &mut dyn FnMut(&[u8])) {
@@ -34,12 +24,17 @@ impl Companion {
         if due(self.asked.sync, sync) {
             self.asked.sync = Some(now);
             let ts1 = i64::try_from(now).unwrap_or(i64::MAX).saturating_mul(1000);
-            self.send(&Mav::TIMESYNC(TIMESYNC_DATA { tc1: 0, ts1 }), send);
+            let question = TIMESYNC_DATA {
+                ts1,
+                ..TIMESYNC_DATA::DEFAULT
+            };
+            self.send(&Mav::TIMESYNC(question), send);
         }
         if due(self.asked.second, SECOND) {
             self.asked.second = Some(now);
             self.beat(send);
             self.ask_parameters(send);
+            self.told.extend(self.lidar.trouble().map(Told::Lidar));
         }
         self.hold_course(now, send);
     }

@@ -1,16 +1,25 @@
 //! The figures of the documentation, by one command.
 
 use super::{Fault, Flight, StandIn};
-use crate::{CompanionError, Kind, State, Told};
+use crate::{CompanionError, Kind, ScanSource, State, Told};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// Flies sets of flights from a first seed on, and gives a table.
+/// Flies sets of flights with this source of scans from a first seed on, and gives a table.
 ///
 /// # Errors
 /// [`CompanionError`].
-pub fn figures(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionError> {
-    let of = |flight| Flight { kind, ..flight };
+pub fn figures(
+    kind: Kind,
+    source: ScanSource,
+    flights: u64,
+    seed: u64,
+) -> Result<String, CompanionError> {
+    let of = |flight| Flight {
+        kind,
+        source,
+        ..flight
+    };
     let base = of(Flight::new(seed));
     let untold = Flight {
         told: false,
@@ -52,7 +61,7 @@ pub fn figures(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionE
         let back = count(&|one| !one.flown);
         text += &format!("| {name} | {strict} of {flights} | {touched} | {back} |\n");
     }
-    text += &faults(kind, (flights / 8).max(1), seed)?;
+    text += &faults(kind, source, (flights / 8).max(1), seed)?;
     text += &format!(
         "\nCompanion dies at -15 deg of pitch and 10 % of throttle: {:.1} m lost\n",
         lost(kind)?
@@ -61,7 +70,12 @@ pub fn figures(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionE
 }
 
 /// The faults of the exchange.
-fn faults(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionError> {
+fn faults(
+    kind: Kind,
+    source: ScanSource,
+    flights: u64,
+    seed: u64,
+) -> Result<String, CompanionError> {
     let mut text = format!(
         "\n| fault, {flights} flights each | setpoints after a take-over | not finite or beyond limits | last setpoint after a \
          take-over, ms | ends as |\n|---|---|---|---|---|\n"
@@ -74,6 +88,7 @@ fn faults(kind: Kind, flights: u64, seed: u64) -> Result<String, CompanionError>
                 Flight {
                     kind,
                     fault,
+                    source,
                     ..Flight::new(seed)
                 }
                 .fly(None)

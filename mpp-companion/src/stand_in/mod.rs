@@ -4,7 +4,7 @@
 mod autopilot;
 mod faults;
 mod figures;
-mod flight;
+pub(crate) mod flight;
 mod rules;
 
 pub use autopilot::StandIn;

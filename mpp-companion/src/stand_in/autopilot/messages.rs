@@ -73,6 +73,7 @@ impl StandIn {
                 roll: bank as f32,
                 pitch: (state.air.pitch + pitch) as f32,
                 yaw: course as f32,
+                pitchspeed: state.air.pitch_rate as f32,
                 ..ATTITUDE_DATA::DEFAULT
             })),
             self.sender

@@ -6,6 +6,7 @@ use super::rules::{self, Watch};
 use crate::autopilot::{AUTOPILOT, Kind, SYSTEM, px4};
 use crate::frames::roll_pitch;
 use crate::level::Level;
+use crate::lidar::Rotation;
 use crate::wire::{Framer, Mav, Sender};
 use mavlink::dialects::common::{
     COMMAND_INT_DATA, COMMAND_LONG_DATA, MavCmd, SET_ATTITUDE_TARGET_DATA, TIMESYNC_DATA,
@@ -130,6 +131,12 @@ impl StandIn {
             x: state.x + self.carried,
             ..state
         }
+    }
+
+    /// From the axes of the body to ahead along the first course, right and down.
+    pub(crate) fn attitude(&self) -> Rotation {
+        let [bank, course, _] = self.lateral;
+        Rotation::new([bank, self.plant.state().air.pitch, course - self.course])
     }
 
     /// The distance from the first course \[m\].

@@ -1,16 +1,18 @@
 //! One flight of companion and stand-in, in lockstep and in simulated time.
 
 mod exchange;
+pub(crate) mod rig;
 
 use super::autopilot::StandIn;
 use super::faults::Fault;
 use crate::wire::Framer;
-use crate::{Companion, CompanionError, Config, Kind, LogWriter, Replayed, Side, State, Told};
-use hil_protocol::{MAX_FRAME, Message, encode};
+use crate::{
+    Companion, CompanionError, Config, Kind, LogWriter, Replayed, ScanSource, Side, State, Told,
+};
 use mpp_sim::field::Field;
-use mpp_sim::lidar::{FanLidar, Lidar};
 use mpp_sim::random::{Draws, Stream, generator};
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+use rig::Rig;
 use std::collections::VecDeque;
 
 /// How far the field is moved, so that it begins where the core takes over: level flight of 7 s.
@@ -41,6 +43,8 @@ pub struct Flight {
     pub gusts: f64,
     /// Fault of the exchange.
     pub fault: Option<Fault>,
+    /// What sends scans.
+    pub source: ScanSource,
 }
 
 /// How it went.
@@ -90,6 +94,7 @@ impl Flight {
             wind: 0.0,
             gusts: 0.0,
             fault: None,
+            source: ScanSource::Frames,
         }
     }
 
@@ -129,6 +134,7 @@ impl Flight {
             model.actuators.elevator_delay = None;
         }
         Config {
+            source: self.source,
             replan_ticks: scenario.replan_ticks,
             ..Config::new(model, scenario.lidar.farthest() as f32)
         }
@@ -152,7 +158,7 @@ impl Flight {
         let autopilot = StandIn::new(self.kind, &plant, self.wind, self.dead).map_err(no_trim)?;
         let run = Run {
             kind: self.kind,
-            lidar: FanLidar::new(self.seed, scenario.lidar),
+            rig: Rig::new(self.source, self.seed, scenario.lidar),
             noise: generator(self.seed, Stream::AirspeedSensor),
             fault: self.fault,
             companion,
@@ -188,7 +194,7 @@ struct Run<'a> {
     kind: Kind,
     companion: Companion,
     autopilot: StandIn,
-    lidar: FanLidar,
+    rig: Rig,
     noise: Draws,
     fault: Option<Fault>,
     log: Option<LogWriter<&'a mut Vec<u8>>>,
@@ -198,7 +204,7 @@ struct Run<'a> {
     framer: Framer,
     count: u32,
     held: Option<Vec<u8>>,
-    frozen: Option<Vec<u8>>,
+    frozen: Option<Vec<Vec<u8>>>,
     /// Whether the companion had the aircraft in the last tick.
     given: bool,
     /// When the pilot took over, and whether the companion heard of it.
@@ -219,7 +225,7 @@ impl Run<'_> {
         let mut start = None;
         while self.autopilot.state().x < end && self.autopilot.tick < 9000 {
             let before = self.autopilot.state();
-            self.tick(scenario, &field);
+            self.tick(&field);
             if self.autopilot.step().is_err() {
                 self.outcome.clearance = -1.0;
                 break;
@@ -261,7 +267,7 @@ impl Run<'_> {
         u64::try_from(3_000_000 + 10_000 * tick + slower).unwrap_or(0)
     }
 
-    fn tick(&mut self, scenario: &Scenario, field: &dyn Field) {
+    fn tick(&mut self, field: &dyn Field) {
         let tick = self.autopilot.tick;
         if tick == CHOSEN {
             self.autopilot.give();
@@ -286,9 +292,7 @@ impl Run<'_> {
             }
             self.input(Side::Time, &[]);
         }
-        if tick.is_multiple_of(10) {
-            self.scan(scenario, field);
-        }
+        self.scan(field);
         while self.up.front().is_some_and(|(due, _)| *due <= tick) {
             let Some((_, frame)) = self.up.pop_front() else {
                 break;
@@ -299,18 +303,17 @@ impl Run<'_> {
         self.deliver(tick);
     }
 
-    fn scan(&mut self, scenario: &Scenario, field: &dyn Field) {
-        let ranges = self.lidar.scan(&self.autopilot.state(), field);
-        let scan = scenario.lidar.wire_scan(0, &ranges);
-        let mut buffer = [0; MAX_FRAME];
-        let Ok(frame) = encode(&Message::LidarScan(scan), &mut buffer) else {
-            return;
-        };
-        let frame = match self.acting() {
+    fn scan(&mut self, field: &dyn Field) {
+        let mut sent = self.rig.sends(&self.autopilot, field);
+        match self.acting() {
             Some(Fault::LidarSilent) => return,
-            Some(Fault::LidarFrozen) => self.frozen.get_or_insert(frame.to_vec()).clone(),
-            _ => frame.to_vec(),
-        };
-        self.input(Side::Lidar, &frame);
+            Some(Fault::LidarFrozen) if !sent.is_empty() => {
+                sent = self.frozen.get_or_insert(sent).clone();
+            }
+            _ => {}
+        }
+        for bytes in sent {
+            self.input(Side::Lidar, &bytes);
+        }
     }
 }
