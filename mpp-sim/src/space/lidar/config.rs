@@ -189,8 +189,8 @@ impl LidarName {
     }
 }
 
-/// Most beams of a sweep that fliers keep, and how far from the axis \[deg\]: azimuth and elevation. Source: the core has room for
-/// 2,048 points; the view is about that of `grid-90x16`.
+/// Most beams of a sweep that fliers keep, and how far from straight ahead \[deg\]: azimuth and elevation. Source: the core has
+/// room for 2,048 points; the view is about that of `grid-90x16`.
 const MOST_KEPT: u32 = 2000;
 const KEPT: [f64; 2] = [45.0, 20.0];
 
@@ -215,17 +215,19 @@ impl SpaceLidarConfig {
         Ok(kept)
     }
 
-    /// The beams that a flier keeps of a sweep: of scattered ones those ahead, and of these as many as the core has room for.
+    /// The beams that a flier keeps of a sweep: of scattered ones those ahead, and of these as many as the core has room for. The
+    /// sensor is tilted so that the middle of its view looks ahead.
     fn thinned(self) -> Self {
         let Pattern::Scattered { beams } = self.pattern else {
             return self;
         };
-        let kept = |[least, most]: [f64; 2], far: f64| {
-            let kept = [least.max(-far), most.min(far)];
+        let kept = |[least, most]: [f64; 2], middle: f64, far: f64| {
+            let kept = [least.max(middle - far), most.min(middle + far)];
             (kept, (kept[1] - kept[0]) / (most - least))
         };
-        let (azimuth, ahead) = kept(self.azimuth, KEPT[0]);
-        let (elevation, level) = kept(self.elevation, KEPT[1]);
+        let tilt = 0.5 * (self.elevation[0] + self.elevation[1]);
+        let (azimuth, ahead) = kept(self.azimuth, 0.0, KEPT[0]);
+        let (elevation, level) = kept(self.elevation, tilt, KEPT[1]);
         let beams = (f64::from(beams) * ahead * level) as u32;
         Self {
             pattern: Pattern::Scattered {
@@ -233,6 +235,7 @@ impl SpaceLidarConfig {
             },
             azimuth,
             elevation,
+            mount: Quaternion::pitch(-tilt.to_radians()),
             ..self
         }
     }

@@ -279,10 +279,15 @@ fn a_flier_keeps_the_beams_ahead_for_which_the_core_has_room() {
     let ahead = SpaceLidarConfig {
         pattern: Pattern::Scattered { beams: 2000 },
         azimuth: [-45.0, 45.0],
-        elevation: [-7.0, 20.0],
+        elevation: [2.5, 42.5],
+        mount: Quaternion::pitch(-22.5_f64.to_radians()),
         ..LidarName::Mid360.config()
     };
     assert_eq!(kept, ahead);
+    // It looks up, so it is tilted down: it sees as much above as below what is ahead.
+    let sweep = SpaceLidar::new(1, kept).sweep_at(&world(&[]), &level(HIGH));
+    let down = sweep.iter().map(|beam| beam.direction[2]);
+    assert!((down.sum::<f64>() / sweep.len() as f64).abs() < 0.05);
     let grid = SpaceLidarConfig::kept("grid-90x16").unwrap();
     assert_eq!(grid, LidarName::Grid90x16.config());
     for (name, advice) in [("os1-32", "room for 2048 of its"), ("os2", "mid-360")] {
