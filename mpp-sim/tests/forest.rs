@@ -49,6 +49,20 @@ fn way() -> Vec<Body> {
     vec![trunk(60.0, 0.1), trunk(120.0, 30.0)]
 }
 
+/// A wing without a rudder, whose nose runs away.
+#[test]
+fn zagi_crosses_a_light_forest() {
+    let arrived = (964_000..964_004).filter(|seed| {
+        let file = SpaceFile {
+            aircraft: Some(AircraftFile::known("zagi").unwrap()),
+            sphere: None,
+            ..forest(0.01, *seed)
+        };
+        flown(file, None).unwrap().summary.outcome == Outcome::Survived
+    });
+    assert!(arrived.count() >= 3);
+}
+
 #[test]
 fn light_forests_are_crossed_and_the_same_seed_flies_the_same() {
     let mut arrived = 0;

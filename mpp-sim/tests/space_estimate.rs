@@ -288,7 +288,11 @@ fn the_elevator_balances_no_angle_beyond_the_greatest() {
         ..plan
     };
     let rates = [0.0; 3];
-    let motion = SpaceMotion { path, rates };
+    let motion = SpaceMotion {
+        path,
+        rates,
+        sideslip: 0.0,
+    };
     let control = SpaceControl {
         thrust: model.trim.control.thrust,
         ..SpaceControl::default()

@@ -45,3 +45,23 @@ fn write_cell(f: &mut fmt::Formatter<'_>, cell: &CellReport) -> fmt::Result {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Campaign, Lists};
+    use super::*;
+    use mpp_sim::scenario::ScenarioFile;
+
+    #[test]
+    fn known_collisions_are_avoidable_or_not_or_undecided() {
+        let campaign = Campaign::new(ScenarioFile::default(), Lists::default(), 1, Some(1));
+        let mut report = Report::new(&campaign.unwrap(), &[]);
+        assert!(!Taxonomy(&report).to_string().contains("known"));
+        let cell = &mut report.cells[0];
+        (cell.known_collisions, cell.avoidable_collisions) = (7, 4);
+        cell.unavoidable_collisions = 1;
+        let text = Taxonomy(&report).to_string();
+        let line = "known collisions 7; from two seconds before 1 are proven unavoidable, 4 avoidable, 2 undecided";
+        assert!(text.contains(line), "{text}");
+    }
+}

@@ -2,7 +2,8 @@
 //!
 //! A verdict speaks about the flights of an [`Envelope`], in still air and without faults. A field is *blocked* if an outer
 //! approximation of what these flights reach ends before the field does (`reach.rs`). It is *passable* if a flight of the simulated
-//! aircraft passes it (`witness.rs`). If neither is found, the field stays undecided.
+//! aircraft passes it (`witness.rs`). If neither is found, the field stays undecided. `avoidable.rs` asks the same from
+//! shortly before a collision.
 //!
 //! ```text
 //! Scenario -> Envelope ----> Reach -----------------> Blocked

@@ -5,7 +5,7 @@ use crate::config::TICK_PERIOD;
 use crate::tuning::lateral::{BANDWIDTH, INTEGRAL_SHARE, INTEGRAL_TIME, RUDDER, SIDESLIP};
 use crate::units::Units;
 use crate::vehicle::{
-    Airframe, GRAVITY, LateralAirframe, LateralControl, LateralLinearization, Trim,
+    Airframe, GRAVITY, LateralAirframe, LateralControl, LateralLinearization, Nose, Trim,
     linearize_lateral, within,
 };
 use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
@@ -15,7 +15,7 @@ use nalgebra::{Matrix2, Matrix2x4, Matrix4, Vector2, Vector4};
 #[error("no gain of the lateral regulator holds a bank: check the lateral table of the aircraft")]
 pub struct NoLateralGain(#[from] pub RiccatiError);
 
-/// What the regulator knows of the lateral motion. Nothing measures the sideslip.
+/// What the regulator knows of the lateral motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LateralMotion {
     /// Airspeed [m/s].
@@ -26,22 +26,26 @@ pub struct LateralMotion {
     pub roll_rate: f64,
     /// Yaw rate [rad/s].
     pub yaw_rate: f64,
+    /// Sideslip \[rad\]. Nothing measures it, and only a wing whose nose runs away needs it.
+    pub sideslip: f64,
 }
 
 /// State feedback `u = u_turn - K (x - x_turn) + integral` about a coordinated turn, designed in level flight. Its gains fall
 /// with the dynamic pressure, because the surfaces grow with it; the deflections of the turn fall with the airspeed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LateralRegulator {
-    /// Gain `K` of aileron and rudder on sideslip (always 0), roll rate, yaw rate, bank.
+    /// Gain `K` of aileron and rudder on sideslip (0 if the nose stays), roll rate, yaw rate, bank.
     pub gain: Matrix2x4<f64>,
-    /// Deflections that hold a roll rate and a yaw rate, per rad/s.
+    /// Deflections that hold a roll rate and a yaw rate, per rad/s, and the sideslip then.
     hold: Matrix2<f64>,
+    slip: Vector2<f64>,
+    nose: Option<Nose>,
     /// Airspeed [m/s] and pitch \[rad\] of the design.
     airspeed: f64,
     pitch: (f64, f64),
     /// Greatest deflections \[rad\].
     limits: [f64; 2],
-    /// Aileron of the integral, and its limit \[rad\]; 0 for a wing whose ailerons alone hold no turn.
+    /// Aileron of the integral, and its limit \[rad\]; 0 if the nose runs away: a lasting aileron then banks to the other side.
     integral: f64,
     most_integral: f64,
 }
@@ -68,26 +72,30 @@ impl LateralRegulator {
         let g = linear.b * inverse * linear.b.transpose();
         let cost = solve_riccati(&linear.a, &g, &q)?;
         let k = inverse * linear.b.transpose() * cost;
-        let gain = Matrix2x4::new(0.0, k.m12, k.m13, k.m14, 0.0, k.m22, k.m23, k.m24);
+        let [aileron, rudder] = limits;
+        let nose = Nose::of(&linear).filter(|_| rudder <= 0.0);
+        let by_slip = nose.map_or(0.0, |_| k.m11);
+        let gain = Matrix2x4::new(by_slip, k.m12, k.m13, k.m14, 0.0, k.m22, k.m23, k.m24);
         // A closed loop that grows has no Lyapunov function.
         let closed = linear.a - linear.b * gain;
         solve_riccati(&closed, &Matrix4::zeros(), &q)?;
-        let hold = hold(&linear, limits);
+        let (hold, slip) = match nose {
+            Some(_) => turn(&linear),
+            None => (hold(&linear, limits), Vector2::zeros()),
+        };
         if !hold.iter().all(|it| it.is_finite()) {
             return Err(RiccatiError::Singular.into());
         }
-        let [aileron, rudder] = limits;
-        // Ailerons that hold the bank of such a wing let the nose run away: a lasting aileron banks it to the other side.
-        let stiffness = linear.a.m31 - linear.a.m21 * linear.b.m31 / linear.b.m21;
-        let departs = rudder <= 0.0 && stiffness < 0.0;
         Ok(Self {
             gain,
             hold,
+            slip,
+            nose,
             airspeed: trim.state.airspeed,
             pitch: libm::sincos(trim.state.pitch),
             limits,
             integral: 0.0,
-            most_integral: if departs {
+            most_integral: if nose.is_some() {
                 0.0
             } else {
                 aileron * INTEGRAL_SHARE
@@ -108,11 +116,36 @@ impl LateralRegulator {
     }
 
     /// The command that follows a bank \[rad\] which changes at a rate [rad/s]. It has no integral: whoever plans the bank corrects
-    /// what is left.
+    /// what is left, and minds the nose if it runs away.
     #[must_use]
     pub fn follow(&self, motion: &LateralMotion, bank: f64, bank_rate: f64) -> LateralControl {
-        let command = self.deflections(motion, bank, bank_rate);
+        let command = match &self.nose {
+            Some(nose) => self.rolled(nose, motion, bank, bank_rate),
+            None => self.deflections(motion, bank, bank_rate),
+        };
         self.limited(command.unwrap_or_default())
+    }
+
+    /// The aileron that rolls to a bank whatever the nose does.
+    fn rolled(
+        &self,
+        nose: &Nose,
+        motion: &LateralMotion,
+        bank: f64,
+        bank_rate: f64,
+    ) -> Option<LateralControl> {
+        let ratio = self.airspeed / motion.airspeed.max(0.5 * self.airspeed);
+        let (sin_pitch, cos_pitch) = self.pitch;
+        let roll_rate = bank_rate - motion.yaw_rate * sin_pitch / cos_pitch;
+        let [slip, roll, yaw] = nose.aileron;
+        let held = slip * motion.sideslip + (roll * roll_rate + yaw * motion.yaw_rate) * ratio;
+        let off =
+            self.gain.m12 * (motion.roll_rate - roll_rate) + self.gain.m14 * (motion.bank - bank);
+        let aileron = held - off * (ratio * ratio);
+        aileron.is_finite().then_some(LateralControl {
+            aileron,
+            rudder: 0.0,
+        })
     }
 
     fn limited(&self, command: LateralControl) -> LateralControl {
@@ -135,6 +168,7 @@ impl LateralRegulator {
             motion.bank,
             motion.roll_rate,
             motion.yaw_rate,
+            motion.sideslip,
             bank,
             bank_rate,
         ];
@@ -148,7 +182,7 @@ impl LateralRegulator {
         let roll = -turn * sin_pitch + bank_rate;
         let steady = Vector2::new(roll, turn * cos_pitch * cos_bank);
         let error = Vector4::new(
-            0.0,
+            motion.sideslip - self.slip.dot(&steady) * ratio,
             motion.roll_rate - steady.x,
             motion.yaw_rate - steady.y,
             motion.bank - bank,
@@ -159,6 +193,17 @@ impl LateralRegulator {
             rudder: command.y,
         })
     }
+}
+
+/// As [`hold`], for a wing whose nose runs away, with the sideslip \[rad\] per rad/s that leaves no moment with the aileron alone.
+fn turn(linear: &LateralLinearization) -> (Matrix2<f64>, Vector2<f64>) {
+    let (a, b) = (&linear.a, &linear.b);
+    let determinant = a.m21 * b.m31 - a.m31 * b.m21;
+    let slip =
+        Vector2::new(b.m21 * a.m32 - b.m31 * a.m22, b.m21 * a.m33 - b.m31 * a.m23) / determinant;
+    let aileron =
+        Vector2::new(a.m31 * a.m22 - a.m21 * a.m32, a.m31 * a.m23 - a.m21 * a.m33) / determinant;
+    (Matrix2::new(aileron.x, aileron.y, 0.0, 0.0), slip)
 }
 
 /// Deflections per steady roll and yaw rate that leave no moment without sideslip. Without a rudder they leave no rolling

@@ -27,6 +27,8 @@ pub struct SpaceMotion {
     pub path: SpacePath,
     /// Roll rate, pitch rate, yaw rate of the body [rad/s].
     pub rates: [f64; 3],
+    /// Sideslip \[rad\].
+    pub sideslip: f64,
 }
 
 /// Follows a plan in space.
@@ -97,6 +99,7 @@ impl SpaceRegulator {
             bank: path.bank,
             roll_rate,
             yaw_rate,
+            sideslip: motion.sideslip,
         };
         let rate = ahead.1.bank_rate;
         (command, self.lateral.follow(&lateral, bank, rate))

@@ -64,6 +64,8 @@ pub mod space_judgement {
     pub const ROOM_WEIGHT: f64 = 0.8;
     /// Weight of the squared distance of a plan's end from the wanted height [1/m^2]. Source: S.
     pub const END_HEIGHT: f64 = 0.2;
+    /// Weight of the squared runaway of the nose at the end of a plan [1/rad^2]. Source: D67.
+    pub const RUNAWAY: f64 = 10.0;
     /// Cost of a plan that does not reach the line from which the cost-to-go counts [-]. Source: S.
     pub const SHORT: f64 = 100.0;
     /// Weight of a point beyond that line [-]: it will be planned again. Source: S.

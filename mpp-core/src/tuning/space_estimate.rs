@@ -53,6 +53,8 @@ pub mod space_air {
     pub const SIDESLIP: f64 = 0.087;
     /// Greatest angle to the flow that a force may tell \[rad\]. Source: chosen, 30 deg.
     pub const MOST_ANGLE: f64 = 0.52;
+    /// Standard deviation and greatest value of the sideslip \[rad\] of a wing whose nose runs away. Source: D67.
+    pub const RUNAWAY: [f64; 2] = [0.5, 1.0];
     /// Least airspeed that a sound sample has, as a share of that of level flight [-]. Source: chosen.
     pub const LEAST_SHARE: f64 = 0.4;
     /// Greatest wind along an axis, as a share of the airspeed of level flight [-]. Source: chosen.

@@ -4,6 +4,7 @@ mod conditions;
 mod dynamics;
 mod lateral;
 mod linearize;
+mod nose;
 mod point_mass;
 mod pose;
 mod quaternion;
@@ -22,6 +23,7 @@ pub use linearize::{JacobianForm, Linearization, linearize};
 pub use mpp_data::{
     ActuatorLimits, Airframe, Control, Derivatives, GRAVITY, LateralAirframe, LateralControl,
 };
+pub use nose::Nose;
 pub use point_mass::{PathControl, PathState};
 pub use pose::{Pose, ScanPoses};
 pub use quaternion::Quaternion;

@@ -3,7 +3,7 @@
 //!
 //! World: x ahead, y to the right, z up. Bank and course are positive to the right.
 
-use super::{Airframe, GRAVITY, Trim, TrimError};
+use super::{Airframe, GRAVITY, Nose, Trim, TrimError};
 
 /// Least airspeed in the equations [m/s]. It keeps their divisor away from zero.
 const LEAST_AIRSPEED: f64 = 3.0;
@@ -59,6 +59,8 @@ pub struct SpaceModel {
     pub bank_rate: f64,
     /// Velocity of the air over ground [m/s].
     pub wind: [f64; 3],
+    /// The nose, if it runs away.
+    pub nose: Option<Nose>,
 }
 
 /// Angle of attack beyond that of level flight that a plan may use \[rad\], and its distance from the stall. More lift turns more
@@ -90,6 +92,7 @@ impl SpaceModel {
         bank: 0.0,
         bank_rate: 0.0,
         wind: [0.0; 3],
+        nose: None,
     };
 
     /// The model of an aircraft at an airspeed [m/s], with the stall \[rad\], the greatest thrust \[N\], bank \[rad\] and rate of
@@ -120,6 +123,7 @@ impl SpaceModel {
             bank,
             bank_rate,
             wind: [0.0; 3],
+            nose: None,
         })
     }
 

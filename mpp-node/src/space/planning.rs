@@ -8,7 +8,7 @@ use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
 use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner};
-use mpp_core::vehicle::SpaceControl;
+use mpp_core::vehicle::{Nose, SpaceControl};
 
 /// Points that go into the map in one slice.
 const SLICE_POINTS: usize = 24;
@@ -137,6 +137,9 @@ impl Session {
             }
         };
         planner.set_wind(model.wind);
+        let [roll, _, yaw] = motion.rates;
+        let runaway = |nose: &Nose| nose.runaway(motion.sideslip, [roll, yaw], motion.path.bank);
+        planner.set_runaway(model.nose.as_ref().map_or(0.0, runaway));
         planner.begin(&start, shift);
         self.last_cycle = Some(tick);
         self.cycle = Some(Cycle {

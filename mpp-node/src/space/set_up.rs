@@ -8,7 +8,9 @@ use hil_protocol::{
 use mpp_core::control::{LateralRegulator, SpaceRegulator};
 use mpp_core::estimate::SpaceEstimator;
 use mpp_core::planner::space::Keep;
-use mpp_core::vehicle::{Derivatives, LateralAirframe, LateralControl, SpaceModel};
+use mpp_core::vehicle::{
+    Derivatives, LateralAirframe, LateralControl, Nose, SpaceModel, linearize_lateral,
+};
 
 /// Room that floor and ceiling must leave, and the sides \[m\]: some voxels.
 const LEAST_ROOM: f64 = 1.0;
@@ -82,9 +84,12 @@ impl SpaceTask {
         if !(low..=high).contains(&told.altitude) {
             return Err(ConfigureVerdict::SpaceLimits);
         }
-        let model = model(told, &limits)?;
+        let mut model = model(told, &limits)?;
         let most = lateral.surfaces_max.map(|most| most.unwrap_or(f64::MAX));
         let airframe = &told.aircraft.airframe;
+        let linear = linearize_lateral(airframe, &lateral.airframe, &model.trim);
+        let [_, rudder] = most;
+        model.nose = Nose::of(&linear).filter(|_| rudder <= 0.0);
         let holds = LateralRegulator::design(airframe, &lateral.airframe, &model.trim, most)
             .map_err(|_| ConfigureVerdict::LateralGain)?;
         let keep = Keep {

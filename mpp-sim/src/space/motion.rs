@@ -107,6 +107,7 @@ impl SpaceState {
             bank: self.bank(),
             roll_rate: self.lateral.roll_rate,
             yaw_rate: self.lateral.yaw_rate,
+            sideslip: self.lateral.sideslip,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::config::TICK_PERIOD;
 use crate::estimate::MeasurementStatus;
 use crate::tuning::navigation::{FIRST_WIND, GATE, RESTART_TIME};
 use crate::tuning::space_air::{
-    LEAST_SHARE, MOST_ANGLE, MOST_SHARE, QUICK, SIDE_FORCE, SIDESLIP, SIGMA, SMOOTH, TIME,
+    LEAST_SHARE, MOST_ANGLE, MOST_SHARE, QUICK, RUNAWAY, SIDE_FORCE, SIDESLIP, SIGMA, SMOOTH, TIME,
 };
 use crate::vehicle::{LateralAirframe, LateralControl, Quaternion, SpaceModel, within};
 
@@ -180,13 +180,17 @@ impl AirFilter {
         let other = self.lateral.side.coefficient(0.0, rates, *surfaces);
         // The most probable sideslip: little force for a radian tells little.
         let slope = per_mass * self.lateral.side.sideslip;
-        let (known, unknown) = (slope * SIDESLIP, SIDE_FORCE);
+        let [usual, most] = match self.model.nose {
+            Some(_) => RUNAWAY,
+            None => [SIDESLIP, MOST_ANGLE],
+        };
+        let (known, unknown) = (slope * usual, SIDE_FORCE);
         let share = known * known / (known * known + unknown * unknown);
         let slip = if share > 0.0 {
             share * (right - per_mass * other) / slope
         } else {
             0.0
         };
-        [attack, slip].map(|it| within(it, MOST_ANGLE))
+        [within(attack, MOST_ANGLE), within(slip, most)]
     }
 }

@@ -294,10 +294,11 @@ impl SpaceEstimator {
         let flow = self.flow()?;
         let [x, y, z] = [0, 1, 2].map(|axis| flow.velocity[axis] - wind[axis]);
         let level = libm::hypot(x, y);
+        let [angle_of_attack, sideslip] = self.air.angles(flow.attitude, flow.velocity);
         let mut path = SpacePath {
             position: self.position()?,
             airspeed: libm::hypot(level, z),
-            angle_of_attack: self.air.angles(flow.attitude, flow.velocity)[0],
+            angle_of_attack,
             bank: 0.0,
             flight_path: libm::atan2(z, level),
             course: libm::atan2(y, x),
@@ -306,6 +307,7 @@ impl SpaceEstimator {
         Some(SpaceMotion {
             path,
             rates: flow.rates,
+            sideslip,
         })
     }
 

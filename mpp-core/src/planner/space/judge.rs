@@ -5,13 +5,15 @@ use super::cost_to_go::CostToGo;
 use super::keep::Keep;
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelField;
-use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, SHORT};
+use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, RUNAWAY, SHORT};
 use crate::tuning::space_program::CONTROL;
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
-use crate::vehicle::{SpaceControl, SpaceModel, SpacePath};
+use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between as limit};
 
-/// Points at which a stage is judged.
-const POINTS: usize = 4;
+/// Distance of the points at which a stage is judged \[m\], their least number and their greatest. A wing is judged abeam of what
+/// it may hit, so points further apart miss it.
+const APART: f64 = 0.75;
+const POINTS: [f64; 2] = [4.0, 16.0];
 
 /// Worth of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,6 +33,8 @@ pub(super) struct Tally {
     to_go: Option<f64>,
     /// Velocity over ground at the knot [m/s].
     velocity: [f64; 3],
+    /// Runaway of the nose at the knot \[rad\].
+    runaway: f64,
 }
 
 impl Tally {
@@ -46,6 +50,8 @@ pub(super) struct Judge<'a> {
     pub(super) to_go: &'a CostToGo,
     pub(super) model: &'a SpaceModel,
     pub(super) keep: &'a Keep,
+    /// Runaway of the nose at the first knot \[rad\].
+    pub(super) runaway: f64,
 }
 
 impl Judge<'_> {
@@ -66,6 +72,7 @@ impl Judge<'_> {
             missing: 0.0,
             to_go: None,
             velocity: first.ground_velocity(&self.model.wind),
+            runaway: self.runaway,
         }
     }
 
@@ -80,8 +87,15 @@ impl Judge<'_> {
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
         let [_, after] = velocities;
         tally.velocity = after;
-        for index in 1..=POINTS {
-            let share = index as f64 / POINTS as f64;
+        if let Some(nose) = &self.model.nose {
+            tally.runaway = nose.after_stage(tally.runaway, 0.5 * (from.bank + to.bank));
+        }
+        let [least, _] = POINTS;
+        let points = libm::round(self.model.trim.state.airspeed * STAGE_PERIOD / APART);
+        let points = limit(points, POINTS);
+        let discount = discount * (least / points);
+        for index in 1..=points as usize {
+            let share = index as f64 / points;
             let point = between(from, to, &velocities, share);
             let later = if point[0] <= via { 1.0 } else { LATER };
             if tally.to_go.is_none() && point[0] >= via {
@@ -99,7 +113,7 @@ impl Judge<'_> {
             tally.missing = tally.missing.max(lack * later);
             if field.is_unknown(&point) {
                 let near = 1.0 - (point[0] - first.position[0]) / UNKNOWN_AHEAD;
-                tally.price += UNKNOWN_COST * later * near.max(0.0);
+                tally.price += UNKNOWN_COST * later * (least / points) * near.max(0.0);
             }
         }
     }
@@ -124,6 +138,7 @@ impl Judge<'_> {
         let fast = last.airspeed - trim.state.airspeed;
         let turned =
             last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
+        let turned = turned + RUNAWAY * tally.runaway * tally.runaway;
         let to_go = tally.to_go.unwrap_or(SHORT);
         price += 0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go;
         SpaceJudgement {

@@ -136,6 +136,8 @@ pub struct SpacePlanner {
     /// The best plan as moves begin with it, once one was tried.
     unmoved: Option<Unmoved>,
     start: SpacePath,
+    /// Runaway of the nose at the start \[rad\].
+    runaway: f64,
     /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
     previous: Option<(SpacePlan, f64)>,
     phase: Phase,
@@ -160,6 +162,7 @@ impl SpacePlanner {
             best: None,
             unmoved: None,
             start: SpacePath::ORIGIN,
+            runaway: 0.0,
             previous: None,
             phase: Phase::Idle,
             steps: 0,
@@ -185,6 +188,11 @@ impl SpacePlanner {
     /// Tells the wind that plans count on [m/s].
     pub fn set_wind(&mut self, wind: [f64; 3]) {
         self.model.wind = wind;
+    }
+
+    /// Tells the runaway of the nose at the start of the next plan \[rad\].
+    pub fn set_runaway(&mut self, runaway: f64) {
+        self.runaway = runaway;
     }
 
     /// The model of the aircraft, with the wind.

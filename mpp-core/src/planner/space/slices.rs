@@ -211,6 +211,7 @@ impl SpacePlanner {
             to_go: &self.to_go,
             model: &self.model,
             keep: &self.keep,
+            runaway: self.runaway,
         }
     }
 

@@ -1,13 +1,11 @@
 //! Working sets of several rows: a start between faces that cross, and blocks of rows of inputs.
 
-use super::super::super::layout::{LAST_ROWS, ROWS};
+use super::super::super::layout::LAST_ROWS;
 use super::super::controls::add_all;
 use super::super::dot;
 use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver, Stands};
 use crate::qp::Status;
 
-/// Greatest number of rows in a block: one of each of the last pairs.
-pub(super) const PAIRED: usize = (ROWS - LAST_ROWS) / 2;
 /// Rows of a block that are taken up in one part of a step.
 const PART_ROWS: usize = 6;
 /// Share of its norm that a row of a block has to have apart from the rows before it.
@@ -44,7 +42,6 @@ impl Solver {
 
     /// Begins to take up all violated rows of inputs at once, if the worst row is one. They hardly depend on each other.
     /// Returns false, and changes nothing, if there is only one.
-    #[inline(never)]
     pub(super) fn begin_block(
         &mut self,
         shared: &Condensed,
@@ -80,7 +77,6 @@ impl Solver {
     }
 
     /// Takes up some rows of a block, from one on. Returns false, and drops the block, if fewer than two have room.
-    #[inline(never)]
     pub(super) fn take_up_rows(
         &mut self,
         shared: &Condensed,
@@ -107,15 +103,15 @@ impl Solver {
     }
 
     /// Moves the multipliers of a block to the next event.
-    pub(super) fn settle_block(&mut self, shared: &Condensed, worst: Active) -> Option<Status> {
+    pub(super) fn settle_block(&mut self, shared: &Condensed) -> Option<Status> {
         match self.settle(shared) {
             Err(status) => return Some(status),
-            Ok(false) => {
-                self.stands = Stands::Settling(worst);
-                return None;
-            }
+            Ok(false) => return None,
             Ok(true) => {}
         }
+        let Stands::Settling(worst) = core::mem::replace(&mut self.stands, Stands::Free) else {
+            return None;
+        };
         if self.dual > self.problem.cost_limit {
             return Some(Status::Dominated);
         }
@@ -154,9 +150,6 @@ impl Solver {
     /// all rows are tight.
     #[inline(never)]
     fn settle(&mut self, shared: &Condensed) -> Result<bool, Status> {
-        if self.drop_falling() {
-            return Ok(false);
-        }
         if self.iterations >= super::MAX_ITERATIONS {
             return Err(Status::IterationLimit);
         }
@@ -169,8 +162,7 @@ impl Solver {
         self.factor.forward_from(&mut moves, first);
         let mut rises = moves;
         self.factor.backward(&mut rises);
-        self.mark_falling(&rises);
-        if self.drop_falling() {
+        if self.drop_falling(first, &rises) {
             return Ok(false);
         }
         let (length, event) = self.first_change(&rises);
@@ -216,17 +208,19 @@ impl Solver {
         violations
     }
 
-    /// Marks the fresh rows whose multipliers would fall below zero at once.
-    fn mark_falling(&mut self, rises: &[f64; CAPACITY]) {
-        for (own, rise) in self.active.iter_mut().zip(rises) {
-            own.falls = own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0;
+    /// Drops the fresh rows whose multipliers would fall below zero at once.
+    fn drop_falling(&mut self, first: usize, rises: &[f64; CAPACITY]) -> bool {
+        let before = self.active.len();
+        for index in (first..before).rev() {
+            let row = self.active.get(index).zip(rises.get(index));
+            let falls = row.is_some_and(|(own, rise)| {
+                own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0
+            });
+            if falls {
+                self.deactivate(index);
+            }
         }
-    }
-
-    /// Drops the last row that falls, if there is one.
-    fn drop_falling(&mut self) -> bool {
-        let last = self.active.iter().rposition(|own| own.falls);
-        last.and_then(|index| self.deactivate(index)).is_some()
+        self.active.len() < before
     }
 
     /// Share of a step up to the first row that leaves or changes sides, and this row: its index and whether it changes

@@ -150,6 +150,8 @@ impl Solver {
     }
 
     /// The verdict on multipliers that have grown until the cost is absurd.
+    // Not inlined: two callers, and it is rare.
+    #[inline(never)]
     pub(super) fn excessive_multipliers(
         &mut self,
         shared: &Condensed,

@@ -18,7 +18,7 @@ mod step;
 mod working_set;
 
 use super::super::excess::worst_excess;
-use super::super::layout::OUTPUTS;
+use super::super::layout::{LAST_ROWS, OUTPUTS, ROWS};
 use super::super::outputs::outputs;
 use super::super::{Bounds, Problem, RowKind};
 use super::factor::{CAPACITY, Direction as Aligned, Factor};
@@ -26,10 +26,12 @@ use super::shortlist::Shortlist;
 use super::{CONTROLS, Condensed, ControlVector, RowPattern, Solution};
 use crate::config::STAGES;
 use crate::qp::Status;
-use block::PAIRED;
 
 /// Greatest number of iterations of one solve.
 pub const MAX_ITERATIONS: usize = 400;
+
+/// Greatest number of rows in a block: one of each of the last pairs.
+const PAIRED: usize = (ROWS - LAST_ROWS) / 2;
 
 /// Excess above which a row counts as violated [m, rad or N].
 const TOLERANCE: f64 = 1e-9;
@@ -56,8 +58,6 @@ struct Active {
     price: f64,
     /// Whether the row is part of a block that enters, and not tight yet.
     fresh: bool,
-    /// Whether the row leaves before the multipliers of its block move.
-    falls: bool,
 }
 
 /// The row that enters.

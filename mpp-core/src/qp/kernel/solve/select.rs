@@ -57,7 +57,6 @@ impl Solver {
             yielded: false,
             price,
             fresh: false,
-            falls: false,
         })
     }
 

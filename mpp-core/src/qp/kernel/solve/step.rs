@@ -29,25 +29,29 @@ enum Event {
 impl Solver {
     /// A part of a step of the method, which goes from one event to the next. Only blocks take more than one part.
     pub(super) fn step(&mut self, shared: &Condensed) -> Option<Status> {
+        if matches!(self.stands, Stands::Settling(_)) {
+            return self.settle_block(shared);
+        }
         let mut entering = match core::mem::replace(&mut self.stands, Stands::Free) {
             Stands::Entering(entering) => entering,
-            Stands::Free => {
-                let (row, violation) = match self.select(shared) {
-                    Ok(selected) => selected,
-                    Err(status) => return Some(status),
+            stands => {
+                let (row, violation) = if let Stands::TakingUp(row, violation, from) = stands {
+                    if self.take_up_rows(shared, (row, violation), from) {
+                        return None;
+                    }
+                    (row, violation)
+                } else {
+                    let (row, violation) = match self.select(shared) {
+                        Ok(selected) => selected,
+                        Err(status) => return Some(status),
+                    };
+                    if self.begin_block(shared, row, violation) {
+                        return None;
+                    }
+                    (row, violation)
                 };
-                if self.begin_block(shared, row, violation) {
-                    return None;
-                }
                 self.meet(shared, row, violation)
             }
-            Stands::TakingUp(row, violation, from) => {
-                if self.take_up_rows(shared, (row, violation), from) {
-                    return None;
-                }
-                self.meet(shared, row, violation)
-            }
-            Stands::Settling(row) => return self.settle_block(shared, row),
         };
         let mut direction = self.direction(&entering.row, entering.norm);
         let mut full = (entering.violation / direction.complement).max(0.0);
