@@ -53,6 +53,17 @@ def test_intervals_are_wilsons():
     assert math.isclose(low, 0.838, abs_tol=5e-4) and math.isclose(high, 0.912, abs_tol=5e-4)
 
 
+def test_the_agent_flies_as_it_has_learned(root):
+    """The network without Stable-Baselines3, in all cells."""
+    command = [sys.executable, root / "bindings/python/examples/agent.py"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    rows = [line.split() for line in done.stdout.splitlines()[:3]]
+    counts = {name: [int(count) for count in own] for name, *own in rows}
+    assert counts.keys() == set(benchmark.AIRCRAFT)
+    # Other processors round other sums, so some flights differ.
+    assert all(one >= 19 and two >= 18 for one, two, *_ in counts.values()), counts
+
+
 def test_the_command_prints_the_table():
     command = [sys.executable, "-m", "mppflight.benchmark", "--every", "60"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
