@@ -4,7 +4,7 @@
 //! sum of sideslip and yaw rate grows, `eta' = growth eta + by_bank phi`. It is the zero of the aileron's effect on the bank, in
 //! the right half plane. No surface stops it, but a bank to the other side does: so plans have to.
 
-use super::{LateralLinearization, within};
+use super::LateralLinearization;
 use crate::config::STAGE_PERIOD;
 
 /// Greatest runaway that counts \[rad\]: that of a sideslip at which no equation holds.
@@ -53,10 +53,8 @@ impl Nose {
     #[must_use]
     pub fn runaway(&self, sideslip: f64, [roll_rate, yaw_rate]: [f64; 2], bank: f64) -> f64 {
         let [roll, yaw, banked] = self.by;
-        within(
-            sideslip + roll * roll_rate + yaw * yaw_rate + banked * bank,
-            MOST,
-        )
+        let runaway = sideslip + roll * roll_rate + yaw * yaw_rate + banked * bank;
+        runaway.clamp(-MOST, MOST)
     }
 
     /// The runaway \[rad\] after a stage with a mean bank \[rad\].
