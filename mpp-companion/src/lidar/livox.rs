@@ -140,7 +140,8 @@ impl Flow {
     pub(crate) fn count(&mut self, count: u16) -> Option<u32> {
         let gap = self.last.map_or(1, |last| count.wrapping_sub(last));
         self.last = Some(count);
-        (gap > 0).then_some(if gap < 1024 { u32::from(gap) - 1 } else { 0 })
+        let missing = u32::from(gap).checked_sub(1)?;
+        Some(if missing < 1023 { missing } else { 0 })
     }
 
     /// Whether points were taken for nine tenths of the window before this datagram: what is missing would look like air.
