@@ -4,7 +4,8 @@
     python agent.py --train 12000000    # learns anew in other fields: pip install stable-baselines3
 
 It moves elevator and thrust ten times a second, and sees the last scan and the measurements. All is in the aircraft's
-own units, so one network (agent.npz) flies all three. It has no model, no map and no memory but its last action.
+own units, so one network (agent.npz) flies all three. It has no model, no map and no memory but its last action
+and measurements.
 """
 
 from __future__ import annotations

@@ -69,8 +69,7 @@ impl Rig {
                 frame.map(|frame| vec![frame.to_vec()]).unwrap_or_default()
             }
             ScanSource::Obstacles(_) if scans => vec![self.distances(autopilot, field)],
-            ScanSource::Livox(mounting, _) => [0; 2]
-                .iter()
+            ScanSource::Livox(mounting, _) => (0..2)
                 .map(|_| self.points(autopilot, mounting, field))
                 .collect(),
             _ => Vec::new(),
