@@ -144,14 +144,11 @@ fn flown(campaign: &Grid, cell: &Cell, seed: u64) -> PyResult<Row> {
     let mut observer = FlightObserver::of(&scenario);
     let mut link = DirectLink::of(&scenario);
     let log = fly(&scenario, &mut link, |record| observer.watch(record)).map_err(errors::flight)?;
-    let hash = log.hash().map_err(input)?;
-    Ok(Row::new(
-        cell.clone(),
-        &scenario,
-        (&log, &observer),
-        hash,
-        None,
-    ))
+    let row = Row {
+        log_hash: log.hash().map_err(input)?,
+        ..Row::new(cell.clone(), &log, &observer)
+    };
+    Ok(row.judged(&scenario, &observer))
 }
 
 /// Each of these values of one name.

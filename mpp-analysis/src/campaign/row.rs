@@ -24,7 +24,8 @@ pub struct Row {
     /// Whether it collided with an obstacle that a beam had met more than 1 s before; not written if not.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub known_collision: bool,
-    /// Whether commands of its last two seconds could have avoided such a collision; not written if that is undecided.
+    /// Whether commands of its last two seconds could have avoided such a collision; not written if that is undecided, or
+    /// nobody asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub avoidable: Option<bool>,
     /// The flight log's hash; empty in a campaign that keeps no rows.
@@ -35,30 +36,28 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row of a flight.
+    /// The row of a flight, with nothing that costs time: neither hash nor judgement.
     #[must_use]
-    pub fn new(
-        cell: Cell,
-        scenario: &Scenario,
-        (log, observer): (&FlightLog, &FlightObserver),
-        log_hash: String,
-        core_ms: Option<f64>,
-    ) -> Self {
-        let known_collision = observer.known_collision(log);
-        // Of a field that cannot be judged nothing is proven.
-        let avoidable = known_collision
-            .then(|| avoidable(scenario, observer).ok().flatten())
-            .flatten();
+    pub fn new(cell: Cell, log: &FlightLog, observer: &FlightObserver) -> Self {
         Self {
             cell,
             seed: log.header.seed,
             success: log.summary.outcome == Outcome::Survived,
             summary: log.summary,
-            known_collision,
-            avoidable,
-            log_hash,
-            core_ms,
+            known_collision: observer.known_collision(log),
+            avoidable: None,
+            log_hash: String::new(),
+            core_ms: None,
         }
+    }
+
+    /// The row with its collision judged, if it is one with a known obstacle.
+    #[must_use]
+    pub fn judged(self, scenario: &Scenario, observer: &FlightObserver) -> Self {
+        // Of a field that cannot be judged nothing is proven.
+        let verdict = || avoidable(scenario, observer).ok().flatten();
+        let avoidable = self.known_collision.then(verdict).flatten();
+        Self { avoidable, ..self }
     }
 
     /// Whether two rows agree about a flight. The wall time does not count.

@@ -28,6 +28,8 @@ const STACK: usize = 8 << 20;
 pub struct Extras {
     /// The log's hash; without it the flights have no log.
     pub hashed: bool,
+    /// Whether known collisions were avoidable, which takes a tenth of a dense campaign's time.
+    pub judged: bool,
     /// The core's wall time.
     pub timed: bool,
 }
@@ -36,11 +38,13 @@ impl Extras {
     /// What a report needs.
     pub const NONE: Self = Self {
         hashed: false,
+        judged: false,
         timed: false,
     };
-    /// The hash alone: the rows depend on the seeds alone.
+    /// What the seeds alone determine, as row files hold it.
     pub const HASHED: Self = Self {
         hashed: true,
+        judged: true,
         timed: false,
     };
 }
@@ -223,15 +227,16 @@ fn flown(
         .map_err(|error| CampaignError::Flight(Box::new(cell.clone()), seed, error))?;
     let hash = extras.hashed.then(|| log.hash()).transpose();
     let hash = hash.map_err(|error| CampaignError::Log(Box::new(cell.clone()), seed, error))?;
-    let core_ms = extras.timed.then_some(elapsed.as_secs_f64() * 1e3);
-    let hash = hash.unwrap_or_default();
-    Ok(Row::new(
-        cell.clone(),
-        &scenario,
-        (&log, &observer),
-        hash,
-        core_ms,
-    ))
+    let row = Row {
+        log_hash: hash.unwrap_or_default(),
+        core_ms: extras.timed.then_some(elapsed.as_secs_f64() * 1e3),
+        ..Row::new(cell.clone(), &log, &observer)
+    };
+    Ok(if extras.judged {
+        row.judged(&scenario, &observer)
+    } else {
+        row
+    })
 }
 
 /// A link that measures how long the core works, if it is asked to. In this process the core works during `send`.
@@ -292,14 +297,13 @@ mod tests {
                 let mut observer = FlightObserver::of(&scenario);
                 let mut wire = PipeLink::of(&scenario);
                 let log = fly(&scenario, &mut wire, |record| observer.watch(record)).unwrap();
-                let hash = log.hash().unwrap();
+                let brief = Row::new(cell.clone(), &log, &observer);
                 assert_eq!(
-                    row,
-                    Row::new(cell.clone(), &scenario, (&log, &observer), hash, None)
+                    flown(&mut link, &campaign, &cell, 77, Extras::NONE).unwrap(),
+                    brief
                 );
-                let brief = flown(&mut link, &campaign, &cell, 77, Extras::NONE).unwrap();
-                let log_hash = String::new();
-                assert_eq!(brief, Row { log_hash, ..row });
+                let log_hash = log.hash().unwrap();
+                assert_eq!(row, Row { log_hash, ..brief }.judged(&scenario, &observer));
             }
         }
     }

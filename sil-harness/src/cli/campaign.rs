@@ -321,6 +321,7 @@ fn fly_missing(
     let progress = progress_bar(jobs.len() as u64, "flights");
     let extras = Extras {
         hashed: args.out.is_some(),
+        judged: args.out.is_some() || args.taxonomy || args.json,
         timed: args.timing,
     };
     let sink = Mutex::new(kept);
