@@ -60,6 +60,9 @@ fn other_sources_of_scans_fly_it_past_obstacles() {
         assert!(outcome.is_strict(&scenario), "{outcome:?}");
         let trouble = |told: &Told| matches!(told, Told::Lidar(_));
         assert!(!outcome.told.iter().any(trouble), "{outcome:?}");
+        // Each third attitude is none: the one before places the points.
+        let (outcome, scenario) = fly(Some(Fault::NotFinite));
+        assert!(outcome.is_strict(&scenario), "{outcome:?}");
         for fault in [Fault::LidarSilent, Fault::LidarFrozen] {
             let back = Told::State(State::GiveBack, Reason::Climbed);
             assert!(fly(Some(fault)).0.told.contains(&back), "{fault:?}");

@@ -1,6 +1,6 @@
 //! The core's part of the companion: measurements to its ticks, its command to a setpoint.
 
-use super::{Companion, Flown, Told};
+use super::{Companion, Flown, LATEST, Told};
 use crate::brain::Brain;
 use crate::frames::{CourseFrame, over_ground, true_airspeed};
 use crate::guard::State;
@@ -94,7 +94,10 @@ impl Companion {
             }
         }
         let fresh = self.fresh_airspeed(now);
-        let pose = self.pose(0.0);
+        let since =
+            |sound: &ATTITUDE_DATA| attitude.time_boot_ms.saturating_sub(sound.time_boot_ms);
+        let since = self.heard.sound.as_ref().map(since);
+        let pose = since.and_then(|since| self.pose(1e-3 * f64::from(since)));
         let old = self.clock.age(now, attitude.time_boot_ms).unwrap_or(0.0);
         let at = now.saturating_sub((1e6 * old) as u64);
         let Some(flown) = &mut self.flown else {
@@ -145,21 +148,22 @@ impl Companion {
         }
     }
 
-    /// Attitude and speed against the course, so long after the last attitude \[s\].
+    /// Attitude and speed against the course, so long after the last sound attitude \[s\].
     pub(super) fn pose(&self, later: f64) -> Option<Pose> {
-        let (attitude, position) = (self.heard.attitude.as_ref()?, self.heard.position.as_ref()?);
+        let (attitude, position) = (self.heard.sound.as_ref()?, self.heard.position.as_ref()?);
         let (heading, speed) = over_ground(position);
         let course = self
             .flown
             .as_ref()
             .map_or(heading, |flown| flown.frame.course);
-        let turned = |angle: f32, rate: f32| f64::from(angle) + later * f64::from(rate);
+        let turn = later.max(0.0);
+        let turned = |angle: f32, rate: f32| f64::from(angle) + turn * f64::from(rate);
         let pitch = turned(attitude.pitch, attitude.pitchspeed);
         let yaw = turned(attitude.yaw, attitude.yawspeed) - course;
         let angles = [turned(attitude.roll, attitude.rollspeed), pitch, yaw];
         let velocity = [speed * libm::cos(heading - course), -f64::from(position.vz)];
-        let is_finite = angles.iter().chain(&velocity).all(|it| it.is_finite());
-        is_finite.then(|| Pose {
+        let holds = later <= LATEST && velocity.iter().all(|it| it.is_finite());
+        holds.then(|| Pose {
             attitude: Rotation::new(angles),
             pitch,
             velocity,
@@ -177,6 +181,13 @@ impl Companion {
             throttle: thought.command.thrust / self.thrust_max,
         })
     }
+}
+
+/// Whether each angle and rate is a number.
+pub(super) fn is_finite(it: &ATTITUDE_DATA) -> bool {
+    let angles = [it.roll, it.pitch, it.yaw];
+    let rates = [it.rollspeed, it.pitchspeed, it.yawspeed];
+    angles.iter().chain(&rates).all(|it| it.is_finite())
 }
 
 /// The position that came since the last tick.

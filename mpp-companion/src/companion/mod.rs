@@ -19,6 +19,7 @@ use crate::lidar::{Lidar, Pose};
 use crate::setpoint::{Gate, Setpoint};
 use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
 use asked::Asked;
+use core_side::is_finite;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag, SET_ATTITUDE_TARGET_DATA,
 };
@@ -26,7 +27,7 @@ use mavlink::dialects::common::{
 /// Ticks for which the core may be without trust in a sensor: it flies on without that sensor.
 const UNSURE: u32 = 100;
 
-/// For how long an attitude is turned on by its rates, at most \[s\].
+/// For how long an attitude is turned on by its rates \[s\]. From then on it shows no pose.
 const LATEST: f64 = 0.15;
 
 /// Where an input comes from.
@@ -61,6 +62,8 @@ struct Heard {
     armed: bool,
     mode: Option<u32>,
     attitude: Option<ATTITUDE_DATA>,
+    /// The last attitude whose numbers are all finite.
+    sound: Option<ATTITUDE_DATA>,
     position: Option<LOCAL_POSITION_NED_DATA>,
     /// Height of the estimator's origin above home \[m\].
     origin: Option<f32>,
@@ -217,8 +220,8 @@ impl Companion {
 
     /// Attitude and speed at this time.
     fn pose_at(&self, now: u64) -> Option<Pose> {
-        let told = self.heard.attitude.as_ref()?.time_boot_ms;
-        self.pose(self.clock.age(now, told)?.clamp(0.0, LATEST))
+        let told = self.heard.sound.as_ref()?.time_boot_ms;
+        self.pose(self.clock.age(now, told)?)
     }
 
     /// Before a heartbeat came the companion asks what it asks ArduPlane for.
@@ -248,6 +251,9 @@ impl Companion {
             return;
         }
         self.heard.attitude = Some(attitude.clone());
+        if is_finite(attitude) {
+            self.heard.sound = Some(attitude.clone());
+        }
         self.look(now, send);
         self.think(now, attitude);
         self.look(now, send);
