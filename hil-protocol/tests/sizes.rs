@@ -188,6 +188,7 @@ fn of_an_aircraft_in_space() {
         },
         surfaces_max: [Some(FLOAT); 2],
         surface_rate: Some(FLOAT),
+        roll_loop: Some(FLOAT),
     };
     assert_eq!(payload(&lateral), ConfigureLateral::MAX_SIZE);
     let limits = ConfigureSpace {

@@ -85,6 +85,7 @@ fn lateral() -> ConfigureLateral {
         },
         surfaces_max: [Some(0.5); 2],
         surface_rate: None,
+        roll_loop: None,
     }
 }
 
@@ -173,6 +174,13 @@ fn each_part_of_a_configuration_gets_its_verdict() {
         odd = lateral();
         odd.airframe.product_inertia = 1.0;
         assert_eq!(ask(Message::ConfigureLateral(odd)), LateralAircraft);
+        for dead_time in [f64::NAN, -0.1, 0.4] {
+            let odd = ConfigureLateral {
+                roll_loop: Some(dead_time),
+                ..lateral()
+            };
+            assert_eq!(ask(Message::ConfigureLateral(odd)), LateralAircraft);
+        }
         assert_eq!(ask(Message::ConfigureLateral(lateral())), Accepted);
         for limits in [
             ConfigureSpace {

@@ -183,7 +183,7 @@ pub struct LateralColumns {
     pub aileron: Vec<f64>,
     /// Commanded rudder \[rad\].
     pub rudder: Vec<f64>,
-    /// Aileron that the servo gave \[rad\].
+    /// Aileron that the servo gave, or bank that the autopilot holds \[rad\].
     pub applied_aileron: Vec<f64>,
     /// Rudder that the servo gave \[rad\].
     pub applied_rudder: Vec<f64>,

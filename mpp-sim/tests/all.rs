@@ -8,6 +8,7 @@ mod baselines;
 mod common;
 mod faults;
 mod forest;
+mod loops;
 mod orders;
 mod own_world;
 mod space;

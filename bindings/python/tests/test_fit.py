@@ -11,6 +11,7 @@ import mppflight
 import numpy
 import pytest
 from mppflight import fit
+from mppflight.roll import roll_loop
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +19,8 @@ def flown():
     """A random aircraft with a pitch loop, and its log."""
     rng = numpy.random.default_rng([7, 0])
     keys, delay = fit_trial.aircraft(rng)
-    return keys, fit_trial.truth(keys, delay), fit_trial.fly(keys, delay, rng)
+    rolls = fit_trial.roll_loop(rng)
+    return keys, fit_trial.truth(keys | {"roll_loop": rolls}, delay), fit_trial.fly(keys, delay, rng, rolls=rolls)
 
 
 def save(path, log):
@@ -34,8 +36,8 @@ def command(*arguments):
     return subprocess.run(run, capture_output=True, text=True)
 
 
-def fitted(path, keys):
-    done = command(path, "--mass", keys["mass"], "--wing-area", keys["wing_area"], "--cruise", keys["cruise"])
+def fitted(path, keys, *more):
+    done = command(path, "--mass", keys["mass"], "--wing-area", keys["wing_area"], "--cruise", keys["cruise"], *more)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -43,14 +45,16 @@ def fitted(path, keys):
 def near(text, true):
     """Whether the values of a file are as near to the truth as asked."""
     found = {f"{table}.{key}": v for table, it in tomllib.loads(text).items() if isinstance(it, dict) for key, v in it.items()}
-    errors = {name: fit_trial.error(name, found[name], true[name]) for name in fit_trial.WANTED}
-    assert all(errors[name] <= most for name, most in fit_trial.WANTED.items()), errors
+    wanted = fit_trial.WANTED | (fit_trial.WANTED_ROLL if "roll_loop.frequency" in found else {})
+    errors = {name: fit_trial.error(name, found[name], true[name]) for name in wanted}
+    assert all(errors[name] <= most for name, most in wanted.items()), errors
 
 
 def test_a_log_gives_the_aircraft_that_flew(flown, tmp_path):
     keys, true, log = flown
-    text = fitted(save(tmp_path / "log.csv", log), keys)
+    text = fitted(save(tmp_path / "log.csv", log), keys, "--span", fit_trial.SPAN)
     near(text, true)
+    assert tomllib.loads(text)["roll_loop"]["span"] == fit_trial.SPAN
     (tmp_path / "plane.toml").write_text(text)
     assert mppflight.Aircraft(tmp_path / "plane.toml").trim["airspeed"] == pytest.approx(keys["cruise"], rel=1e-3)
     if harness := os.environ.get("SIL_HARNESS"):
@@ -74,12 +78,14 @@ def test_height_and_sparse_sensors_do_as_well(flown, tmp_path):
         ({"pitch": 4.0}, "`pitch` is 4 in the median: give -0.8 to 0.8"),
         ({"airspeed": 17.0}, "the airspeed stays within 10 %: fly slowly and fast"),
         ({"t": 1.0}, "`t` must rise"),
+        ({"roll_command": 0.1}, "the commanded bank never changes by more than 11 deg: fly doublets"),
+        ({"roll": 30.0}, "`roll` is 30 in the median: give -0.8 to 0.8"),
     ],
 )
 def test_what_a_log_does_not_tell_is_said(flown, tmp_path, change, told):
     _, _, log = flown
     log = log | {name: numpy.full_like(log[name], value) for name, value in change.items()}
-    done = command(save(tmp_path / "log.csv", log), "--mass", 2, "--wing-area", 0.4)
+    done = command(save(tmp_path / "log.csv", log), "--mass", 2, "--wing-area", 0.4, "--span", 1.5)
     assert done.returncode == 2 and told in done.stderr and not done.stdout, done.stderr
 
 
@@ -98,7 +104,25 @@ def test_a_log_that_is_no_csv_has_advice(tmp_path):
 
 def test_the_manoeuvres_are_those_of_the_trials():
     printed = command("--manoeuvres").stdout.splitlines()
-    assert len(printed) == len(fit.MANOEUVRES) + 4
+    assert len(printed) == len(fit.MANOEUVRES) + len(fit.ROLLS) + 8
+
+
+def test_without_rolls_the_rest_is_fitted_and_with_a_span_they_are_asked_for(flown, tmp_path):
+    keys, true, log = flown
+    path = save(tmp_path / "log.csv", {name: column for name, column in log.items() if "roll" not in name})
+    near(fitted(path, keys), true)
+    done = command(path, "--mass", 2, "--wing-area", 0.4, "--span", 1.5)
+    assert done.returncode == 2 and "give the columns roll, roll_command" in done.stderr, done.stderr
+
+
+@pytest.mark.parametrize("trial", range(3))
+def test_a_roll_loop_alone_is_found(trial):
+    rng = numpy.random.default_rng([8, trial])
+    loop = fit_trial.roll_loop(rng)
+    found = roll_loop(fit_trial.roll_log(loop, rng), 15.0)
+    assert found["roll_loop.frequency"].value == pytest.approx(loop["frequency"], rel=0.05)
+    assert found["roll_loop.delay"].value == pytest.approx(loop["delay"], abs=0.015)
+    assert found["roll_loop.max_bank"].value == pytest.approx(loop["max_bank"], rel=0.03)
 
 
 def test_without_scipy_it_says_what_to_install():

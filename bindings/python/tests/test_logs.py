@@ -27,7 +27,7 @@ def flown():
     """A random aircraft and its log, with sensors of two rates."""
     rng = numpy.random.default_rng([7, 0])
     keys, delay = fit_trial.aircraft(rng)
-    log = fit_trial.fly(keys, delay, rng)
+    log = fit_trial.fly(keys, delay, rng, rolls=fit_trial.roll_loop(rng))
     # To the millisecond and the per cent, as in a tlog.
     log["t"], log["throttle"] = log["t"].round(3) + 100.0, log["throttle"].round(2)
     for name in SLOW:
@@ -42,10 +42,12 @@ def rows(log):
         yield it, not math.isnan(it["airspeed"])
 
 
-def turn(pitch, yaw=2.0):
-    """The rotation with this pitch."""
-    (sp, cp), (sy, cy) = ((math.sin(angle / 2), math.cos(angle / 2)) for angle in (pitch, yaw))
-    return [cy * cp, -sy * sp, cy * sp, sy * cp]
+def turn(roll, pitch, yaw=2.0):
+    """The rotation with this bank and pitch."""
+    (sr, cr), (sp, cp), (sy, cy) = ((math.sin(angle / 2), math.cos(angle / 2)) for angle in (roll, pitch, yaw))
+    return [
+        cy * cp * cr + sy * sp * sr, cy * cp * sr - sy * sp * cr, cy * sp * cr + sy * cp * sr, sy * cp * cr - cy * sp * sr,
+    ]  # fmt: skip
 
 
 def write_tlog(path, log, dialect=two):
@@ -64,8 +66,9 @@ def write_tlog(path, log, dialect=two):
             put(it["t"], dialect.MAVLink_attitude_message(ms, 0, 0.4, 0, 0, 0, 0), other)
             # The link takes 30 ms.
             came = it["t"] + 0.03
-            put(came, dialect.MAVLink_attitude_message(ms, 0, it["pitch"], 0, 0, 0, 0))
-            put(came, dialect.MAVLink_nav_controller_output_message(0, math.degrees(it["pitch_command"]), 0, 0, 0, 0, 0, 0))
+            put(came, dialect.MAVLink_attitude_message(ms, it["roll"], it["pitch"], 0, 0, 0, 0))
+            told = [math.degrees(it[name]) for name in ("roll_command", "pitch_command")]
+            put(came, dialect.MAVLink_nav_controller_output_message(*told, 0, 0, 0, 0, 0, 0))
             force = [round(it[name] / 9.80665e-3) for name in ("ax", "az")]
             put(came, dialect.MAVLink_scaled_imu_message(ms, force[0], 0, force[1], 0, 0, 0, 0, 0, 0))
             if slow:
@@ -103,7 +106,7 @@ def write_dataflash(path, log, left_out=""):
             put("FMT", kind, length, name.encode(), form.encode(), columns.encode())
         for it, slow in rows(log):
             us = round(it["t"] * 1e6)
-            put("ATT", us, 0, 0, math.degrees(it["pitch_command"]), math.degrees(it["pitch"]), 0, 0)
+            put("ATT", us, *(math.degrees(it[name]) for name in ("roll_command", "roll", "pitch_command", "pitch")), 0, 0)
             put("IMU", us, 0, 0, 0, 0, it["ax"], 0, it["az"])
             put("IMU", us, 1, 0, 0, 0, 5, 5, 5)
             if slow:
@@ -145,8 +148,8 @@ def write_ulog(path, log, left_out=""):
         for it, slow in rows(log):
             us = round(it["t"] * 1e6)
             # What an estimator publishes is older than its message.
-            data("vehicle_attitude", us + 4000, us, *turn(it["pitch"]))
-            data("vehicle_attitude_setpoint", us, *turn(it["pitch_command"]))
+            data("vehicle_attitude", us + 4000, us, *turn(it["roll"], it["pitch"]))
+            data("vehicle_attitude_setpoint", us, *turn(it["roll_command"], it["pitch_command"]))
             data("vehicle_acceleration", us + 4000, us, it["ax"], 0, it["az"])
             if slow:
                 data("airspeed_validated", us, it["airspeed"])
@@ -163,7 +166,7 @@ def by_csv(flown, tmp_path_factory):
     """The columns and the values by a CSV."""
     keys, log = flown
     columns = fit.read(save(tmp_path_factory.mktemp("csv") / "log.csv", log))
-    return columns, fit.estimate(columns, fit.Known(keys["mass"], keys["wing_area"], DENSITY, keys["cruise"]))
+    return columns, fit.estimate(columns, fit.Known(keys["mass"], keys["wing_area"], DENSITY, keys["cruise"], fit_trial.SPAN))
 
 
 # Greatest differences: a tlog has accelerations in thousandths of g.
@@ -184,7 +187,7 @@ def test_a_log_has_the_columns_of_its_csv(flown, by_csv, tmp_path, name):
 def test_a_log_gives_the_aircraft_of_its_csv(flown, by_csv, tmp_path, name):
     keys, log = flown
     WRITERS[name](tmp_path / name, log)
-    known = fit.Known(keys["mass"], keys["wing_area"], DENSITY, keys["cruise"])
+    known = fit.Known(keys["mass"], keys["wing_area"], DENSITY, keys["cruise"], fit_trial.SPAN)
     _, values = fit.aircraft(str(tmp_path / name), fit.read(tmp_path / name, air_density=DENSITY), known, "read")
     for parameter, wanted in by_csv[1].items():
         assert values[parameter].value == pytest.approx(wanted.value, abs=0.1 * wanted.half), parameter

@@ -8,7 +8,7 @@ use super::report::MAX_KNOTS;
 use super::size;
 use heapless::Vec;
 use mpp_data::LateralAirframe;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// The most points in a [`PointPacket`].
 pub const MAX_POINTS: usize = 40;
@@ -26,11 +26,28 @@ pub struct ConfigureLateral {
     pub surfaces_max: [Option<f64>; 2],
     /// Greatest rate of both surfaces [rad/s]; `None` means no limit.
     pub surface_rate: Option<f64>,
+    /// Dead time of the roll loop of an autopilot \[s\]: the aileron is then the commanded bank, the elevator the commanded angle
+    /// of attack, and the airframe that of the closed loops. On the link this is a tail, without which a peer may end.
+    #[serde(serialize_with = "put_tail", deserialize_with = "take_tail")]
+    pub roll_loop: Option<f64>,
+}
+
+fn put_tail<S: Serializer>(tail: &Option<f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    match tail {
+        Some(number) => number.serialize(serializer),
+        None => serializer.serialize_unit(),
+    }
+}
+
+// What ends within the number leaves bytes behind, which the frame's reader refuses.
+fn take_tail<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    Ok(f64::deserialize(deserializer).ok())
 }
 
 impl ConfigureLateral {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = LateralAirframe::COUNT * size::F64 + 3 * (size::BYTE + size::F64);
+    pub const MAX_SIZE: usize =
+        (LateralAirframe::COUNT + 1) * size::F64 + 3 * (size::BYTE + size::F64);
 }
 
 /// Harness to core: limits, distances and candidates of plans in space, sent before [`Configure`](crate::Configure). The answer

@@ -2,7 +2,7 @@
 
 use super::Mode;
 use mpp_core::vehicle::{GRAVITY, LateralAirframe, linearize_lateral};
-use mpp_sim::aircraft_file::{AircraftModel, Lateral};
+use mpp_sim::aircraft_file::{AircraftModel, Lateral, RollLoop};
 use nalgebra::Complex;
 use serde::Serialize;
 use std::fmt;
@@ -12,6 +12,9 @@ use std::fmt;
 pub struct LateralReport {
     /// Where the lateral numbers come from.
     pub source: String,
+    /// The autopilot's roll loop, and greatest bank and its rate of plans [deg, deg/s]. It is printed only: the file has it.
+    #[serde(skip)]
+    pub roll_loop: Option<(RollLoop, [f64; 2])>,
     /// The lateral modes.
     pub modes: LateralModes,
     /// Steady roll rate of the greatest aileron [deg/s], without sideslip.
@@ -92,6 +95,7 @@ impl LateralReport {
         };
         Some(Self {
             source: file.source.clone(),
+            roll_loop: (file.roll_loop).map(|it| (it, model.file.plan_bank().map(f64::to_degrees))),
             modes: LateralModes::of(model, &lateral),
             roll_rate_deg: most_roll_rate(file, &lateral, speed).to_degrees(),
             turns: [30_f64, 45.0, 60.0].map(|bank| turn(bank.to_radians())),
@@ -115,16 +119,24 @@ impl fmt::Display for LateralReport {
             format!("{verb} in {:.3} s", time.abs())
         };
         let real = |it: Option<f64>| it.map_or("one oscillation with the other".to_owned(), time);
-        writeln!(
-            f,
-            "roll mode      {}; {:.0} deg/s at full aileron",
-            real(modes.roll_time),
-            self.roll_rate_deg
-        )?;
-        writeln!(f, "spiral mode    {}", real(modes.spiral_time))?;
-        let none = "no oscillation: two modes, of which one grows".to_owned();
-        let dutch = modes.dutch_roll.map_or(none, |mode| mode.to_string());
-        writeln!(f, "Dutch roll     {dutch}")?;
+        if let Some((it, [bank, rate])) = &self.roll_loop {
+            let (w, damping, delay) = (it.frequency, it.damping, it.delay);
+            writeln!(
+                f,
+                "roll loop      {w:.2} rad/s, damping {damping:.2}, dead time {delay:.2} s; plans bank up to {bank:.0} deg, at {rate:.0} deg/s"
+            )?;
+        } else {
+            writeln!(
+                f,
+                "roll mode      {}; {:.0} deg/s at full aileron",
+                real(modes.roll_time),
+                self.roll_rate_deg
+            )?;
+            writeln!(f, "spiral mode    {}", real(modes.spiral_time))?;
+            let none = "no oscillation: two modes, of which one grows".to_owned();
+            let dutch = modes.dutch_roll.map_or(none, |mode| mode.to_string());
+            writeln!(f, "Dutch roll     {dutch}")?;
+        }
         let turns = self.turns.map(|turn| {
             let beyond = if turn.carried {
                 ""

@@ -87,7 +87,10 @@ impl AircraftReport {
         let load = 1.0 + balance.lift_alpha * up.min(stall) / a.level_lift(known.cruise);
         let lateral = LateralReport::new(model, load);
         let mut doubts = doubts(model, &modes);
-        if let (Some(file), Some(report)) = (&model.file.lateral, &lateral) {
+        // What follows from a roll loop is no table to doubt.
+        if let (Some(file), Some(report)) = (&model.file.lateral, &lateral)
+            && file.roll_loop.is_none()
+        {
             doubts.extend(lateral_doubts(model, &file.airframe(), report));
         }
         let horizon = STAGES as f64 * STAGE_PERIOD * units.time;

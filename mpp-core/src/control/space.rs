@@ -2,7 +2,8 @@
 
 use super::{LateralMotion, LateralRegulator};
 use crate::vehicle::{
-    Airframe, Control, GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath, within,
+    Airframe, Control, GRAVITY, LateralAirframe, LateralControl, SpaceControl, SpaceModel,
+    SpacePath, within,
 };
 
 /// Acceleration per metre of position error [1/s^2] and per m/s of velocity error [1/s]. More follows more closely and shakes
@@ -34,7 +35,10 @@ pub struct SpaceMotion {
 /// Follows a plan in space.
 #[derive(Clone, Debug)]
 pub struct SpaceRegulator {
-    lateral: LateralRegulator,
+    /// What holds the bank; without it an autopilot does, and the pitch, too.
+    lateral: Option<LateralRegulator>,
+    /// How late bank and pitch of an autopilot follow ramps of their commands, beside the dead times \[s\].
+    lags: [f64; 2],
     airframe: Airframe,
     /// Elevator per radian of the angle of attack and per rad/s of the pitch rate, at the airspeed of level flight.
     gain: [f64; 2],
@@ -57,12 +61,35 @@ impl SpaceRegulator {
         let wanted_damping = (lift - 2.0 * DAMPING * frequency).min(damping);
         let wanted_stiffness = (-frequency * frequency - lift * wanted_damping).min(stiffness);
         Self {
-            lateral,
+            lateral: Some(lateral),
+            lags: [0.0; 2],
             airframe: a,
             gain: [
                 (wanted_stiffness - stiffness) / elevator,
                 (wanted_damping - damping) / elevator,
             ],
+        }
+    }
+
+    /// The regulator of an aircraft behind an autopilot that holds bank and pitch: its commands are the bank as the aileron and the
+    /// angle of attack as the elevator, without feedback of either. `lateral` is that of the loop, of which rolling moment and
+    /// damping tell the lag.
+    #[must_use]
+    pub fn behind_autopilot(
+        airframe: &Airframe,
+        lateral: &LateralAirframe,
+        model: &SpaceModel,
+    ) -> Self {
+        let a = airframe.balanced();
+        let per_rate = lateral.span / (2.0 * model.trim.state.airspeed);
+        Self {
+            lateral: None,
+            lags: [
+                -lateral.roll.roll_rate * per_rate / lateral.roll.aileron,
+                a.moment_pitch_rate / a.moment_alpha,
+            ],
+            airframe: a,
+            gain: [0.0; 2],
         }
     }
 
@@ -87,6 +114,8 @@ impl SpaceRegulator {
         let [low, high] = model.angle_of_attack;
         let attack = model.angle_for(path.airspeed, pull);
         let attack = attack.max(low - BEYOND).min(high + BEYOND);
+        let [bank_lag, attack_lag] = self.lags;
+        let attack = attack + attack_lag * ahead.1.angle_of_attack_rate;
         let thrust =
             ahead.1.thrust + BY_AIRSPEED * self.airframe.mass * (now.airspeed - path.airspeed);
         let command = Control {
@@ -102,7 +131,14 @@ impl SpaceRegulator {
             sideslip: motion.sideslip,
         };
         let rate = ahead.1.bank_rate;
-        (command, self.lateral.follow(&lateral, bank, rate))
+        let lateral = match &self.lateral {
+            Some(it) => it.follow(&lateral, bank, rate),
+            None => LateralControl {
+                aileron: within(bank + bank_lag * rate, model.bank),
+                rudder: 0.0,
+            },
+        };
+        (command, lateral)
     }
 
     /// The elevator that brings the angle of attack to a value: the balance there in a steady turn, and the feedback. It pulls no

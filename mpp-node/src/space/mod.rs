@@ -57,6 +57,8 @@ struct Session {
     /// The last command to the surfaces.
     surfaces: LateralControl,
     regulator: SpaceRegulator,
+    /// Time by which the aircraft follows the commands \[s\].
+    ahead: f64,
     estimator: SpaceEstimator,
     /// What was measured since the last sensor frame.
     inertial: Option<InertialFrame>,

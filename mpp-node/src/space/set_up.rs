@@ -16,10 +16,20 @@ use mpp_core::vehicle::{
 const LEAST_ROOM: f64 = 1.0;
 /// Greatest bank of plans \[rad\]: the lift of a steeper turn is beyond that of any wing.
 const MOST_BANK: f64 = 1.4;
+/// Time by which bank and angle of attack follow their commands \[s\]: the plan is followed so much ahead. More cuts corners, less
+/// follows late. Source: decision 46; behind an autopilot, beside its dead time, decision 68.
+const AHEAD: f64 = 0.12;
+const AHEAD_OF_LOOPS: f64 = 0.05;
+/// Greatest dead time of a roll loop \[s\]; that of the elevator.
+const MOST_DEAD_TIME: f64 = 0.3;
 
 impl SpaceTask {
     pub(super) fn take_lateral(&mut self, told: &ConfigureLateral, send: &mut impl FnMut(&[u8])) {
+        let of_loop = |delay: f64| {
+            (0.0..=MOST_DEAD_TIME).contains(&delay) && told.airframe.roll.aileron > 0.0
+        };
         let sound = is_sound(&told.airframe)
+            && told.roll_loop.is_none_or(of_loop)
             && (told.surfaces_max.iter().flatten()).all(|most| *most >= 0.0 && most.is_finite())
             && told
                 .surface_rate
@@ -90,8 +100,21 @@ impl SpaceTask {
         let linear = linearize_lateral(airframe, &lateral.airframe, &model.trim);
         let [_, rudder] = most;
         model.nose = Nose::of(&linear).filter(|_| rudder <= 0.0);
-        let holds = LateralRegulator::design(airframe, &lateral.airframe, &model.trim, most)
-            .map_err(|_| ConfigureVerdict::LateralGain)?;
+        let (regulator, ahead) = match lateral.roll_loop {
+            None => {
+                let holds =
+                    LateralRegulator::design(airframe, &lateral.airframe, &model.trim, most)
+                        .map_err(|_| ConfigureVerdict::LateralGain)?;
+                (SpaceRegulator::new(airframe, holds, &model), AHEAD)
+            }
+            Some(delay) => {
+                let delay = delay.max(told.actuators.elevator_delay.unwrap_or(0.0));
+                within_commands(&mut model, told);
+                let regulator =
+                    SpaceRegulator::behind_autopilot(airframe, &lateral.airframe, &model);
+                (regulator, delay + AHEAD_OF_LOOPS)
+            }
+        };
         let keep = Keep {
             margin: limits.margin,
             half_span: limits.half_span,
@@ -108,7 +131,8 @@ impl SpaceTask {
         self.session = Some(Session {
             configure: *told,
             model,
-            regulator: SpaceRegulator::new(airframe, holds, &model),
+            regulator,
+            ahead,
             estimator: SpaceEstimator::new(&model, &lateral.airframe),
             surfaces: LateralControl::default(),
             inertial: None,
@@ -121,6 +145,14 @@ impl SpaceTask {
         });
         Ok(())
     }
+}
+
+/// Keeps the angles of attack of plans within those that the autopilot takes as commands.
+fn within_commands(model: &mut SpaceModel, told: &Configure) {
+    let level = model.trim.state.angle_of_attack();
+    let [below, above] = told.actuators.angle_of_attack(&told.aircraft.airframe);
+    let [low, high] = model.angle_of_attack;
+    model.angle_of_attack = [low.max(level - below), high.min(level + above)];
 }
 
 fn model(told: &Configure, limits: &ConfigureSpace) -> Result<SpaceModel, ConfigureVerdict> {

@@ -11,10 +11,6 @@ use mpp_core::control::SpaceMotion;
 use mpp_core::estimate::{InertialSample, MeasurementStatus, PositionVerdict, SpaceFix, Trust};
 use mpp_core::vehicle::{Control, LateralControl, SpaceControl, SpaceModel, SpacePath};
 
-/// Time by which bank and angle of attack follow their commands \[s\]: the plan is followed so much ahead. More cuts corners, less
-/// follows late. Source: decision 46.
-const AHEAD: f64 = 0.12;
-
 impl SpaceTask {
     /// Makes the tick of a sensor frame, unless the frame is old.
     pub(super) fn sensor_frame(
@@ -184,7 +180,7 @@ impl Session {
             let (model, age) = (&flown.model, flown.age(tick));
             return (
                 flown.plan.at(model, age).0,
-                flown.plan.at(model, age + AHEAD),
+                flown.plan.at(model, age + self.ahead),
             );
         }
         let model = &self.model;

@@ -1,5 +1,6 @@
 //! The lateral part of an aircraft file: span, inertia, derivatives and surfaces beside those of the vertical plane.
 
+use super::RollLoop;
 use crate::file_error::{ScenarioError, ensure};
 use mpp_core::vehicle::{Derivatives, LateralAirframe};
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,9 @@ pub struct Lateral {
     /// Rudder; a flying wing has none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rudder: Option<Surface>,
+    /// The roll loop from which this table follows, if the aircraft is behind an autopilot.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub roll_loop: Option<RollLoop>,
 }
 
 /// Derivatives of one coefficient [1/rad], whatever `derivatives` says; those by rates are of the rate times `span / 2v`.

@@ -7,6 +7,7 @@ mod numbers;
 mod pitch_loop;
 mod ranges;
 mod reading;
+mod roll_loop;
 mod similar;
 
 use crate::file_error::ScenarioError;
@@ -15,6 +16,7 @@ use mpp_core::vehicle::Airframe;
 pub use numbers::AircraftModel;
 pub use pitch_loop::PitchLoop;
 use pitch_loop::absent;
+pub use roll_loop::RollLoop;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -60,6 +62,9 @@ pub struct AircraftFile {
     /// An autopilot's pitch loop instead of inertia, moment and elevator. Reading replaces it by them.
     #[serde(default, skip_serializing)]
     pub pitch_loop: Option<PitchLoop>,
+    /// Its roll loop besides, instead of the table `lateral`. Reading replaces it by that.
+    #[serde(default, skip_serializing)]
+    pub roll_loop: Option<RollLoop>,
     /// Motor.
     #[serde(default)]
     pub thrust: Thrust,
@@ -255,5 +260,7 @@ impl AircraftFile {
     }
 }
 
+#[cfg(test)]
+mod loop_tests;
 #[cfg(test)]
 mod tests;

@@ -9,6 +9,18 @@ use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;
 use mpp_core::vehicle::{ActuatorLimits, Trim};
 
+/// Greatest bank of plans, and its rate [rad, rad/s]: 60 deg and 90 deg/s. Source: decision 46.
+const BANK: [f64; 2] = [60_f64.to_radians(), 90_f64.to_radians()];
+impl AircraftFile {
+    /// Greatest bank of plans in space, and its rate [rad, rad/s]: those of the roll loop, if they are less.
+    #[must_use]
+    pub fn plan_bank(&self) -> [f64; 2] {
+        let [bank, rate] = BANK;
+        let roll_loop = self.lateral.as_ref().and_then(|it| it.roll_loop);
+        roll_loop.map_or(BANK, |it| [bank.min(it.max_bank), rate.min(it.max_rate)])
+    }
+}
+
 /// An aircraft as core and plant need it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AircraftModel {

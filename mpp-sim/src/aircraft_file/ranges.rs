@@ -90,6 +90,12 @@ macro_rules! of_turns {
 }
 
 of_turns! {
+    "roll_loop.span", "m", [0.01, 200.0], |it| Some(it.roll_loop?.span);
+    "roll_loop.frequency", "rad/s", [0.5, 60.0], |it| Some(it.roll_loop?.frequency);
+    "roll_loop.damping", "1", [0.05, 5.0], |it| Some(it.roll_loop?.damping);
+    "roll_loop.delay", "s", [0.0, 0.3], |it| Some(it.roll_loop?.delay);
+    "roll_loop.max_bank", "rad", [0.1, 1.4], |it| Some(it.roll_loop?.max_bank);
+    "roll_loop.max_rate", "rad/s", [0.1, 20.0], |it| Some(it.roll_loop?.max_rate);
     "lateral.span", "m", [0.01, 200.0], |it| Some(it.span);
     "lateral.roll_inertia", "kg m^2", [1e-6, 1e9], |it| Some(it.roll_inertia);
     "lateral.yaw_inertia", "kg m^2", [1e-6, 1e9], |it| Some(it.yaw_inertia);

@@ -59,6 +59,12 @@ impl AircraftFile {
                 surface.rate /= time;
                 surface.bandwidth /= time;
             }
+            if let Some(roll) = &mut lateral.roll_loop {
+                roll.span *= scale;
+                roll.frequency /= time;
+                roll.delay *= time;
+                roll.max_rate /= time;
+            }
         }
         other
     }

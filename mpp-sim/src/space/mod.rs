@@ -28,7 +28,7 @@ pub use pipe::SpacePipe;
 pub use pose::Pose;
 pub use scenario::{Deskew, SPACE, SpaceFile, SpaceScenario};
 pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_path};
-pub use servo::Servo;
+pub use servo::{RollHold, Servo};
 pub use wind::{SpaceWind, WindConfig};
 
 use crate::aircraft::Actuation;
@@ -49,6 +49,8 @@ pub struct SpaceAircraft {
     actuation: Actuation,
     aileron: Servo,
     rudder: Option<Servo>,
+    /// The autopilot in place of the servos.
+    hold: Option<RollHold>,
     wind: Option<SpaceWind>,
 }
 
@@ -79,6 +81,7 @@ impl SpaceAircraft {
             actuation: Actuation::new(scenario).map_err(no_trim)?,
             aileron: Servo::new(&table.aileron),
             rudder: table.rudder.as_ref().map(Servo::new),
+            hold: table.roll_loop.map(RollHold::new),
             wind: SpaceWind::new(seed, faults.gusts, wind, table.span, TICK_PERIOD),
         })
     }
@@ -114,14 +117,10 @@ impl SpaceAircraft {
             return Err(PlantError::NonFiniteControl);
         }
         let given = self.actuation.given(command);
-        let rudder = self.rudder.as_mut();
-        let surfaces = LateralControl {
-            aileron: self.aileron.follow(lateral.aileron, TICK_PERIOD),
-            rudder: rudder.map_or(0.0, |it| it.follow(lateral.rudder, TICK_PERIOD)),
-        };
+        let (surfaces, deflected) = self.deflect(lateral);
         self.body.gust_roll = self.wind.as_ref().map_or(0.0, SpaceWind::roll_rate);
         let height = self.body.state.plane.z;
-        self.body.step(given, surfaces, TICK_PERIOD)?;
+        self.body.step(given, deflected, TICK_PERIOD)?;
         self.actuation.flown += 1;
         if let Some(wind) = &mut self.wind {
             let before = wind.at(height);
@@ -133,6 +132,25 @@ impl SpaceAircraft {
         }
         Ok((given, surfaces))
     }
+
+    /// What servos or autopilot give, and what turns the body: of an autopilot, these are the bank that it holds and what is
+    /// missing of it.
+    fn deflect(&mut self, command: LateralControl) -> (LateralControl, LateralControl) {
+        if let Some(hold) = &mut self.hold {
+            let aileron = hold.follow(command.aileron);
+            let held = LateralControl {
+                aileron,
+                rudder: 0.0,
+            };
+            return (held, hold.deflections(&self.body.state, aileron));
+        }
+        let rudder = self.rudder.as_mut();
+        let surfaces = LateralControl {
+            aileron: self.aileron.follow(command.aileron, TICK_PERIOD),
+            rudder: rudder.map_or(0.0, |it| it.follow(command.rudder, TICK_PERIOD)),
+        };
+        (surfaces, surfaces)
+    }
 }
 
 /// The lateral regulator of a scenario's aircraft.
@@ -142,6 +160,10 @@ impl SpaceAircraft {
 pub fn regulator(scenario: &Scenario) -> Result<LateralRegulator, ScenarioError> {
     let model = &scenario.aircraft;
     let lateral = lateral(scenario)?;
+    if lateral.roll_loop.is_some() {
+        let advice = "the autopilot holds the bank: fly it with --preset space".to_owned();
+        return Err(ScenarioError::Value("aircraft.roll_loop", advice));
+    }
     let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());
     let limits = [lateral.aileron.range.to_radians(), rudder];
     let airframe = &model.known.airframe;

@@ -3,7 +3,7 @@
 use super::baseline::{Baseline, BaselineName};
 use super::lidar::SpaceLidarConfig;
 use super::world::{Body, Extent, World, WorldConfig, WorldName};
-use super::{Hull, SensorErrors, WindConfig, regulator};
+use super::{Hull, SensorErrors, WindConfig, lateral, regulator};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::field::ObstacleField;
 use crate::file_error::{ScenarioError, ensure};
@@ -18,8 +18,6 @@ use serde::{Deserialize, Serialize};
 
 /// Name of the preset on the command line, in scenario files and in logs.
 pub const SPACE: &str = "space";
-/// Greatest bank of plans, and its rate [rad, rad/s]: 60 deg and 90 deg/s. Source: decision 46.
-const BANK: [f64; 2] = [60_f64.to_radians(), 90_f64.to_radians()];
 /// Distance of plans from what hits have shown, beyond the radius of a sphere or the half span \[m\]. Source: decision 58.
 const MARGIN: f64 = 0.3;
 /// Part of a fuselage that reaches below its wing, and room to ceiling and sides \[m\].
@@ -253,7 +251,10 @@ fn stem(body: &Body) -> Option<(f64, f64, f64, Option<f64>)> {
 impl SpaceScenario {
     /// Refuses an aircraft that cannot bank, and a world without room for its wing.
     fn check(&self) -> Result<(), ScenarioError> {
-        regulator(&self.plane)?;
+        let lateral = lateral(&self.plane)?;
+        if lateral.roll_loop.is_none() {
+            regulator(&self.plane)?;
+        }
         let hull = self.hull();
         let room = self.world.extent().half_width - SIDE_ROOM;
         let advice = format!(
@@ -335,6 +336,7 @@ impl SpaceScenario {
             airframe: lateral.airframe(),
             surfaces_max: most.map(Some),
             surface_rate: Some(lateral.aileron.rate.to_radians()),
+            roll_loop: lateral.roll_loop.map(|it| it.delay),
         })
     }
 
@@ -343,7 +345,7 @@ impl SpaceScenario {
         let (hull, extent) = (self.hull(), self.world.extent());
         let sphere = self.header.sphere;
         ConfigureSpace {
-            bank: BANK,
+            bank: self.plane.aircraft.file.plan_bank(),
             margin: MARGIN + sphere.unwrap_or(0.0),
             half_span: hull.half_span,
             heights: [hull.radius + BELOW, extent.ceiling - ROOM],

@@ -1,6 +1,10 @@
-//! The servo of a lateral surface.
+//! The servo of a lateral surface, and the roll loop in place of surfaces.
 
-use crate::aircraft_file::Surface;
+use super::SpaceState;
+use crate::aircraft_file::{RollLoop, Surface};
+use mpp_core::config::TICK_PERIOD;
+use mpp_core::vehicle::{GRAVITY, LateralControl};
+use std::collections::VecDeque;
 
 /// Steps of a servo of second order within one call.
 const SUBSTEPS: u32 = 10;
@@ -54,6 +58,44 @@ impl Servo {
             }
         }
         self.angle
+    }
+}
+
+/// The roll loop of an autopilot: the bank that it holds, after a dead time.
+#[derive(Clone, Debug)]
+pub struct RollHold {
+    of: RollLoop,
+    /// Commands under way \[rad\], the oldest one first.
+    commands: VecDeque<f64>,
+}
+
+impl RollHold {
+    /// A loop that holds the wings level.
+    #[must_use]
+    pub fn new(of: RollLoop) -> Self {
+        let ticks = libm::round(of.delay / TICK_PERIOD);
+        let commands = core::iter::repeat_n(0.0, ticks as usize).collect();
+        Self { of, commands }
+    }
+
+    /// The bank \[rad\] that it holds in the tick of a command.
+    pub fn follow(&mut self, command: f64) -> f64 {
+        self.commands.push_back(command);
+        let held = self.commands.pop_front().unwrap_or_default();
+        held.clamp(-self.of.max_bank, self.of.max_bank)
+    }
+
+    /// The deflections that bring a state to a bank \[rad\]: what is missing, and the yaw rate of a coordinated turn.
+    #[must_use]
+    pub fn deflections(&self, state: &SpaceState, held: f64) -> LateralControl {
+        let most = self.of.most_missing();
+        let air = &state.plane.air;
+        let [_, slide, _] = state.lateral.attitude.world_in([0.0, 0.0, GRAVITY]);
+        let (sin, cos) = libm::sincos(air.angle_of_attack());
+        LateralControl {
+            aileron: (held - state.bank()).clamp(-most, most),
+            rudder: (slide / air.airspeed + state.lateral.roll_rate * sin) / cos,
+        }
     }
 }
 

@@ -24,8 +24,12 @@ Floats = NDArray[numpy.float64]
 GRAVITY = 9.81
 # Steps of the inputs and of the equations of motion [s], length of a stretch, and greatest delay of a sensor.
 FINE, STEP, STRETCH, LATEST = 0.01, 0.02, 10.0, 0.3
+# Bank up to which the equations of the vertical plane count [rad].
+LEVEL = 0.2
 # What is compared, and its error before the first fit.
 MEASURED = {"airspeed": 0.5, "climb": 0.5, "z": 0.5, "ax": 0.5, "az": 0.5}
+# What the roll loop needs.
+ROLL = ("roll", "roll_command")
 # Parameters with the bounds and steps of their derivatives; then initial airspeed and path of each stretch.
 MOTION = {
     "lift.zero": (-5.0, 5.0, 1e-4), "lift.alpha": (0.2, 20.0, 1e-3), "drag.zero": (0.0, 5.0, 1e-5),
@@ -58,9 +62,11 @@ class Known:
     wing_area: float
     air_density: float = 1.225
     cruise: float | None = None
+    # Of the wing, for the roll loop [m].
+    span: float | None = None
 
 
-def _given(log: dict[str, Floats], name: str) -> tuple[Floats, Floats]:
+def given(log: dict[str, Floats], name: str) -> tuple[Floats, Floats]:
     """Times and values of a sensor or command, without the empty cells."""
     there = numpy.isfinite(log[name])
     if there.sum() < 50:
@@ -70,7 +76,7 @@ def _given(log: dict[str, Floats], name: str) -> tuple[Floats, Floats]:
 
 def _held(log: dict[str, Floats], name: str, edges: Floats) -> Floats:
     """Mean of a command between each two times. It is smooth in them."""
-    t, value = _given(log, name)
+    t, value = given(log, name)
     total = numpy.concatenate([[0.0], numpy.cumsum(numpy.diff(t) * (value[1:] + value[:-1]) / 2)])
     integral = numpy.interp(edges, t, total)
     integral += numpy.minimum(edges - t[0], 0) * value[0] + numpy.maximum(edges - t[-1], 0) * value[-1]
@@ -78,7 +84,7 @@ def _held(log: dict[str, Floats], name: str, edges: Floats) -> Floats:
     return mean
 
 
-def _smooth(value: Floats, time: float) -> Floats:
+def smooth(value: Floats, time: float) -> Floats:
     """Without what is faster than a time [s], and without a delay."""
     keep = numpy.exp(-FINE / time)
     for _ in range(2):
@@ -86,7 +92,7 @@ def _smooth(value: Floats, time: float) -> Floats:
     return value
 
 
-def _intervals(jacobian: Floats, residuals: list[Floats], count: int) -> Floats:
+def intervals(jacobian: Floats, residuals: list[Floats], count: int) -> Floats:
     """Half the intervals of 95 % of the first parameters, of residuals that are coloured by sensor."""
     inverse = numpy.linalg.pinv(jacobian.T @ jacobian)
     middle, row = numpy.zeros_like(inverse), 0
@@ -116,9 +122,9 @@ class Loop:
 def pitch_loop(log: dict[str, Floats], cruise: float, scheduled: bool) -> Loop:
     """The closed pitch loop. If `scheduled`, its frequency grows with the airspeed, as that of moments of the air does: it is
     constant in a time that passes with the airspeed."""
-    t, pitch = _given(log, "pitch")
+    t, pitch = given(log, "pitch")
     times = numpy.arange(t[0], t[-1], FINE)
-    airspeed = _smooth(numpy.interp(times, *_given(log, "airspeed")), 0.3)
+    airspeed = smooth(numpy.interp(times, *given(log, "airspeed")), 0.3)
     pace = airspeed / cruise if scheduled else numpy.ones_like(times)
     passed = numpy.append(0.0, FINE * numpy.cumsum(pace))
     grid = numpy.arange(0.0, passed[-1] - FINE, FINE)
@@ -141,15 +147,15 @@ def pitch_loop(log: dict[str, Floats], cruise: float, scheduled: bool) -> Loop:
 
     low, high = numpy.array(list(LOOP.values())).T
     # The cost has valleys a swing apart: begin in the lowest of a grid.
-    start = pitch[0] - _given(log, "pitch_command")[1][0]
+    start = pitch[0] - given(log, "pitch_command")[1][0]
     scan = [(w, delay) for w in (2.0, 3.5, 6.0, 10.0, 16.0) for delay in numpy.linspace(0.0, 0.28, 8)]
     firsts = [numpy.array([w, 0.8, delay, 1.0, 0.0, start, 0.0]).clip(low + 1e-6, high - 1e-6) for w, delay in scan]
     first = min(firsts, key=lambda p: float((residual(p) ** 2).sum()))
     best = least_squares(residual, first, bounds=(low, high), x_scale="jac", diff_step=1e-4)
-    halves = _intervals(best.jac, [best.fun], len(LOOP))
+    halves = intervals(best.jac, [best.fun], len(LOOP))
     values = {name: Value(*pair) for name, *pair in zip(LOOP, best.x.tolist(), halves.tolist(), strict=True)}
     # Slow differences from the loop are gusts, which the wing feels. Fast ones are noise.
-    rest = _smooth(numpy.interp(times, t, -best.fun), 0.1)
+    rest = smooth(numpy.interp(times, t, -best.fun), 0.1)
     return Loop(values, times, numpy.interp(passed[:-1], grid, flown(best.x)) + rest, float(best.cost), scheduled)
 
 
@@ -164,15 +170,24 @@ class Motion:
         # A stretch starts early and ends late enough for delayed sensors.
         self.steps = int((length + 2 * LATEST) / STEP)
         begin = ((length * numpy.arange(count)) / FINE).astype(int)
+        if "roll" in log:
+            bank = abs(numpy.interp(times, *given(log, "roll")))
+            level = numpy.array([bank[it : it + 2 * self.steps + 1].max() < LEVEL for it in begin])
+        else:
+            level = numpy.ones(count, dtype=bool)
+        if not level.any():
+            raise InputError(f"log: give {STRETCH:.0f} s or more in which the bank stays below {LEVEL} rad")
+        begin = begin[level]
         self.at = begin[:, None] + numpy.arange(2 * self.steps + 1)
         self.starts = times[begin]
         self.seen = {}
         for name in MEASURED:
             if name in log and not (name == "z" and "climb" in log):
-                t, value = _given(log, name)
+                t, value = given(log, name)
                 stretch = numpy.floor((t - times[0] - LATEST) / length).astype(int)
                 there = (stretch >= 0) & (stretch < count)
-                self.seen[name] = t[there], value[there], stretch[there]
+                there[there] &= level[stretch[there]]
+                self.seen[name] = t[there], value[there], numpy.cumsum(level)[stretch[there]] - 1
         self.deviation = {name: MEASURED[name] for name in self.seen}
 
     def first(self) -> Floats:
@@ -270,7 +285,7 @@ class Motion:
             p = least_squares(residual, inside, self.jacobian, (low, high), x_scale="jac", xtol=1e-5, ftol=1e-6).x
             for name, left in zip(self.seen, self.residuals(p[None])[0], strict=True):
                 self.deviation[name] *= max(float(numpy.sqrt((left**2).mean())), 1e-3)
-        halves = _intervals(self.jacobian(p), self.residuals(p[None])[0], len(MOTION))
+        halves = intervals(self.jacobian(p), self.residuals(p[None])[0], len(MOTION))
         return {name: Value(*pair) for name, *pair in zip(MOTION, p.tolist(), halves.tolist(), strict=False)}
 
 
@@ -285,7 +300,7 @@ def estimate(log: dict[str, Floats], known: Known) -> dict[str, Value]:
         # Gusts hide it, and it would spoil the rest.
         motion = simulated.fit(1e-6)
     # Once more, by the airspeed without its bias and delay.
-    t, airspeed = _given(log, "airspeed")
+    t, airspeed = given(log, "airspeed")
     later = numpy.interp(log["t"] + motion["airspeed delay"].value, t, airspeed)
     true = log | {"airspeed": later - motion["airspeed bias"].value}
     return pitch_loop(true, cruise, loop.scheduled).values | motion

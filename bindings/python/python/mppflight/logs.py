@@ -46,9 +46,11 @@ def _equivalent(message: str, field: str) -> Source:
     return Source(message, (field,), lambda density, it: it * (SEA_LEVEL / density) ** 0.5)
 
 
-def _turned(message: str, field: str) -> Source:
-    """Pitch by the rotation from forward, right, down to north, east, down."""
+def _turned(message: str, field: str, bank: bool = False) -> Source:
+    """Pitch, or bank, by the rotation from forward, right, down to north, east, down."""
     names = tuple(f"{field}[{k}]" for k in range(4))
+    if bank:
+        return Source(message, names, lambda density, w, x, y, z: numpy.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)))
     return Source(message, names, lambda density, w, x, y, z: numpy.arcsin((2 * (w * y - z * x)).clip(-1, 1)))
 
 
@@ -130,6 +132,10 @@ KINDS = {
         "pitch_command": (
             STREAM + "EXT_STAT", _turned("ATTITUDE_TARGET", "q"), _times(DEGREE, "NAV_CONTROLLER_OUTPUT", "nav_pitch"),
         ),
+        "roll": (STREAM + "EXTRA1", _times(1, "ATTITUDE", "roll")),
+        "roll_command": (
+            STREAM + "EXT_STAT", _turned("ATTITUDE_TARGET", "q", True), _times(DEGREE, "NAV_CONTROLLER_OUTPUT", "nav_roll"),
+        ),
         "airspeed": (STREAM + "EXTRA2", _equivalent("VFR_HUD", "airspeed")),
         "throttle": (STREAM + "EXTRA2", _times(0.01, "VFR_HUD", "throttle")),
         "climb": (
@@ -144,6 +150,8 @@ KINDS = {
     ".bin": Kind("pymavlink", _dataflash, {
         "pitch": (ATTITUDE, _times(DEGREE, "ATT", "Pitch")),
         "pitch_command": (ATTITUDE, _times(DEGREE, "ATT", "DesPitch")),
+        "roll": (ATTITUDE, _times(DEGREE, "ATT", "Roll")),
+        "roll_command": (ATTITUDE, _times(DEGREE, "ATT", "DesRoll")),
         "airspeed": (TUNING, Source("CTUN", ("As", "E2T"), lambda _, speed, ratio: speed * ratio), _equivalent("ARSP", "Airspeed")),
         "throttle": (TUNING, _times(0.01, "CTUN", "ThO")),
         "climb": (f"{ATTITUDE}, and AHRS_EKF_TYPE to 3", _times(-1, "XKF1", "VD"), _times(-1, "NKF1", "VD")),
@@ -153,6 +161,8 @@ KINDS = {
     ".ulg": Kind("pyulog", _ulog, {
         "pitch": (HIGH_RATE, _turned("vehicle_attitude", "q")),
         "pitch_command": (HIGH_RATE, _turned("vehicle_attitude_setpoint", "q_d")),
+        "roll": (HIGH_RATE, _turned("vehicle_attitude", "q", True)),
+        "roll_command": (HIGH_RATE, _turned("vehicle_attitude_setpoint", "q_d", True)),
         "airspeed": (REPLAY, *(_times(1, name, "true_airspeed_m_s") for name in ("airspeed_validated", "airspeed"))),
         "throttle": (HIGH_RATE, _times(1, "vehicle_thrust_setpoint", "xyz[0]"), _times(1, "actuator_controls_0", "control[3]")),
         "climb": (HIGH_RATE, _times(-1, "vehicle_local_position", "vz")),
@@ -161,9 +171,9 @@ KINDS = {
         ) for name, k in [("ax", 0), ("az", 2)]},
     }),
 }  # fmt: skip
-OPTIONAL = ("ax", "az")
-# Least rates [Hz]: what is slower hides the pitch loop.
-RATES = {"pitch": 15.0, "pitch_command": 15.0}
+OPTIONAL = {"ax", "az", "roll", "roll_command"}
+# Least rates [Hz]: what is slower hides the loops.
+RATES = dict.fromkeys(("pitch", "pitch_command", "roll", "roll_command"), 15.0)
 
 
 def _column(found: dict[str, Message], sources: list[Source], density: float) -> tuple[Floats, Floats]:
@@ -199,8 +209,9 @@ def _read(path: str, kind: Kind) -> dict[str, Message]:
         raise InputError(f"{path}: {kind.library} cannot read it: {error}") from error
 
 
-def columns(path: str | Path, density: float) -> dict[str, Floats]:
-    """The columns of a log, with a row for each time and cells that are not a number where no message came."""
+def columns(path: str | Path, density: float, needed: tuple[str, ...] = ()) -> dict[str, Floats]:
+    """The columns of a log, with a row for each time and cells that are not a number where no message came. Those that are
+    `needed` must be there, beside the usual ones."""
     kind = KINDS[Path(path).suffix.lower()]
     found, series, lacking = _read(str(path), kind), {}, []
     for name, (advice, *sources) in kind.columns.items():
@@ -208,7 +219,7 @@ def columns(path: str | Path, density: float) -> dict[str, Floats]:
         rate = 1 / float(numpy.median(numpy.diff(times))) if len(times) > 1 else 0.0
         if rate > RATES.get(name, 0.0):
             series[name] = times, values
-        elif name not in OPTIONAL:
+        elif name in needed or name not in OPTIONAL:
             sought = " or ".join(f"{it.message}.{it.fields[0]}" for it in sources)
             lacking.append(f"`{name}`: {f'{rate:.0f} Hz of' if rate else 'no'} {sought}: {advice}")
     if lacking:
