@@ -1,5 +1,6 @@
 """What `sil-harness export` writes, read by the libraries of others, and whether the layouts name what is there."""
 
+import base64
 import collections
 import csv
 import json
@@ -60,6 +61,27 @@ def test_mcap_holds_the_flight_by_its_schemas(files):
     assert counts["/scan"] == counts["/plan"] == len(files["log"]["plans"]) == 3
 
 
+@pytest.fixture(scope="module")
+def space(tmp_path_factory):
+    """The MCAP of a flight in space."""
+    folder = tmp_path_factory.mktemp("space")
+    subprocess.run([HARNESS, "fly", "--preset", "space", "--density", "0.005", "--seed", "5", "--out", folder], check=True, capture_output=True)
+    (log,) = folder.glob("*.json")
+    subprocess.run([HARNESS, "export", log, "--format", "mcap", "--out", folder / "flight.mcap"], check=True, capture_output=True)
+    return {"flight": folder / "flight"}
+
+
+def test_a_flight_in_space_has_clouds_and_poses_by_their_schemas(space):
+    counts = collections.Counter()
+    for topic, schema, message in messages(space):
+        value = json.loads(message.data)
+        jsonschema.validate(value, json.loads(schema.data))
+        if topic == "/points":
+            assert schema.name == "foxglove.PointCloud" and len(base64.b64decode(value["data"])) % value["point_stride"] == 0
+        counts[topic] += 1
+    assert counts["/pose"] == counts["/tf"] > 1000 and counts["/points"] == counts["/plan"] > 100 and counts["/field"] == 1
+
+
 def test_parquet_and_csv_hold_the_same(files):
     for stem in (files["flight"], files["rows"]):
         table = pyarrow.parquet.read_table(f"{stem}.parquet")
@@ -76,8 +98,8 @@ def test_parquet_and_csv_hold_the_same(files):
     assert sorted(seeds) == [2**64 - 2, 2**64 - 1]
 
 
-def test_the_layouts_name_topics_and_columns_that_are_there(files):
-    topics = {topic for topic, _, _ in messages(files)}
+def test_the_layouts_name_topics_and_columns_that_are_there(files, space):
+    topics = {topic for flight in (files, space) for topic, _, _ in messages(flight)}
     layout = json.loads((EXAMPLES / "foxglove/layout.json").read_text())
     text = json.dumps(layout)
     used = set(re.findall(r'"(/\w+)[."]', text))

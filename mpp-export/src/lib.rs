@@ -3,7 +3,7 @@
 //! ```text
 //!   FlightLog --> flight --+               +--> csv
 //!                          +--> Table -----+--> parquet
-//!   rows -------> rows ----+    (schema)   +--> mcap <-- scene <-- the flight, flown again
+//!   rows -------> rows ----+    (schema)   +--> mcap <-- scene, space <-- the flight, flown again
 //! ```
 //!
 //! * [`schema`]: the columns of each table with their units and frames; `docs/logs.md` is the same table for people.
@@ -26,6 +26,8 @@ pub mod csv;
 mod messages;
 #[cfg(feature = "formats")]
 mod scene;
+#[cfg(feature = "formats")]
+mod space;
 
 pub mod mcap;
 

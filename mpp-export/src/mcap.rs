@@ -28,10 +28,12 @@ mod write {
     };
     use crate::scene::{cycle, moves, obstacles, scans};
     use crate::schema::{LATERAL, VERSION};
+    use crate::space::{bodies, cycles, points_schema};
     use mcap::records::{MessageHeader, Metadata};
     use mcap::{WriteOptions, Writer};
     use mpp_analysis::picture::replay::details;
     use mpp_sim::log::FlightLog;
+    use mpp_sim::space::Look;
     use serde_json::{Map, Value};
     use std::collections::BTreeMap;
     use std::io::Cursor;
@@ -91,8 +93,15 @@ mod write {
             pose_in_frame_schema(),
             of_ticks(log, |time, tick| pose_in_frame(time, &estimated(log, tick))),
         );
-        if !log.lateral.is_empty() {
+        if log.header.space.is_some() {
             add("/lateral", table_schema(&LATERAL), of_table(log, &LATERAL)?);
+            if let Some(look) = Look::again(log) {
+                let [points, paths] = cycles(&look);
+                add("/points", points_schema(), points);
+                add("/field", scene_update_schema(), bodies(log, &look));
+                add("/plan", scene_update_schema(), paths);
+            }
+            return Ok(topics);
         }
         let scans = scans(log).into_iter().map(|scan| {
             let time = u64::from(scan.tick) * TICK;

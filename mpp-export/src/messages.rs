@@ -27,11 +27,11 @@ pub(crate) fn table_schema(schema: &Schema) -> Value {
     object(&format!("mpp.{}", schema.name), &Value::from(properties))
 }
 
-fn object(title: &str, properties: &Value) -> Value {
+pub(crate) fn object(title: &str, properties: &Value) -> Value {
     json!({ "title": title, "type": "object", "properties": properties })
 }
 
-fn array(items: &Value) -> Value {
+pub(crate) fn array(items: &Value) -> Value {
     json!({ "type": "array", "items": items })
 }
 
@@ -52,11 +52,11 @@ fn moment(title: &str) -> Value {
     object(title, &json!({ "sec": whole, "nsec": whole }))
 }
 
-fn text() -> Value {
+pub(crate) fn text() -> Value {
     json!({ "type": "string" })
 }
 
-fn pose_schema() -> Value {
+pub(crate) fn pose_schema() -> Value {
     let position = numbers("foxglove.Vector3", &["x", "y", "z"]);
     let orientation = numbers("foxglove.Quaternion", &["x", "y", "z", "w"]);
     object(
@@ -92,7 +92,7 @@ pub(crate) fn laser_scan_schema() -> Value {
     object("foxglove.LaserScan", &properties)
 }
 
-/// The JSON schema of `foxglove.SceneUpdate`, of which we write lines only.
+/// The JSON schema of `foxglove.SceneUpdate`, of which we write lines, and in space cylinders, spheres and cubes.
 pub(crate) fn scene_update_schema() -> Value {
     let point = numbers("foxglove.Point3", &["x", "y", "z"]);
     let colour = numbers("foxglove.Color", &["r", "g", "b", "a"]);
@@ -102,10 +102,17 @@ pub(crate) fn scene_update_schema() -> Value {
         "points": array(&point), "color": colour, "colors": array(&colour),
         "indices": array(&json!({ "type": "integer" })),
     });
+    let scale = json!({ "type": "number" });
+    let shape = json!({
+        "pose": pose_schema(), "size": numbers("foxglove.Vector3", &["x", "y", "z"]), "color": colour,
+        "bottom_scale": scale, "top_scale": scale,
+    });
+    let solid = |kind: &str| array(&object(&format!("foxglove.{kind}Primitive"), &shape));
     let entity = json!({
         "timestamp": moment("time"), "frame_id": text(), "id": text(), "lifetime": moment("duration"),
         "frame_locked": { "type": "boolean" }, "metadata": array(&json!({ "type": "object" })),
         "lines": array(&object("foxglove.LinePrimitive", &line)),
+        "cylinders": solid("Cylinder"), "spheres": solid("Sphere"), "cubes": solid("Cube"),
     });
     let deletion =
         json!({ "timestamp": moment("time"), "type": { "type": "integer" }, "id": text() });
@@ -196,27 +203,51 @@ pub(crate) enum Joined {
     Loop = 1,
 }
 
-/// A `foxglove.LinePrimitive` through these places \[m\].
+/// A `foxglove.LinePrimitive` through these places of the flight's plane \[m\].
 pub(crate) fn line(
     joined: Joined,
     thickness: f64,
-    [r, g, b, a]: [f64; 4],
+    colour: [f64; 4],
     points: impl IntoIterator<Item = (f64, f64)>,
 ) -> Value {
-    let points: Vec<Value> = points.into_iter().map(|(x, z)| place(x, z)).collect();
+    let points = points.into_iter().map(|(x, z)| [x, 0.0, z]);
+    line_in_space(joined, thickness, colour, points)
+}
+
+/// A `foxglove.LinePrimitive` through these places in Foxglove's axes \[m\].
+pub(crate) fn line_in_space(
+    joined: Joined,
+    thickness: f64,
+    [r, g, b, a]: [f64; 4],
+    points: impl IntoIterator<Item = [f64; 3]>,
+) -> Value {
+    let place = |[x, y, z]: [f64; 3]| json!({ "x": x, "y": y, "z": z });
+    let points: Vec<Value> = points.into_iter().map(place).collect();
     json!({
-        "type": joined as u8,
-        "pose": { "position": place(0.0, 0.0), "orientation": nose_up(0.0) },
+        "type": joined as u8, "pose": upright([0.0; 3]),
         "thickness": thickness, "scale_invariant": false, "points": points,
         "color": { "r": r, "g": g, "b": b, "a": a }, "colors": [], "indices": [],
     })
 }
 
+/// A `foxglove.Pose` at a place \[m\], not turned.
+pub(crate) fn upright([x, y, z]: [f64; 3]) -> Value {
+    json!({ "position": { "x": x, "y": y, "z": z }, "orientation": nose_up(0.0) })
+}
+
 /// A `foxglove.SceneUpdate` that replaces the entity of this name.
 pub(crate) fn scene_update(time: u64, id: &str, lines: &[Value]) -> Value {
-    let entity = json!({
+    scene_of(time, id, &json!({ "lines": lines }))
+}
+
+/// The same of any shapes, lists by kind.
+pub(crate) fn scene_of(time: u64, id: &str, shapes: &Value) -> Value {
+    let mut entity = json!({
         "timestamp": stamp(time), "frame_id": WORLD, "id": id, "lifetime": { "sec": 0, "nsec": 0 },
-        "frame_locked": false, "metadata": [], "lines": lines,
+        "frame_locked": false, "metadata": [],
     });
+    for (kind, shapes) in shapes.as_object().into_iter().flatten() {
+        entity[kind] = shapes.clone();
+    }
     json!({ "deletions": [], "entities": [entity] })
 }

@@ -16,9 +16,9 @@ use serde_json::Value;
 const CORNERS: u32 = 32;
 /// Thickness of an outline \[m\].
 const OUTLINE: f64 = 0.1;
-const OBSTACLE: [f64; 4] = [0.75, 0.35, 0.2, 1.0];
-const CANDIDATE: [f64; 4] = [0.6, 0.6, 0.6, 0.6];
-const CHOSEN: [f64; 4] = [0.1, 0.7, 0.3, 1.0];
+pub(crate) const OBSTACLE: [f64; 4] = [0.75, 0.35, 0.2, 1.0];
+pub(crate) const CANDIDATE: [f64; 4] = [0.6, 0.6, 0.6, 0.6];
+pub(crate) const CHOSEN: [f64; 4] = [0.1, 0.7, 0.3, 1.0];
 
 /// Whether an obstacle of the field moves.
 pub(crate) fn moves(field: &FieldFile) -> bool {

@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "the helpers of tests fail as tests do")]
 
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use mpp_analysis::campaign::{Campaign, Lists, Row};
 use mpp_export::schema::{ALL, Kind, SENSORS, TICKS};
 use mpp_export::table::Table;
@@ -11,6 +13,7 @@ use mpp_sim::flight_observer::FlightObserver;
 use mpp_sim::log::FlightLog;
 use mpp_sim::pipe::PipeLink;
 use mpp_sim::scenario::{Scenario, ScenarioFile};
+use mpp_sim::space::{SpaceFile, fly_space};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
 use std::collections::BTreeMap;
@@ -149,6 +152,63 @@ fn mcap_has_every_topic_in_the_order_of_time_and_the_logs_hash() {
             .map(|message| message.unwrap().channel.topic.clone())
             .all(|topic| topic != "/scan")
     );
+}
+
+#[test]
+fn mcap_of_a_flight_in_space_has_clouds_bodies_and_paths_where_they_were() {
+    let file = SpaceFile {
+        density: Some(0.005),
+        seed: Some(5),
+        ..SpaceFile::default()
+    };
+    let log = std::thread::Builder::new().stack_size(32 << 20);
+    let log = log.spawn(move || fly_space(&file.build(None).unwrap()).unwrap());
+    let log = log.unwrap().join().unwrap();
+    let bytes = mcap(&log).unwrap();
+    let mut found: BTreeMap<String, Vec<serde_json::Value>> = BTreeMap::new();
+    for message in mcap::MessageStream::new(&bytes).unwrap() {
+        let message = message.unwrap();
+        let value = serde_json::from_slice(&message.data).unwrap();
+        (found.entry(message.channel.topic.clone()).or_default()).push(value);
+    }
+    let trunks = found["/field"][0]["entities"][0]["cylinders"]
+        .as_array()
+        .unwrap();
+    assert_eq!(trunks.len(), log.header.obstacles);
+    // The plan of the last cycle may come too late.
+    assert!((0..2).contains(&(found["/points"].len() - log.plans.len())));
+    assert_eq!(found["/plan"].len(), found["/points"].len());
+    // A point of the last cloud that has one lies at the bark of a trunk, or on the ground.
+    let places = |cloud: &serde_json::Value| -> Vec<[f64; 3]> {
+        let bytes = BASE64_STANDARD
+            .decode(cloud["data"].as_str().unwrap())
+            .unwrap();
+        let part = |at: &[u8]| f64::from(f32::from_le_bytes(at.try_into().unwrap()));
+        let point = |it: &[u8]| [0, 4, 8].map(|at| part(&it[at..at + 4]));
+        bytes.chunks_exact(12).map(point).collect()
+    };
+    let cloud = found["/points"]
+        .iter()
+        .map(places)
+        .rfind(|it| !it.is_empty());
+    let off = |[x, y, z]: [f64; 3]| {
+        let number = |value: &serde_json::Value| value.as_f64().unwrap();
+        let to_bark = |trunk: &serde_json::Value| {
+            let (at, wide) = (&trunk["pose"]["position"], number(&trunk["size"]["x"]));
+            (libm::hypot(number(&at["x"]) - x, number(&at["y"]) - y) - 0.5 * wide).abs()
+        };
+        trunks.iter().map(to_bark).fold(z.abs(), f64::min)
+    };
+    let cloud = cloud.unwrap();
+    let near = cloud.iter().filter(|place| off(**place) < 0.3).count();
+    assert!(near * 10 > cloud.len() * 9, "{near} of {}", cloud.len());
+    // What does not come out the same has its poses alone.
+    let mut other = log;
+    other.ticks.x[10] += 1.0;
+    let fewer = mcap(&other).unwrap();
+    let topics = mcap::MessageStream::new(&fewer).unwrap();
+    let mut topics = topics.map(|message| message.unwrap().channel.topic.clone());
+    assert!(topics.all(|topic| topic != "/points"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use mpp_sim::orders::{Mode, Order, Refused};
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::Body;
 use mpp_sim::space::{
-    SpaceFile, SpaceFlight, SpacePipe, fly_space, fly_space_again, fly_space_with,
+    Look, SpaceCycle, SpaceFile, SpaceFlight, SpacePipe, fly_space, fly_space_again, fly_space_with,
 };
 
 /// Does something on a stack on which the core in space can be built.
@@ -186,6 +186,28 @@ fn a_trunk_that_is_planted_in_flight_is_passed_and_planted_again() {
     let clearance = log.summary.min_clearance.unwrap();
     assert!(clearance > 0.1 && clearance < 3.0, "{clearance}");
     assert_eq!(log, again);
+    // Who looks at the log sees the same flight, and nothing of one that it does not tell of.
+    let look = Look::again(&log).unwrap();
+    assert_eq!(look.moments.len(), log.ticks.t.len() + 1);
+    // The plan of the last cycle may come too late.
+    assert!((0..2).contains(&(look.cycles.len() - log.plans.len())));
+    for (number, (at, ..)) in look.moments.iter().take(log.ticks.t.len()).enumerate() {
+        assert_eq!(
+            at.map(f64::to_bits),
+            [
+                log.ticks.x[number],
+                log.lateral.y[number],
+                log.ticks.z[number]
+            ]
+            .map(f64::to_bits)
+        );
+    }
+    let planted =
+        |cycle: &SpaceCycle| cycle.tick > 300 && !cycle.hits.is_empty() && cycle.paths.len() > 1;
+    assert!(look.cycles.iter().any(planted));
+    let mut other = log;
+    other.orders.clear();
+    assert!(Look::again(&other).is_none());
 }
 
 /// A lidar that falls silent leaves the map, in which plans go on.

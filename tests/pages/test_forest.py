@@ -151,6 +151,36 @@ def test_what_cannot_be_flown_is_told(open_page):
     page.wait_for_function("flight.header.space.density === 0.02")
 
 
+def test_what_stands_still_is_not_painted_again(open_page):
+    page = open_page(PAGE.as_uri() + "#seed=3&t=200", viewport=LAPTOP)
+    stands(page)
+    page.wait_for_timeout(300)
+    count = "() => { const draw = drawMap; window.drawn = 0; drawMap = (...all) => { window.drawn++; return draw(...all); }; }"
+    page.evaluate(count)
+    page.wait_for_timeout(500)
+    assert page.evaluate("drawn") == 0
+    page.set_viewport_size({"width": 1200, "height": 700})
+    page.wait_for_function("drawn > 0")
+    drawn = page.evaluate("drawn")
+    page.mouse.move(300, 400)
+    page.wait_for_function(f"drawn > {drawn}")
+    page.click("#play")
+    page.wait_for_function("drawn > 20")
+
+
+def test_the_five_flights_are_there(open_page):
+    page = open_page(PAGE.as_uri())
+    links = page.evaluate("[...document.querySelectorAll('#drawer a[href^=\"#seed\"]')].map(link => link.getAttribute('href'))")
+    assert len(links) == 5
+    for link in links:
+        before = page.evaluate("turn")
+        page.evaluate(f"location.hash = {link!r}")
+        page.wait_for_function(f"turn > {before} && flight && flight.header.seed === settings.seed && flight.states.length > 5")
+        assert "over" not in page.get_attribute("#state", "class")
+    # The last one has a tree of its own.
+    page.wait_for_function("flight.orders.length === 1 && flight.orders[0].tick === 600")
+
+
 def processor_time():
     """What this process and all below it have used of processors [ms]. Other work on the machine changes it less than the pace."""
     used, below = {}, {}
@@ -191,7 +221,7 @@ def test_frames_a_second(open_page):
         painted = page.evaluate("""() => new Promise(done => {
           const first = performance.now();
           let count = 0;
-          const next = time => { count++; if (time - first < 3000) requestAnimationFrame(next); else done(count); };
+          const next = time => { count++; painted = null; if (time - first < 3000) requestAnimationFrame(next); else done(count); };
           requestAnimationFrame(next);
         })""")
         told["processor_ms_a_frame"] = (processor_time() - before) / painted

@@ -126,4 +126,5 @@ def test_a_flight_that_cannot_be_flown_again_has_a_page_without_candidates(fligh
     path.write_text(json.dumps(log))
     page = open_page(page_of(path).as_uri())
     assert page.is_disabled("#layer-scan") and not page.is_disabled("#layer-flown")
-    says_what_the_log_holds(page, log, 0)
+    # It opens at its closest approach.
+    says_what_the_log_holds(page, log, page.evaluate("flights[0].closest.tick"))

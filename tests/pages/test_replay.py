@@ -37,7 +37,7 @@ def test_charts_show_the_value_under_the_pointer_and_a_click_goes_there(flight, 
     page.mouse.move(x, y)
     drawn(page)
     tick = page.evaluate("look.hover")
-    assert 900 < tick < 1100 and page.input_value("#time") == "0"
+    assert 900 < tick < 1100 and page.input_value("#time") == str(page.evaluate("flights[0].closest.tick"))
     said = page.inner_text("#readout")
     assert said.startswith(f"{tick / 100:.2f} s: height {log['ticks']['z'][tick]:.2f} / {log['ticks']['ref_z'][tick]:.2f} m")
     page.mouse.click(x, y)
@@ -215,3 +215,24 @@ def test_ten_minutes_fit_in_ten_megabytes_and_are_drawn_at_once(open_page, tmp_p
     assert max(milliseconds) < 330
     page.evaluate("go(59_900)")
     shot(page, "long")
+
+
+def test_flights_side_by_side_have_the_same_axes_without_nonsense(tmp_path, open_page):
+    (tmp_path / "other").mkdir()
+    path, _ = fly(tmp_path, "--seed", "7", "--obstacles", "40", "--duration", "6")
+    other, _ = fly(tmp_path / "other", "--seed", "8", "--preset", "paper", "--paths", "5", "--duration", "6")
+    page = open_page(page_of(path, "--against", other).as_uri())
+    said = page.evaluate("""() => {
+      const said = {}, fill = CanvasRenderingContext2D.prototype.fillText, draw = drawCurves;
+      let drawn = null;
+      CanvasRenderingContext2D.prototype.fillText = function (text, ...at) { if (drawn !== null) said[drawn].push(text); return fill.call(this, text, ...at); };
+      drawCurves = (pen, flight, ...rest) => { drawn = flight.id; said[drawn] = []; draw(pen, flight, ...rest); drawn = null; };
+      for (const flight of flights) { flight.curves = null; }
+      show();
+      return said;
+    }""")
+    assert said[""] == said["-b"] and any(text.startswith("elevator") for text in said[""])
+    numbers = said[""][said[""].index("candidates (broad), feasible") + 1:][:2]
+    assert numbers[1] == "0" and numbers[0].isdigit()
+    thrust = said[""].index("thrust [N]")
+    assert float(said[""][thrust + 2]) >= 0

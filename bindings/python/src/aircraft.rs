@@ -1,12 +1,14 @@
 //! Aircraft.
 
-use crate::errors::{input, scenario};
+use crate::errors::{flight, input, scenario as refused, set_up};
 use crate::input::text;
 use crate::output::{flat, plain};
 use crate::typed::{typed, unlike};
+use mpp_analysis::recording;
+use mpp_core::control::Lqr;
 use mpp_core::vehicle::{JacobianForm, linearize};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
-use mpp_sim::scenario::ScenarioError;
+use mpp_sim::scenario::{Preset, Scenario, ScenarioError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
@@ -35,7 +37,7 @@ impl Aircraft {
                 None if is_name(source) => return Err(unknown(&name)),
                 None => {
                     let (path, text) = text("aircraft", source)?;
-                    let file = AircraftFile::parse(&path, &text).map_err(scenario)?;
+                    let file = AircraftFile::parse(&path, &text).map_err(refused)?;
                     (Some(path), file)
                 }
             }
@@ -43,8 +45,8 @@ impl Aircraft {
         // The design of the regulator takes a while.
         let model = py.detach(|| AircraftModel::new(file));
         let in_file = |error| match name {
-            Some(name) => scenario(ScenarioError::File(name, Box::new(error))),
-            None => scenario(error),
+            Some(name) => refused(ScenarioError::File(name, Box::new(error))),
+            None => refused(error),
         };
         Ok(Self {
             model: model.map_err(in_file)?,
@@ -82,7 +84,8 @@ impl Aircraft {
     }
 
     /// The motion about level flight to first order, dx/dt = A x + B u, without actuators: a dict of A and B, and of
-    /// the names and units of states and inputs, which are deviations from `trim`. The elevator's unit is that of its file.
+    /// the names and units of states and inputs, which are deviations from `trim`. The elevator's unit is that of its file. K is
+    /// the gain of the core's regulator: elevator = -K x.
     fn linearize<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (model, trim) = (&self.model, &self.model.trim);
         let exact = JacobianForm::Exact;
@@ -96,7 +99,23 @@ impl Aircraft {
         dict.set_item("inputs", ["thrust", "elevator"])?;
         let elevator = plain(py, &model.file.elevator.unit)?;
         dict.set_item("input_units", ("N", elevator))?;
+        let aircraft = model.clone();
+        let scenario = Scenario {
+            aircraft,
+            ..Scenario::new(Preset::Flight, 1)
+        };
+        let settings = recording::settings(&scenario).map_err(flight)?;
+        let lqr = Lqr::design(&linear, &settings.regulator).map_err(set_up)?;
+        dict.set_item("K", flat(py, lqr.gain.iter().copied(), [1, 4])?)?;
         Ok(dict)
+    }
+
+    /// Gain, phase and delay margin of the regulator at the elevator, in level flight at 100 Hz with commands that come a
+    /// tick late. Needs SciPy.
+    fn margins<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        let linear = slf.get().linearize(slf.py())?;
+        let analysis = slf.py().import("mppflight.analysis")?;
+        analysis.call_method1("margins", (linear,))
     }
 
     /// The factor on the lengths of fields, lidar and band that makes them as hard as those of the paper's aircraft.

@@ -1,6 +1,6 @@
 //! Many flights side by side, for learning: the agent is the regulator.
 
-use crate::episode::{Episode, controls, pair, seen};
+use crate::episode::{Episode, Shaping, controls, pair, scales, seen};
 use crate::errors::{self, alone, input, state};
 use crate::field::Field;
 use crate::input::{argument, rows};
@@ -30,9 +30,9 @@ struct Flights {
     file: ScenarioFile,
     base: Scenario,
     scan_ticks: u32,
+    shaping: Shaping,
     /// Elevator and thrust for the actions -1 and 1.
-    elevator: [f64; 2],
-    thrust: [f64; 2],
+    ranges: [[f64; 2]; 2],
 }
 
 /// A flight and what its agent knows.
@@ -58,19 +58,21 @@ pub(crate) struct SavedFlight {
 
 #[pymethods]
 impl Batch {
-    /// `count` flights of the scenario with these keys, each with a scan `lidar_hz` times a second.
+    /// `count` flights of the scenario with these keys, each with a scan `lidar_hz` times a second. `shaping` holds what missing
+    /// clearance costs a second, the margin [m], and what effort costs.
     #[new]
-    #[pyo3(signature = (keys, count, lidar_hz = 10.0))]
+    #[pyo3(signature = (keys, count, lidar_hz = 10.0, shaping = [0.0, 1.0, 0.0]))]
     fn new(
         keys: &Bound<'_, PyDict>,
         count: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = argument)] lidar_hz: f64,
+        shaping: [f64; 3],
     ) -> PyResult<Self> {
         let some = argument(count).ok();
         let some = some.filter(|count| (1..=MOST_FLIGHTS).contains(count));
         let wrong = || format!("num_envs: give 1 to {MOST_FLIGHTS} flights, not {count}");
         let count = some.ok_or_else(|| input(wrong()))?;
-        let plan = Arc::new(Flights::new(scenario::file(keys)?, lidar_hz)?);
+        let plan = Arc::new(Flights::new(scenario::file(keys)?, lidar_hz, shaping)?);
         let runs = (0..count).map(|_| None).collect();
         let guarded = Mutex::new(runs);
         Ok(Self { plan, guarded })
@@ -93,7 +95,13 @@ impl Batch {
     /// Elevator for the actions -1 and 1, and thrust likewise [N].
     #[getter]
     fn controls(&self) -> [[f64; 2]; 2] {
-        [self.plan.elevator, self.plan.thrust]
+        self.plan.ranges
+    }
+
+    /// Cruise [m/s], the way of a flight, its altitude and its band [m].
+    #[getter]
+    fn scales(&self) -> [f64; 4] {
+        scales(&self.plan.base)
     }
 
     /// Starts the flights anew that have a seed in the list.
@@ -242,7 +250,7 @@ impl SavedFlight {
     fn replayed(file: &str, scan_ticks: u32, seed: u64, actions: Vec<[f64; 2]>) -> PyResult<Self> {
         let file = serde_json::from_str(file).map_err(input)?;
         let hz = f64::from(TICKS_PER_SECOND) / f64::from(scan_ticks.max(1));
-        let plan = Arc::new(Flights::new(file, hz)?);
+        let plan = Arc::new(Flights::new(file, hz, [0.0, 1.0, 0.0])?);
         let mut run = Some(Run::new(&plan, seed)?);
         for action in actions {
             fly(&mut run, &plan, action)?;
@@ -269,7 +277,7 @@ fn unset() -> PyErr {
 }
 
 impl Flights {
-    fn new(file: ScenarioFile, lidar_hz: f64) -> PyResult<Self> {
+    fn new(file: ScenarioFile, lidar_hz: f64, shaping: [f64; 3]) -> PyResult<Self> {
         let base = scenario::of_sensors(file.build().map_err(errors::scenario)?)?;
         let scan_ticks = f64::from(TICKS_PER_SECOND) / lidar_hz;
         let whole =
@@ -279,11 +287,10 @@ impl Flights {
                 "lidar_hz: give a rate of which 100 Hz is a whole multiple, such as 10",
             ));
         }
-        let [elevator, thrust] = controls(&base)?;
         Ok(Self {
             scan_ticks: scan_ticks.round() as u32,
-            elevator,
-            thrust,
+            shaping: Shaping::new(shaping)?,
+            ranges: controls(&base)?,
             file,
             base,
         })
@@ -369,21 +376,22 @@ fn check(run: Option<&Run>, action: [f64; 2]) -> PyResult<()> {
 }
 
 /// Flies one tick. Gives the reward, and whether the flight failed or came to its end. The reward of a flight to the
-/// end is about 1: the share of the way at cruise. A failure costs 1.
+/// end is about 1: the share of the way at cruise, less what the shaping costs. A failure costs 1.
 fn fly(run: &mut Option<Run>, plan: &Flights, action: [f64; 2]) -> PyResult<(f64, bool, bool)> {
     check(run.as_ref(), action)?;
     let run = run.as_mut().ok_or_else(unset)?;
     let between =
         |[least, most]: [f64; 2], share: f64| least + (most - least) * 0.5 * (share + 1.0);
     let command = Control {
-        elevator: between(plan.elevator, action[0]),
-        thrust: between(plan.thrust, action[1]),
+        elevator: between(plan.ranges[0], action[0]),
+        thrust: between(plan.ranges[1], action[1]),
     };
     let before = run.episode.state().x;
     run.episode.step(command)?;
     run.actions.push(action);
     let way = plan.base.aircraft.trim.state.airspeed * plan.base.duration();
     let advance = (run.episode.state().x - before) / way;
+    let advance = advance - plan.shaping.cost(&run.episode, command, &plan.ranges);
     let failed = run.episode.failed();
     let ended = !failed && run.episode.is_through();
     run.look();

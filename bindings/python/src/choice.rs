@@ -1,7 +1,7 @@
 //! A flight for learning in which the agent chooses among the planner's candidates, once each cycle.
 
 use crate::aside::aside;
-use crate::episode::{Episode, seen};
+use crate::episode::{Episode, Shaping, controls, scales, seen};
 use crate::errors::{self, FlightError, alone, input, state};
 use crate::field::Field;
 use crate::output::flat;
@@ -32,6 +32,9 @@ pub(crate) struct Choice {
 struct Plan {
     file: ScenarioFile,
     base: Scenario,
+    shaping: Shaping,
+    /// Elevator and thrust that an agent would have.
+    ranges: [[f64; 2]; 2],
 }
 
 /// A flight between a scan and the choice of its plan. It is large: it is made, copied and flown on a stack of our own
@@ -61,9 +64,11 @@ pub(crate) struct Fork {
 
 #[pymethods]
 impl Choice {
+    /// A flight of the scenario with these keys. `shaping` is that of a [`Batch`](crate::batch::Batch).
     #[new]
-    fn new(keys: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let plan = Arc::new(Plan::new(scenario::file(keys)?)?);
+    #[pyo3(signature = (keys, shaping = [0.0, 1.0, 0.0]))]
+    fn new(keys: &Bound<'_, PyDict>, shaping: [f64; 3]) -> PyResult<Self> {
+        let plan = Arc::new(Plan::new(scenario::file(keys)?, shaping)?);
         let guarded = Mutex::new(None);
         Ok(Self { plan, guarded })
     }
@@ -77,6 +82,12 @@ impl Choice {
     fn lidar(&self) -> (usize, f64, f64) {
         let lidar = &self.plan.base.lidar;
         (lidar.beams, lidar.range_max, lidar.field_of_view)
+    }
+
+    /// As those of a [`Batch`](crate::batch::Batch).
+    #[getter]
+    fn scales(&self) -> [f64; 4] {
+        scales(&self.plan.base)
     }
 
     /// Cycles a second.
@@ -193,7 +204,7 @@ impl Fork {
     #[staticmethod]
     fn replayed(py: Python<'_>, file: &str, seed: u64, actions: Vec<usize>) -> PyResult<Self> {
         let file = serde_json::from_str(file).map_err(input)?;
-        let plan = Arc::new(Plan::new(file)?);
+        let plan = Arc::new(Plan::new(file, [0.0, 1.0, 0.0])?);
         let run = aside(py, |_| {
             let mut run = Run::new(&plan, seed)?;
             for action in actions {
@@ -220,7 +231,7 @@ fn unset() -> PyErr {
 }
 
 impl Plan {
-    fn new(file: ScenarioFile) -> PyResult<Self> {
+    fn new(file: ScenarioFile, shaping: [f64; 3]) -> PyResult<Self> {
         let base = scenario::of_sensors(file.build().map_err(errors::scenario)?)?;
         if base.preset != mpp_sim::scenario::Preset::Flight {
             return Err(input("preset: only flight has candidates"));
@@ -239,7 +250,12 @@ impl Plan {
                 "{key}: leave it out, choices cannot fly it as fly does"
             )));
         }
-        Ok(Self { file, base })
+        Ok(Self {
+            shaping: Shaping::new(shaping)?,
+            ranges: controls(&base)?,
+            file,
+            base,
+        })
     }
 }
 
@@ -265,8 +281,8 @@ impl Run {
         Ok(run)
     }
 
-    /// Adopts a plan that is due, steps, and plans if there is a scan. Then flies one tick.
-    fn tick(&mut self, plan: &Plan) -> PyResult<()> {
+    /// Adopts a plan that is due, steps, and plans if there is a scan. Then flies one tick. Gives what it costs.
+    fn tick(&mut self, plan: &Plan) -> PyResult<f64> {
         let readings = self.episode.measure();
         let now = self.episode.tick;
         let time = Scenario::time(now);
@@ -288,7 +304,8 @@ impl Run {
             self.scan = seen(&scan.ranges, plan.base.lidar.range_max).collect();
             self.plan(time, &scan)?;
         }
-        self.episode.step(output.control)
+        self.episode.step(output.control)?;
+        Ok((plan.shaping).cost(&self.episode, output.control, &plan.ranges))
     }
 
     fn plan(&mut self, time: f64, scan: &hil_protocol::LidarScan) -> PyResult<()> {
@@ -330,16 +347,16 @@ impl Run {
             }
         };
         self.chosen = Some((taken, self.planner.best().clone()));
-        let before = self.episode.state().x;
+        let (before, mut cost) = (self.episode.state().x, 0.0);
         while self.episode.outcome().is_none() {
             let next = self.episode.tick.is_multiple_of(plan.base.replan_ticks);
-            self.tick(plan)?;
+            cost += self.tick(plan)?;
             if next {
                 break;
             }
         }
         let way = plan.base.aircraft.trim.state.airspeed * plan.base.duration();
-        let advance = (self.episode.state().x - before) / way;
+        let advance = (self.episode.state().x - before) / way - cost;
         let failed = self.episode.failed();
         let reward = if failed { advance - 1.0 } else { advance };
         Ok((reward, failed, !failed && self.episode.is_through()))

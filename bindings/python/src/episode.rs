@@ -4,6 +4,7 @@
 use crate::errors::{self, FlightError, input};
 use crate::input::vector;
 use mpp_analysis::recording;
+use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::{Control, VehicleState, Wind};
 use mpp_sim::aircraft::Aircraft;
 use mpp_sim::faults::FaultyLidar;
@@ -32,6 +33,8 @@ pub(crate) struct Episode {
     scan_ticks: u32,
     pub(crate) tick: u32,
     pub(crate) end: Option<Outcome>,
+    /// Distance from the nearest obstacle in the last tick [m].
+    clearance: f64,
 }
 
 /// What the actions -1 and 1 of an agent mean: elevator, and thrust [N].
@@ -52,6 +55,52 @@ pub(crate) fn controls(base: &Scenario) -> PyResult<[[f64; 2]; 2]> {
         ],
         [0.0, limits.thrust_max.map_or(most, |limit| limit.min(most))],
     ])
+}
+
+/// What a second costs an agent besides, taken from its reward.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shaping {
+    /// For what is missing of the margin, as a share of it.
+    pub(crate) clearance: f64,
+    /// Distance from obstacles that costs nothing [m].
+    pub(crate) margin: f64,
+    /// For the squares of the elevator's share of its range and of the thrust's.
+    pub(crate) effort: f64,
+}
+
+impl Shaping {
+    pub(crate) fn new([clearance, margin, effort]: [f64; 3]) -> PyResult<Self> {
+        if margin > 0.0
+            && [clearance, margin, effort]
+                .iter()
+                .all(|it| (0.0..=1e6).contains(it))
+        {
+            return Ok(Self {
+                clearance,
+                margin,
+                effort,
+            });
+        }
+        Err(input(
+            "reward: give clearance and effort from 0, and margin more than 0 m",
+        ))
+    }
+
+    /// What the last tick cost.
+    pub(crate) fn cost(&self, episode: &Episode, command: Control, ranges: &[[f64; 2]; 2]) -> f64 {
+        let missing = (1.0 - episode.clearance / self.margin).clamp(0.0, 1.0);
+        let share = |value: f64, [least, most]: [f64; 2]| (value - least) / (most - least);
+        let elevator = (2.0 * share(command.elevator, ranges[0]) - 1.0).clamp(-1.0, 1.0);
+        let thrust = share(command.thrust, ranges[1]).clamp(0.0, 1.0);
+        let effort = elevator * elevator + thrust * thrust;
+        TICK_PERIOD * (self.clearance * missing + self.effort * effort)
+    }
+}
+
+/// Cruise [m/s], the way of a flight, its altitude and its band [m]: what an agent may measure in.
+pub(crate) fn scales(base: &Scenario) -> [f64; 4] {
+    let cruise = base.aircraft.trim.state.airspeed;
+    [cruise, cruise * base.duration(), ALTITUDE, base.band()]
 }
 
 /// Elevator and thrust of one action.
@@ -94,6 +143,7 @@ impl Episode {
             scan_ticks,
             tick: 0,
             end: None,
+            clearance: f64::INFINITY,
             scenario: Arc::new(scenario),
         })
     }
@@ -124,12 +174,13 @@ impl Episode {
         }
     }
 
-    /// Time [s], true place [m], and the outcome.
+    /// Time [s], true place and distance from the nearest obstacle [m], and the outcome.
     pub(crate) fn truth<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (dict, at) = (PyDict::new(py), self.state());
         dict.set_item(intern!(py, "t"), Scenario::time(self.tick))?;
         dict.set_item(intern!(py, "x"), at.x)?;
         dict.set_item(intern!(py, "z"), at.z)?;
+        dict.set_item(intern!(py, "clearance"), self.clearance)?;
         dict.set_item(intern!(py, "outcome"), self.outcome())?;
         Ok(dict)
     }
@@ -160,7 +211,10 @@ impl Episode {
         let before = *self.plant.state();
         let flown = self.plant.step(command);
         flown.map_err(|error| FlightError::new_err(error.to_string()))?;
+        let least = std::mem::replace(&mut self.score.min_clearance, f64::INFINITY);
         self.end = (self.score).update(&self.field, &before, self.plant.state());
+        self.clearance = self.score.min_clearance;
+        self.score.min_clearance = self.clearance.min(least);
         self.tick += 1;
         Ok(())
     }

@@ -3,14 +3,15 @@
 use crate::aside::aside;
 use crate::errors::{self, input};
 use crate::field::Field;
-use crate::output::{columns, plain};
+use crate::output::{columns, flat, plain};
 use crate::scenario;
 use mpp_sim::entries::{Columns, LateralColumns};
 use mpp_sim::flight::fly_with;
 use mpp_sim::log::FlightLog;
 use mpp_sim::orders::Ground;
 use mpp_sim::pipe::PipeLink;
-use mpp_sim::space::{SpacePipe, fly_space_with};
+use mpp_sim::space::{Look, SpaceCycle, SpacePipe, fly_space_with};
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -96,6 +97,33 @@ impl Flight {
         columns(py, all)
     }
 
+    /// What there was to see of a flight in space, which is flown again for it: `bodies`, what stood there; `at`, `attitude` (a
+    /// quaternion w, x, y, z that turns ahead, right, down of the body into those of the world) and `clearance`, at the start and after each tick; `cycles`,
+    /// each with its `tick`, `hits` and `paths`. Places are ahead, right and up [m].
+    fn look<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        if self.log.header.space.is_none() {
+            return Err(input(
+                "look: this flight is in the vertical plane: its field and columns have all",
+            ));
+        }
+        let again = "look: flown again, the flight does not come out the same: its log is of another version";
+        let look = py
+            .detach(|| Look::again(&self.log))
+            .ok_or_else(|| input(again))?;
+        let (dict, count) = (PyDict::new(py), look.moments.len());
+        let at = look.moments.iter().flat_map(|it| it.0);
+        let attitude = look.moments.iter().flat_map(|it| it.1);
+        dict.set_item("bodies", plain(py, &look.bodies)?)?;
+        dict.set_item("span", look.span)?;
+        dict.set_item("at", flat(py, at, [count, 3])?)?;
+        dict.set_item("attitude", flat(py, attitude, [count, 4])?)?;
+        let clearance = look.moments.iter().map(|it| it.3);
+        dict.set_item("clearance", PyArray1::from_iter(py, clearance))?;
+        let cycles = look.cycles.iter().map(|cycle| seen(py, cycle));
+        dict.set_item("cycles", cycles.collect::<PyResult<Vec<_>>>()?)?;
+        Ok(dict)
+    }
+
     /// Draws field, way and tracked plan with matplotlib, into `axes` if they are given. Gives the axes.
     #[pyo3(signature = (axes = None))]
     fn plot<'py>(
@@ -166,6 +194,22 @@ impl Flight {
         let make = slf.get_type().getattr("from_json")?;
         Ok((make, (slf.get().to_json(slf.py()),)))
     }
+}
+
+/// A planning cycle in space.
+fn seen<'py>(py: Python<'py>, cycle: &SpaceCycle) -> PyResult<Bound<'py, PyDict>> {
+    let metres = |part: &i32| 0.01 * f64::from(*part);
+    let path =
+        |knots: &Vec<[i32; 4]>| flat(py, knots.iter().flatten().map(metres), [knots.len(), 4]);
+    let dict = PyDict::new(py);
+    dict.set_item("tick", cycle.tick)?;
+    dict.set_item(
+        "hits",
+        flat(py, cycle.hits.iter().map(metres), [cycle.hits.len() / 3, 3])?,
+    )?;
+    let paths = cycle.paths.iter().map(path);
+    dict.set_item("paths", paths.collect::<PyResult<Vec<_>>>()?)?;
+    Ok(dict)
 }
 
 /// These columns by name.

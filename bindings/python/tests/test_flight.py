@@ -10,6 +10,7 @@ import tomllib
 import mppflight
 import numpy as np
 import pytest
+import scipy.io
 
 
 def test_the_hash_is_the_readmes(root):
@@ -111,3 +112,36 @@ def test_a_flight_in_space_has_lateral_columns():
     for keys in ({"obstacles": 5}, {"density": -1.0}, {"aircraft": "cessna182"}):
         with pytest.raises(mppflight.InputError):
             mppflight.fly(preset="space", **keys)
+
+
+def test_a_flight_in_space_is_looked_at():
+    flight = mppflight.fly(preset="space", density=0.02, seed=4)
+    look, columns = flight.look(), flight.columns
+    assert np.array_equal(look["at"][:-1], np.column_stack([columns[name] for name in "xyz"]))
+    assert look["clearance"].min() == flight.summary["min_clearance"]
+    # The plan of the last cycle may come too late.
+    assert len(look["cycles"]) - len(flight.plans) in (0, 1)
+    # Bank and pitch of the attitude are those of the columns, but for the sideslip that the bank of the path leaves out.
+    w, x, y, z = look["attitude"][:-1].T
+    assert np.allclose(np.arcsin(2 * (w * y - z * x)), columns["pitch"], atol=1e-9)
+    # Each hit is at the bark of a trunk or on the ground, but for the lidar's errors.
+    trunks = np.array([[it["cylinder"][key] for key in ("x", "y", "radius")] for it in look["bodies"]])
+    hits = look["cycles"][60]["hits"]
+    off = np.abs(np.linalg.norm(hits[:, None, :2] - trunks[None, :, :2], axis=2) - trunks[:, 2]).min(axis=1)
+    assert len(hits) > 100 and np.mean(np.minimum(off, np.abs(hits[:, 2])) < 0.3) > 0.9
+    assert all(path.shape[1] == 4 for cycle in look["cycles"] for path in cycle["paths"])
+    with pytest.raises(mppflight.InputError, match="look: this flight is in the vertical plane"):
+        mppflight.fly(duration=1).look()
+    log = flight.to_json().replace(b'"seed":4', b'"seed":5', 1)
+    with pytest.raises(mppflight.InputError, match="does not come out the same"):
+        mppflight.Flight.from_json(log).look()
+
+
+def test_flights_and_models_go_to_matlab(tmp_path):
+    flight, model = mppflight.fly(duration=1), mppflight.Aircraft().linearize()
+    scipy.io.savemat(tmp_path / "flight.mat", flight.columns)
+    scipy.io.savemat(tmp_path / "model.mat", model)
+    assert np.array_equal(scipy.io.loadmat(tmp_path / "flight.mat")["airspeed"][0], flight.columns["airspeed"])
+    back = scipy.io.loadmat(tmp_path / "model.mat")
+    assert all(np.array_equal(back[name], model[name]) for name in "ABK")
+    assert [name.strip() for name in back["states"]] == model["states"]

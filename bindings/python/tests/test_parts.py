@@ -6,6 +6,7 @@ import pickle
 import mppflight
 import numpy as np
 import pytest
+import scipy.signal
 
 
 def test_an_aircraft_comes_by_name_by_file_and_by_numbers(root):
@@ -39,6 +40,26 @@ def test_the_linear_model_flies_as_the_aircraft_does_near_trim(name):
                 x = x + 1e-4 * (model["A"] @ x + model["B"] @ push)
         flown = np.array([world.state[key] for key in model["states"]]) - still
         assert np.allclose(flown, x, rtol=0.05, atol=0.02 * np.abs(x).max()), (flown, x)
+
+
+@pytest.mark.parametrize("name", mppflight.Aircraft.known())
+def test_the_loop_is_at_its_limit_with_its_margins(name):
+    aircraft = mppflight.Aircraft(name)
+    model, margins = aircraft.linearize(), aircraft.margins()
+
+    def growth(gain, late):
+        """Of the loop with so much of its gain, whose commands come so many ticks late, in a tick."""
+        a, b, *_ = scipy.signal.cont2discrete((model["A"], model["B"][:, 1:], np.eye(4), np.zeros((4, 1))), 0.01)
+        loop = np.zeros((4 + late, 4 + late))
+        loop[:4, :4], loop[:4, 4:5], loop[-1, :4] = a, b, -gain * model["K"]
+        loop[4:-1, 5:] = np.eye(late - 1)
+        return np.abs(np.linalg.eigvals(loop)).max()
+
+    assert growth(1.0, 1) < 1.0 and margins["gain_down"] == 0.0
+    assert growth(0.98 * margins["gain_up"], 1) < 1.0 < growth(1.02 * margins["gain_up"], 1)
+    ticks = 100 * margins["delay"]
+    assert growth(1.0, int(ticks)) < 1.0 < growth(1.0, 3 + int(ticks))
+    assert 40 < margins["phase"] < 100 and margins["delay"] == pytest.approx(margins["phase"] / 360 / margins["crossing"])
 
 
 def test_a_generated_field_is_that_of_the_flight_with_its_seed():

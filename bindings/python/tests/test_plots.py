@@ -43,6 +43,9 @@ def test_a_flight_in_space_is_drawn_from_above():
     flight = mppflight.fly(preset="space", density=0.005, seed=5)
     axes = flight.plot()
     assert np.array_equal(axes.get_lines()[0].get_ydata(), flight.columns["y"]) and axes.yaxis_inverted()
+    # The trunks are those of its world.
+    (trunks,) = axes.collections
+    assert len(trunks.get_paths()) == flight.header["obstacles"]
 
 
 def test_a_notebook_shows_a_flight_and_a_campaign():

@@ -54,16 +54,16 @@ mppflight.campaign(trials=1, preset=["paper", "flight"], obstacles=20, faults={"
 
 def test_the_examples_are_typed_and_wrong_keys_are_errors(root, tmp_path):
     """Notebook and page, as a reader puts them together. An ignored line without an error is an error itself."""
-    notebook = nbformat.read(root / "bindings/python/examples/figure8.ipynb", as_version=4)
-    cells = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    notebooks = {name: nbformat.read(root / f"bindings/python/examples/{name}.ipynb", as_version=4) for name in ("figure8", "tour")}
+    cells = {f"{name}.py": [cell.source for cell in it.cells if cell.cell_type == "code"] for name, it in notebooks.items()}
     page = re.findall(r"^```python\n(.*?)^```", (root / "docs/python.md").read_text(), re.DOTALL | re.MULTILINE)
-    assert cells and len(page) > 4
-    sources = {"notebook.py": cells, "page.py": page, "wrong.py": [WRONG]}
+    assert all(cells.values()) and len(page) > 4
+    sources = {**cells, "page.py": page, "wrong.py": [WRONG]}
     for name, blocks in sources.items():
         (tmp_path / name).write_text("\n".join(blocks))
     foreign = "--untyped-calls-exclude=distributed"
-    agent = str(root / "bindings/python/examples/agent.py")
-    code, told = mypy("mypy", "--strict", foreign, agent, *(str(tmp_path / name) for name in sources))
+    own = [str(root / f"bindings/python/examples/{name}.py") for name in ("agent", "rerun_forest")]
+    code, told = mypy("mypy", "--strict", foreign, *own, *(str(tmp_path / name) for name in sources))
     assert code == 0, told
 
 

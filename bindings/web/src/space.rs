@@ -1,11 +1,12 @@
 //! Questions about one flight in space, and their answers.
 
 use crate::desk::{Logged, MOST_TICKS, json, told};
-use mpp_core::planner::space::SpacePlan;
 use mpp_sim::log::Header;
 use mpp_sim::orders::{Order, OrderEntry};
 use mpp_sim::space::world::Body;
-use mpp_sim::space::{Pose, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
+use mpp_sim::space::{
+    Moment, SpaceCycle, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario, moment,
+};
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
@@ -46,19 +47,16 @@ pub struct Begun {
     /// Span of the wing \[m\].
     span: f64,
     /// State at the start, as in [`Flown`].
-    state: State,
+    state: Moment,
 }
-
-/// Place \[m\], attitude, airspeed [m/s], and distance from the nearest thing \[m\], at most 5 m.
-type State = ([f64; 3], [f64; 4], f64, f64);
 
 /// The answer to [`Question::Fly`].
 #[derive(Debug, Default, Serialize)]
 pub struct Flown {
     /// The state after each tick.
-    states: Vec<State>,
+    states: Vec<Moment>,
     /// Planning cycles that began.
-    cycles: Vec<Cycle>,
+    cycles: Vec<SpaceCycle>,
     /// Orders that took effect.
     orders: Vec<OrderEntry>,
     /// Orders that were refused, and why.
@@ -67,19 +65,6 @@ pub struct Flown {
     planning: Vec<f64>,
     /// Whether the flight has ended.
     ended: bool,
-}
-
-/// A planning cycle: what the lidar showed, and what was made of it. Lengths are whole centimetres.
-#[derive(Debug, Serialize)]
-struct Cycle {
-    /// Ticks flown when it was done.
-    tick: u32,
-    /// Tick from which its plan is flown.
-    due: u32,
-    /// Where beams have ended: ahead, right, up, ahead, ..
-    hits: Vec<i32>,
-    /// The candidates, and last the plan: ahead, right, up of each knot, and its bank [0.01 rad].
-    paths: Vec<Vec<[i32; 4]>>,
 }
 
 /// One flight in space at a time.
@@ -156,14 +141,8 @@ impl Flying {
                 .filter_map(trunk)
                 .collect(),
             span: 2.0 * self.scenario.hull().half_span,
-            state: self.state(),
+            state: moment(&self.flight),
         }
-    }
-
-    fn state(&self) -> State {
-        let state = self.flight.state();
-        let Pose { at, attitude } = Pose::of(state);
-        (at, attitude.0, state.plane.air.airspeed, self.flight.gap())
     }
 
     fn fly(&mut self, ticks: u32, orders: &[Order], clock: fn() -> f64) -> Result<Flown, String> {
@@ -182,10 +161,11 @@ impl Flying {
             let began = clock();
             (self.flight.tick(&self.scenario, &mut self.link))
                 .map_err(|error| error.to_string())?;
-            news.states.push(self.state());
-            if let Some(hits) = self.flight.returns() {
-                news.planning.push(clock() - began);
-                news.cycles.push(self.cycle(&hits));
+            news.states.push(moment(&self.flight));
+            let took = clock() - began;
+            if let Some(cycle) = SpaceCycle::of(&self.scenario, &self.flight, &self.link) {
+                news.planning.push(took);
+                news.cycles.push(cycle);
             }
         }
         news.ended = self.flight.has_ended();
@@ -199,36 +179,4 @@ impl Flying {
             Err(refused) => news.refused.push(refused.to_string()),
         }
     }
-
-    /// The cycle of this tick. The core in this process has done all of it by now.
-    fn cycle(&self, hits: &[[f64; 3]]) -> Cycle {
-        let tick = self.flight.flown();
-        let mut paths = Vec::new();
-        if let Some((planner, _)) = self.link.node().planner() {
-            let best = planner.best().map(|(plan, _)| plan);
-            paths.extend(planner.candidates().chain(best).map(knots));
-        }
-        Cycle {
-            tick,
-            due: tick + self.scenario.plane.latency_ticks,
-            hits: hits
-                .iter()
-                .flatten()
-                .map(|part| hundredths(*part))
-                .collect(),
-            paths,
-        }
-    }
-}
-
-fn knots(plan: &SpacePlan) -> Vec<[i32; 4]> {
-    let knots = plan.knots.iter().map(|knot| {
-        let [x, y, z] = knot.position;
-        [x, y, z, knot.bank].map(hundredths)
-    });
-    knots.collect()
-}
-
-fn hundredths(value: f64) -> i32 {
-    (100.0 * value).round() as i32
 }

@@ -1,15 +1,4 @@
 // The charts of a flight over time, and what the pointer does there.
-const CHARTS = [
-  { title: "height", unit: "m", least: 1, digits: 2, limits: f => [LIMITS.altitude - band(f), LIMITS.altitude + band(f)],
-    goal: LIMITS.altitude, series: [["ref_z", "reference"], ["z", "flown"]] },
-  { title: "airspeed", unit: "m/s", least: 1, digits: 2, series: [["ref_airspeed", "reference"], ["airspeed", "flown"]] },
-  { title: "pitch", unit: "deg", least: 4, digits: 1, change: degrees, limits: () => [-LIMITS.pitch, LIMITS.pitch],
-    series: [["ref_pitch", "reference"], ["pitch", "flown"]] },
-  { title: "flight path", unit: "deg", least: 4, digits: 1, change: degrees,
-    limits: () => [-LIMITS.flight_path, LIMITS.flight_path], series: [["ref_flight_path", "reference"], ["flight_path", "flown"]] },
-  { title: "thrust", unit: "N", least: 1, digits: 2, series: [["thrust", "flown"]] },
-  { title: "candidates (broad), feasible", unit: "", least: 2, digits: 0, plans: true,
-    series: [["candidates", "candidate"], ["feasible", "plan"]] }];
 const LEFT = 44, RIGHT = 8, FOOT = 18;
 
 // The ticks that the charts show: the whole flight, or the window of `look`.
@@ -70,7 +59,7 @@ function drawSeries(pen, points, u, v, style, width, dense) {
 }
 
 // Draws what does not change with the pointer.
-function drawCurves(pen, flight, [from, to], width, height) {
+function drawCurves(pen, flight, [from, to], width, height, together) {
   const rows = (height - FOOT) / CHARTS.length, right = width - RIGHT;
   const u = tick => LEFT + (right - LEFT) * (tick - from) / (to - from);
   CHARTS.forEach((chart, index) => {
@@ -78,12 +67,15 @@ function drawCurves(pen, flight, [from, to], width, height) {
       [name, style, seriesPoints(flight, chart, name, [from, to], width)]);
     const limits = chart.limits ? chart.limits(flight) : [];
     let low = Math.min(Infinity, ...limits), high = Math.max(-Infinity, ...limits);
-    for (const [, , points] of series)
-      for (const point of points) if (point !== null) { low = Math.min(low, point[1]); high = Math.max(high, point[2]); }
+    // Flights side by side have the same axes.
+    for (const one of together) for (const [name] of chart.series)
+      for (const point of seriesPoints(one, chart, name, [from, to], width)) if (point !== null) { low = Math.min(low, point[1]); high = Math.max(high, point[2]); }
     if (low > high) [low, high] = [0, 1];
     // Noise is not blown up to fill the chart.
     const margin = Math.max((high - low) * .08, (chart.least - (high - low)) / 2); low -= margin; high += margin;
-    const digits = high - low < 5 ? 1 : 0, top = index * rows + 16, bottom = (index + 1) * rows - 6;
+    if (chart.plans) high = Math.ceil(high - margin);
+    if (chart.floor !== undefined) low = Math.max(low, chart.floor);
+    const digits = high - low < 5 && !chart.plans ? 1 : 0, top = index * rows + 16, bottom = (index + 1) * rows - 6;
     const v = value => bottom - (bottom - top) * (value - low) / (high - low);
     line(pen, [[LEFT, bottom], [right, bottom]], colour.line, 1);
     pen.fillStyle = colour.faint; pen.textAlign = "left";
@@ -146,7 +138,7 @@ function drawCharts(flight, now, look) {
     const painter = image.getContext("2d");
     painter.setTransform(ratio, 0, 0, ratio, 0, 0);
     painter.font = pen.font;
-    drawCurves(painter, flight, [from, to], width, height);
+    drawCurves(painter, flight, [from, to], width, height, look.together || [flight]);
     flight.curves = { key, image };
   }
   pen.drawImage(flight.curves.image, 0, 0, width, height);

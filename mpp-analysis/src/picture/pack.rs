@@ -6,10 +6,11 @@ use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use mpp_sim::entries::{Columns, PlanEntry};
+use mpp_sim::entries::{Columns, LateralColumns, PlanEntry};
 use mpp_sim::inspector::PlanDetail;
 use mpp_sim::log::{FlightLog, Header, LogError, Summary};
 use mpp_sim::orders::OrderEntry;
+use mpp_sim::space::Look;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -49,12 +50,44 @@ impl<'a> Packed<'a> {
     }
 }
 
-/// The flights as text of 64 letters.
-pub(super) fn packed(flights: &[Packed<'_>]) -> Result<String, LogError> {
+/// A flight in space as its page gets it.
+#[derive(Serialize)]
+pub(super) struct PackedSpace<'a> {
+    header: &'a Header,
+    summary: &'a Summary,
+    plans: &'a [PlanEntry],
+    orders: &'a [OrderEntry],
+    hash: String,
+    look: Look,
+    ticks: BTreeMap<&'static str, (f64, Steps)>,
+}
+
+impl<'a> PackedSpace<'a> {
+    pub(super) fn of(log: &'a FlightLog, look: Look) -> Result<Self, LogError> {
+        Ok(Self {
+            header: &log.header,
+            summary: &log.summary,
+            plans: &log.plans,
+            orders: &log.orders,
+            hash: log.hash()?,
+            look,
+            ticks: (columns(&log.ticks).into_iter().chain(lateral(&log.lateral))).collect(),
+        })
+    }
+}
+
+/// Flights as text of 64 letters.
+pub(super) fn packed(flights: &impl Serialize) -> Result<String, LogError> {
     let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
     let written = gzip.write_all(&serde_json::to_vec(flights)?);
     let bytes = written.and_then(|()| gzip.finish());
     Ok(BASE64_STANDARD.encode(bytes.map_err(serde_json::Error::io)?))
+}
+
+fn lateral(side: &LateralColumns) -> [(&'static str, (f64, Steps)); 2] {
+    let bank = steps(side.bank.iter().copied().map(Some), ANGLE);
+    let wanted = steps(side.ref_bank.iter().copied(), ANGLE);
+    [("bank", (ANGLE, bank)), ("ref_bank", (ANGLE, wanted))]
 }
 
 fn columns(ticks: &Columns) -> BTreeMap<&'static str, (f64, Steps)> {

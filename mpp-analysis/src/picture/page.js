@@ -9,6 +9,7 @@ let kept = 60_000, keptCycles = 600;
 const look = { follow: true, on: Object.fromEntries(LAYERS.map(([name]) => [name, true])), window: null, hover: null, last: 0,
   note: text => { $("occupancy").textContent = text; } };
 const flights = [];
+look.together = flights;
 let now = 0, playing = live, speed = 1, started = null, changed = false;
 
 function addFlight(parts) {
@@ -266,6 +267,8 @@ async function start() {
   flights.forEach(title);
   if (!flights.some(flight => flight.details.size))
     for (const name of ["scan", "occupancy", "candidates", "corridor", "plan", "unknown"]) $("layer-" + name).disabled = true;
+  // It opens at its most telling moment.
+  now = flights[0].closest?.tick ?? 0;
   fromHash();
   show();
   document.body.inert = false;

@@ -6,9 +6,25 @@ const PAGE: &str = concat!(
     include_str!("page.css"),
     include_str!("page_body.html"),
     include_str!("draw.js"),
+    include_str!("plane.js"),
     include_str!("charts.js"),
     include_str!("numbers.js"),
     include_str!("page.js"),
+    "</script>\n</html>\n"
+);
+/// The page of a flight in space, with a place for its data.
+const SPACE: &str = concat!(
+    include_str!("page_head.html"),
+    include_str!("page.css"),
+    include_str!("space/space.css"),
+    include_str!("space/body.html"),
+    include_str!("draw.js"),
+    include_str!("space/flight.js"),
+    include_str!("space/camera.js"),
+    include_str!("space/scene.js"),
+    include_str!("space/maps.js"),
+    include_str!("space/replay.js"),
+    include_str!("charts.js"),
     "</script>\n</html>\n"
 );
 /// The place of the data in the page. The page gets its data here, or null for a live flight.
@@ -20,6 +36,12 @@ const TOKEN: &str = "/*TOKEN*/";
 #[must_use]
 pub(super) fn page(packed: &str) -> String {
     PAGE.replacen(DATA, &format!("\"{packed}\""), 1)
+}
+
+/// The page of a flight in space.
+#[must_use]
+pub(super) fn space_page(packed: &str) -> String {
+    SPACE.replacen(DATA, &format!("\"{packed}\""), 1)
 }
 
 /// The page of a live flight, which may change its pace with this token, a text of digits and letters.

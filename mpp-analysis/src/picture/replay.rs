@@ -1,7 +1,7 @@
 //! One flight on one page, or two.
 
-use super::pack::{Packed, packed};
-use super::page::page;
+use super::pack::{Packed, PackedSpace, packed};
+use super::page::{page, space_page};
 use mpp_core::vehicle::VehicleState;
 use mpp_node::parameters::Tuning;
 use mpp_sim::flight::fly_with;
@@ -9,6 +9,7 @@ use mpp_sim::inspector::{Inspector, PlanDetail};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::orders::{Again, Ground, Order, Refused};
 use mpp_sim::pipe::PipeLink;
+use mpp_sim::space::Look;
 use mpp_sim::tick_record::TickRecord;
 
 /// Returns the page of a flight, or of two side by side, and whether it shows the details of all planning cycles. To
@@ -26,6 +27,16 @@ pub fn replay(log: &FlightLog, against: Option<&FlightLog>) -> Result<(String, b
         flights.push(Packed::of(log, details)?);
     }
     Ok((page(&packed(&flights)?), whole))
+}
+
+/// Returns the page of a flight in space; `None` if it does not come out the same when it is flown again.
+///
+/// # Errors
+/// [`LogError`] when the log holds a value that cannot be written.
+pub fn replay_space(log: &FlightLog) -> Result<Option<String>, LogError> {
+    let look = Look::again(log);
+    let page = |look| Ok(space_page(&packed(&PackedSpace::of(log, look)?)?));
+    look.map(page).transpose()
 }
 
 /// The planning cycles of a flight; `None` if the flight cannot be repeated.

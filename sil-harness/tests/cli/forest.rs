@@ -34,8 +34,24 @@ fn a_light_forest_is_flown_logged_and_exported() {
     assert!(first.starts_with("t,y,bank,course,"), "{first}");
     assert!(table.lines().count() > 1500);
     let (code, text) = told(&format!("replay {log} --out {out}/page.html"));
+    assert_eq!(code, Some(0), "{text}");
+    let page = std::fs::read_to_string(format!("{out}/page.html")).unwrap();
+    assert!(page.contains("id=\"attitude\"") && !page.contains("/*DATA*/null"));
+    // What it cannot show is refused, with what to do.
+    let (code, text) = told(&format!(
+        "replay {log} --against {log} --out {out}/two.html"
+    ));
     assert_eq!(code, Some(2), "{text}");
-    assert!(text.contains("export this flight in space"), "{text}");
+    assert!(
+        text.contains("--against: give flights in the vertical plane"),
+        "{text}"
+    );
+    let other = std::fs::read_to_string(&log).unwrap();
+    let changed = format!("{out}/changed.json");
+    std::fs::write(&changed, other.replacen("\"seed\":5", "\"seed\":6", 1)).unwrap();
+    let (code, text) = told(&format!("replay {changed} --out {out}/changed.html"));
+    assert_eq!(code, Some(2), "{text}");
+    assert!(text.contains("does not come out the same"), "{text}");
     let (code, text) = told(&format!("fly --orders {log} --out {out}"));
     assert_eq!(code, Some(2), "{text}");
     assert!(text.contains("of a flight in space"), "{text}");

@@ -6,6 +6,11 @@
 Further arguments of `gymnasium.make` are keys of a scenario, for example `obstacles=40`. A flight has the seed that
 `reset` gets, the first one without it that of the key `seed`; otherwise it is drawn from the environment's generator.
 Its obstacles, noise and gusts are those of `mppflight.fly` with this seed.
+
+`reward` takes what a second costs besides: `clearance` times the missing share of a `margin` [m] to the nearest obstacle,
+and `effort` times the squares of the elevator's and the thrust's share of their ranges. `normalised=True` gives
+observations without units: ranges as shares of the greatest, airspeed as its share beyond cruise, places as shares of the way
+and of the band, ages in seconds, prices p as p / (1 + p).
 """
 
 from __future__ import annotations
@@ -23,10 +28,9 @@ from numpy.typing import NDArray
 from ._native import Batch, Choice, Fork, Moment
 from .errors import InputError, StateError, whole
 from .keys import ScenarioKeys
+from .observations import Observation, Reward, Units, box, shaping
 from .plots import Window
 
-# Arrays by name.
-Observation = dict[str, Any]
 Step = tuple[Observation, float, bool, bool, dict[str, Any]]
 Saved = TypeVar("Saved")
 
@@ -37,10 +41,6 @@ class State(Generic[Saved]):
 
     flight: Saved
     random: dict[str, Any]
-
-
-def _box(shape: tuple[int, ...], low: float = -numpy.inf, high: float = numpy.inf) -> spaces.Box:
-    return spaces.Box(low, high, shape, numpy.float32)
 
 
 def _drawn(random: numpy.random.Generator) -> int:
@@ -81,10 +81,11 @@ class _Single(gymnasium.Env[Observation, Any], Generic[Saved]):
     _place: tuple[int, ...] = ()
     _kind: type[Saved]
 
-    def _open(self, native: Batch | Choice, first: int | None, mode: str | None) -> None:
+    def _open(self, native: Batch | Choice, units: Units, first: int | None, mode: str | None) -> None:
         if mode not in (None, *self.metadata["render_modes"]):
             raise InputError(f"render_mode: give rgb_array, human or None, not {mode!r}")
         self._native: Any = native
+        self._units = units
         self._first = first
         beams, self._sight, view = native.lidar
         self._angles = numpy.linspace(-0.5 * view, 0.5 * view, beams) if beams > 1 else numpy.zeros(1)
@@ -105,7 +106,7 @@ class _Single(gymnasium.Env[Observation, Any], Generic[Saved]):
     def _start(self) -> tuple[Observation, dict[str, Any]]:
         self._way, truth = [], self._native.truth(*self._place)
         self._at(truth)
-        return self._native.observe_one(), truth
+        return self._units.of(self._native.observe_one()), truth
 
     def _at(self, truth: dict[str, Any]) -> None:
         """The aircraft came to a place."""
@@ -149,17 +150,17 @@ class _Single(gymnasium.Env[Observation, Any], Generic[Saved]):
             self._window.close()
 
 
-def _control_spaces(batch: Batch) -> tuple[spaces.Dict[Any], spaces.Box]:
+def _control_spaces(batch: Batch, units: Units) -> tuple[spaces.Dict[Any], spaces.Box]:
     beams, range_max, _ = batch.lidar
     observation: spaces.Dict[Any] = spaces.Dict(
         {
-            "lidar": _box((beams,), 0.0, range_max),
-            "air": _box((2,)),
-            "position": _box((2,)),
-            "age": _box((2,), 0.0),
+            "lidar": box((beams,), 0.0, range_max),
+            "air": box((2,)),
+            "position": box((2,)),
+            "age": box((2,), 0.0),
         }
     )
-    return observation, spaces.Box(-1.0, 1.0, (2,), numpy.float64)
+    return units.space(observation), spaces.Box(-1.0, 1.0, (2,), numpy.float64)
 
 
 class ControlEnv(_Single[Moment]):
@@ -176,17 +177,23 @@ class ControlEnv(_Single[Moment]):
     _place, _kind = (0,), Moment
 
     def __init__(
-        self, lidar_hz: float = 10.0, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]
+        self,
+        lidar_hz: float = 10.0,
+        render_mode: str | None = None,
+        reward: Reward | None = None,
+        normalised: bool = False,
+        **scenario: Unpack[ScenarioKeys],
     ) -> None:
-        batch = Batch({**scenario}, 1, lidar_hz)
+        batch = Batch({**scenario}, 1, lidar_hz, shaping(reward))
         self.controls = batch.controls
-        self.observation_space, self.action_space = _control_spaces(batch)
-        self._open(batch, scenario.get("seed"), render_mode)
+        units = Units(batch, normalised)
+        self.observation_space, self.action_space = _control_spaces(batch, units)
+        self._open(batch, units, scenario.get("seed"), render_mode)
 
     def step(self, action: NDArray[Any]) -> Step:
-        step: Step = _of(self._native).step_one(action)
-        self._at(step[4])
-        return step
+        seen, *rest, truth = _of(self._native).step_one(action)
+        self._at(truth)
+        return self._units.of(seen), *rest, truth
 
 
 class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
@@ -200,6 +207,8 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         lidar_hz: float = 10.0,
         render_mode: str | None = None,
         max_episode_steps: int | None = None,
+        reward: Reward | None = None,
+        normalised: bool = False,
         **scenario: Unpack[ScenarioKeys],
     ) -> None:
         if render_mode is not None:
@@ -207,9 +216,11 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         most = 2**62 if max_episode_steps is None else max_episode_steps
         self._most = whole("max_episode_steps", most, 1, 2**62)
         self.num_envs = num_envs
-        self._batch: Batch | None = Batch({**scenario}, num_envs, lidar_hz)
+        batch = Batch({**scenario}, num_envs, lidar_hz, shaping(reward))
+        self._batch: Batch | None = batch
+        self._units = Units(batch, normalised)
         self._first = scenario.get("seed")
-        self.single_observation_space, self.single_action_space = _control_spaces(self._batch)
+        self.single_observation_space, self.single_action_space = _control_spaces(batch, self._units)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
         self._done, self._steps = numpy.zeros(num_envs, bool), numpy.zeros(num_envs, numpy.int64)
@@ -231,7 +242,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         batch = _of(self._batch)
         batch.reset([_drawn(self.np_random) if one is None else one for one in seeds])
         self._done[:], self._steps[:] = False, 0
-        return dict(batch.observe()), {}
+        return self._units.of(dict(batch.observe())), {}
 
     def step(
         self, actions: NDArray[Any]
@@ -243,7 +254,7 @@ class ControlVectorEnv(VectorEnv[Observation, NDArray[Any], NDArray[Any]]):
         self._steps = numpy.where(self._done, 0, self._steps + 1)
         ended |= self._steps >= self._most
         self._done = failed | ended
-        return dict(batch.observe()), rewards, failed, ended, {}
+        return self._units.of(dict(batch.observe())), rewards, failed, ended, {}
 
     def close_extras(self, **_: Any) -> None:
         self._batch = None
@@ -262,30 +273,37 @@ class ChoiceEnv(_Single[Fork]):
 
     _kind = Fork
 
-    def __init__(self, render_mode: str | None = None, **scenario: Unpack[ScenarioKeys]) -> None:
-        choice = Choice({**scenario})
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        reward: Reward | None = None,
+        normalised: bool = False,
+        **scenario: Unpack[ScenarioKeys],
+    ) -> None:
+        choice = Choice({**scenario}, shaping(reward))
+        units = Units(choice, normalised)
         beams, range_max, _ = choice.lidar
         most, knots = Choice.SHAPE
         observation: spaces.Dict[Any] = spaces.Dict(
             {
-                "lidar": _box((beams,), 0.0, range_max),
-                "state": _box((4,)),
-                "candidates": _box((most, knots, 2)),
-                "price": _box((most,), 0.0),
+                "lidar": box((beams,), 0.0, range_max),
+                "state": box((4,)),
+                "candidates": box((most, knots, 2)),
+                "price": box((most,), 0.0),
                 "mask": spaces.MultiBinary(1 + most),
             }
         )
-        self.observation_space = observation
+        self.observation_space = units.space(observation)
         self.action_space = spaces.Discrete(1 + most)
         self.metadata = {**self.metadata, "render_fps": choice.rate}
-        self._open(choice, scenario.get("seed"), render_mode)
+        self._open(choice, units, scenario.get("seed"), render_mode)
 
     def step(self, action: numpy.int64) -> Step:
         choice, (most, _) = _of(self._native), Choice.SHAPE
         reward, failed, ended = choice.step(whole("action", action, 0, most))
         truth = choice.truth()
         self._at(truth)
-        return choice.observe_one(), reward, failed, ended, truth
+        return self._units.of(choice.observe_one()), reward, failed, ended, truth
 
     def action_masks(self) -> NDArray[numpy.bool_]:
         """Which actions there are: the mask of the observation, as agents with masks ask for it."""

@@ -58,8 +58,29 @@ def _field(axes: Axes, field: Field, time: float, x: tuple[float, float], z: tup
     axes.set(xlim=x, ylim=z, aspect="equal", xlabel="x [m]", ylabel="z [m]")
 
 
+def _bodies(axes: Axes, flown: Flight) -> None:
+    """What stands about a flight in space, from above; nothing of a flight that does not come out the same."""
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Circle, Rectangle
+
+    try:
+        bodies = flown.look()["bodies"]
+    except InputError:
+        return
+    shapes: list[Circle | Rectangle] = []
+    for body in bodies:
+        for kind, it in body.items():
+            if kind == "box":
+                (x, y, _), (to_x, to_y, _) = it["least"], it["most"]
+                shapes.append(Rectangle((x, y), to_x - x, to_y - y))
+            elif kind != "capsule":
+                x, y = (it["x"], it["y"]) if kind == "cylinder" else it["centre"][:2]
+                shapes.append(Circle((x, y), it["radius"]))
+    axes.add_collection(PatchCollection(shapes, color=OBSTACLE))
+
+
 def flight(flown: Flight, axes: Axes | None = None) -> Axes:
-    """Field, way and tracked plan of a flight; in space from above, without the field, which its log does not hold."""
+    """Field, way and tracked plan of a flight; in space from above."""
     axes = pyplot().subplots(figsize=(10, 3), layout="constrained")[1] if axes is None else axes
     columns, summary = flown.columns, flown.summary
     across = "y" if "y" in columns else "z"
@@ -73,6 +94,7 @@ def flight(flown: Flight, axes: Axes | None = None) -> Axes:
     if summary["outcome"] != "survived":
         axes.plot(x[-1], z[-1], "x", color=HIT, label=str(summary["outcome"]))
     if across == "y":
+        _bodies(axes, flown)
         # To the right of the way is below.
         axes.set(aspect="equal", xlabel="x [m]", ylabel="y [m]", ylim=(z.max() + 10.0, z.min() - 10.0))
     axes.set_title(repr(flown))

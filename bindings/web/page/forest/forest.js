@@ -12,7 +12,7 @@ const SLUGGISH = 40;
 
 let settings = { ...USUAL }, good = null, flight = null, shown = 0, playing = false, busy = false, turn = 0, until = null;
 let pending = [], kept = null, camera = null, placeOnMap = null, last = null, looked = 0, told = 0, slow = false, done = false, next = null, pace = 1;
-let crossed = 0, crashed = 0;
+let crossed = 0, crashed = 0, painted = null;
 // `sharpest` is the most pixels of the scene in one of the page: fewer where frames take long.
 const look = { around: 0, ghost: null, sharpest: 2 };
 let gaps = 0;
@@ -161,9 +161,16 @@ function frame(time) {
 }
 
 function show(time) {
-  camera = drawScene(flight, shown, look).camera;
-  placeOnMap = drawMap(flight, shown, look);
-  drawSide(flight, shown);
+  // What stands still is not painted again: the flight's worker needs the processor more.
+  const { ghost } = look, size = [innerWidth, innerHeight, devicePixelRatio], picture = [turn, shown, flight.trunks.length, flight.cycles.length, !!flight.crash, look.around,
+    look.sharpest, ghost && [ghost.x, ghost.y], colour.ground, size].join();
+  if (picture !== painted) {
+    painted = picture;
+    camera = drawScene(flight, shown, look).camera;
+    placeOnMap = drawMap(flight, shown, look);
+    drawSide(flight, shown);
+    drawAttitude(flight, shown);
+  }
   if (time - looked < LOOK) return;
   looked = time;
   const state = stateAt(flight, shown), unit = { airspeed: `${state.airspeed.toFixed(1)} m/s`, height: meters(state.at[2], 1),

@@ -1,10 +1,13 @@
 //! Solid bodies in space: what a ray meets, and how far a point or a segment is from them. All of them are convex.
 
+use serde::Serialize;
+
 /// A place or a direction: ahead, to the right, up \[m\].
 pub type Vector = [f64; 3];
 
 /// A solid body.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Body {
     /// A trunk, a pier or a mast: a vertical cylinder from below the ground up to its height.
     Cylinder {

@@ -5,8 +5,8 @@ const cellOf = (x, y) => Math.floor(x / CELL) * 4096 + Math.floor(y / CELL);
 
 // A trunk: `mine` is the tick at which the visitor planted it, `seen` that at which a beam first hit it, `away` the
 // distance then. `crown` is a number of its own within 1.
-function addTrunk(flight, [x, y, r], mine = null) {
-  const trunk = { x, y, r, mine, seen: null, away: null, met: mine || 0, nearest: Infinity, passed: false,
+function addTrunk(flight, [x, y, r, top = null], mine = null) {
+  const trunk = { x, y, r, top: top ?? Infinity, mine, seen: null, away: null, met: mine || 0, nearest: Infinity, passed: false,
     crown: (Math.abs(x * 7.31 + y * 3.77) * 10) % 1 };
   flight.trunks.push(trunk);
   const key = cellOf(x, y);
@@ -15,8 +15,8 @@ function addTrunk(flight, [x, y, r], mine = null) {
   return trunk;
 }
 
-function newFlight({ header, trunks, span, state }) {
-  const flight = { header, span, trunks: [], cells: new Map(), states: [state], cycles: [], orders: [], planning: [],
+function newFlight({ header, trunks, span, state, bodies = [] }) {
+  const flight = { header, span, bodies, trunks: [], cells: new Map(), states: [state], cycles: [], orders: [], planning: [],
     ended: false, summary: null, hash: null, crash: null, ticks: { t: { length: 0 } } };
   for (const trunk of trunks) addTrunk(flight, trunk);
   return flight;

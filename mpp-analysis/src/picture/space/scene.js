@@ -115,9 +115,9 @@ function inSight({ trunks }, tick, { eye, f, r, width, focus }) {
   return seen;
 }
 
-function drawTrunk(pen, { trunk: { x, y, r, seen, mine, crown }, depth }, tick, camera, nearer, hit = false) {
+function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth }, tick, camera, nearer, hit = false) {
   const { put, focus, f, eye, r: right } = camera, flat = (x - eye[0]) * f[0] + (y - eye[1]) * f[1], shade = shadeOf(depth);
-  let low = 0, high = TOP + 3 * crown;
+  let low = 0, high = Math.min(top ?? Infinity, TOP + 3 * crown);
   // What is behind the picture has no place in it.
   const limit = eye[2] + (0.4 - flat) / (f[2] || -1e-6);
   if (f[2] < 0) high = Math.min(high, limit); else low = Math.max(low, limit);
@@ -149,6 +149,36 @@ function drawTrunk(pen, { trunk: { x, y, r, seen, mine, crown }, depth }, tick, 
     }
   }
   pen.globalAlpha = 1;
+}
+
+// A body that is no trunk. Boxes are cut into tiles, which sort by their depth.
+const TILE = 5;
+function drawBody(pen, items, body, { eye, depth, put, focus }) {
+  const { sphere, capsule } = body, corners = cornersOf(body), middle = [0, 1, 2].map(axis => (corners[0][axis] + corners[7][axis]) / 2), away = depth(...middle);
+  const style = (kind, d) => paint[kind][shadeOf(d)];
+  if (sphere || capsule) {
+    const ends = sphere ? [sphere.centre] : [capsule.from, capsule.to], { radius } = sphere || capsule;
+    if (ends.some(end => depth(...end) < radius + 0.5) || away > FAR) return;
+    items.push([away, () => {
+      const [[u, v, d], ...more] = ends.map(end => put(...end));
+      if (more.length) { pen.lineCap = "round"; line(pen, [[u, v], more[0]], style("bark", away), Math.max(1, 2 * focus * radius / put(...middle)[2])); pen.lineCap = "butt"; return; }
+      pen.fillStyle = style("bark", away); pen.beginPath(); pen.arc(u, v, focus * radius / d, 0, 7); pen.fill();
+    }]);
+    return;
+  }
+  const [least, most] = [corners[0], corners[7]];
+  for (let axis = 0; axis < 3; axis++) {
+    const at = eye[axis] < least[axis] ? least[axis] : eye[axis] > most[axis] ? most[axis] : null, [p, q] = [0, 1, 2].filter(other => other !== axis);
+    if (at === null) continue;
+    const steps = [p, q].map(side => Math.max(1, Math.ceil((most[side] - least[side]) / TILE))), kind = ["bark", "bark-dark", "pale"][axis];
+    const edge = (side, i, of) => least[side] + (most[side] - least[side]) * i / of;
+    for (let i = 0; i < steps[0]; i++) for (let j = 0; j < steps[1]; j++) {
+      const tile = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(([a, b]) => { const place = []; place[axis] = at; place[p] = edge(p, a, steps[0]); place[q] = edge(q, b, steps[1]); return place; });
+      const depths = tile.map(place => depth(...place)), d = depths.reduce((sum, part) => sum + part, 0) / 4;
+      if (Math.min(...depths) < 0.5 || d > FAR) continue;
+      items.push([d, () => { const fill = style(kind, d); fillPath(pen, tile.map(place => put(...place)), fill); pen.strokeStyle = fill; pen.lineWidth = 0.7; pen.stroke(); }]);
+    }
+  }
 }
 
 // The places of a path from a tick on, a quarter of a knot apart: ahead, right, up, bank.
@@ -248,6 +278,7 @@ function drawScene(flight, tick, look) {
       pen.fillStyle = colour.scan; pen.fillRect(u - size / 2, v - size / 2, size, size);
     }]);
   }
+  for (const body of flight.bodies) drawBody(pen, items, body, camera);
   drawStreaks(pen, items, flight, tick, camera);
   if (look.ghost) {
     const trunk = { ...look.ghost, r: RADIUS, seen: null, mine: 0, crown: 0.5 };

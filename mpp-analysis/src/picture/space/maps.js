@@ -23,6 +23,7 @@ function drawMap(flight, tick, look) {
     pen.moveTo(...put(x0, y)); pen.lineTo(...put(x0 + 180, y));
   }
   pen.stroke(); pen.globalAlpha = 1;
+  drawPlans(pen, flight.bodies, at[2], put, scale);
   for (const trunk of flight.trunks) {
     const { x, y, r, seen, mine } = trunk;
     if (mine > tick) continue;
@@ -51,8 +52,46 @@ function drawMap(flight, tick, look) {
   }
   const { attitude } = stateAt(flight, tick), size = Math.max(flight.span, 22 / scale);
   fillPath(pen, BOTH.map(([a, b]) => { const way = turned(attitude, [a, b, 0]); return put(at[0] + size * way[0], at[1] + size * way[1]); }), colour.text);
-  caption(pen, "from above, 10 m squares; click plants a tree", 8, 18);
+  caption(pen, "from above, 10 m squares" + (look.ghost === undefined ? "" : "; click plants a tree"), 8, 18);
   return place;
+}
+
+// Corners about a body that is no trunk [m].
+function cornersOf({ sphere, capsule, box }) {
+  const r = (sphere || capsule || { radius: 0 }).radius, ends = sphere ? [sphere.centre] : capsule ? [capsule.from, capsule.to] : [box.least, box.most];
+  const [least, most] = [Math.min, Math.max].map((of, side) => [0, 1, 2].map(axis => of(...ends.map(end => end[axis] ?? TOP)) + (side ? r : -r)));
+  return [0, 1, 2, 3, 4, 5, 6, 7].map(bits => [0, 1, 2].map(axis => bits >> axis & 1 ? most[axis] : least[axis]));
+}
+
+// Other bodies from above: dark where the aircraft could meet them at its height.
+function drawPlans(pen, bodies, height, put, scale) {
+  for (const body of bodies) {
+    const corners = cornersOf(body), { sphere, capsule } = body, level = corners[0][2] < height + 1 && corners[7][2] > height - 1;
+    pen.fillStyle = pen.strokeStyle = paint[level ? "bark" : "pale"][0];
+    if (sphere) { pen.beginPath(); pen.arc(...put(...sphere.centre), sphere.radius * scale, 0, 7); pen.fill(); }
+    else if (capsule) line(pen, [put(...capsule.from), put(...capsule.to)], pen.strokeStyle, Math.max(1.5, 2 * capsule.radius * scale));
+    else fillPath(pen, [0, 1, 3, 2].map(i => put(...corners[i])), pen.fillStyle);
+  }
+}
+
+// The attitude indicator: the horizon as the pilot sees it, 30 degrees of pitch from the centre to the edge, marks of bank at 30 and 60.
+function drawAttitude(flight, tick) {
+  if (!$("attitude").clientHeight) return;
+  const [pen, size] = canvas("attitude"), { bank, ahead } = stateAt(flight, tick), r = size / 2, scale = r / (30 * Math.PI / 180);
+  pen.save();
+  pen.translate(r, r);
+  pen.beginPath(); pen.arc(0, 0, r - 1, 0, 7); pen.clip();
+  pen.rotate(-bank);
+  const level = Math.asin(Math.max(-1, Math.min(1, ahead[2]))) * scale;
+  pen.fillStyle = paint.sky[0]; pen.fillRect(-size, -size, 2 * size, 2 * size);
+  pen.fillStyle = paint.earth[0]; pen.fillRect(-size, level, 2 * size, 2 * size);
+  line(pen, [[-size, level], [size, level]], colour.text, 1.5);
+  for (const step of [-20, -10, 10, 20]) line(pen, [-1, 1].map(side => [side * r * 0.2, level - step * Math.PI / 180 * scale]), colour.text, 1);
+  for (const mark of [-60, -30, 0, 30, 60]) line(pen, [0.84, 1].map(way => [way * r * Math.sin(mark * Math.PI / 180), -way * r * Math.cos(mark * Math.PI / 180)]), colour.text, 1.5);
+  pen.restore();
+  // The aircraft, which does not move.
+  line(pen, [[r * 0.45, r], [r * 0.8, r], null, [r * 1.2, r], [r * 1.55, r], null, [r, r * 0.07], [r, r * 0.22]], colour.flown, 2.5);
+  pen.strokeStyle = colour.faint; pen.lineWidth = 1; pen.beginPath(); pen.arc(r, r, r - 1, 0, 7); pen.stroke();
 }
 
 function caption(pen, text, u, v) {
@@ -70,6 +109,14 @@ function drawSide(flight, tick) {
   const put = (way, z) => [(STRIP[1] + way) * scale, floor - z * up];
   pen.fillStyle = paint.haze[0]; pen.fillRect(0, 0, width, height);
   pen.fillStyle = paint.earth[0]; pen.fillRect(0, floor, width, 4);
+  pen.fillStyle = pen.strokeStyle = paint.pale[0];
+  for (const body of flight.bodies) {
+    const corners = cornersOf(body), ways = corners.map(([x, y]) => along(x, y)), asides = corners.map(([x, y]) => across(x, y));
+    if (Math.min(...asides) > SLAB || Math.max(...asides) < -SLAB) continue;
+    const heights = corners.map(corner => Math.min(corner[2], ceiling + 5)), [u, v] = put(Math.min(...ways), Math.max(...heights)), [u2, v2] = put(Math.max(...ways), Math.min(...heights));
+    if (body.sphere) { pen.beginPath(); pen.ellipse((u + u2) / 2, (v + v2) / 2, (u2 - u) / 2, (v2 - v) / 2, 0, 0, 7); pen.fill(); }
+    else pen.fillRect(u, v, Math.max(1.5, u2 - u), Math.max(1.5, v2 - v));
+  }
   for (const { x, y, r, seen, mine } of flight.trunks) {
     const way = along(x, y), aside = Math.abs(across(x, y));
     if (mine > tick || aside > SLAB || way < -STRIP[1] || way > STRIP[0]) continue;
