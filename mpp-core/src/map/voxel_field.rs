@@ -7,7 +7,7 @@ use crate::tuning::grid::CELL;
 use core::ops::Range;
 
 /// Length of the window along x, and its width along y, in voxels. The height is that of the map.
-pub(crate) const LENGTH: usize = 104;
+pub(crate) const LENGTH: usize = 96;
 const WIDTH: usize = 64;
 const HEIGHT: usize = CELLS[2];
 /// Voxels of the window behind the aircraft, and to its left.
@@ -100,13 +100,15 @@ impl VoxelField {
     pub(crate) fn measure(&mut self, slice: usize) {
         let mut squares = [[NO_HIT | TOPS; HEIGHT / 2]; WIDTH];
         for (offset, from) in around(slice, LENGTH) {
-            let (Some(columns), Some(extents)) = (self.occupied.get(from), self.extents.get(from))
-            else {
+            let (Some(columns), Some(unknown), Some(extents)) = (
+                self.occupied.get(from),
+                self.unknown.get(from),
+                self.extents.get(from),
+            ) else {
                 continue;
             };
-            // Columns beside each other are often the same.
-            let (mut last, mut heights) = (0, [NO_HIT; HEIGHT / 2]);
-            for (row, (column, extent)) in columns.iter().zip(extents).enumerate() {
+            let columns = columns.iter().zip(unknown).zip(extents).enumerate();
+            for (row, ((column, unknown), extent)) in columns {
                 if *column == 0 {
                     continue;
                 }
@@ -116,9 +118,7 @@ impl VoxelField {
                 if ahead * ahead >= i32::from(FAR) {
                     continue;
                 }
-                if *column != last {
-                    (last, heights) = (*column, along_column(*column));
-                }
+                let heights = along_column(*column, !(column | unknown), *extent);
                 let first = row.saturating_sub(REACH as usize);
                 let rows = squares.get_mut(first..(row + REACH as usize + 1).min(WIDTH));
                 let offsets = first as i32 - row as i32..;
@@ -145,6 +145,11 @@ impl VoxelField {
     fn column(&self, x: usize, row: usize) -> u32 {
         let slice = self.occupied.get(x).and_then(|slice| slice.get(row));
         slice.copied().unwrap_or(0)
+    }
+
+    fn unknown_column(&self, x: usize, row: usize) -> u32 {
+        let slice = self.unknown.get(x).and_then(|slice| slice.get(row));
+        slice.copied().unwrap_or(u32::MAX)
     }
 
     fn extent(&self, x: usize, row: usize) -> Extent {
@@ -247,7 +252,8 @@ impl VoxelField {
                     (x as i64 + self.first[0]) as f64 * CELL,
                     (y as i64 + self.first[1]) as f64 * CELL,
                 ];
-                let sides = self.extent(x, y).sides();
+                let extent = self.extent(x, y);
+                let (sides, free) = (extent.sides(), !(all | self.unknown_column(x, y)));
                 let side =
                     |axis: usize, which: usize| corner[axis] + f64::from(sides[axis][which]) * PART;
                 // A word has so many bits.
@@ -258,9 +264,11 @@ impl VoxelField {
                     let z = left.trailing_zeros();
                     left &= left - 1;
                     let bottom = f64::from(z) * CELL;
+                    let [low, high] = (extent.height(z as usize, free))
+                        .map(|part| bottom + f64::from(part) * PART);
                     each(&[
-                        [side(0, 0), side(1, 0), bottom],
-                        [side(0, 1), side(1, 1), bottom + CELL],
+                        [side(0, 0), side(1, 0), low],
+                        [side(0, 1), side(1, 1), high],
                     ]);
                 }
             }
@@ -281,12 +289,26 @@ fn needed(distance: f64) -> u8 {
 }
 
 /// Squared distances of the centres of voxels along z.
-fn along_column(occupied: u32) -> Pairs {
+fn along_column(occupied: u32, free: u32, extent: Extent) -> Pairs {
     let square = |z: usize| {
-        // Bits above z and z itself, bits up to z.
+        // Voxels from this one to the next occupied one above, and to that below.
         let above = (occupied >> z).trailing_zeros() as i32;
         let below = (occupied << (HEIGHT - 1 - z)).leading_zeros() as i32;
-        let distance = (above.min(below) * PARTS - PARTS / 2).max(0);
+        let distance = |voxels: i32| {
+            let at = z as i32 + voxels;
+            off(-voxels, extent.height(at as usize, free))
+        };
+        let up = if above <= REACH {
+            distance(above)
+        } else {
+            i32::MAX
+        };
+        let down = if below <= REACH {
+            distance(-below)
+        } else {
+            i32::MAX
+        };
+        let distance = up.min(down);
         if distance < REACH * PARTS {
             (distance * distance) as u32
         } else {

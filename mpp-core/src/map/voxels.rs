@@ -9,9 +9,9 @@ use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
 use crate::vehicle::between;
 
 /// Number of voxels along x, y and z.
-pub const CELLS: [usize; 3] = [112, 96, LAYERS];
+pub const CELLS: [usize; 3] = [100, 96, LAYERS];
 /// Voxels behind the aircraft, and to its left, that the window keeps.
-const BEHIND: [i64; 2] = [16, CELLS[1] as i64 / 2];
+const BEHIND: [i64; 2] = [8, CELLS[1] as i64 / 2];
 /// Most voxels that one beam passes: the window's extent along all axes.
 const MOST_STEPS: usize = CELLS[0] + CELLS[1] + CELLS[2];
 

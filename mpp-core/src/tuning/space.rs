@@ -27,6 +27,10 @@ pub mod space_refinement {
     /// Change of the bank in the first round \[rad\]; each further round halves it. More finds other ways, less polishes. Source:
     /// decision 47.
     pub const SIZE: f64 = 0.35;
+    /// Change of the lift upwards in the first such round [m/s^2]. Source: D70.
+    pub const LIFT: f64 = 4.0;
+    /// Share of the squared lack of room that lies above or below from which on moves of the lift are tried [-]. Source: D70.
+    pub const STEEP: f64 = 0.1;
     /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 58.
     pub const ROUNDS: usize = 8;
     /// Number of sizes of moves [-]. More polish, fewer find other ways. Source: decision 58.

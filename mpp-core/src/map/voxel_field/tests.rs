@@ -40,12 +40,39 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
             range: Some(range),
         });
         let fine = CELL / 16.0;
-        shown.push([part(to[0], fine), part(to[1], fine), part(to[2], CELL)]);
+        shown.push([
+            part(to[0], fine),
+            part(to[1], fine),
+            part(to[2], CELL / 4.0),
+        ]);
+    }
+    // What else is there to see is free.
+    for _ in 0..400 {
+        let way = [20.0, draw(-12.0, 12.0), draw(-8.0, 8.0)];
+        let length = libm::sqrt(way.iter().map(|it| it * it).sum());
+        beams.push(SpaceBeam {
+            direction: way.map(|it| it / length),
+            range: None,
+        });
     }
     map.insert(&from, beams.iter().copied(), 45.0);
     field.begin(&map, &from);
     field.look(&map, 0..LENGTH);
     (0..LENGTH).for_each(|slice| field.measure(slice));
+    // A side in height counts where the voxel beyond was seen.
+    let mut sides = 0;
+    for box_shown in &mut shown {
+        let [x, y, z] = box_shown.map(|[low, high]| 0.5 * (low + high));
+        let voxel = part(z, CELL);
+        for (side, beyond) in [-CELL, CELL].into_iter().enumerate() {
+            if field.is_unknown(&[x, y, z + beyond]) {
+                box_shown[2][side] = voxel[side];
+            } else {
+                sides += 1;
+            }
+        }
+    }
+    assert!((20..100).contains(&sides), "{sides}");
     let mut seen = 0;
     field.surface(&[0.0, -15.0, 0.0], &[45.0, 15.0, 15.9], |[least, most]| {
         let same = |shown: &[[f64; 2]; 3]| {

@@ -1,12 +1,13 @@
 //! What a trajectory in space is worth.
 
-use super::candidate::SpacePlan;
+use super::candidate::{SpacePlan, dot};
 use super::cost_to_go::CostToGo;
 use super::keep::Keep;
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelField;
 use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, RUNAWAY, SHORT};
 use crate::tuning::space_program::CONTROL;
+use crate::tuning::space_refinement::STEEP;
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between as limit};
 
@@ -35,9 +36,17 @@ pub(super) struct Tally {
     velocity: [f64; 3],
     /// Runaway of the nose at the knot \[rad\].
     runaway: f64,
+    /// Sums of the squared lack of room, and of the part that lies above or below \[m^2\].
+    tight: [f64; 2],
 }
 
 impl Tally {
+    /// Whether room is missing above or below.
+    pub(super) fn climbs(&self) -> bool {
+        let [all, upright] = self.tight;
+        upright > STEEP * all
+    }
+
     /// A price that the trajectory exceeds or has, whatever comes: no cost is negative, and rounded sums grow with their terms.
     pub(super) fn least_price(&self) -> f64 {
         self.price + self.to_go.unwrap_or(0.0)
@@ -73,6 +82,7 @@ impl Judge<'_> {
             to_go: None,
             velocity: first.ground_velocity(&self.model.wind),
             runaway: self.runaway,
+            tight: [0.0; 2],
         }
     }
 
@@ -107,6 +117,11 @@ impl Judge<'_> {
                 let margin = keep.margin(clearance, &slope, || wing(from, to, share));
                 lack = (margin - clearance).max(0.0);
                 room = (margin + ROOM - clearance).max(0.0);
+                let [_, _, up] = slope;
+                let part = up * up / dot(&slope, &slope).max(1e-6);
+                let [all, upright] = &mut tally.tight;
+                *all += room * room;
+                *upright += part * room * room;
             }
             lack += keep.outside(&point);
             tally.price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);

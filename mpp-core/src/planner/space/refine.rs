@@ -1,11 +1,12 @@
 //! Direct search about the best plan: its bank is moved for a while, its lift keeps the height, and the cheaper roll-out stays.
+//! Past obstacles that are not upright each second round moves the lift.
 //!
 //! Programs hold faces and wing as the candidate has them; a roll-out is judged as it is flown.
 
 use super::candidate::{SpacePlan, limited};
 use super::judge::{Judge, SpaceJudgement, Tally};
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
-use crate::tuning::space_refinement::{ROUNDS, SIZE, SIZES};
+use crate::tuning::space_refinement::{LIFT, ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
 /// First knots and numbers of knots of the moves.
@@ -18,19 +19,31 @@ const ROUNDED: f64 = 1.0 - 1e-12;
 /// Number of moves that a cycle tries.
 pub(super) const TRIALS: usize = ROUNDS * MOVES;
 
-/// A change of the bank \[rad\] at each knot.
+/// A change of bank \[rad\] and lift upwards [m/s^2] at each knot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Move([f64; KNOTS]);
+pub(super) struct Move([[f64; 2]; KNOTS]);
 
 impl Move {
     /// The move of a number: the bank goes to one side for some knots, and where the track shall only be displaced as far to
-    /// the other side for the next ones. Each round halves the moves; after [`SIZES`] rounds they are as large as at first.
-    pub(super) fn of(number: usize) -> Self {
-        let size = SIZE / f64::from(1_u32 << (number / MOVES % SIZES));
-        let side = if number.is_multiple_of(2) {
-            size
+    /// the other side for the next ones. Each round halves the moves; after [`SIZES`] rounds they are as large as at first. Where
+    /// it `climbs`, each second round moves the lift the same way.
+    pub(super) fn of(number: usize, climbs: bool) -> Self {
+        let round = number / MOVES;
+        let (kinds, lifts) = if climbs {
+            (2, round % 2 == 1)
         } else {
-            -size
+            (1, false)
+        };
+        let part = 1.0 / f64::from(1_u32 << (round / kinds % SIZES));
+        let part = if number.is_multiple_of(2) {
+            part
+        } else {
+            -part
+        };
+        let side = if lifts {
+            [0.0, part * LIFT]
+        } else {
+            [part * SIZE, 0.0]
         };
         let back = number / 2 % 2 == 1;
         let width = WIDTHS[number / 4 % WIDTHS.len()];
@@ -39,9 +52,9 @@ impl Move {
             if knot >= first && knot < first + width {
                 side
             } else if back && knot >= first + width && knot < first + 2 * width {
-                -side
+                side.map(|it| -it)
             } else {
-                0.0
+                [0.0; 2]
             }
         }))
     }
@@ -54,6 +67,8 @@ pub(super) struct Unmoved {
     plan: SpacePlan,
     tallies: heapless::Vec<Tally, STAGES>,
     lifts: Lifts,
+    /// Whether moves of the lift are tried, too.
+    climbs: bool,
     /// The first move that was tried.
     since: usize,
 }
@@ -72,7 +87,7 @@ impl Unmoved {
             // As many stages as places.
             let _ = tallies.push(tally);
             plan.fly_stage(stage, judge.model, |state| {
-                lifts.control(judge.model, best, stage, state, 0.0)
+                lifts.control(judge.model, best, stage, state, [0.0; 2])
             });
             judge.add(&plan, stage, &mut tally);
         }
@@ -80,13 +95,16 @@ impl Unmoved {
             plan,
             tallies,
             lifts,
+            climbs: tally.climbs(),
             since,
         }
     }
 
-    /// Whether the move of a number was tried already: sizes come again.
-    pub(super) fn knows(&self, number: usize) -> bool {
-        number >= self.since + SIZES * MOVES
+    /// The move of a number; `None` if it was tried already: sizes come again.
+    pub(super) fn next(&self, number: usize) -> Option<Move> {
+        let kinds = if self.climbs { 2 } else { 1 };
+        let known = number >= self.since + kinds * SIZES * MOVES;
+        (!known).then(|| Move::of(number, self.climbs))
     }
 
     /// The best plan with its bank moved, and its worth; `None` where it is found before its end that it costs the `price` of
@@ -99,7 +117,7 @@ impl Unmoved {
         by: &Move,
     ) -> Option<(SpacePlan, SpaceJudgement)> {
         // The first stage that the move changes.
-        let first = by.0.iter().skip(1).position(|change| *change != 0.0)?;
+        let first = (by.0.iter().skip(1)).position(|[bank, lift]| *bank != 0.0 || *lift != 0.0)?;
         let (mut plan, mut tally) = (self.plan, *self.tallies.get(first)?);
         let (begun, rest) = plan.controls.split_at_mut_checked(first)?;
         let mut efforts: f64 = begun.iter().map(|control| judge.effort(control)).sum();
@@ -107,7 +125,7 @@ impl Unmoved {
         // Bank and angle of attack, and so all controls, do not depend on forces.
         let mut state = *plan.knots.get(first)?;
         for (stage, control) in (first..).zip(rest) {
-            let change = by.0.get(stage + 1).copied().unwrap_or(0.0);
+            let change = by.0.get(stage + 1).copied().unwrap_or([0.0; 2]);
             *control = (self.lifts).control(judge.model, best, stage, &state, change);
             state = state.turned(control, STAGE_PERIOD);
             efforts += judge.effort(control);
@@ -142,14 +160,14 @@ impl Lifts {
         }))
     }
 
-    /// The control of a stage that reaches the bank of the best plan and a change, and keeps the lift upwards.
+    /// The control of a stage that reaches the bank of the best plan and a change, and keeps the lift upwards but for a change.
     fn control(
         &self,
         model: &SpaceModel,
         best: &SpacePlan,
         stage: usize,
         state: &SpacePath,
-        change: f64,
+        [change, more]: [f64; 2],
     ) -> SpaceControl {
         let (Some(next), Some(control), Some([lift, whole])) = (
             best.knots.get(stage + 1),
@@ -164,7 +182,7 @@ impl Lifts {
         };
         let banked = limited(model, state, &wanted);
         let bank = state.bank + banked.bank_rate * STAGE_PERIOD;
-        let now = model.angle_for(next.airspeed, lift / upwards(bank));
+        let now = model.angle_for(next.airspeed, (lift + more) / upwards(bank));
         let attack = between(next.angle_of_attack + now - whole, model.angle_of_attack);
         let wanted = SpaceControl {
             angle_of_attack_rate: (attack - state.angle_of_attack) / STAGE_PERIOD,
@@ -212,7 +230,8 @@ mod tests {
             limited(&model, state, &wanted)
         });
         let unmoved = Unmoved::of(&judge, &best, 0);
-        for by in (0..MOVES * SIZES).map(Move::of) {
+        let all = |climbs| (0..MOVES * SIZES * 2).map(move |number| Move::of(number, climbs));
+        for by in all(false).take(MOVES * SIZES).chain(all(true)) {
             let at = |price: f64| unmoved.moved(&judge, &best, price, &by);
             let (moved, worth) = at(f64::INFINITY).unwrap();
             assert_eq!(judge.judge(&moved), worth);

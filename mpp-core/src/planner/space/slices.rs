@@ -239,12 +239,9 @@ impl SpacePlanner {
             self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan, number));
             return Phase::Refine(number);
         };
-        let (by, price) = (refine::Move::of(number), best.judgement.price);
-        let moved = if unmoved.knows(number) {
-            None
-        } else {
-            unmoved.moved(&self.judge(), &best.plan, price, &by)
-        };
+        let price = best.judgement.price;
+        let moved = (unmoved.next(number))
+            .and_then(|by| unmoved.moved(&self.judge(), &best.plan, price, &by));
         if let Some((plan, judgement)) = moved {
             self.consider(Candidate { plan, judgement });
         }
