@@ -18,6 +18,7 @@ mod free;
 mod guide;
 mod reach;
 mod report;
+mod space;
 mod witness;
 
 #[cfg(test)]
@@ -26,7 +27,8 @@ mod tests;
 pub use avoidable::{BEFORE, avoidable};
 pub use envelope::Envelope;
 pub use error::CeilingError;
-pub use report::{CeilingCell, CeilingReport};
+pub use report::{CeilingCell, CeilingReport, Counts, SpaceCeilingCell, SpaceCeilingReport};
+pub use space::{SpaceEnvelope, check_in_space, decide_in_space};
 
 use free::Interval;
 use guide::{Guide, Way};

@@ -155,7 +155,7 @@ fn highest(from: f64, to: f64, up: f64, down: f64, distance: f64) -> f64 {
 }
 
 /// Puts intervals in order and joins those that overlap.
-fn unite(intervals: &mut Vec<Interval>) {
+pub(super) fn unite(intervals: &mut Vec<Interval>) {
     intervals.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut joined: Vec<Interval> = Vec::with_capacity(intervals.len());
     for &(low, high) in intervals.iter() {
@@ -168,7 +168,7 @@ fn unite(intervals: &mut Vec<Interval>) {
 }
 
 /// What two ordered lists of intervals have in common.
-fn common(some: &[Interval], others: &[Interval]) -> Vec<Interval> {
+pub(super) fn common(some: &[Interval], others: &[Interval]) -> Vec<Interval> {
     let mut both = Vec::new();
     for a in some {
         for b in others {

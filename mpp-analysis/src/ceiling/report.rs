@@ -2,6 +2,7 @@
 
 use super::Feasibility;
 use crate::campaign::{Campaign, Cell, wilson};
+use mpp_sim::space::SpaceScenario;
 use serde::Serialize;
 use std::fmt;
 
@@ -14,6 +15,14 @@ pub struct CeilingCell {
     pub obstacles: usize,
     /// Margin beside the body's radius \[m\].
     pub margin: f64,
+    /// The verdicts.
+    #[serde(flatten)]
+    pub counts: Counts,
+}
+
+/// How many fields got which verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Counts {
     /// Number of fields.
     pub fields: u32,
     /// Fields that are proven to be blocked.
@@ -24,6 +33,25 @@ pub struct CeilingCell {
     pub undecided: u32,
     /// 95 % interval of the share of passable fields, from the passable ones alone up to all that are not blocked [-].
     pub passable_interval: (f64, f64),
+}
+
+/// Verdicts about the worlds of one density.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SpaceCeilingCell {
+    /// Generator of the worlds.
+    pub world: String,
+    /// Density in the unit of the generator.
+    pub density: f64,
+    /// The verdicts.
+    #[serde(flatten)]
+    pub counts: Counts,
+}
+
+/// Verdicts of a command in space.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SpaceCeilingReport {
+    /// One entry for each density.
+    pub cells: Vec<SpaceCeilingCell>,
 }
 
 /// Verdicts of a command.
@@ -37,15 +65,39 @@ impl CeilingCell {
     /// The verdicts about the fields of a cell of a campaign.
     #[must_use]
     pub fn new(campaign: &Campaign, cell: &Cell, margin: f64, verdicts: &[Feasibility]) -> Self {
+        Self {
+            field: cell.kind(campaign.scenario.scene),
+            obstacles: cell.obstacles,
+            margin,
+            counts: Counts::of(verdicts),
+        }
+    }
+}
+
+impl SpaceCeilingCell {
+    /// The verdicts about worlds that differ from that of a scenario in their seeds.
+    #[must_use]
+    pub fn new(scenario: &SpaceScenario, verdicts: &[Feasibility]) -> Self {
+        let space = scenario.header().space;
+        let (world, density) = space
+            .map(|space| (space.world, space.density))
+            .unwrap_or_default();
+        Self {
+            world: world.unwrap_or_default(),
+            density: density.unwrap_or_default(),
+            counts: Counts::of(verdicts),
+        }
+    }
+}
+
+impl Counts {
+    fn of(verdicts: &[Feasibility]) -> Self {
         let count =
             |is: fn(&Feasibility) -> bool| verdicts.iter().filter(|one| is(one)).count() as u32;
         let fields = verdicts.len() as u32;
         let blocked = count(|one| matches!(one, Feasibility::Blocked(_)));
         let passable = count(|one| *one == Feasibility::Passable);
         Self {
-            field: cell.kind(campaign.scenario.scene),
-            obstacles: cell.obstacles,
-            margin,
             fields,
             blocked,
             passable,
@@ -58,29 +110,47 @@ impl CeilingCell {
     }
 }
 
+/// Heads of the columns of [`Counts`].
+const HEADS: &str = " fields  blocked  passable  undecided  passable [95 %]";
+
+impl fmt::Display for Counts {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (low, high) = self.passable_interval;
+        write!(
+            f,
+            "{:>7} {:>8} {:>9} {:>10}  [{:.1}, {:.1}]",
+            self.fields,
+            self.blocked,
+            self.passable,
+            self.undecided,
+            100.0 * low,
+            100.0 * high
+        )
+    }
+}
+
+impl fmt::Display for SpaceCeilingReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{:<8} {:>8} {HEADS}", "world", "density")?;
+        (self.cells.iter()).try_for_each(|cell| {
+            writeln!(f, "{:<8} {:>8} {}", cell.world, cell.density, cell.counts)
+        })
+    }
+}
+
 impl fmt::Display for CeilingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "{:<12} {:>9} {:>8} {:>7} {:>8} {:>9} {:>10}  passable [95 %]",
-            "field", "obstacles", "margin", "fields", "blocked", "passable", "undecided"
+            "{:<12} {:>9} {:>8} {HEADS}",
+            "field", "obstacles", "margin"
         )?;
-        for cell in &self.cells {
-            let (low, high) = cell.passable_interval;
+        self.cells.iter().try_for_each(|cell| {
             writeln!(
                 f,
-                "{:<12} {:>9} {:>6} m {:>7} {:>8} {:>9} {:>10}  [{:.1}, {:.1}]",
-                cell.field,
-                cell.obstacles,
-                cell.margin,
-                cell.fields,
-                cell.blocked,
-                cell.passable,
-                cell.undecided,
-                100.0 * low,
-                100.0 * high
-            )?;
-        }
-        Ok(())
+                "{:<12} {:>9} {:>6} m {}",
+                cell.field, cell.obstacles, cell.margin, cell.counts
+            )
+        })
     }
 }

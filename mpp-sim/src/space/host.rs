@@ -20,7 +20,7 @@ use hil_protocol::{
 use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState};
 
 /// How far beyond the band a flight may stray \[m\].
-const STRAY: f64 = 0.5;
+pub const STRAY: f64 = 0.5;
 /// Clearance beyond which nobody asks \[m\].
 const MOST: f64 = 5.0;
 
@@ -88,6 +88,29 @@ pub struct SpaceFlight {
     gap: f64,
     clearance: f64,
     deviation: f64,
+}
+
+impl SpaceScenario {
+    /// How a flight ends whose last tick, of those flown, moved it from one state to another; `None` if it goes on.
+    #[must_use]
+    pub fn judge(
+        &self,
+        world: &World,
+        before: &SpaceState,
+        state: &SpaceState,
+        flown: u32,
+    ) -> Option<Outcome> {
+        let extent = world.extent();
+        let sideways = state.lateral.y.abs() > extent.half_width + STRAY;
+        let upwards = state.plane.z > extent.ceiling + STRAY;
+        if self.hull().first_contact(world, before, state).is_some() {
+            Some(Outcome::Collision)
+        } else if state.plane.x >= extent.length {
+            Some(Outcome::Survived)
+        } else {
+            (sideways || upwards || flown >= self.plane.ticks).then_some(Outcome::NotArrived)
+        }
+    }
 }
 
 impl SpaceFlight {
@@ -322,28 +345,16 @@ impl SpaceFlight {
 
     /// Whether the flight has ended.
     fn judge(&mut self, scenario: &SpaceScenario, before: &SpaceState) {
-        let (world, hull, state) = (&self.world, scenario.hull(), self.aircraft.state());
-        let extent = world.extent();
-        self.gap = hull.clearance(world, state, MOST);
+        let (world, state) = (&self.world, self.aircraft.state());
+        self.gap = scenario.hull().clearance(world, state, MOST);
         self.clearance = self.clearance.min(self.gap);
         self.deviation = self
             .deviation
             .max((state.plane.z - scenario.altitude()).abs());
-        let sideways = state.lateral.y.abs() > extent.half_width + STRAY;
-        let end = if hull.first_contact(world, before, state).is_some() {
+        self.end = scenario.judge(world, before, state, self.flown);
+        if self.end == Some(Outcome::Collision) {
             self.clearance = self.clearance.min(0.0);
-            Outcome::Collision
-        } else if state.plane.x >= extent.length {
-            Outcome::Survived
-        } else if sideways
-            || state.plane.z > extent.ceiling + STRAY
-            || self.flown >= scenario.plane.ticks
-        {
-            Outcome::NotArrived
-        } else {
-            return;
-        };
-        self.end = Some(end);
+        }
     }
 
     /// The log of what was flown; until the end, of an interrupted flight.

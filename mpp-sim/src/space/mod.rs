@@ -21,7 +21,7 @@ pub mod world;
 
 pub use baseline::BaselineName;
 pub use course::CourseHold;
-pub use host::{SpaceFlight, fly_space, fly_space_again, fly_space_with};
+pub use host::{STRAY, SpaceFlight, fly_space, fly_space_again, fly_space_with};
 pub use hull::Hull;
 pub use look::{Look, Moment, SpaceCycle, moment, scenario as scenario_of};
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};

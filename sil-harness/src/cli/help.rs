@@ -89,6 +89,11 @@ Examples:
 A flight arrives if neither wing nor fuselage touches anything on its way and it stays in the band.
 Exit codes: 0 flown, 2 usage, 130 and 143 interrupted, 1 anything else";
 
+pub(super) const CEILING_IN_SPACE: &str = "\
+Examples:
+  sil-harness ceiling --preset space --aircraft x8 --airspeed 16 --density 0.04,0.1 --seed 900000
+  sil-harness ceiling --preset space --density 0.1 --sphere 0.4 --trials 500 --json";
+
 pub(super) const FIGURES: &str = "\
 Examples:
   sil-harness figures --out out/figures --rows rows.jsonl";

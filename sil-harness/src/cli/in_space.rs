@@ -2,6 +2,7 @@
 //! Their flags are others than those of the vertical plane, so they are commands of their own behind the same names.
 
 use super::answer::{Failure, data, print_json, talk};
+use super::ceiling_in_space::CeilingInSpace;
 use super::fly::{connect, exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
@@ -43,6 +44,8 @@ enum SpaceCommand {
     Fly(FlyInSpace),
     /// Fly many times, in parallel, and give success rates with their intervals
     Campaign(CampaignInSpace),
+    /// Tell which forests can be passed at all: blocked by proof, or passable with a flight as witness
+    Ceiling(CeilingInSpace),
 }
 
 /// What is flown.
@@ -155,7 +158,11 @@ pub(super) fn is_asked(args: &[OsString]) -> bool {
         .iter()
         .skip(1)
         .find(|arg| !arg.to_string_lossy().starts_with('-'));
-    let has = |command: &OsString| ["fly", "campaign", SPACE].iter().any(|it| command == it);
+    let has = |command: &OsString| {
+        ["fly", "campaign", "ceiling", SPACE]
+            .iter()
+            .any(|it| command == it)
+    };
     let pair =
         |pair: &[OsString]| matches!(pair, [flag, value] if flag == "--preset" && value == SPACE);
     let asked = args.windows(2).any(pair) || args.iter().any(|arg| arg == "--preset=space");
@@ -168,9 +175,11 @@ impl SpaceCli {
             None => fly(&self.fly),
             Some(SpaceCommand::Fly(args)) => fly(args),
             Some(SpaceCommand::Campaign(args)) => campaign(args),
+            Some(SpaceCommand::Ceiling(args)) => args.run(),
         };
         let threads = match &self.command {
             Some(SpaceCommand::Campaign(args)) => args.threads,
+            Some(SpaceCommand::Ceiling(args)) => args.threads,
             _ => 1,
         };
         let pool = pool(threads, usize::MAX, STACK).map_err(Failure::failed)?;
@@ -271,14 +280,17 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     Ok(signals.raised().filter(|_| was).unwrap_or(code))
 }
 
+/// The densities of the cells: those given, or the usual one.
+pub(super) fn densities(given: &[f64]) -> Vec<Option<f64>> {
+    if given.is_empty() {
+        return vec![None];
+    }
+    given.iter().copied().map(Some).collect()
+}
+
 fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
     let first = args.flown.seed.unwrap_or(1);
-    let given = args.density.iter().copied().map(Some);
-    let densities: Vec<_> = if args.density.is_empty() {
-        vec![None]
-    } else {
-        given.collect()
-    };
+    let densities = densities(&args.density);
     let signals = Signals::heed()?;
     // What cannot be flown is refused before the file is made.
     for density in &densities {

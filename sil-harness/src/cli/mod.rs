@@ -8,6 +8,7 @@ mod answer;
 mod bench;
 mod campaign;
 mod ceiling;
+mod ceiling_in_space;
 mod check;
 mod core;
 mod courses;
