@@ -261,6 +261,4 @@ impl AircraftFile {
 }
 
 #[cfg(test)]
-mod loop_tests;
-#[cfg(test)]
 mod tests;

@@ -1,3 +1,5 @@
+mod loops;
+
 use super::*;
 use mpp_core::settings::{Aircraft, Settings};
 use mpp_core::units::Units;

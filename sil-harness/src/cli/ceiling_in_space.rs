@@ -2,10 +2,9 @@
 
 use super::answer::{Failure, print};
 use super::help::{CEILING_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
-use super::in_space::densities;
 use super::loudness::progress_bar;
 use super::signals::Signals;
-use super::values::{Item, number, seed, threads, within, world};
+use super::values::{Item, densities, number, seed, threads, within, world};
 use crate::files::read_aircraft;
 use mpp_analysis::ceiling::{Feasibility, SpaceCeilingCell, SpaceCeilingReport, decide_in_space};
 use mpp_sim::aircraft_file::AircraftFile;

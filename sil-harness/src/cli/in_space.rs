@@ -7,7 +7,9 @@ use super::fly::{connect, exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
 use super::space_cell::{SpaceCell, SpaceRow};
-use super::values::{Item, baseline, lidar, number, seed, threads, whole, wind, within, world};
+use super::values::{
+    Item, baseline, densities, lidar, number, seed, threads, whole, wind, within, world,
+};
 use crate::campaign::pool;
 use crate::files::{read_aircraft, read_log, read_stems, try_directory};
 use clap::{Parser, Subcommand};
@@ -278,14 +280,6 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
     let was = log.summary.outcome == Outcome::Interrupted;
     let code = log.summary.outcome.exit_code();
     Ok(signals.raised().filter(|_| was).unwrap_or(code))
-}
-
-/// The densities of the cells: those given, or the usual one.
-pub(super) fn densities(given: &[f64]) -> Vec<Option<f64>> {
-    if given.is_empty() {
-        return vec![None];
-    }
-    given.iter().copied().map(Some).collect()
 }
 
 fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {

@@ -45,6 +45,14 @@ impl<P: TypedValueParser> TypedValueParser for Item<P> {
     }
 }
 
+/// The densities of the cells: those given, or the usual one.
+pub(super) fn densities(given: &[f64]) -> Vec<Option<f64>> {
+    if given.is_empty() {
+        return vec![None];
+    }
+    given.iter().copied().map(Some).collect()
+}
+
 /// Reads a number.
 pub(super) fn number(text: &str) -> Result<f64, &'static str> {
     text.parse().map_err(|_| "give a number, such as 1.5")

@@ -1,4 +1,4 @@
-use super::*;
+use super::super::*;
 use crate::scenario::ScenarioFile;
 use mpp_core::vehicle::linearize_lateral;
 
@@ -123,7 +123,7 @@ fn a_pitch_loop_that_makes_no_sense_is_refused_by_its_key() {
         let error = file.and_then(AircraftModel::new).unwrap_err();
         assert!(error.to_string().contains(key), "{is}: {error}");
     }
-    let example = include_str!("../../../aircraft/example.toml");
+    let example = include_str!("../../../../aircraft/example.toml");
     let (alone, lateral) = example.split_once("[lateral]").unwrap();
     for (text, told) in [
         (format!("{ROLLED}\n{alone}"), "`pitch_loop`, too"),
