@@ -81,18 +81,22 @@ impl Extent {
     /// Least and greatest coordinate along z from the bottom of a voxel, in parts. They count where the voxel beyond is `free`, a
     /// bit for each z: between the rings of a scan nothing is seen.
     pub(crate) fn height(self, z: usize, free: u32) -> [i32; 2] {
+        let (below, above) = (free << 1 >> z & 1 == 1, free >> 1 >> z & 1 == 1);
+        if !(below || above) {
+            return [0, PARTS];
+        }
         let storey = z % STOREYS;
         let pair = self.heights.get(storey / 2).copied().unwrap_or(0);
         let both = pair >> (storey % 2 * 4);
         let (low, high) = (both & LAST, both >> 2 & LAST);
-        let counts = |voxel: u64| low <= high && u64::from(free) << 1 >> voxel & 1 == 1;
+        let shown = low <= high;
         [
-            if counts(z as u64) {
+            if shown && below {
                 QUARTER * i32::from(low)
             } else {
                 0
             },
-            if counts(z as u64 + 2) {
+            if shown && above {
                 QUARTER * i32::from(high + 1)
             } else {
                 PARTS

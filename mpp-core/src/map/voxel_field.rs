@@ -290,32 +290,40 @@ fn needed(distance: f64) -> u8 {
 
 /// Squared distances of the centres of voxels along z.
 fn along_column(occupied: u32, free: u32, extent: Extent) -> Pairs {
-    let square = |z: usize| {
-        // Voxels from this one to the next occupied one above, and to that below.
-        let above = (occupied >> z).trailing_zeros() as i32;
-        let below = (occupied << (HEIGHT - 1 - z)).leading_zeros() as i32;
-        let distance = |voxels: i32| {
-            let at = z as i32 + voxels;
-            off(-voxels, extent.height(at as usize, free))
-        };
-        let up = if above <= REACH {
-            distance(above)
+    const NONE: i32 = (REACH + HEIGHT as i32) * PARTS;
+    let mut distances = [0; HEIGHT];
+    let mut top = -NONE;
+    for (z, distance) in distances.iter_mut().enumerate() {
+        let bottom = z as i32 * PARTS;
+        *distance = bottom + PARTS / 2 - top;
+        if occupied >> z & 1 == 1 {
+            let sides = extent.height(z, free);
+            (*distance, top) = (off(0, sides), bottom + sides[1]);
+        }
+    }
+    let mut above = 2 * NONE;
+    for (z, distance) in distances.iter_mut().enumerate().rev() {
+        let bottom = z as i32 * PARTS;
+        if occupied >> z & 1 == 1 {
+            let [low, _] = extent.height(z, free);
+            above = bottom + low;
         } else {
-            i32::MAX
-        };
-        let down = if below <= REACH {
-            distance(-below)
-        } else {
-            i32::MAX
-        };
-        let distance = up.min(down);
+            *distance = (*distance).min(above - bottom - PARTS / 2);
+        }
+    }
+    let square = |distance: i32| {
         if distance < REACH * PARTS {
             (distance * distance) as u32
         } else {
             u32::from(FAR)
         }
     };
-    core::array::from_fn(|pair| square(2 * pair) | square(2 * pair + 1) << 16)
+    let pairs = distances.as_chunks::<2>().0;
+    let mut squares = [0; HEIGHT / 2];
+    for (squares, [even, odd]) in squares.iter_mut().zip(pairs) {
+        *squares = square(*even) | square(*odd) << 16;
+    }
+    squares
 }
 
 /// The places within reach of one, with their distances from it in voxels.

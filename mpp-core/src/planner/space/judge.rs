@@ -117,11 +117,13 @@ impl Judge<'_> {
                 let margin = keep.margin(clearance, &slope, || wing(from, to, share));
                 lack = (margin - clearance).max(0.0);
                 room = (margin + ROOM - clearance).max(0.0);
-                let [_, _, up] = slope;
-                let part = up * up / dot(&slope, &slope).max(1e-6);
-                let [all, upright] = &mut tally.tight;
-                *all += room * room;
-                *upright += part * room * room;
+                if room > 0.0 {
+                    let [_, _, up] = slope;
+                    let part = up * up / dot(&slope, &slope).max(1e-6);
+                    let [all, upright] = &mut tally.tight;
+                    *all += room * room;
+                    *upright += part * room * room;
+                }
             }
             lack += keep.outside(&point);
             tally.price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
