@@ -30,7 +30,7 @@ pub mod space_refinement {
     /// Change of the lift upwards in the first such round [m/s^2]. Source: D70.
     pub const LIFT: f64 = 4.0;
     /// Share of the squared lack of room that lies above or below from which on moves of the lift are tried [-]. Source: D70.
-    pub const STEEP: f64 = 0.1;
+    pub const STEEP: f64 = 0.2;
     /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 58.
     pub const ROUNDS: usize = 8;
     /// Number of sizes of moves [-]. More polish, fewer find other ways. Source: decision 58.
