@@ -1,6 +1,6 @@
 //! From the autopilot's frames (north, east, down) to the core's: x along the course, z up, and across it to the right.
 
-use mavlink::dialects::common::LOCAL_POSITION_NED_DATA;
+use mavlink::dialects::common::{ATTITUDE_DATA, LOCAL_POSITION_NED_DATA};
 
 /// A position that is so far from the one that the velocity foretells is a jump of the autopilot's estimate \[m\].
 const JUMP: f64 = 2.0;
@@ -127,6 +127,13 @@ fn is_sound(p: &LOCAL_POSITION_NED_DATA) -> bool {
     [p.x, p.y, p.z, p.vx, p.vy, p.vz]
         .iter()
         .all(|value| value.is_finite())
+}
+
+/// Whether each angle and rate is a number.
+pub(crate) fn is_finite(it: &ATTITUDE_DATA) -> bool {
+    let angles = [it.roll, it.pitch, it.yaw];
+    let rates = [it.rollspeed, it.pitchspeed, it.yawspeed];
+    angles.iter().chain(&rates).all(|it| it.is_finite())
 }
 
 #[cfg(test)]

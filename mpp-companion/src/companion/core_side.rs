@@ -183,13 +183,6 @@ impl Companion {
     }
 }
 
-/// Whether each angle and rate is a number.
-pub(super) fn is_finite(it: &ATTITUDE_DATA) -> bool {
-    let angles = [it.roll, it.pitch, it.yaw];
-    let rates = [it.rollspeed, it.pitchspeed, it.yawspeed];
-    angles.iter().chain(&rates).all(|it| it.is_finite())
-}
-
 /// The position that came since the last tick.
 fn position(flown: &mut Flown, tick: u32) -> Option<Position> {
     let placed = flown.placed?;

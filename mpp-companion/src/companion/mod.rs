@@ -13,13 +13,12 @@ use crate::autopilot::{AUTOPILOT, Kind, SYSTEM};
 use crate::brain::Brain;
 use crate::checks::Checked;
 use crate::clock::Clock;
-use crate::frames::{CourseFrame, Placed};
+use crate::frames::{CourseFrame, Placed, is_finite};
 use crate::guard::{Guard, Reason, Sight, State};
 use crate::lidar::{Lidar, Pose};
 use crate::setpoint::{Gate, Setpoint};
 use crate::wire::{Framer, Mav, OWN_COMPONENT, Sender};
 use asked::Asked;
-use core_side::is_finite;
 use mavlink::dialects::common::{
     ATTITUDE_DATA, HEARTBEAT_DATA, LOCAL_POSITION_NED_DATA, MavModeFlag, SET_ATTITUDE_TARGET_DATA,
 };
