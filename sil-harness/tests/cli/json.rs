@@ -87,7 +87,13 @@ fn every_name_that_json_prints_is_documented_and_no_other() {
         ("campaign --json", &[&campaign]),
         ("campaign --faults --json", &[&faults]),
         ("campaign --faults --pairs --json", &[&pairs]),
-        ("ceiling --json", &[&format!("ceiling {ends} --fields 1")]),
+        (
+            "ceiling --json",
+            &[
+                &format!("ceiling {ends} --fields 1"),
+                "ceiling --preset space --density 0.005 --trials 1",
+            ],
+        ),
         (
             "aircraft --json",
             &["aircraft odd.toml --flights 1 --obstacles 1"],
