@@ -122,7 +122,8 @@ def read(
 def estimate(log: dict[str, Floats], known: Known) -> dict[str, Value]:
     """All parameters of a log; those of the roll loop if the span is known."""
     cruise = known.cruise or float(numpy.nanmedian(log["airspeed"]))
-    return in_the_plane(log, known) | (roll_loop(log, cruise) if known.span else {})
+    found: dict[str, Value] = in_the_plane(log, known)
+    return found | (roll_loop(log, cruise) if known.span else {})
 
 
 def unexcited(log: dict[str, Floats], roll: bool) -> list[str]:

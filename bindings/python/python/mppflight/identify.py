@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from .errors import InputError
 
 try:
-    from scipy.optimize import least_squares  # type: ignore[import-untyped]
+    from scipy.optimize import least_squares as least_squares  # type: ignore[import-untyped]
     from scipy.signal import cont2discrete, lfilter  # type: ignore[import-untyped]
-    from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
+    from threadpoolctl import threadpool_limits as threadpool_limits  # type: ignore[import-untyped]
 except ImportError as error:
     raise ImportError("mppflight.fit needs SciPy and threadpoolctl: pip install 'mppflight[fit]'") from error
 

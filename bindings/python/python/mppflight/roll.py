@@ -102,6 +102,7 @@ class Rolling:
             nonlocal last, slopes
             last = p.copy()
             steps = numpy.diag(1e-2 * numpy.maximum(abs(p), 0.1))
+            base: Floats
             base, *moved = self.residuals(numpy.vstack([p, p + steps, p - steps]), scheduled)
             more, less = numpy.split(numpy.array(moved), 2)
             slopes = ((more - less) / (2 * numpy.diag(steps)[:, None])).T
