@@ -161,7 +161,7 @@ fn mcap_of_a_flight_in_space_has_clouds_bodies_and_paths_where_they_were() {
         seed: Some(5),
         ..SpaceFile::default()
     };
-    let log = std::thread::Builder::new().stack_size(32 << 20);
+    let log = std::thread::Builder::new().stack_size(mpp_sim::space::STACK);
     let log = log.spawn(move || fly_space(&file.build(None).unwrap()).unwrap());
     let log = log.unwrap().join().unwrap();
     let bytes = mcap(&log).unwrap();

@@ -298,14 +298,16 @@ fn an_aircraft_without_a_lateral_table_is_refused() {
 
 #[test]
 fn a_core_in_the_plane_says_that_it_does_not_fly_in_space() {
-    let told = std::thread::Builder::new().stack_size(32 << 20).spawn(|| {
-        let flight = SpaceFile::default().build(None).unwrap();
-        let mut core = PipeLink::of(&Scenario::new(Preset::Flight, 1));
-        let error = fly_space_with(&flight, &mut core, || false).unwrap_err();
-        assert!(
-            error.to_string().contains("flies no such preset"),
-            "{error}"
-        );
-    });
+    let told = std::thread::Builder::new()
+        .stack_size(mpp_sim::space::STACK)
+        .spawn(|| {
+            let flight = SpaceFile::default().build(None).unwrap();
+            let mut core = PipeLink::of(&Scenario::new(Preset::Flight, 1));
+            let error = fly_space_with(&flight, &mut core, || false).unwrap_err();
+            assert!(
+                error.to_string().contains("flies no such preset"),
+                "{error}"
+            );
+        });
     told.unwrap().join().unwrap();
 }

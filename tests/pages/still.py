@@ -1,4 +1,4 @@
-"""Writes docs/forest.png, the picture on top of README: a moment of target/cross/web/forest.html, which `cargo xtask web` builds.
+"""Writes docs/forest.png, the picture of docs/web.md: a moment of target/cross/web/forest.html, which `cargo xtask web` builds.
 
     target/clients/bin/python tests/pages/still.py
 """

@@ -122,7 +122,7 @@ pub fn table() -> Result<String, Failure> {
 pub fn in_space<T: Send + 'static>(
     work: impl FnOnce() -> Result<T, Failure> + Send + 'static,
 ) -> Result<T, Failure> {
-    let thread = std::thread::Builder::new().stack_size(32 << 20);
+    let thread = std::thread::Builder::new().stack_size(mpp_sim::space::STACK);
     let done = thread.spawn(work)?.join();
     done.map_err(|_| "the flight in space broke")?
 }

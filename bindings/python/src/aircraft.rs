@@ -111,7 +111,7 @@ impl Aircraft {
     }
 
     /// Gain, phase and delay margin of the regulator at the elevator, in level flight at 100 Hz with commands that come a
-    /// tick late. Needs SciPy.
+    /// tick late. Needs python-control.
     fn margins<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let linear = slf.get().linearize(slf.py())?;
         let analysis = slf.py().import("mppflight.analysis")?;

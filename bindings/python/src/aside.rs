@@ -1,15 +1,13 @@
 //! Long work on a thread of its own, while Python runs on and hears Ctrl-C.
 
 use crate::errors::FlightError;
+use mpp_sim::space::STACK;
 use pyo3::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::{Builder, scope};
 use std::time::Duration;
 
-/// Stack of the thread [bytes]. The core, of 0.8 MB in space, is built on the stack before it moves to its box, and threads of
-/// Python may have little.
-const STACK: usize = 32 << 20;
 /// Time between two looks at the signals [s]: a person does not notice it, and it costs nothing.
 const PATIENCE: Duration = Duration::from_millis(50);
 
@@ -22,6 +20,7 @@ pub(crate) fn aside<T: Send>(
     let stop = &AtomicBool::new(false);
     scope(|scope| {
         let (send, mut receive) = channel();
+        // Threads of Python may have a small stack.
         let builder = Builder::new().stack_size(STACK);
         builder.spawn_scoped(scope, move || {
             // Nobody listens after a signal.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 /// The core is built on the stack.
 fn aside(work: impl FnOnce() + Send + 'static) {
-    let thread = std::thread::Builder::new().stack_size(32 << 20);
+    let thread = std::thread::Builder::new().stack_size(mpp_sim::space::STACK);
     thread.spawn(work).unwrap().join().unwrap();
 }
 

@@ -19,14 +19,33 @@ use std::io::Write;
 const FINE: f64 = 1e-4;
 const ANGLE: f64 = 1e-4;
 
-/// A flight as its page gets it.
+/// What the pages of all flights get of a log.
 #[derive(Serialize)]
-pub(super) struct Packed<'a> {
+struct Logged<'a> {
     header: &'a Header,
     summary: &'a Summary,
     plans: &'a [PlanEntry],
     orders: &'a [OrderEntry],
     hash: String,
+}
+
+impl<'a> Logged<'a> {
+    fn of(log: &'a FlightLog) -> Result<Self, LogError> {
+        Ok(Self {
+            header: &log.header,
+            summary: &log.summary,
+            plans: &log.plans,
+            orders: &log.orders,
+            hash: log.hash()?,
+        })
+    }
+}
+
+/// A flight as its page gets it.
+#[derive(Serialize)]
+pub(super) struct Packed<'a> {
+    #[serde(flatten)]
+    logged: Logged<'a>,
     details: Vec<PlanDetail>,
     closest: Option<Closest>,
     ticks: BTreeMap<&'static str, (f64, Steps)>,
@@ -38,11 +57,7 @@ type Steps = Vec<Option<i64>>;
 impl<'a> Packed<'a> {
     pub(super) fn of(log: &'a FlightLog, details: Vec<PlanDetail>) -> Result<Self, LogError> {
         Ok(Self {
-            header: &log.header,
-            summary: &log.summary,
-            plans: &log.plans,
-            orders: &log.orders,
-            hash: log.hash()?,
+            logged: Logged::of(log)?,
             details,
             closest: closest(log),
             ticks: columns(&log.ticks),
@@ -53,11 +68,8 @@ impl<'a> Packed<'a> {
 /// A flight in space as its page gets it.
 #[derive(Serialize)]
 pub(super) struct PackedSpace<'a> {
-    header: &'a Header,
-    summary: &'a Summary,
-    plans: &'a [PlanEntry],
-    orders: &'a [OrderEntry],
-    hash: String,
+    #[serde(flatten)]
+    logged: Logged<'a>,
     look: Look,
     ticks: BTreeMap<&'static str, (f64, Steps)>,
 }
@@ -65,11 +77,7 @@ pub(super) struct PackedSpace<'a> {
 impl<'a> PackedSpace<'a> {
     pub(super) fn of(log: &'a FlightLog, look: Look) -> Result<Self, LogError> {
         Ok(Self {
-            header: &log.header,
-            summary: &log.summary,
-            plans: &log.plans,
-            orders: &log.orders,
-            hash: log.hash()?,
+            logged: Logged::of(log)?,
             look,
             ticks: (columns(&log.ticks).into_iter().chain(lateral(&log.lateral))).collect(),
         })

@@ -1,14 +1,11 @@
 //! A flight in space as pictures need it: where it was, what each sweep hit, and what each cycle made of it.
 
 use super::world::Body;
-use super::{Pose, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
+use super::{Pose, STACK, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
 use crate::file_error::{ScenarioError, ensure};
 use crate::log::{FlightLog, Header};
 use mpp_core::planner::space::SpacePlan;
 use serde::Serialize;
-
-/// The core in space is built on the stack \[bytes\].
-const STACK: usize = 32 << 20;
 
 /// Place \[m\], attitude, airspeed [m/s], and distance from the nearest thing \[m\], at most 5 m.
 pub type Moment = ([f64; 3], [f64; 4], f64, f64);

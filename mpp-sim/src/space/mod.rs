@@ -26,7 +26,7 @@ pub use hull::Hull;
 pub use look::{Look, Moment, SpaceCycle, moment, scenario as scenario_of};
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use mpp_core::vehicle::Quaternion;
-pub use pipe::SpacePipe;
+pub use pipe::{STACK, SpacePipe};
 pub use pose::Pose;
 pub use scenario::{Deskew, SPACE, SpaceFile, SpaceScenario};
 pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_path};
@@ -163,7 +163,9 @@ pub fn regulator(scenario: &Scenario) -> Result<LateralRegulator, ScenarioError>
     let model = &scenario.aircraft;
     let lateral = lateral(scenario)?;
     if lateral.roll_loop.is_some() {
-        let advice = "the autopilot holds the bank: fly it with --preset space".to_owned();
+        let advice =
+            "the autopilot holds the bank: only `fly` and `campaign` know it, with --preset space"
+                .to_owned();
         return Err(ScenarioError::Value("aircraft.roll_loop", advice));
     }
     let rudder = lateral.rudder.map_or(0.0, |it| it.range.to_radians());

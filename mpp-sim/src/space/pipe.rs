@@ -7,7 +7,10 @@ use crate::pipe::Inbox;
 use hil_protocol::{MAX_FRAME, Message, encode};
 use mpp_node::SpaceNode;
 
-/// A core in space in this process. It is built on the stack, of which the thread needs 32 MB, and then lies in a box.
+/// Stack of a thread that flies in space \[bytes\]: the core is built on it before it moves to its box.
+pub const STACK: usize = 32 << 20;
+
+/// A core in space in this process, in a box.
 pub struct SpacePipe {
     node: Box<SpaceNode>,
     baseline: Option<Baseline>,

@@ -1,38 +1,23 @@
 //! `ceiling --preset space`: which forests an aircraft that banks can pass at all.
 
 use super::answer::{Failure, print};
-use super::help::{CEILING_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
+use super::help::{CEILING_IN_SPACE, OUTPUT, RUN, WORLD};
 use super::loudness::progress_bar;
 use super::signals::Signals;
-use super::values::{Item, densities, number, seed, threads, within, world};
-use crate::files::read_aircraft;
+use super::stage::Stage;
+use super::values::{Item, densities, number, seed, threads, within};
 use mpp_analysis::ceiling::{Feasibility, SpaceCeilingCell, SpaceCeilingReport, decide_in_space};
-use mpp_sim::aircraft_file::AircraftFile;
-use mpp_sim::space::world::WorldName;
-use mpp_sim::space::{SPACE, SpaceFile, SpaceScenario};
+use mpp_sim::space::{SpaceFile, SpaceScenario};
 use rayon::prelude::*;
 
 #[derive(Clone, Debug, clap::Args)]
 #[command(after_help = CEILING_IN_SPACE)]
 pub(super) struct CeilingInSpace {
-    /// The aircraft banks, among trunks
-    #[arg(long, help_heading = PLANNER, value_parser = [SPACE])]
-    preset: Option<String>,
-    /// Aircraft with a lateral table: a name or a file [default: ultrastick at 13 m/s]
-    #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
-    aircraft: Option<String>,
-    /// Airspeed of level flight [m/s] [default: that of the aircraft's file]
-    #[arg(long, help_heading = WORLD, value_name = "M/S", value_parser = number)]
-    airspeed: Option<f64>,
-    /// World of trunks, 240 m long, drawn from the seed [default: forest]
-    #[arg(long, help_heading = WORLD, value_parser = world())]
-    world: Option<WorldName>,
+    #[command(flatten)]
+    stage: Stage,
     /// Densities of the world, a list: each is a cell
     #[arg(long, help_heading = WORLD, value_delimiter = ',', value_parser = Item(number))]
     density: Vec<f64>,
-    /// Radius of a sphere that stands for wing and fuselage \[m\]
-    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
-    sphere: Option<f64>,
     /// Number of worlds in each cell
     #[arg(long, help_heading = RUN, default_value_t = 100, value_parser = within(1, u32::MAX))]
     trials: u32,
@@ -49,12 +34,11 @@ pub(super) struct CeilingInSpace {
 
 impl CeilingInSpace {
     pub(super) fn run(&self) -> Result<u8, Failure> {
-        let aircraft = self.aircraft.as_ref().map(|name| read_aircraft(name));
-        let aircraft = aircraft.transpose().map_err(Failure::usage)?;
+        let stage = self.stage.file()?;
         let densities = densities(&self.density);
         // What cannot be judged is refused before anything is.
         for density in &densities {
-            let scenario = self.scenario(aircraft.as_ref(), *density, self.seed)?;
+            let scenario = scenario(&stage, *density, self.seed)?;
             mpp_analysis::ceiling::check_in_space(&scenario).map_err(Failure::usage)?;
         }
         let signals = Signals::heed()?;
@@ -67,36 +51,27 @@ impl CeilingInSpace {
                 if let Some(code) = signals.raised() {
                     return Err(Failure::new(code, "interrupted"));
                 }
-                let scenario = self.scenario(aircraft.as_ref(), density, *seed)?;
+                let scenario = scenario(&stage, density, *seed)?;
                 let verdict = decide_in_space(&scenario).map_err(Failure::usage);
                 progress.inc(1);
                 verdict
             };
             let verdicts = seeds.par_iter().map(decide);
             let verdicts: Vec<Feasibility> = verdicts.collect::<Result<_, Failure>>()?;
-            let scenario = self.scenario(aircraft.as_ref(), density, self.seed)?;
+            let scenario = scenario(&stage, density, self.seed)?;
             (report.cells).push(SpaceCeilingCell::new(&scenario, &verdicts));
         }
         progress.finish_and_clear();
         print(&report, self.json)?;
         Ok(0)
     }
+}
 
-    fn scenario(
-        &self,
-        aircraft: Option<&AircraftFile>,
-        density: Option<f64>,
-        seed: u64,
-    ) -> Result<SpaceScenario, Failure> {
-        let file = SpaceFile {
-            aircraft: aircraft.cloned(),
-            airspeed: self.airspeed,
-            world: self.world.map(|world| world.name().to_owned()),
-            density,
-            sphere: self.sphere,
-            seed: Some(seed),
-            ..SpaceFile::default()
-        };
-        file.build(None).map_err(Failure::usage)
-    }
+fn scenario(stage: &SpaceFile, density: Option<f64>, seed: u64) -> Result<SpaceScenario, Failure> {
+    let file = SpaceFile {
+        density,
+        seed: Some(seed),
+        ..stage.clone()
+    };
+    file.build(None).map_err(Failure::usage)
 }

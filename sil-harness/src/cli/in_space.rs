@@ -7,28 +7,25 @@ use super::fly::{connect, exit_code, keep, told};
 use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, WORLD};
 use super::signals::Signals;
 use super::space_cell::{SpaceCell, SpaceRow};
-use super::values::{
-    Item, baseline, densities, lidar, number, seed, threads, whole, wind, within, world,
-};
+use super::stage::Stage;
+use super::values::{Item, baseline, densities, lidar, number, seed, threads, whole, wind, within};
 use crate::campaign::pool;
-use crate::files::{read_aircraft, read_log, read_stems, try_directory};
+use crate::files::{read_log, read_stems, try_directory};
 use clap::{Parser, Subcommand};
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
 use mpp_sim::orders::OrderEntry;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::lidar::LidarName;
-use mpp_sim::space::world::WorldName;
-use mpp_sim::space::{BaselineName, SPACE, SpaceFile, SpacePipe, SpaceScenario, fly_space_again};
+use mpp_sim::space::{
+    BaselineName, SPACE, STACK, SpaceFile, SpacePipe, SpaceScenario, fly_space_again,
+};
 use rayon::prelude::*;
 use std::ffi::OsString;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
-
-/// Stack of a thread that flies in space [bytes]: the core is built on it before it moves to its box.
-const STACK: usize = 32 << 20;
 
 /// The commands of preset `space`.
 #[derive(Debug, Parser)]
@@ -53,30 +50,17 @@ enum SpaceCommand {
 /// What is flown.
 #[derive(Clone, Debug, clap::Args)]
 struct InSpace {
-    /// The planner in space
-    #[arg(long, help_heading = PLANNER, value_parser = [SPACE])]
-    preset: Option<String>,
-    /// Aircraft with a lateral table: a name or a file [default: ultrastick at 13 m/s]
-    #[arg(long, help_heading = WORLD, value_name = "NAME|FILE")]
-    aircraft: Option<String>,
-    /// Airspeed of level flight [m/s] [default: that of the aircraft's file]
-    #[arg(long, help_heading = WORLD, value_name = "M/S", value_parser = number)]
-    airspeed: Option<f64>,
-    /// World of 240 m, drawn from the seed [default: forest]
-    #[arg(long, help_heading = WORLD, value_parser = world())]
-    world: Option<WorldName>,
-    /// World: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height \[m\]
+    #[command(flatten)]
+    stage: Stage,
+    /// World: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height [m]
     #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
     stems: Option<PathBuf>,
-    /// Side of the windows of walls \[m\] [default: 5]
+    /// Side of the windows of walls [m] [default: 5]
     #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
     window: Option<f64>,
     /// Lidar; of scattered beams those ahead, at most 2,000 a sweep [default: grid-90x16]
     #[arg(long, help_heading = WORLD, value_parser = lidar())]
     lidar: Option<LidarName>,
-    /// Radius of a sphere that stands for wing and fuselage \[m\]
-    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
-    sphere: Option<f64>,
     /// Measurements without errors
     #[arg(long, help_heading = WORLD)]
     exact: bool,
@@ -90,7 +74,7 @@ struct InSpace {
     /// Let all beams of a sweep bear the time of its end, and not their own
     #[arg(long, help_heading = WORLD)]
     no_deskew: bool,
-    /// Error of the lidar's clock \[ms\], -20 to 100: beams seem so much older than they are
+    /// Error of the lidar's clock [ms], -20 to 100: beams seem so much older than they are
     #[arg(long, help_heading = WORLD, value_name = "MS", value_parser = number)]
     lidar_clock: Option<f64>,
     /// Candidates of a cycle, the previous plan included [default: 3]
@@ -191,17 +175,11 @@ impl SpaceCli {
 
 impl InSpace {
     fn scenario(&self, density: Option<f64>, seed: u64) -> Result<SpaceScenario, Failure> {
-        let aircraft = self.aircraft.as_ref().map(|name| read_aircraft(name));
         let stems = self.stems.as_ref().map(|path| read_stems(path));
         let file = SpaceFile {
-            preset: self.preset.clone(),
-            aircraft: aircraft.transpose().map_err(Failure::usage)?,
-            airspeed: self.airspeed,
-            world: self.world.map(|world| world.name().to_owned()),
             density,
             window: self.window,
             lidar: self.lidar.map(|it| it.name().to_owned()),
-            sphere: self.sphere,
             exact: Some(self.exact),
             candidates: self.candidates,
             programs: self.no_programs.then_some(false),
@@ -213,6 +191,7 @@ impl InSpace {
             replan_hz: self.replan_hz,
             latency_ms: self.latency_ms,
             seed: Some(seed),
+            ..self.stage.file()?
         };
         let stems = stems.transpose().map_err(Failure::usage)?;
         file.build(stems.as_deref()).map_err(Failure::usage)

@@ -30,6 +30,7 @@ mod scenario;
 mod signals;
 mod space;
 mod space_cell;
+mod stage;
 mod values;
 mod worlds;
 
