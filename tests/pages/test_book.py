@@ -1,4 +1,4 @@
-"""The book's preprocessor: links out of docs go to the forge, all others stay."""
+"""The book's preprocessors: links out of docs go to the forge, and Python has a page of its names."""
 
 import json
 import subprocess
@@ -10,14 +10,14 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 
 
-def shown(path, text):
-    """A page's text in the book."""
-    chapter = {"path": path, "content": text, "sub_items": []}
+def through(script, path, text):
+    """A page of the book after a preprocessor."""
+    chapter = {"name": path, "path": path, "content": text, "number": [7], "sub_items": []}
     context = {"config": {"preprocessor": {"forge-links": {"repository": "https://forge/x"}}}}
     book = {"items": [{"Chapter": {"path": None, "content": "", "sub_items": []}}, "Separator", {"Chapter": chapter}]}
-    script = [sys.executable, ROOT / ".ci/book_links.py"]
-    done = subprocess.run(script, input=json.dumps([context, book]), capture_output=True, text=True, check=True)
-    return json.loads(done.stdout)["items"][2]["Chapter"]["content"]
+    command = [sys.executable, ROOT / ".ci" / script]
+    done = subprocess.run(command, input=json.dumps([context, book]), capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)["items"][2]["Chapter"]
 
 
 @pytest.mark.parametrize("page, link, expected", [
@@ -30,4 +30,12 @@ def shown(path, text):
     ("fields.md", "https://elsewhere/a", "https://elsewhere/a"),
 ])
 def test_links(page, link, expected):
-    assert shown(page, f"see [a]({link}) there") == f"see [a]({expected}) there"
+    assert through("book_links.py", page, f"see [a]({link}) there")["content"] == f"see [a]({expected}) there"
+
+
+def test_python_has_a_page_of_its_names_and_no_other_page_has():
+    """Which names: `bindings/python/tests/test_names.py`, on the installed package."""
+    (below,) = through("book_python.py", "python.md", "text")["sub_items"]
+    page = below["Chapter"]
+    assert page["number"] == [7, 1] and "### `fly`" in page["content"] and "#### `Planner.plan`" in page["content"]
+    assert through("book_python.py", "planner.md", "text")["sub_items"] == []

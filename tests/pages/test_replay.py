@@ -169,6 +169,94 @@ def test_the_paper_s_method_has_a_cost_and_no_parts(collided, open_page):
     assert "violation" in page.inner_text("#why-note")
 
 
+def test_the_prices_stand_beside_the_scene_and_a_path_under_the_pointer_marks_its_row(flight, open_page):
+    page, _ = flight
+    page = open_page(page.as_uri() + "#t=7.3", viewport={"width": 1366, "height": 768})
+    view, why = page.locator("#view").bounding_box(), page.locator(".why").bounding_box()
+    assert view["y"] == why["y"] and view["x"] + view["width"] <= why["x"] and view["y"] + view["height"] < 768
+    assert page.evaluate("document.querySelector('.wide').scrollWidth <= document.querySelector('.wide').clientWidth")
+    # A point of a path, where no other path is, and its place in the picture.
+    index, x, y = page.evaluate("""() => {
+      const { paths } = detailAt(flights[0], now), origin = flights[0].place(0, 0), scale = 1 / (flights[0].place(1, 0)[0] - origin[0]);
+      const height = $("view").clientHeight;
+      for (const [index, path] of paths.entries()) for (const [x, z] of path.slice(1)) {
+        const alone = paths.every((other, i) => i === index || candidateAt({ ...flights[0], plans: [{ used_from_tick: 0, tick: 0 }],
+          details: new Map([[0, { paths: [other] }]]) }, now, [x, z], scale) === null);
+        const u = (x - origin[0]) * scale, v = (origin[1] - z) * scale;
+        if (alone && u > 0 && u < $("view").clientWidth && v > 0 && v < height) return [index, u, v];
+      }
+    }""")
+    page.mouse.move(view["x"] + x + 1, view["y"] + y + 1)
+    drawn(page)
+    assert page.evaluate("[...document.querySelectorAll('#why tr')].map(row => row.classList.contains('marked')).indexOf(true)") == index + 1
+    page.mouse.move(0, 0)
+    drawn(page)
+    assert page.locator("#why tr.marked").count() == 0
+
+
+def test_the_strip_shows_the_whole_flight_and_moves_what_the_charts_show(flight, open_page):
+    page, log = flight
+    page = open_page(page.as_uri())
+    ticks = len(log["ticks"]["t"])
+    page.locator("#strip").scroll_into_view_if_needed()
+    box = page.locator("#strip").bounding_box()
+    inside = box["width"] - page.evaluate("LEFT + RIGHT")
+
+    def at(tick):
+        return box["x"] + page.evaluate("LEFT") + inside * tick / (ticks - 1), box["y"] + box["height"] / 2
+
+    def drag(start, end):
+        page.mouse.move(*at(start))
+        page.mouse.down()
+        page.mouse.move(*at(end), steps=4)
+        page.mouse.up()
+        return page.evaluate("look.window")
+
+    assert drag(ticks - 1, 800) == pytest.approx([0, 800], abs=3)
+    assert drag(0, 300) == pytest.approx([300, 800], abs=3)
+    assert drag(550, 1050) == pytest.approx([800, 1300], abs=5)
+    # No end goes beyond the other, nor the window beyond the flight.
+    low, high = drag(800, 1900)
+    assert high - low == 20 and high == pytest.approx(1300, abs=5)
+    assert drag((low + high) / 2, ticks + 300) == [ticks - 21, ticks - 1]
+    before = page.evaluate("document.getElementById('strip').toDataURL()")
+    # A click goes to its time, and the window along.
+    page.mouse.click(*at(400))
+    says_what_the_log_holds(page, log, int(page.input_value("#time")))
+    assert int(page.input_value("#time")) == pytest.approx(400, abs=3)
+    low, high = page.evaluate("look.window")
+    assert low < 400 < high and page.evaluate("document.getElementById('strip').toDataURL()") != before
+    page.mouse.dblclick(*at(400))
+    assert page.evaluate("look.window") is None
+
+
+def test_the_elevator_has_its_unit_and_its_ends(open_page, tmp_path):
+    (tmp_path / "none").mkdir()
+    path, _ = fly(tmp_path, "--aircraft", "zagi", "--duration", "3")
+    page = open_page(page_of(path).as_uri())
+    written = texts(page)
+    at = written.index("elevator [deg]")
+    assert written[at + 1:at + 3] == ["-30", "30"] and value(page, "elevator").endswith(" deg")
+    # The paper's aircraft has none.
+    path, _ = fly(tmp_path / "none", "--duration", "3")
+    written = texts(open_page(page_of(path).as_uri()))
+    assert "elevator" in written and "-30" not in written
+
+
+def test_two_flights_say_in_what_they_differ(open_page, tmp_path):
+    flags = {"a": ["--latency-ms", "200"], "b": ["--paths", "3", "--latency-ms", "200"], "c": ["--aircraft", "zagi", "--seed", "4"]}
+    logs = {}
+    for name, flag in flags.items():
+        (tmp_path / name).mkdir()
+        logs[name], _ = fly(tmp_path / name, "--duration", "3", *flag)
+    page = open_page(page_of(logs["a"], "--against", logs["b"]).as_uri())
+    assert page.inner_text("#differ") == page.title() == "paths 25 / 3"
+    page = open_page(page_of(logs["b"], "--against", logs["c"]).as_uri())
+    for part in ("aircraft reference / zagi", "seed 1 / 4", "paths 3 / 25", "latency 0.2 / "):
+        assert part in page.inner_text("#differ"), part
+    assert open_page(page_of(logs["a"]).as_uri()).inner_text("#differ") == ""
+
+
 def test_two_flights_stand_side_by_side(flight, collided, open_page, tmp_path, shot):
     path = tmp_path / "two.json"
     path.write_text(json.dumps(flight[1]))

@@ -37,9 +37,10 @@ def test_all_views_show_one_moment(open_page, forest):
     file, _ = forest
     page = open_page(file.as_uri() + "#t=5.00", viewport=LAPTOP)
     assert page.inner_text("#clock") == "5.00 s"
-    pictures = lambda: page.evaluate("['view', 'map', 'side', 'attitude', 'charts'].map(id => document.getElementById(id).toDataURL())")
+    pictures = lambda: page.evaluate("['view', 'map', 'side', 'attitude', 'strip', 'charts'].map(id => document.getElementById(id).toDataURL())")
     before = pictures()
     # A click in the charts goes to its time.
+    page.locator("#charts").scroll_into_view_if_needed()
     box = page.locator("#charts").bounding_box()
     page.mouse.click(box["x"] + 0.7 * box["width"], box["y"] + 60)
     page.wait_for_function("now > 600")
@@ -51,6 +52,7 @@ def test_all_views_show_one_moment(open_page, forest):
     page.keyboard.press("Space")
     page.wait_for_function("!playing && location.hash.startsWith('#t=')")
     # A drag looks around, and lets go.
+    page.evaluate("scrollTo(0, 0)")
     page.wait_for_timeout(100)
     before = pixels(page)
     page.mouse.move(600, 300)

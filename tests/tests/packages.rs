@@ -135,3 +135,19 @@ fn expressions_of_licences_are_read() {
         assert_eq!(met(expression, &allowed), expected, "{expression}");
     }
 }
+
+#[test]
+fn the_citation_has_the_version_and_the_day_of_the_changelog() {
+    let read = |name: &str| std::fs::read_to_string(root().join(name)).unwrap();
+    let (citation, changelog) = (read("CITATION.cff"), read("CHANGELOG.md"));
+    let after = |text: &str, start: &str| {
+        let found = text.lines().find_map(|line| line.strip_prefix(start));
+        found.map(str::to_owned)
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    assert_eq!(after(&citation, "version: ").as_deref(), Some(version));
+    let told = after(&changelog, &format!("## {version} (")).unwrap();
+    let day = told.trim_end_matches(')');
+    let released = (day != "not released yet").then_some(day);
+    assert_eq!(after(&citation, "date-released: ").as_deref(), released);
+}

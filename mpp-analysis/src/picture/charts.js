@@ -1,10 +1,13 @@
-// The charts of a flight over time, and what the pointer does there.
+// The charts of a flight over time, and what the pointer does there. A chart's unit may depend on the flight.
 const LEFT = 44, RIGHT = 8, FOOT = 18;
 
 // The ticks that the charts show: the whole flight, or the window of `look`.
 function shownTicks(flight, look) {
   return look.window || [flight.first, Math.max(lastTick(flight), flight.first + 1, look.last || 0)];
 }
+
+const wholeFlight = (flight, look) => shownTicks(flight, { ...look, window: null });
+const unitOf = (flight, chart) => typeof chart.unit === "string" ? chart.unit : chart.unit(flight);
 
 // The value of a series at a tick; null where there is none.
 function valueAt(flight, chart, name, tick) {
@@ -79,11 +82,12 @@ function drawCurves(pen, flight, [from, to], width, height, together) {
     const v = value => bottom - (bottom - top) * (value - low) / (high - low);
     line(pen, [[LEFT, bottom], [right, bottom]], colour.line, 1);
     pen.fillStyle = colour.faint; pen.textAlign = "left";
-    pen.fillText(chart.title + (chart.unit && ` [${chart.unit}]`), LEFT, index * rows + 12);
+    const unit = unitOf(flight, chart);
+    pen.fillText(chart.title + (unit && ` [${unit}]`), LEFT, index * rows + 12);
     pen.textAlign = "right";
     if (limits.length) for (const limit of limits) {
       line(pen, [[LEFT, v(limit)], [right, v(limit)]], colour.bad, 1, [2, 4]);
-      pen.fillStyle = colour.bad; pen.fillText(limit.toFixed(0), LEFT - 4, v(limit) + 4);
+      pen.fillStyle = colour.bad; pen.fillText(limit.toFixed(Math.abs(limit) < 2 ? 2 : 0), LEFT - 4, v(limit) + 4);
     } else {
       pen.fillText(high.toFixed(digits), LEFT - 4, top + 8);
       pen.fillText(low.toFixed(digits), LEFT - 4, bottom);
@@ -125,23 +129,30 @@ function drawEvents(pen, flight, [from, to], u, height) {
   if (flight.summary) mark(lastTick(flight), isGood(flight.summary.outcome) ? colour.good : colour.bad, []);
 }
 
-// Draws the charts. `look` may have a `window` of ticks and a `hover`, the tick under the pointer. The curves are kept
-// as a picture, so that a frame that changes only the pointer or the time is cheap.
-function drawCharts(flight, now, look) {
-  const [pen, width, height] = canvas("charts" + flight.id);
-  if (!flight.ticks.t.length) return;
-  const [from, to] = shownTicks(flight, look), ratio = window.devicePixelRatio || 1;
-  const key = [from, to, lastTick(flight), flight.plans.length, width, height, ratio, colour.ground, !!flight.summary].join();
-  if (flight.curves?.key !== key) {
+// Puts a picture under the pen that is painted anew only if its key has changed, so that a frame that changes only the
+// pointer or the time is cheap. The flight keeps it by its name.
+function keepPicture(pen, flight, name, key, width, height, paint) {
+  const ratio = window.devicePixelRatio || 1;
+  key = [key, width, height, ratio, colour.ground].join();
+  if (flight[name]?.key !== key) {
     const image = document.createElement("canvas");
     [image.width, image.height] = [Math.round(width * ratio), Math.round(height * ratio)];
     const painter = image.getContext("2d");
     painter.setTransform(ratio, 0, 0, ratio, 0, 0);
     painter.font = pen.font;
-    drawCurves(painter, flight, [from, to], width, height, look.together || [flight]);
-    flight.curves = { key, image };
+    paint(painter);
+    flight[name] = { key, image };
   }
-  pen.drawImage(flight.curves.image, 0, 0, width, height);
+  pen.drawImage(flight[name].image, 0, 0, width, height);
+}
+
+// Draws the charts. `look` may have a `window` of ticks and a `hover`, the tick under the pointer.
+function drawCharts(flight, now, look) {
+  const [pen, width, height] = canvas("charts" + flight.id);
+  if (!flight.ticks.t.length) return;
+  const [from, to] = shownTicks(flight, look);
+  keepPicture(pen, flight, "curves", [from, to, lastTick(flight), flight.plans.length, !!flight.summary], width, height,
+    painter => drawCurves(painter, flight, [from, to], width, height, look.together || [flight]));
   const u = tick => LEFT + (width - RIGHT - LEFT) * (tick - from) / (to - from), rows = (height - FOOT) / CHARTS.length;
   if (now >= from && now <= to) line(pen, [[u(now), 0], [u(now), height - FOOT]], colour.text, 1);
   const shown = look.hover ?? now;
@@ -166,7 +177,7 @@ function valueText(flight, chart, name, tick) {
 // The values at a tick as text.
 function readout(flight, tick) {
   const of = chart => chart.series.map(([name]) => valueText(flight, chart, name, tick)).reverse().join(" / ");
-  return `${(tick / 100).toFixed(2)} s: ` + CHARTS.slice(0, 5).map(chart => `${chart.title} ${of(chart)} ${chart.unit}`).join(", ");
+  return `${(tick / 100).toFixed(2)} s: ` + CHARTS.slice(0, 5).map(chart => `${chart.title} ${of(chart)} ${unitOf(flight, chart)}`).join(", ");
 }
 
 // The window of ticks after zooming by a factor about a tick; null if it holds the whole flight.
@@ -180,7 +191,7 @@ function zoomed([from, to], [first, last], tick, factor) {
 // Lets the pointer act on the charts: hovering shows values, a click seeks, a drag moves and the wheel zooms the
 // window, a double click shows all. `seek` is null where the time cannot be chosen.
 function hearCharts(flight, look, changed, seek) {
-  const element = $("charts" + flight.id), all = () => shownTicks(flight, { ...look, window: null });
+  const element = $("charts" + flight.id), all = () => wholeFlight(flight, look);
   let drag = null;
   const tickAt = event => {
     const box = element.getBoundingClientRect(), [from, to] = shownTicks(flight, look);
@@ -215,13 +226,29 @@ function hearCharts(flight, look, changed, seek) {
   }, { passive: false });
 }
 
-// Lets the pointer choose the stage of the corridor in the view. `place` gives what drawView returned.
+// The candidate within 7 pixels of a place in the view, or null. `scale` is in pixels/m.
+function candidateAt(flight, tick, [x, z], scale) {
+  let best = 7 / scale, found = null;
+  (detailAt(flight, tick)?.paths || []).forEach((path, index) => {
+    for (let i = 1; i < path.length; i++) {
+      const [[x0, z0], [x1, z1]] = [path[i - 1], path[i]], length = Math.hypot(x1 - x0, z1 - z0) || 1;
+      const along = Math.min(Math.max(((x - x0) * (x1 - x0) + (z - z0) * (z1 - z0)) / length ** 2, 0), 1);
+      const apart = Math.hypot(x - x0 - along * (x1 - x0), z - z0 - along * (z1 - z0));
+      if (apart < best) [best, found] = [apart, index];
+    }
+  });
+  return found;
+}
+
+// Lets the pointer choose in the view the stage of the corridor, and a candidate. `place` gives what drawView returned.
 function hearView(flight, look, changed, place) {
   const element = $("view" + flight.id);
   element.addEventListener("pointermove", event => {
     const box = element.getBoundingClientRect(), placeOf = place();
     look.cursor = placeOf && placeOf(event.clientX - box.left, event.clientY - box.top);
+    const scale = placeOf && 1 / (placeOf(1, 0)[0] - placeOf(0, 0)[0]);
+    look.marked = placeOf && candidateAt(flight, look.tick, look.cursor, scale);
     changed();
   });
-  element.addEventListener("pointerleave", () => { look.cursor = null; changed(); });
+  element.addEventListener("pointerleave", () => { look.cursor = look.marked = null; changed(); });
 }

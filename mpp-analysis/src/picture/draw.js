@@ -153,8 +153,8 @@ function drawStage(pen, detail, stage, at, width) {
   }
   const [u, v] = at(...path[stage]);
   pen.beginPath(); pen.arc(u, v, 4, 0, 7); pen.fill();
-  pen.textAlign = "right";
-  pen.fillText(`corridor of stage ${stage} of ${detail.corridor.length - 1}` + (polygon.length > 2 ? "" : ": empty"), width - 6, 14);
+  pen.textAlign = "center";
+  label(pen, `corridor of stage ${stage} of ${detail.corridor.length - 1}` + (polygon.length > 2 ? "" : ": empty"), width / 2, 14, colour.corridor);
 }
 
 // Text that is read upon whatever lies beneath.
@@ -204,15 +204,16 @@ function drawView(flight, now, look) {
     }
   };
   if (on.unknown && detail) cells(detail.map.unknown, colour.unknown, detail.map.cell);
-  pen.fillStyle = colour.faint; pen.textAlign = "left";
+  const texts = [];
   for (let x = Math.ceil(x0 / step) * step; x < x0 + width / scale; x += step) {
     line(pen, [at(x, -1e4), at(x, 1e4)], colour.line, 0.5);
-    pen.fillText(x + " m", at(x, 0)[0] + 3, height - 5);
+    texts.push([x + " m", at(x, 0)[0] + 3, height - 5]);
   }
   const rise = [10, 50, 100, 500, 1000].find(rise => rise * scale > 14) || 5000;
   for (let z = Math.ceil((z0 - height / 2 / scale) / rise) * rise; z < z0 + height / 2 / scale; z += rise) {
     line(pen, [at(-1e4, z), at(1e6, z)], colour.line, 0.5);
-    pen.fillText(z + " m", 4, at(0, z)[1] - 3);
+    // The lowest place is that of distances.
+    if (at(0, z)[1] < height - 22) texts.push([z + " m", 4, at(0, z)[1] - 3]);
   }
   if (on.field) drawField(pen, flight.header.field, T.t[row], at, scale, width, height);
   if (on.occupancy && detail) {
@@ -236,6 +237,8 @@ function drawView(flight, now, look) {
     for (const [x, z] of detail.hits) { const [u, v] = at(x, z); pen.fillRect(u - 2, v - 2, 4, 4); }
   }
   if (on.plan && detail) line(pen, detail.trajectory.map(([x, z]) => at(x, z)), colour.plan, 3);
+  pen.textAlign = "left";
+  for (const text of texts) label(pen, ...text, colour.faint);
   drawMarks(pen, flight, at, width);
   // What lies left of the picture is not drawn.
   let first = row;

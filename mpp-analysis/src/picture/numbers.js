@@ -7,7 +7,7 @@ function showValues(flight, now, more = []) {
     ["downrange", T.x[row].toFixed(2) + " m"], ["height", T.z[row].toFixed(2) + " m"],
     ["airspeed", T.airspeed[row].toFixed(2) + " m/s"], ["pitch", degrees(T.pitch[row]).toFixed(1) + " deg"],
     ["flight path", degrees(T.flight_path[row]).toFixed(1) + " deg"], ["thrust", T.thrust[row].toFixed(2) + " N"],
-    ["elevator", T.elevator[row].toFixed(2)],
+    ["elevator", `${T.elevator[row].toFixed(2)} ${ELEVATOR[flight.header.aircraft.elevator?.unit] || ""}`],
     ["plan", plan ? `${number + 1} of ${flight.plans.length}` : "none"],
     ["outcome", plan ? OUTCOMES[plan.outcome] || plan.outcome : "-"],
     ["candidates", plan ? plan.candidates : "-"], ["feasible", plan ? plan.feasible : "-"],
@@ -26,7 +26,11 @@ function showValues(flight, now, more = []) {
 // shows its path in the view.
 function showWhy(flight, now, look, changed) {
   const detail = detailAt(flight, now), table = $("why" + flight.id);
-  if (table.detail === detail) return;
+  if (table.detail === detail) {
+    // The first row is the head.
+    [...table.rows].forEach((row, index) => row.classList.toggle("marked", look.marked !== null && index === look.marked + 1));
+    return;
+  }
   table.detail = detail;
   look.marked = null;
   const said = $("why-note" + flight.id);
@@ -59,6 +63,25 @@ function showWhy(flight, now, look, changed) {
     row.onpointerleave = () => { look.marked = null; changed(); };
     return row;
   }));
+}
+
+// The scenario keys of a header, flat, with their values as text. The field follows from the others, or is a file's.
+function scenarioKeys(header) {
+  const keys = {}, put = (path, value) => {
+    if (value !== null && typeof value === "object" && !Array.isArray(value))
+      for (const [name, inner] of Object.entries(value)) put([...path, name], inner);
+    else keys[path.join(" ").replaceAll("_", " ")] = typeof value === "object" ? JSON.stringify(value) : String(value);
+  };
+  const { field, package_version, aircraft, ...rest } = header;
+  put([], { aircraft: aircraft.name, ...rest });
+  return keys;
+}
+
+// In what the scenarios of two flights differ: the keys with both values.
+function differences(one, other) {
+  const a = scenarioKeys(one), b = scenarioKeys(other);
+  const names = [...new Set([...Object.keys(a), ...Object.keys(b)])].filter(name => a[name] !== b[name]);
+  return names.map(name => `${name} ${a[name] ?? "none"} / ${b[name] ?? "none"}`);
 }
 
 // An order as text.

@@ -16,15 +16,17 @@ function addFlight(parts) {
   const flight = { id: flights.length ? "-b" : "", header: null, plans: [], orders: [], summary: null, closest: null, first: 0,
     details: new Map(), ticks: Object.fromEntries(columns.map(name => [name, []])), ...parts };
   // The pointer in one view says nothing about the other.
-  flight.look = Object.assign(Object.create(look), { cursor: null, marked: null });
+  flight.look = Object.assign(Object.create(look), { cursor: null, marked: null, tick: 0 });
   if (flights.length) {
     const other = $("flight").cloneNode(true);
     for (const element of [other, ...other.querySelectorAll("[id]")]) element.id += flight.id;
     $("flights").append(other);
+    document.body.classList.add("two");
   }
   flights.push(flight);
   const redraw = () => { changed = true; };
   hearCharts(flight, look, redraw, go);
+  hearStrip(flight, look, redraw, go);
   hearView(flight, flight.look, redraw, () => flight.place);
 }
 
@@ -62,11 +64,12 @@ function show() {
     look.window = [start, start + span];
   }
   for (const flight of flights) {
-    const tick = Math.min(now, lastTick(flight));
+    const tick = flight.look.tick = Math.min(now, lastTick(flight));
     showValues(flight, tick);
     showWhy(flight, tick, flight.look, () => { changed = true; });
     flight.place = drawView(flight, tick, flight.look);
     drawCharts(flight, tick, look);
+    drawStrip(flight, tick, look);
   }
 }
 
@@ -74,17 +77,21 @@ function show() {
 function title(flight) {
   const h = flight.header, s = flight.summary, heading = $("title" + flight.id);
   const obstacles = Object.values(h.field).reduce((count, kind) => count + kind.length, 0);
-  heading.replaceChildren(`seed ${h.seed}, preset ${h.preset}, ${obstacles} obstacles, ${h.paths} paths`);
+  const word = (text, kind) => Object.assign(document.createElement(kind), { textContent: text });
+  heading.replaceChildren(`${h.aircraft.name}, seed ${h.seed}, preset ${h.preset}, ${obstacles} obstacles`);
   if (s) {
-    const outcome = document.createElement("span");
-    outcome.textContent = s.outcome.replace(/-/g, " ");
+    const outcome = word(s.outcome.replace(/-/g, " "), "span");
     outcome.className = isGood(s.outcome) ? "good" : "bad";
-    heading.append(": ", outcome, ` after ${s.t_end.toFixed(2)} s, clearance ` +
-      (s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m") + `, ${s.replans} replans, ` +
-      `${s.candidates} candidates, ${s.feasible} feasible`);
+    const totals = `clearance ${s.min_clearance === null ? "none" : s.min_clearance.toFixed(2) + " m"}, ${s.replans} replans, ` +
+      `${s.candidates} candidates, ${s.feasible} feasible` + (flight.hash ? `, log ${flight.hash}` : "");
+    heading.append(": ", outcome, ` after ${s.t_end.toFixed(2)} s `, word(totals, "small"));
   }
-  if (flight.hash) heading.append(`, log ${flight.hash}`);
-  document.title = flights.map(one => $("title" + one.id).textContent).join(" | ");
+  document.title = heading.textContent;
+  if (flights.length > 1 && flights.every(one => one.header)) {
+    const found = differences(...flights.map(one => one.header)), more = found.length > 6 ? `, and ${found.length - 6} more` : "";
+    $("differ").textContent = found.length ? `${found.slice(0, 6).join(", ")}${more}` : "Two flights of one scenario";
+    document.title = $("differ").textContent;
+  }
   $("orders" + flight.id).replaceChildren(...flight.orders.map(order => {
     const item = document.createElement("li");
     item.textContent = orderText(order);
@@ -135,7 +142,7 @@ function fromHash() {
 
 // Zooms the charts about the time that is shown.
 function zoom(factor) {
-  const flight = flights[0], all = shownTicks(flight, { ...look, window: null });
+  const flight = flights[0], all = wholeFlight(flight, look);
   look.window = factor === Infinity ? null : zoomed(shownTicks(flight, look), all, now, factor);
   show();
 }

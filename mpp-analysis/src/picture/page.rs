@@ -8,6 +8,7 @@ const PAGE: &str = concat!(
     include_str!("draw.js"),
     include_str!("plane.js"),
     include_str!("charts.js"),
+    include_str!("strip.js"),
     include_str!("numbers.js"),
     include_str!("page.js"),
     "</script>\n</html>\n"
@@ -25,6 +26,7 @@ const SPACE: &str = concat!(
     include_str!("space/maps.js"),
     include_str!("space/replay.js"),
     include_str!("charts.js"),
+    include_str!("strip.js"),
     "</script>\n</html>\n"
 );
 /// The place of the data in the page. The page gets its data here, or null for a live flight.

@@ -1,5 +1,6 @@
 //! The C library as people install it: archives, header, pkg-config and CMake, for hosts and flight computers.
 
+use crate::deb;
 use crate::folders::{VERSION, root, work};
 use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
@@ -65,6 +66,45 @@ pub(crate) fn lay_out(prefix: &Path, plant: &Path) -> Result<()> {
         cmake.join("mpp-config.cmake"),
     )?;
     write(cmake.join("mpp-config-version.cmake"), cmake_version())?;
+    manifests(prefix)
+}
+
+/// Makes the folder a Zephyr module and a PlatformIO library, too: both take the archives for Cortex-M.
+fn manifests(prefix: &Path) -> Result<()> {
+    let from = root().join("bindings/c");
+    deb::copy_folder(&from.join("zephyr"), &prefix.join("zephyr"))?;
+    let platformio = from.join("platformio");
+    copy(platformio.join("link.py"), prefix.join("link.py"))?;
+    let library = std::fs::read_to_string(platformio.join("library.json"))?;
+    write(
+        prefix.join("library.json"),
+        library.replace("VERSION", VERSION),
+    )?;
+    Ok(())
+}
+
+/// Whether the Zephyr module finds header and archive of each processor. Zephyr itself is not here: its functions are stand-ins.
+pub(super) fn try_zephyr(prefix: &Path, folder: &Path) -> Result<()> {
+    let script = folder.join("zephyr.cmake");
+    write(
+        &script,
+        format!(
+            "function(must_exist path)\n  if(NOT EXISTS ${{path}})\n    message(FATAL_ERROR \"no ${{path}}\")\n  endif()\nendfunction()\n\
+             function(zephyr_include_directories path)\n  must_exist(${{path}}/mpp.h)\nendfunction()\n\
+             function(zephyr_library_import name path)\n  must_exist(${{path}})\n  message(\"${{path}}\")\nendfunction()\n\
+             include({}/zephyr/CMakeLists.txt)\n",
+            prefix.display()
+        ),
+    )?;
+    for (double, processor) in [("y", "cortex-m7"), ("n", "cortex-m4")] {
+        let mut cmake = Command::new("cmake");
+        cmake.arg("-DCONFIG_MPP=y");
+        cmake.arg(format!("-DCONFIG_CPU_HAS_FPU_DOUBLE_PRECISION={double}"));
+        let said = cmake.arg("-P").arg(&script).output()?;
+        let said = String::from_utf8_lossy(&said.stderr).into_owned();
+        let linked = format!("lib/{processor}/libmpp.a");
+        ensure!(said.trim().ends_with(&linked), "the Zephyr module: {said}");
+    }
     Ok(())
 }
 

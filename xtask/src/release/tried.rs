@@ -1,6 +1,6 @@
 //! Tries what a release holds as its users do: in an empty folder, without the sources.
 
-use super::c::try_out;
+use super::c::{try_out, try_zephyr};
 use crate::folders::files;
 use crate::toolchain::output;
 use anyhow::{Context, Result, ensure};
@@ -54,6 +54,7 @@ fn try_one(file: &Path, name: &str, folder: &Path) -> Result<Option<String>> {
     match name {
         _ if name.starts_with("mpp-c") => {
             let mut program = Command::new(try_out(&tree, folder)?);
+            try_zephyr(&tree, folder)?;
             let said = output(program.args(["1", "20"]))?;
             check(&said).map(Some)
         }

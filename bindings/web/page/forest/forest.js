@@ -1,6 +1,6 @@
 // The page that flies through forests: the worker flies a little ahead of the picture, and each forest is followed by the next.
-// The settings of a flight, and what a link without them means: trunks/m^2, m/s, m/s from the left, m/s.
-const USUAL = { seed: 2, density: 0.04, speed: 12, wind: 0, gusts: 0 };
+// The settings of a flight, and what a link without them means: trunks/m^2, m/s, m/s from the left, m/s, a name.
+const USUAL = { seed: 2, density: 0.04, speed: 12, wind: 0, gusts: 0, lidar: "grid-90x16" };
 // Ticks that the worker is ahead of the picture, ticks of a question, and of one in a hurry to the moment of a link.
 const LEAD = 25, STEP = 10, HURRY = 100;
 // What a click plants is so far away at most [m], and the button's tree so far ahead of the aircraft [s].
@@ -20,12 +20,13 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 
 // As a scenario file has them. What is not there is left out, as on the command line.
 const scenario = () => ({ seed: settings.seed, density: settings.density, airspeed: settings.speed,
-  wind: settings.wind ? [0, settings.wind, 0] : undefined, gusts: settings.gusts || undefined });
+  wind: settings.wind ? [0, settings.wind, 0] : undefined, gusts: settings.gusts || undefined,
+  lidar: settings.lidar === USUAL.lidar ? undefined : settings.lidar });
 
 function command() {
-  const { seed, density, speed, wind, gusts } = settings;
+  const { seed, density, speed, wind, gusts, lidar } = settings;
   return `sil-harness fly --preset space --seed ${seed} --density ${density} --airspeed ${speed}` + (wind ? ` --wind 0,${wind},0` : "") +
-    (gusts ? ` --gusts ${gusts}` : "") + (flight.orders.length ? " --orders LOG" : "");
+    (gusts ? ` --gusts ${gusts}` : "") + (lidar === USUAL.lidar ? "" : ` --lidar ${lidar}`) + (flight.orders.length ? " --orders LOG" : "");
 }
 
 // Begins a flight with these orders, and stands at a tick if one is given.
@@ -192,7 +193,8 @@ function showSettings() {
 
 function showRanges() {
   const text = { density: `${$("density").value} /m²`, speed: `${$("speed").value} m/s`, gusts: `${$("gusts").value} m/s`,
-    wind: Number($("wind").value) ? `${Math.abs($("wind").value)} m/s from ${$("wind").value > 0 ? "left" : "right"}` : "none" };
+    wind: Number($("wind").value) ? `${Math.abs($("wind").value)} m/s from ${$("wind").value > 0 ? "left" : "right"}` : "none",
+    lidar: flight ? `sees ${flight.header.lidar.range_max} m` : "" };
   for (const [name, words] of Object.entries(text)) document.querySelector(`output[for=${name}]`).value = words;
 }
 
@@ -248,7 +250,7 @@ function hear(id, place) {
 
 hear("view", ([u, v]) => camera && camera.ground(u, v, REACH));
 hear("map", ([u, v]) => placeOnMap && placeOnMap(u, v));
-for (const name of Object.keys(USUAL)) $(name).onchange = event => { settings[name] = Number(event.target.value); begin(); };
+for (const name of Object.keys(USUAL)) $(name).onchange = ({ target: { value } }) => { settings[name] = typeof USUAL[name] === "number" ? Number(value) : value; begin(); };
 for (const name of ["density", "speed", "wind", "gusts"]) $(name).oninput = showRanges;
 $("play").onclick = () => done && !playing && !slow ? begin() : setPlaying(!playing);
 $("ahead").onclick = plantAhead;
@@ -270,7 +272,7 @@ $("save").onclick = async event => {
 addEventListener("hashchange", fromLink);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); readPaint(); });
 addEventListener("keydown", event => {
-  if (!flight || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "INPUT") return;
+  if (!flight || event.ctrlKey || event.metaKey || event.altKey || ["INPUT", "SELECT"].includes(event.target.tagName)) return;
   if (event.key === "Escape") $("drawer").open = false;
   const id = { " ": "play", t: "ahead", n: "other", r: "again", m: "mine", c: "copy" }[event.key];
   // The space key presses what has the focus.

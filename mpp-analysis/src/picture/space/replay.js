@@ -40,6 +40,7 @@ function show() {
   drawSide(flight, now);
   drawAttitude(flight, now);
   drawCharts(flight, Math.min(now, lastTick(flight)), look);
+  drawStrip(flight, Math.min(now, lastTick(flight)), look);
   const { at, airspeed, gap, bank, ahead } = stateAt(flight, now), angle = value => `${degrees(value).toFixed(1)}°`;
   const values = { ahead: meters(at[0], 2), right: meters(at[1], 2), height: meters(at[2], 2), airspeed: `${airspeed.toFixed(2)} m/s`, bank: angle(bank),
     pitch: angle(Math.asin(ahead[2])), nearest: gap >= 5 ? "over 5 m" : meters(Math.max(0, gap), 2) };
@@ -84,6 +85,7 @@ function hear() {
   $("speed").onchange = () => { started = null; };
   $("nearest").onclick = () => go(flight.closest.tick);
   hearCharts(flight, look, () => { changed = true; }, go);
+  hearStrip(flight, look, () => { changed = true; }, go);
   let from = null;
   $("view").addEventListener("pointerdown", event => { from = event.clientX; $("view").setPointerCapture(event.pointerId); });
   $("view").addEventListener("pointermove", event => { if (from !== null) { look.around = Math.max(-2.5, Math.min(2.5, (event.clientX - from) / 250)); changed = true; } });

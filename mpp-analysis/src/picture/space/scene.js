@@ -1,6 +1,8 @@
 // The scene behind the aircraft, on a plain canvas: whole things are sorted by their depth and painted from far to near.
 // Farthest trunk that is drawn, where haze begins, and over how many metres it closes [m].
 const FAR = 95, HAZE = [10, 82], SHADES = 32;
+// Columns of the picture of which it is known whether a trunk hides all that is behind.
+const COLUMNS = 4096;
 // Direction to the sun [rad, from ahead to the right], the length of a shadow as a share of the height [-], and how much of a trunk's is
 // drawn [m].
 const SUN = 2.9, SHADE = 2.4, SHADOW = 9;
@@ -104,18 +106,33 @@ function drawShadows(pen, trunks, { depth, put, focus }) {
   pen.globalAlpha = 1;
 }
 
-// The trunks in sight, each with its depth.
-function inSight({ trunks }, tick, { eye, f, r, width, focus }) {
+// The trunks in sight, each with its depth and its place to the right.
+function inSight({ trunks }, tick, { eye, f, width, focus }, own) {
   const flat = Math.hypot(f[0], f[1]), seen = [], slope = 0.62 * width / focus;
   for (const trunk of trunks) {
     if (trunk.mine > tick) continue;
-    const a = trunk.x - eye[0], b = trunk.y - eye[1], depth = (a * f[0] + b * f[1]) / flat;
-    if (depth > 0.5 && depth < FAR && Math.abs(a * r[0] + b * r[1]) < depth * slope + 4) seen.push({ depth, trunk });
+    const a = trunk.x - eye[0], b = trunk.y - eye[1], depth = (a * f[0] + b * f[1]) / flat, across = (b * f[0] - a * f[1]) / flat;
+    if (depth > 0.5 && depth < FAR && Math.abs(across) < depth * slope + 4) seen.push({ depth, across, trunk });
+  }
+  return hide(seen, slope, own - 1);
+}
+
+// Marks the trunks that nearer ones hide from foot to top, of which only crowns are seen. In a dense forest most are. Trunks without an end
+// hide, if they are no glass because they are nearer than `least`; a tilted picture draws them a little thinner than they are.
+function hide(seen, slope, least) {
+  const full = new Uint8Array(COLUMNS), column = (across, depth) => (across / depth / slope + 1) / 2 * COLUMNS;
+  seen.sort((a, b) => a.depth - b.depth);
+  for (const sight of seen) {
+    const { depth, across, trunk: { r, top } } = sight, from = column(across - r, depth), to = column(across + r, depth);
+    sight.hidden = from >= 0 && to <= COLUMNS;
+    for (let at = Math.floor(from); sight.hidden && at < to; at++) sight.hidden = full[at] === 1;
+    if (depth > least && (top ?? TOP) >= TOP)
+      full.fill(1, Math.max(0, Math.ceil(column(across - 0.9 * r, depth))), Math.max(0, Math.floor(column(across + 0.9 * r, depth))));
   }
   return seen;
 }
 
-function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth }, tick, camera, nearer, hit = false) {
+function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth, hidden }, tick, camera, nearer, hit = false) {
   const { put, focus, f, eye, r: right } = camera, flat = (x - eye[0]) * f[0] + (y - eye[1]) * f[1], shade = shadeOf(depth);
   let low = 0, high = Math.min(top ?? Infinity, TOP + 3 * crown);
   // What is behind the picture has no place in it.
@@ -126,7 +143,7 @@ function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth }, t
   const known = seen !== null && seen <= tick, kind = known ? "bark" : "pale";
   // Between the camera and the aircraft it is glass.
   pen.globalAlpha = nearer ? 0.25 : 1;
-  if (low === 0 && d < 60) {
+  if (low === 0 && d < 35 && !hidden) {
     pen.fillStyle = paint[kind + "-dark"][shade];
     pen.beginPath(); pen.ellipse(u, v, w * 1.5, w * 0.5, 0, 0, 7); pen.fill();
   }
@@ -135,18 +152,22 @@ function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth }, t
   const edge = Math.max(-0.7, Math.min(0.8, sx * f[0] + sy * f[1]));
   const lit = hit ? "bad" : mine !== null ? "placed" : kind, pale = Math.min(SHADES, shade + 3);
   // Thin ones are of one piece; the strips of others overlap a little, or their seams would show.
-  if (w < 2.5) strip(-1, 1, paint[lit][pale]);
-  else {
+  if (w < 2.5 && !hidden) strip(-1, 1, paint[lit][pale]);
+  else if (!hidden) {
     strip(-side, side * (edge + 0.05), paint[kind + "-dark"][shade]);
     strip(side * edge, side * (edge + 0.5), paint[lit][pale]);
     strip(side * (edge + 0.45), side, paint[lit][shade]);
   }
   if (high > CROWN) {
     pen.fillStyle = paint[known ? "crown" : "crown-pale"][shade];
+    pen.beginPath();
     for (let part = 0; part < (depth < 45 ? 3 : 1); part++) {
       const [cu, cv, cd] = put(x + (crown - 0.5) * 2 + part - 1, y + (part === 1 ? 0.8 : -0.6), CROWN + 1.3 * part + 2 * crown), size = focus * (1.9 + crown - 0.3 * part) / cd;
-      pen.beginPath(); pen.ellipse(cu, cv, size, size * 0.62, 0, 0, 7); pen.fill();
+      // Most crowns are above the picture.
+      if (cv < -size) continue;
+      pen.moveTo(cu + size, cv); pen.ellipse(cu, cv, size, size * 0.62, 0, 0, 7);
     }
+    pen.fill();
   }
   pen.globalAlpha = 1;
 }
@@ -258,7 +279,7 @@ function drawStreaks(pen, items, flight, tick, { put, depth }) {
 // Draws the scene. Returns the camera, which knows what is under a pixel.
 function drawScene(flight, tick, look) {
   const [pen, width, height] = canvas("view", look.sharpest), state = stateAt(flight, tick), camera = cameraAt(flight, tick, width, height, look.around);
-  const { put, depth, eye, f, focus } = camera, trunks = inSight(flight, tick, camera), own = depth(...state.at);
+  const { put, depth, eye, f, focus } = camera, own = depth(...state.at), trunks = inSight(flight, tick, camera, own);
   drawGround(pen, camera);
   drawGrid(pen, camera);
   drawShadows(pen, trunks, camera);
