@@ -38,10 +38,20 @@ const _: () = assert!(ROOTS[FAR as usize] == FARTHEST);
 type Columns = [[u32; WIDTH]; LENGTH];
 /// Squares of the distances of a column, two in a word.
 type Pairs = [u32; HEIGHT / 2];
+/// Slices within reach of one, with it.
+const NEAR: usize = 2 * REACH as usize + 1;
 const NO_HIT: u32 = (FAR as u32) << 16 | FAR as u32;
 /// The top bits of a pair. Those of the least squares so far are set.
 const TOPS: u32 = 0x8000_8000;
 const _: () = assert!(2 * (FAR as u32) < 0x8000);
+
+/// Squared distances along the occupied columns of the slices within reach of the one that is measured: each serves them all.
+#[derive(Clone, Debug)]
+pub(crate) struct NearSlices([[Pairs; WIDTH]; NEAR]);
+
+impl NearSlices {
+    pub(crate) const ZEROS: Self = Self([[[0; HEIGHT / 2]; WIDTH]; NEAR]);
+}
 
 /// Distances \[m\] to what hits have shown of the nearest occupied voxel, and what nobody has seen.
 #[derive(Clone, Debug)]
@@ -96,19 +106,27 @@ impl VoxelField {
         }
     }
 
-    /// Computes the distances in a slice, from every occupied column within reach.
-    pub(crate) fn measure(&mut self, slice: usize) {
+    /// Computes the distances in a slice, from every occupied column within reach. The slices come one after the other.
+    pub(crate) fn measure(&mut self, slice: usize, near: &mut NearSlices) {
+        let entered = if slice == 0 {
+            0
+        } else {
+            slice + REACH as usize
+        };
+        for entered in entered..(slice + REACH as usize + 1).min(LENGTH) {
+            self.enter(entered, near);
+        }
         let mut squares = [[NO_HIT | TOPS; HEIGHT / 2]; WIDTH];
         for (offset, from) in around(slice, LENGTH) {
-            let (Some(columns), Some(unknown), Some(extents)) = (
+            let (Some(columns), Some(extents), Some(near)) = (
                 self.occupied.get(from),
-                self.unknown.get(from),
                 self.extents.get(from),
+                near.0.get(from % NEAR),
             ) else {
                 continue;
             };
-            let columns = columns.iter().zip(unknown).zip(extents).enumerate();
-            for (row, ((column, unknown), extent)) in columns {
+            let columns = columns.iter().zip(near).zip(extents).enumerate();
+            for (row, ((column, heights), extent)) in columns {
                 if *column == 0 {
                     continue;
                 }
@@ -118,7 +136,6 @@ impl VoxelField {
                 if ahead * ahead >= i32::from(FAR) {
                     continue;
                 }
-                let heights = along_column(*column, !(column | unknown), *extent);
                 let first = row.saturating_sub(REACH as usize);
                 let rows = squares.get_mut(first..(row + REACH as usize + 1).min(WIDTH));
                 let offsets = first as i32 - row as i32..;
@@ -126,7 +143,7 @@ impl VoxelField {
                     let right = off(offset, sides[1]);
                     let square = ahead * ahead + right * right;
                     if square < i32::from(FAR) {
-                        lower(squares, &heights, square as u32);
+                        lower(squares, heights, square as u32);
                     }
                 }
             }
@@ -139,6 +156,24 @@ impl VoxelField {
                 let root = ROOTS.get(square as usize);
                 root.copied().unwrap_or(FARTHEST)
             });
+        }
+    }
+
+    /// Computes the squared distances along the occupied columns of a slice that comes within reach.
+    fn enter(&self, slice: usize, near: &mut NearSlices) {
+        let (Some(columns), Some(unknown), Some(extents), Some(near)) = (
+            self.occupied.get(slice),
+            self.unknown.get(slice),
+            self.extents.get(slice),
+            near.0.get_mut(slice % NEAR),
+        ) else {
+            return;
+        };
+        let columns = columns.iter().zip(unknown).zip(extents).zip(near);
+        for (((column, unknown), extent), heights) in columns {
+            if *column != 0 {
+                *heights = along_column(*column, !(column | unknown), *extent);
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use super::{CELL, LENGTH, MOST_CLEARANCE, UNIT, VoxelField};
+use super::{CELL, LENGTH, MOST_CLEARANCE, NearSlices, UNIT, VoxelField};
 use crate::map::voxels::{SpaceBeam, VoxelGrid};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -58,7 +58,8 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
     map.insert(&from, beams.iter().copied(), 45.0);
     field.begin(&map, &from);
     field.look(&map, 0..LENGTH);
-    (0..LENGTH).for_each(|slice| field.measure(slice));
+    let mut near = NearSlices::ZEROS;
+    (0..LENGTH).for_each(|slice| field.measure(slice, &mut near));
     // A side in height counts where the voxel beyond was seen.
     let mut sides = 0;
     for box_shown in &mut shown {

@@ -13,7 +13,7 @@ use super::{
 };
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::VoxelGrid;
-use crate::map::voxel_field::LENGTH;
+use crate::map::voxel_field::{LENGTH, NearSlices};
 use crate::qp::Status;
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
@@ -30,15 +30,11 @@ impl SpacePlanner {
         }
     }
 
-    /// Begins field and lattice.
+    /// Begins the field.
     pub(super) fn begin_search(&mut self, map: &VoxelGrid) -> Phase {
         self.field.begin(map, &self.start.position);
-        let velocity = self.start.ground_velocity(&self.model.wind);
         self.to_go.origin = self.start.position;
-        self.workspace = Workspace::Search(Lattice::ZEROS);
-        if let Workspace::Search(lattice) = &mut self.workspace {
-            lattice.begin(&mut self.to_go, &velocity);
-        }
+        self.workspace = Workspace::Field(NearSlices::ZEROS);
         Phase::Look(0)
     }
 
@@ -53,13 +49,20 @@ impl SpacePlanner {
         }
     }
 
+    /// Measures a slice. After the last one the lattice begins.
     pub(super) fn measure(&mut self, slice: usize) -> Phase {
-        self.field.measure(slice);
-        if slice + 1 < LENGTH {
-            Phase::Measure(slice + 1)
-        } else {
-            Phase::Price(0, 0)
+        if let Workspace::Field(near) = &mut self.workspace {
+            self.field.measure(slice, near);
         }
+        if slice + 1 < LENGTH {
+            return Phase::Measure(slice + 1);
+        }
+        let velocity = self.start.ground_velocity(&self.model.wind);
+        self.workspace = Workspace::Search(Lattice::ZEROS);
+        if let Workspace::Search(lattice) = &mut self.workspace {
+            lattice.begin(&mut self.to_go, &velocity);
+        }
+        Phase::Price(0, 0)
     }
 
     /// Prices some rows for the edges from a station.

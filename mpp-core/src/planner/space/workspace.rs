@@ -1,6 +1,7 @@
-//! The memory that search and programs use one after the other.
+//! The memory that field, search and programs use one after the other.
 
 use super::lattice::Lattice;
+use crate::map::voxel_field::NearSlices;
 use crate::qp::Status;
 use crate::qp::space::{Bounds, Condensed, Faces, Solution, Solver};
 use core::mem::ManuallyDrop;
@@ -14,6 +15,7 @@ use core::mem::ManuallyDrop;
 pub(super) enum Workspace {
     Program(Program),
     Search(Lattice),
+    Field(NearSlices),
 }
 
 /// What the program of a candidate needs while it is solved.

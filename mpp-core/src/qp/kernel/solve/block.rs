@@ -6,7 +6,7 @@ use super::super::dot;
 use super::{Active, Aligned, CAPACITY, CONTROLS, Condensed, Solver, Stands};
 use crate::qp::Status;
 
-/// Rows of a block that are taken up in one part of a step.
+/// Rows of a block that are taken up, or dropped, in one part of a step.
 const PART_ROWS: usize = 6;
 /// Share of its norm that a row of a block has to have apart from the rows before it.
 const APART: f64 = 0.1;
@@ -98,12 +98,22 @@ impl Solver {
             self.drop_from(before);
             return false;
         }
+        // From here on it holds the rows that leave.
+        self.block.clear();
         self.stands = Stands::Settling(worst);
         true
     }
 
-    /// Moves the multipliers of a block to the next event.
+    /// Moves the multipliers of a block to the next event, or drops some of the rows that leave there.
     pub(super) fn settle_block(&mut self, shared: &Condensed) -> Option<Status> {
+        if !self.block.is_empty() {
+            for _ in 0..PART_ROWS {
+                let row = self.block.pop();
+                let index = self.active.iter().position(|own| Some(own.row) == row);
+                index.and_then(|index| self.deactivate(index));
+            }
+            return None;
+        }
         match self.settle(shared) {
             Err(status) => return Some(status),
             Ok(false) => return None,
@@ -162,7 +172,8 @@ impl Solver {
         self.factor.forward_from(&mut moves, first);
         let mut rises = moves;
         self.factor.backward(&mut rises);
-        if self.drop_falling(first, &rises) {
+        self.find_falling(first, &rises);
+        if !self.block.is_empty() {
             return Ok(false);
         }
         let (length, event) = self.first_change(&rises);
@@ -208,19 +219,15 @@ impl Solver {
         violations
     }
 
-    /// Drops the fresh rows whose multipliers would fall below zero at once.
-    fn drop_falling(&mut self, first: usize, rises: &[f64; CAPACITY]) -> bool {
-        let before = self.active.len();
-        for index in (first..before).rev() {
-            let row = self.active.get(index).zip(rises.get(index));
-            let falls = row.is_some_and(|(own, rise)| {
-                own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0
-            });
-            if falls {
-                self.deactivate(index);
+    /// Finds the fresh rows whose multipliers would fall below zero at once: the next parts drop them, the last one first.
+    fn find_falling(&mut self, first: usize, rises: &[f64; CAPACITY]) {
+        let fresh = self.active.iter().zip(rises).skip(first);
+        for (own, rise) in fresh {
+            if own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0 {
+                // As many places as rows of inputs, of which each is here once at most.
+                let _ = self.block.push(own.row);
             }
         }
-        self.active.len() < before
     }
 
     /// Share of a step up to the first row that leaves or changes sides, and this row: its index and whether it changes
