@@ -1,8 +1,8 @@
-//! Times 20,000 rays of 40 m and 20,000 wings among 2,000 trunks: `cargo run --release -p mpp-sim --example rays`.
+//! Times 20,000 rays of 40 m and 20,000 wings among 2,000 trunks, and over hills: `cargo run --release -p mpp-sim --example rays`.
 #![expect(clippy::disallowed_types, reason = "it measures time")]
 
 use mpp_sim::random::{Stream, generator, uniform};
-use mpp_sim::space::world::{Vector, WorldConfig, WorldError, WorldName};
+use mpp_sim::space::world::{Vector, World, WorldConfig, WorldError, WorldName};
 use std::time::{Duration, Instant};
 
 fn main() -> Result<(), WorldError> {
@@ -10,7 +10,12 @@ fn main() -> Result<(), WorldError> {
         density: 0.0825,
         ..WorldConfig::usual(WorldName::Forest, 1)
     };
-    let world = config.build()?;
+    time(&config.build()?);
+    time(&WorldConfig::usual(WorldName::Hills, 1).build()?);
+    Ok(())
+}
+
+fn time(world: &World) {
     let mut draws = generator(9, Stream::Bodies);
     let rays: Vec<(Vector, Vector)> = (0..20_000)
         .map(|_| {
@@ -34,7 +39,6 @@ fn main() -> Result<(), WorldError> {
     });
     let trunks = world.bodies().len();
     println!("{trunks} trunks: 20,000 rays {sight:?}, 20,000 wings {wings:?}");
-    Ok(())
 }
 
 /// Shortest of 50 runs.

@@ -14,3 +14,4 @@ mod own_world;
 mod space;
 mod space_air;
 mod space_estimate;
+mod terrain;

@@ -27,6 +27,7 @@ BESIDES = {
     "lidar": "Lidar | Path | LidarKeys",
     "generator": "GeneratorName | GeneratorKeys",
     "navigation": "NavigationSource | NavigationKeys",
+    "terrain.rows": "Sequence[Sequence[float]]",
 }
 # Texts whose values have a name of their own, since a campaign has lists of them.
 NAMED = {"preset": "Preset", "generator.name": "GeneratorName", "navigation.source": "NavigationSource"}

@@ -1,9 +1,12 @@
 //! Occupancy log-odds of the voxels of a column, four bits each.
 
+use super::extent::STOREYS;
 use crate::tuning::grid::{FREE, HIT, LIMIT, OCCUPIED, PASSED, PASSED_UNANSWERED};
 
 /// Voxels of a column. A word has a bit for each.
 pub(super) const LAYERS: usize = 32;
+/// Voxels by which a window rolls in height: as many as share the heights of hits, so that they stay in their places.
+pub(super) const STEP_UP: usize = STOREYS;
 /// Log-odds of a step: all numbers of the map in the plane are whole steps, but for the limit of free cells.
 const STEP: i8 = 10;
 const _: () = assert!(
@@ -85,6 +88,17 @@ impl Evidence {
             let new = change[usize::from(code)];
             *pair ^= (code ^ new) << shift;
         }
+    }
+
+    /// Moves the window up or down by steps of [`STEP_UP`] voxels, and forgets those that leave it.
+    pub(super) fn roll(&mut self, up: bool, steps: u32) {
+        let (bits, by) = (u128::from_le_bytes(self.0), steps * 4 * STEP_UP as u32);
+        let moved = if up {
+            bits.checked_shr(by)
+        } else {
+            bits.checked_shl(by)
+        };
+        self.0 = moved.unwrap_or(0).to_le_bytes();
     }
 
     /// Occupied and unknown voxels: a bit for each z.

@@ -12,7 +12,7 @@ const RANGE: f64 = 0.25;
 /// Range of a column in which nothing was hit.
 const NEVER: u8 = u8::MAX;
 /// Voxels above each other before the heights of one serve another one, too.
-const STOREYS: usize = 6;
+pub(super) const STOREYS: usize = 6;
 /// Quarters of a voxel: the last one, and the parts of each.
 const LAST: u8 = 3;
 const QUARTER: i32 = PARTS / 4;
@@ -52,7 +52,7 @@ impl Extent {
         let [_, _, z] = point.map(|at| at / CELL);
         let (storey, quarter) = (libm::floor(z), z - libm::floor(z));
         let quarter = ((quarter * f64::from(LAST + 1)) as u8).min(LAST);
-        let storey = storey.max(0.0) as usize % STOREYS;
+        let storey = (storey as i32).rem_euclid(STOREYS as i32) as usize;
         if let Some(pair) = self.heights.get_mut(storey / 2) {
             let shift = storey % 2 * 4;
             let (low, high) = (*pair >> shift & LAST, *pair >> (shift + 2) & LAST);

@@ -37,13 +37,13 @@ pub(crate) struct Storey {
 }
 
 impl Storey {
-    /// Of a height \[m\].
-    pub(crate) fn of(z: f64) -> Self {
-        let (centre, share) = along(z / CELL - 0.5, HEIGHT);
+    /// Of a height \[m\], in a window that begins at a z, in voxels.
+    pub(super) fn of(z: f64, floor: i64) -> Self {
+        let (centre, share) = along(z / CELL - 0.5 - floor as f64, HEIGHT);
         Self {
             centre,
             share,
-            voxel: voxel(z).max(0).min(HEIGHT as i64 - 1) as usize,
+            voxel: (voxel(z) - floor).max(0).min(HEIGHT as i64 - 1) as usize,
         }
     }
 }

@@ -1,7 +1,9 @@
 //! The truncated distance field in space, in a window of the map around the aircraft.
 
 use super::extent::{Extent, PART, PARTS};
-use super::upright::{Around, FARTHEST, REACH, UNIT, UNITS, Upright, along, distance, mixed};
+use super::upright::{
+    Around, FARTHEST, REACH, Storey, UNIT, UNITS, Upright, along, distance, mixed,
+};
 use super::voxels::{CELLS, VoxelGrid, voxel};
 use crate::tuning::grid::CELL;
 use core::ops::Range;
@@ -62,9 +64,9 @@ pub struct VoxelField {
     extents: [[Extent; WIDTH]; LENGTH],
     /// Distances of the centres of voxels, in units.
     distances: [[[u8; HEIGHT]; WIDTH]; LENGTH],
-    /// First x and y of the window, in voxels, as two kinds of numbers.
-    first: [i64; 2],
-    start: [f64; 2],
+    /// First x, y and z of the window, in voxels, as two kinds of numbers.
+    first: [i64; 3],
+    start: [f64; 3],
 }
 
 impl VoxelField {
@@ -76,20 +78,21 @@ impl VoxelField {
             unknown: [[0; WIDTH]; LENGTH],
             extents: [[Extent::FULL; WIDTH]; LENGTH],
             distances: [[[FARTHEST; HEIGHT]; WIDTH]; LENGTH],
-            first: [0; 2],
-            start: [0.0; 2],
+            first: [0; 3],
+            start: [0.0; 3],
         }
     }
 
     /// Moves the window to a position \[m\]. Then come all slices by [`look`](Self::look), then all by [`measure`](Self::measure).
     pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3]) {
-        self.first = [(voxel(*x) - BEHIND).max(map.first()), voxel(*y) - LEFT];
+        let ahead = (voxel(*x) - BEHIND).max(map.first());
+        self.first = [ahead, voxel(*y) - LEFT, map.floor()];
         self.start = self.first.map(|it| it as f64);
     }
 
     /// Takes the occupancy of some slices from the map.
     pub(crate) fn look(&mut self, map: &VoxelGrid, slices: Range<usize>) {
-        let [x, y] = self.first;
+        let [x, y, _] = self.first;
         for slice in slices {
             let (Some(occupied), Some(unknown), Some(extents)) = (
                 self.occupied.get_mut(slice),
@@ -198,7 +201,7 @@ impl VoxelField {
         [
             within(voxel(*x) - self.first[0], LENGTH),
             within(voxel(*y) - self.first[1], WIDTH),
-            within(voxel(*z), HEIGHT),
+            within(voxel(*z) - self.first[2], HEIGHT),
         ]
     }
 
@@ -211,7 +214,7 @@ impl VoxelField {
     /// The voxel with the least numbers of the eight whose centres lie around a point, and the place of the point among them [-].
     fn cube(&self, point: &[f64; 3]) -> ([usize; 3], [f64; 3]) {
         let [x, y, z] = point.map(|it| it / CELL - 0.5);
-        let at = [x - self.start[0], y - self.start[1], z];
+        let at = [x - self.start[0], y - self.start[1], z - self.start[2]];
         let mut low = [0; 3];
         let mut share = [0.0; 3];
         for (axis, length) in [LENGTH, WIDTH, HEIGHT].into_iter().enumerate() {
@@ -226,6 +229,11 @@ impl VoxelField {
             let slice = self.distances.get(x);
             [y, y + 1].map(|y| slice.and_then(|slice| slice.get(y)))
         })
+    }
+
+    /// The place of a height \[m\] on all vertical lines.
+    pub(crate) fn storey(&self, z: f64) -> Storey {
+        Storey::of(z, self.first[2])
     }
 
     /// The points above and below each other at `x` and `y` \[m\], of which [`is_clear`](Self::is_clear) tells at a distance
@@ -298,7 +306,7 @@ impl VoxelField {
                     }
                     let z = left.trailing_zeros();
                     left &= left - 1;
-                    let bottom = f64::from(z) * CELL;
+                    let bottom = (self.start[2] + f64::from(z)) * CELL;
                     let [low, high] = (extent.height(z as usize, free))
                         .map(|part| bottom + f64::from(part) * PART);
                     each(&[

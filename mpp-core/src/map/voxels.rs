@@ -1,9 +1,10 @@
 //! The map in space: voxels of occupancy log-odds, which roll ahead with the aircraft.
 //!
-//! The window goes with the aircraft in x and y, and covers a fixed band in z. The ground is no part of it: floor and ceiling are
-//! rows of programs.
+//! The window goes with the aircraft in x and y. In z it covers a fixed band if the heights of plans lie in it: then the ground
+//! is no part of it, and floor and ceiling are rows of programs. Higher bands are flown over terrain: the window goes with the
+//! aircraft in z, too, and the ground is what hits show of it.
 
-use super::evidence::{Change, Evidence, HIT_ONCE, LAYERS, PASSED_ONCE, UNANSWERED_ONCE};
+use super::evidence::{Change, Evidence, HIT_ONCE, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
 use super::extent::Extent;
 use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
 use crate::vehicle::between;
@@ -12,6 +13,9 @@ use crate::vehicle::between;
 pub const CELLS: [usize; 3] = [100, 96, LAYERS];
 /// Voxels behind the aircraft, and to its left, that the window keeps.
 const BEHIND: [i64; 2] = [8, CELLS[1] as i64 / 2];
+/// Voxels by which the aircraft may be off the middle of the window in z before it rolls. Less rolls to and fro, more sees less
+/// of one side.
+const OFF_MIDDLE: i64 = 4;
 /// Most voxels that one beam passes: the window's extent along all axes.
 const MOST_STEPS: usize = CELLS[0] + CELLS[1] + CELLS[2];
 
@@ -36,6 +40,9 @@ pub struct VoxelGrid {
     /// First x and y in the window, in voxels, and where they lie in the memory.
     first: [i64; 2],
     corner: [usize; 2],
+    /// First z in the window, in voxels, and whether it goes with the aircraft.
+    floor: i64,
+    follows: bool,
     /// Where the beams of this scan begin \[m\].
     origin: [f64; 3],
 }
@@ -50,15 +57,33 @@ impl VoxelGrid {
             extents: [[Extent::FULL; CELLS[1]]; CELLS[0]],
             first: [0; 2],
             corner: [0; 2],
+            floor: 0,
+            follows: false,
             origin: [0.0; 3],
         }
     }
 
-    /// Forgets everything, and begins at this x \[m\] and y = 0.
+    /// Forgets everything, and begins at this x \[m\] and y = 0, over level ground.
     pub fn clear(&mut self, x: f64) {
+        (self.floor, self.follows) = (0, false);
         self.evidence.as_flattened_mut().fill(Evidence::NONE);
         self.extents.as_flattened_mut().fill(Extent::FULL);
         self.place_window([voxel(x) - BEHIND[0], -BEHIND[1]]);
+    }
+
+    /// Whether a window goes with the aircraft in z: where plans have heights beyond one that begins at z = 0 \[m\].
+    pub(crate) fn follows([low, high]: &[f64; 2]) -> bool {
+        *low < 0.0 || *high > CELLS[2] as f64 * CELL
+    }
+
+    /// After [`clear`](Self::clear): takes the heights of plans \[m\], beyond which nothing need be known.
+    pub fn cover(&mut self, heights: &[f64; 2]) {
+        self.follows = Self::follows(heights);
+    }
+
+    /// First z in the window, in voxels.
+    pub(super) fn floor(&self) -> i64 {
+        self.floor
     }
 
     /// First x in the window, in voxels.
@@ -83,6 +108,8 @@ impl VoxelGrid {
     /// Begins a scan from a position \[m\].
     pub fn begin(&mut self, position: &[f64; 3]) {
         self.roll(position);
+        let [_, _, z] = position;
+        self.climb(*z);
         self.hit.as_flattened_mut().fill(0);
         self.origin = *position;
     }
@@ -119,6 +146,21 @@ impl VoxelGrid {
         self.place_window([first, left]);
     }
 
+    /// Moves the window in z by whole steps, so that the aircraft is near its middle.
+    fn climb(&mut self, z: f64) {
+        let off = voxel(z) - self.floor - CELLS[2] as i64 / 2;
+        if !self.follows || off.abs() <= OFF_MIDDLE {
+            return;
+        }
+        let steps = (off + off.signum() * STEP_UP as i64 / 2) / STEP_UP as i64;
+        self.floor += steps * STEP_UP as i64;
+        // After so many steps nothing is left.
+        let most = CELLS[2].div_ceil(STEP_UP) as u64;
+        let (up, steps) = (steps > 0, steps.unsigned_abs().min(most) as u32);
+        let columns = self.evidence.as_flattened_mut().iter_mut();
+        columns.for_each(|column| column.roll(up, steps));
+    }
+
     fn place_window(&mut self, first: [i64; 2]) {
         let at = |axis: usize| first[axis].rem_euclid(CELLS[axis] as i64) as usize;
         (self.first, self.corner) = (first, [at(0), at(1)]);
@@ -144,10 +186,11 @@ impl VoxelGrid {
         };
         let end = core::array::from_fn(|axis| self.origin[axis] + range * beam.direction[axis]);
         let [x, y, z] = end.map(voxel);
-        // The lowest layer is the ground's.
+        // Of level ground the lowest layer is the ground's.
+        let (z, least) = (z - self.floor, i64::from(!self.follows));
         let Some([x, y]) = self
             .place(x, y)
-            .filter(|_| (1..CELLS[2] as i64).contains(&z))
+            .filter(|_| (least..CELLS[2] as i64).contains(&z))
         else {
             return;
         };
@@ -180,15 +223,16 @@ impl VoxelGrid {
         let from = self.origin;
         let start @ [x, y, z] = from.map(voxel);
         let [first, left] = self.first;
+        let height = z - self.floor;
         let inside = self
             .place(x, y)
-            .filter(|_| (0..CELLS[2] as i64).contains(&z));
+            .filter(|_| (0..CELLS[2] as i64).contains(&height));
         if inside.is_none() {
             return;
         }
         let [corner_x, corner_y] = self.corner;
         // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
-        let at = [x - first, y - left, z];
+        let at = [x - first, y - left, height];
         let [mut x, mut y, mut z] = core::array::from_fn(|axis| {
             let corner = start[axis] as f64 * CELL;
             Walk::new(at[axis] as usize, [corner, from[axis]], direction[axis])
@@ -226,11 +270,18 @@ impl VoxelGrid {
     }
 
     /// Occupied and unknown voxels of the column at an x and y in voxels, a bit for each z, and what hits show of it. Outside of
-    /// the window nothing is known.
+    /// the window nothing is known. Over terrain what is below a hit counts as occupied as far as nobody has seen it.
     pub(super) fn column(&self, x: i64, y: i64) -> ([u32; 2], Extent) {
         let found = self.place(x, y).and_then(|[x, y]| {
             let evidence = self.evidence.get(x)?.get(y)?;
-            Some((evidence.bits(), *self.extents.get(x)?.get(y)?))
+            let [occupied, unknown] = evidence.bits();
+            let occupied = if self.follows {
+                filled(occupied, unknown)
+            } else {
+                occupied
+            };
+            let bits = [occupied, unknown & !occupied];
+            Some((bits, *self.extents.get(x)?.get(y)?))
         });
         found.unwrap_or(([0, u32::MAX], Extent::FULL))
     }
@@ -282,6 +333,16 @@ pub(crate) fn voxel(coordinate: f64) -> i64 {
     between(libm::floor(at), [-FARTHEST, FARTHEST]) as i64
 }
 
+/// Bits, and all those that follow below one of them in a row of bits that may be filled.
+fn filled(bits: u32, may_be: u32) -> u32 {
+    let (mut filled, mut may_be) = (bits, may_be);
+    for by in [1, 2, 4, 8, 16] {
+        filled |= may_be & filled >> by;
+        may_be &= may_be >> by;
+    }
+    filled
+}
+
 /// The place of a number below twice a length.
 fn wrapped(at: usize, length: usize) -> usize {
     if at < length { at } else { at - length }
@@ -290,3 +351,6 @@ fn wrapped(at: usize, length: usize) -> usize {
 fn column<T, const Y: usize>(all: &mut [[T; Y]], x: usize, y: usize) -> Option<&mut T> {
     all.get_mut(x)?.get_mut(y)
 }
+
+#[cfg(test)]
+mod tests;

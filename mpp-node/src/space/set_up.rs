@@ -128,6 +128,7 @@ impl SpaceTask {
             .choose(usize::from(told.paths), limits.programs);
         self.sweep.clear();
         memory.map.clear(0.0);
+        memory.map.cover(&limits.heights);
         self.session = Some(Session {
             configure: *told,
             model,

@@ -1,5 +1,6 @@
 //! What the header of a flight in space says besides.
 
+use crate::space::world::Terrain;
 use serde::{Deserialize, Serialize};
 
 /// World and aircraft of a flight in space.
@@ -14,6 +15,12 @@ pub struct SpaceHeader {
     /// Side of the windows of walls \[m\], if one was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub window: Option<f64>,
+    /// The height map, if one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub terrain: Option<Terrain>,
+    /// Wanted height above the ground at the start \[m\], if one was given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub altitude: Option<f64>,
     /// Name of the lidar, if one was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lidar: Option<String>,

@@ -135,6 +135,8 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
         world: space.world,
         density: space.density,
         window: space.window,
+        terrain: space.terrain,
+        altitude: space.altitude,
         lidar: space.lidar,
         sphere: space.sphere,
         exact: Some(space.exact),

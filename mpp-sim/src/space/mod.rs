@@ -10,6 +10,7 @@ pub mod lidar;
 mod look;
 mod motion;
 mod pipe;
+mod place;
 mod pose;
 mod scenario;
 mod sensors;

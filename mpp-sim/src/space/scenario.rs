@@ -2,7 +2,7 @@
 
 use super::baseline::{Baseline, BaselineName};
 use super::lidar::SpaceLidarConfig;
-use super::world::{Body, Extent, World, WorldConfig, WorldName};
+use super::world::{Body, Extent, Terrain, World};
 use super::{Hull, SensorErrors, WindConfig, lateral, regulator};
 use crate::aircraft_file::{AircraftFile, AircraftModel};
 use crate::field::ObstacleField;
@@ -24,8 +24,6 @@ const MARGIN: f64 = 0.3;
 const BELOW: f64 = 0.5;
 const ROOM: f64 = 0.3;
 const SIDE_ROOM: f64 = 0.5;
-/// Altitude of the start and of plans, as a share of the ceiling [-].
-const ALTITUDE: f64 = 0.5;
 /// Fuselage \[m\]: half its length as a share of the span, and its radius.
 const HALF_LENGTH: f64 = 0.4;
 const FUSELAGE: f64 = 0.08;
@@ -66,6 +64,10 @@ pub struct SpaceFile {
     pub density: Option<f64>,
     /// Side of the windows of `walls` \[m\]; by default 5.
     pub window: Option<f64>,
+    /// Height map to fly over in place of a drawn world; by default none.
+    pub terrain: Option<Terrain>,
+    /// Wanted height over terrain or `hills`, above the ground at the start \[m\]; by default 15.
+    pub altitude: Option<f64>,
     /// Name of the lidar; by default `grid-90x16`.
     pub lidar: Option<String>,
     /// Radius of a sphere that stands for wing and fuselage \[m\].
@@ -180,6 +182,8 @@ impl SpaceFile {
                 world: name.map(|name| name.name().to_owned()),
                 density,
                 window: self.window,
+                terrain: self.terrain.clone(),
+                altitude: self.altitude,
                 lidar: self.lidar.clone(),
                 stems: stems.unwrap_or_default().iter().filter_map(stem).collect(),
                 extent: [length, half_width, ceiling],
@@ -207,31 +211,6 @@ impl SpaceFile {
         let name = name.parse::<BaselineName>();
         name.map(Some)
             .map_err(|error| ScenarioError::Value("baseline", error.to_string()))
-    }
-
-    fn world(
-        &self,
-        seed: u64,
-        stems: Option<&[Body]>,
-    ) -> Result<(World, Option<WorldName>, Option<f64>), ScenarioError> {
-        let failed =
-            |error: super::world::WorldError| ScenarioError::Value("world", error.to_string());
-        if let Some(bodies) = stems {
-            return Ok((
-                World::of_stems(bodies.to_vec()).map_err(failed)?,
-                None,
-                None,
-            ));
-        }
-        let name = self.world.as_deref().unwrap_or("forest");
-        let name: WorldName = name.parse().map_err(|error: crate::names::UnknownName| {
-            ScenarioError::Value("world", error.to_string())
-        })?;
-        let mut config = WorldConfig::usual(name, seed);
-        config.density = self.density.unwrap_or(config.density);
-        config.window = self.window.unwrap_or(config.window);
-        let world = config.build().map_err(failed)?;
-        Ok((world, Some(name), Some(config.density)))
     }
 }
 
@@ -311,7 +290,7 @@ impl SpaceScenario {
     /// Height of the start and of plans \[m\].
     #[must_use]
     pub fn altitude(&self) -> f64 {
-        ALTITUDE * self.world.extent().ceiling
+        self.world.altitude()
     }
 
     /// What plans in place of the planner, if anything does.
@@ -344,11 +323,12 @@ impl SpaceScenario {
     pub(super) fn configure_space(&self) -> ConfigureSpace {
         let (hull, extent) = (self.hull(), self.world.extent());
         let sphere = self.header.sphere;
+        let lowest = self.world.terrain().map_or(0.0, |it| it.heights()[0]);
         ConfigureSpace {
             bank: self.plane.aircraft.file.plan_bank(),
             margin: MARGIN + sphere.unwrap_or(0.0),
             half_span: hull.half_span,
-            heights: [hull.radius + BELOW, extent.ceiling - ROOM],
+            heights: [lowest + hull.radius + BELOW, extent.ceiling - ROOM],
             half_width: extent.half_width - SIDE_ROOM,
             programs: self.header.programs,
         }

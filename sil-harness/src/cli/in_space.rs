@@ -10,7 +10,7 @@ use super::space_cell::{SpaceCell, SpaceRow};
 use super::stage::Stage;
 use super::values::{Item, baseline, densities, lidar, number, seed, threads, whole, wind, within};
 use crate::campaign::pool;
-use crate::files::{read_log, read_stems, try_directory};
+use crate::files::{read_log, read_stems, read_terrain, try_directory};
 use clap::{Parser, Subcommand};
 use mpp_sim::link::Link;
 use mpp_sim::log::FlightLog;
@@ -55,6 +55,12 @@ struct InSpace {
     /// World: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height [m]
     #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density"])]
     stems: Option<PathBuf>,
+    /// World: an ESRI ASCII grid of heights [m], east ahead, coordinates from the start on
+    #[arg(long, help_heading = WORLD, value_name = "FILE", conflicts_with_all = ["world", "density", "stems"])]
+    terrain: Option<PathBuf>,
+    /// Wanted height over terrain or hills, above the ground at the start [m] [default: 15]
+    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
+    altitude: Option<f64>,
     /// Side of the windows of walls [m] [default: 5]
     #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
     window: Option<f64>,
@@ -176,8 +182,11 @@ impl SpaceCli {
 impl InSpace {
     fn scenario(&self, density: Option<f64>, seed: u64) -> Result<SpaceScenario, Failure> {
         let stems = self.stems.as_ref().map(|path| read_stems(path));
+        let terrain = self.terrain.as_ref().map(|path| read_terrain(path));
         let file = SpaceFile {
             density,
+            terrain: terrain.transpose().map_err(Failure::usage)?,
+            altitude: self.altitude,
             window: self.window,
             lidar: self.lidar.map(|it| it.name().to_owned()),
             exact: Some(self.exact),
@@ -311,10 +320,12 @@ fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRo
     }
     let log_hash = log.hash().map_err(Failure::failed)?;
     let space = log.header.space.as_ref();
+    let over = space.is_some_and(|space| space.terrain.is_some());
+    let given = if over { "terrain" } else { "stems" };
     Ok(SpaceRow {
         world: space
             .and_then(|space| space.world.clone())
-            .unwrap_or_else(|| "stems".to_owned()),
+            .unwrap_or_else(|| given.to_owned()),
         density: space.and_then(|space| space.density),
         seed,
         outcome: log.summary.outcome,

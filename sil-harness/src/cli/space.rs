@@ -33,7 +33,7 @@ pub(super) struct SpaceArgs {
     #[arg(long, default_value_t = 1, value_parser = seed)]
     seed: u64,
     /// Let the planner fly this number of flights in its vertical plane, with the course held, past 20 and 40 scaled obstacles
-    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "json", "out"], value_parser = whole::<u32>())]
+    #[arg(long, default_value_t = 0, conflicts_with_all = ["bank", "wind", "world", "stems", "terrain", "json", "out"], value_parser = whole::<u32>())]
     flights: u32,
     #[command(flatten)]
     world: WorldArgs,

@@ -204,6 +204,7 @@ pub(super) fn world() -> impl TypedValueParser<Value = WorldName> {
         WorldName::Spheres => "Spheres of 1 m radius",
         WorldName::Walls => "Walls across the way, each with one square window",
         WorldName::Slalom => "Rows of trunks from both sides in turn",
+        WorldName::Hills => "Hills over level ground, as steep as the density says",
     };
     named(WorldName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }

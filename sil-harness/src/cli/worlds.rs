@@ -2,9 +2,9 @@
 
 use super::answer::{Failure, USAGE};
 use super::values::world;
-use crate::files::read_stems;
+use crate::files::{read_stems, read_terrain};
 use mpp_core::config::TICK_PERIOD;
-use mpp_sim::space::world::{World, WorldConfig, WorldName};
+use mpp_sim::space::world::{ALTITUDE, Terrain, World, WorldConfig, WorldName};
 use mpp_sim::space::{Hull, SpaceState};
 use serde::Serialize;
 use std::fmt;
@@ -21,12 +21,20 @@ pub(super) struct WorldArgs {
     /// World to fly through: a CSV table of trunks with the columns x (ahead), y (right), diameter and perhaps height \[m\]
     #[arg(long, value_name = "FILE", conflicts_with = "world")]
     stems: Option<PathBuf>,
+    /// World to fly over: an ESRI ASCII grid of heights \[m\], east ahead, coordinates from the start on
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["world", "stems"])]
+    terrain: Option<PathBuf>,
 }
 
 /// What a world is, and what the wing met in it.
 #[derive(Debug, Serialize)]
 pub(super) struct Flown {
     bodies: usize,
+    /// Highest ground \[m\], and the steepest slope along an axis; not of level ground.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    highest: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    steepest: Option<f64>,
     /// Of a level wing straight ahead; null if nothing is in its way.
     mean_free_path: Option<f64>,
     /// Null if there is no free place.
@@ -50,6 +58,12 @@ impl fmt::Display for Flown {
             value.map_or_else(|| "       -".to_owned(), |it| format!("{it:8.1} m"))
         };
         writeln!(f, "bodies              {:8}", self.bodies)?;
+        if let (Some(highest), Some(slope)) = (self.highest, self.steepest) {
+            writeln!(
+                f,
+                "highest ground      {highest:8.1} m, slopes up to {slope:.2}"
+            )?;
+        }
         writeln!(
             f,
             "mean free path      {}, level wing",
@@ -69,13 +83,18 @@ impl fmt::Display for Flown {
 impl WorldArgs {
     /// Whether there is a world.
     pub(super) fn is_given(&self) -> bool {
-        self.world.is_some() || self.stems.is_some()
+        self.world.is_some() || self.stems.is_some() || self.terrain.is_some()
     }
 
     /// The world, if there is one.
     pub(super) fn build(&self, seed: u64) -> Result<Option<World>, Failure> {
         if let Some(path) = &self.stems {
             return of_stems(path).map(Some);
+        }
+        if let Some(path) = &self.terrain {
+            let terrain = read_terrain(path).map_err(|error| Failure::new(USAGE, error))?;
+            let world = World::over(terrain, ALTITUDE);
+            return world.map(Some).map_err(|error| Failure::new(USAGE, error));
         }
         let Some(name) = self.world else {
             return Ok(None);
@@ -99,10 +118,10 @@ fn of_stems(path: &Path) -> Result<World, Failure> {
 }
 
 impl Flown {
-    /// Flies the wing along these states, from half of the ceiling on.
+    /// Flies the wing along these states, from the wanted height on.
     pub(super) fn of(world: &World, span: f64, states: &[SpaceState]) -> Result<Self, Failure> {
         let hull = Hull::wing(span);
-        let height = 0.5 * world.extent().ceiling;
+        let height = world.altitude();
         let start = states.first().map_or(0.0, |it| it.plane.z);
         let at_height = |state: &SpaceState| {
             let mut state = *state;
@@ -130,6 +149,8 @@ impl Flown {
         });
         Ok(Self {
             bodies: world.bodies().len(),
+            highest: world.terrain().map(|it| it.heights()[1]),
+            steepest: world.terrain().map(Terrain::steepest),
             mean_free_path: world.mean_free_path(0.5 * span, height),
             traversability: world.traversability(height),
             first_hit,

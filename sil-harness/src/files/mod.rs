@@ -1,12 +1,16 @@
 //! Files: scenarios, fields, logs, programs for solvers, recorded data.
 
+mod worlds;
+
+pub use worlds::{read_stems, read_terrain};
+
 use mpp_analysis::check_reference::{Report, check, recorded_instances};
 use mpp_analysis::instance::{Instance, InstanceError};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::field::{FieldError, FieldFile};
 use mpp_sim::log::{FlightLog, LogError};
 use mpp_sim::scenario::{LidarTable, ScenarioError, ScenarioFile};
-use mpp_sim::space::world::{Body, StemError, stems};
+use mpp_sim::space::world::{GridError, StemError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
@@ -31,6 +35,9 @@ pub enum FileError {
     /// The file is no field; the error names the file.
     #[error("{0}")]
     Field(#[source] FieldError),
+    /// The file is no height map; the error names the file.
+    #[error("{0}")]
+    Terrain(#[source] GridError),
     /// The file is no stem map; the error names the file.
     #[error("{0}")]
     Stems(#[source] StemError),
@@ -185,15 +192,6 @@ pub fn read_aircraft(name_or_path: &str) -> Result<AircraftFile, FileError> {
 pub fn read_lidar(path: &Path) -> Result<LidarTable, FileError> {
     LidarTable::parse(&path.display().to_string(), &read(path, MOST_WRITTEN)?)
         .map_err(FileError::Scenario)
-}
-
-/// Reads a stem map.
-///
-/// # Errors
-/// [`FileError::Read`] or [`FileError::Stems`].
-pub fn read_stems(path: &Path) -> Result<Vec<Body>, FileError> {
-    let name = path.display().to_string();
-    stems(&name, &read(path, MOST_FIELD)?).map_err(FileError::Stems)
 }
 
 /// Reads a field.

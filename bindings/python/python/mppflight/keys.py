@@ -49,10 +49,13 @@ CommonKeys = TypedDict("CommonKeys", {"scenario": Path, "aircraft": Aircraft | P
     Path | LidarKeys, "air_data": AirDataKeys, "navigation": NavigationSource | NavigationKeys, "faults": FaultsKeys,
     "field": Field | Path | Mapping[str, Any]}, total=False)
 # The keys of a flight in space.
+TerrainKeys = TypedDict("TerrainKeys", {"corner": Sequence[float], "cell": float, "rows": Sequence[Sequence[float]]},
+    total=False)
 SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
-    Any], "airspeed": float, "world": str, "density": float, "window": float, "lidar": str, "sphere": float,
-    "exact": bool, "candidates": int, "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float,
-    "deskew": bool, "lidar_clock": float, "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
+    Any], "airspeed": float, "world": str, "density": float, "window": float, "terrain": TerrainKeys,
+    "altitude": float, "lidar": str, "sphere": float, "exact": bool, "candidates": int, "programs": bool,
+    "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool, "lidar_clock": float,
+    "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 
 class ScenarioKeys(CommonKeys, total=False):

@@ -59,6 +59,8 @@ pub(super) struct Judge<'a> {
     pub(super) to_go: &'a CostToGo,
     pub(super) model: &'a SpaceModel,
     pub(super) keep: &'a Keep,
+    /// Cost of the squared lack of airspeed at a knot [s^2/m^2].
+    pub(super) slow: f64,
     /// Runaway of the nose at the first knot \[rad\].
     pub(super) runaway: f64,
 }
@@ -99,6 +101,10 @@ impl Judge<'_> {
         tally.velocity = after;
         if let Some(nose) = &self.model.nose {
             tally.runaway = nose.after_stage(tally.runaway, 0.5 * (from.bank + to.bank));
+        }
+        if self.slow > 0.0 {
+            let lack = (self.model.trim.state.airspeed - to.airspeed).max(0.0);
+            tally.price += self.slow * lack * lack;
         }
         let [least, _] = POINTS;
         let points = libm::round(self.model.trim.state.airspeed * STAGE_PERIOD / APART);

@@ -1,7 +1,8 @@
 //! What a plan keeps clear of.
 
 use super::candidate::dot;
-use crate::map::MOST_CLEARANCE;
+use crate::map::{MOST_CLEARANCE, VoxelGrid};
+use crate::tuning::space_judgement::SLOW;
 
 /// Distances and heights that a plan keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +49,15 @@ impl Keep {
             return self.margin + self.half_span;
         }
         self.distance(&slope.map(|it| it / steep), &wing())
+    }
+
+    /// Cost of the squared lack of airspeed at a knot [s^2/m^2].
+    pub(super) fn slow(&self) -> f64 {
+        if VoxelGrid::follows(&self.heights) {
+            SLOW
+        } else {
+            0.0
+        }
     }
 
     /// Distance beyond the band \[m\].

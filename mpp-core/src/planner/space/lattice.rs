@@ -108,7 +108,7 @@ impl Lattice {
             return;
         }
         let half = (station as f64 + 0.5) * to_go.step;
-        let levels = levels(to_go.origin[2], rules);
+        let levels = levels(to_go.origin[2], field, rules);
         let line = |ahead: f64, row: f64| Line::new(&to_go.origin, field, rules, ahead, row);
         let halves = 2 * rows.start..(2 * rows.end).min(2 * needed.end - 1);
         let parts = self.halfway.get_mut(halves.clone());
@@ -259,14 +259,14 @@ struct Level {
 }
 
 /// The heights of the layers, and those half a layer above them.
-fn levels(origin: f64, rules: &Rules) -> [[Level; LAYERS]; 2] {
+fn levels(origin: f64, field: &VoxelField, rules: &Rules) -> [[Level; LAYERS]; 2] {
     let [low, high] = rules.heights;
     [0.0, 0.5].map(|above| {
         core::array::from_fn(|layer| {
             let z = origin + (layer as f64 + above - (LAYERS / 2) as f64) * UP;
             let off = z - rules.altitude;
             Level {
-                storey: Storey::of(z),
+                storey: field.storey(z),
                 beyond: (low - z).max(z - high).max(0.0),
                 off: HEIGHT * off * off,
             }

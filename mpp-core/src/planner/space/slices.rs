@@ -214,6 +214,7 @@ impl SpacePlanner {
             to_go: &self.to_go,
             model: &self.model,
             keep: &self.keep,
+            slow: self.keep.slow(),
             runaway: self.runaway,
         }
     }

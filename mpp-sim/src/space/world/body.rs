@@ -184,34 +184,35 @@ impl Body {
                 self.clearance(nearest_of_segment(flat(a), flat(b), [x, y, 0.0]))
             }
             Self::Sphere { centre, .. } => self.clearance(nearest_of_segment(a, b, centre)),
-            _ => self.by_halving(a, b),
+            _ => by_halving(a, b, |point| self.separation(point)),
         }
     }
+}
 
-    /// The distance from a convex body is convex along a segment, and its slope is that of the separation.
-    fn by_halving(&self, a: Vector, b: Vector) -> f64 {
-        let along = minus(b, a);
-        let (start, end) = (self.separation(a), self.separation(b));
-        if dot(start, along) >= 0.0 {
-            return length(start);
-        }
-        if dot(end, along) <= 0.0 {
-            return length(end);
-        }
-        let (mut low, mut high) = (0.0, 1.0);
-        let mut least = length(start).min(length(end));
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            let separation = self.separation(plus(a, along, middle));
-            least = least.min(length(separation));
-            if dot(separation, along) < 0.0 {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
-        least
+/// Least distance of a segment from a convex body, given the way from its nearest point to a point: the distance is convex along
+/// the segment, and its slope is that of the separation.
+pub(super) fn by_halving(a: Vector, b: Vector, separation: impl Fn(Vector) -> Vector) -> f64 {
+    let along = minus(b, a);
+    let (start, end) = (separation(a), separation(b));
+    if dot(start, along) >= 0.0 {
+        return length(start);
     }
+    if dot(end, along) <= 0.0 {
+        return length(end);
+    }
+    let (mut low, mut high) = (0.0, 1.0);
+    let mut least = length(start).min(length(end));
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        let apart = separation(plus(a, along, middle));
+        least = least.min(length(apart));
+        if dot(apart, along) < 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    least
 }
 
 /// `a + t b`.
@@ -245,7 +246,7 @@ fn outside(offset: Vector, radius: f64) -> Vector {
 }
 
 /// The point of a segment that is nearest to a point.
-fn nearest_of_segment(a: Vector, b: Vector, point: Vector) -> Vector {
+pub(super) fn nearest_of_segment(a: Vector, b: Vector, point: Vector) -> Vector {
     let along = minus(b, a);
     let square = dot(along, along);
     let share = if square > 0.0 {

@@ -1,6 +1,7 @@
 //! Worlds by name, density and seed.
 
 use super::body::Body;
+use super::hills::{ALTITUDE, hills};
 use super::{Extent, World, WorldError};
 use crate::names::{self, UnknownName};
 use crate::random::{self, Draws, Stream, uniform};
@@ -52,17 +53,20 @@ pub enum WorldName {
     Walls,
     /// Rows of trunks from the right and from the left in turn, past the middle.
     Slalom,
+    /// Hills, and nothing else.
+    Hills,
 }
 
 impl WorldName {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Forest,
         Self::Grid,
         Self::Disc,
         Self::Spheres,
         Self::Walls,
         Self::Slalom,
+        Self::Hills,
     ];
 
     /// Its name on the command line.
@@ -75,6 +79,7 @@ impl WorldName {
             Self::Spheres => "spheres",
             Self::Walls => "walls",
             Self::Slalom => "slalom",
+            Self::Hills => "hills",
         }
     }
 
@@ -86,16 +91,18 @@ impl WorldName {
             Self::Spheres => "share of the volume",
             Self::Walls => "walls/m",
             Self::Slalom => "rows/m",
+            Self::Hills => "steepest slope",
         }
     }
 
-    /// The usual density: a trunk in 25 m^2, the paper's share of the plane, a wall every 40 m.
+    /// The usual density: a trunk in 25 m^2, the paper's share, a wall every 40 m, slopes of 27 deg.
     #[must_use]
     pub fn usual_density(self) -> f64 {
         match self {
             Self::Forest | Self::Grid | Self::Disc => 0.04,
             Self::Spheres => 0.029,
             Self::Walls | Self::Slalom => 0.025,
+            Self::Hills => 0.5,
         }
     }
 
@@ -105,6 +112,7 @@ impl WorldName {
             Self::Forest | Self::Grid | Self::Disc => 1.0,
             Self::Spheres => 0.5,
             Self::Walls | Self::Slalom => 0.2,
+            Self::Hills => 1.5,
         }
     }
 }
@@ -136,6 +144,8 @@ pub struct WorldConfig {
     pub extent: Extent,
     /// Side of the window of a wall \[m\].
     pub window: f64,
+    /// Wanted height over hills, above the ground at the start \[m\].
+    pub altitude: f64,
 }
 
 impl WorldConfig {
@@ -148,6 +158,7 @@ impl WorldConfig {
             seed,
             extent: Extent::USUAL,
             window: WINDOW,
+            altitude: ALTITUDE,
         }
     }
 
@@ -167,11 +178,8 @@ impl WorldConfig {
         }
         let [least, most] = WINDOWS;
         if !(least..=most).contains(&self.window) {
-            let advice = format!("give {least} to {most} m");
-            return Err(WorldError::Value {
-                key: "window",
-                advice,
-            });
+            let (key, advice) = ("window", format!("give {least} to {most} m"));
+            return Err(WorldError::Value { key, advice });
         }
         // An unsound extent is refused before anything is drawn over it.
         World::new(Vec::new(), self.extent)?;
@@ -183,6 +191,10 @@ impl WorldConfig {
             });
         }
         let mut draws = random::generator(self.seed, Stream::Bodies);
+        if self.name == WorldName::Hills {
+            let wanted = [self.density, self.altitude];
+            return hills(wanted, self.extent, self.area(), FREE, &mut draws);
+        }
         World::new(self.bodies(&mut draws), self.extent)
     }
 
@@ -204,6 +216,7 @@ impl WorldConfig {
             WorldName::Spheres => self.spheres_per_metre() * (last - first),
             WorldName::Walls => self.density * last * 4.0,
             WorldName::Slalom => self.density * last * 2.0 * half / ROW,
+            WorldName::Hills => 0.0,
         }
     }
 
@@ -229,6 +242,7 @@ impl WorldConfig {
             WorldName::Spheres => self.spheres(draws),
             WorldName::Walls => self.walls(draws),
             WorldName::Slalom => self.slalom(draws),
+            WorldName::Hills => Vec::new(),
         }
     }
 

@@ -8,7 +8,7 @@ use super::BIG;
 fn the_same_seed_draws_the_same_world() {
     for name in WorldName::ALL {
         let drawn = |seed| WorldConfig::usual(name, seed).build().unwrap();
-        let text = |seed| format!("{:?}", drawn(seed).bodies());
+        let text = |seed| format!("{:?} {:?}", drawn(seed).bodies(), drawn(seed).terrain());
         assert_eq!(text(7), text(7));
         assert_ne!(text(7), text(8));
         assert_eq!(name.name().parse::<WorldName>().unwrap(), name);

@@ -1,6 +1,7 @@
 //! Tests of bodies, and of the queries against every body at once.
 
 mod drawn;
+mod ground;
 
 use super::body::{length, minus, plus};
 use super::*;
