@@ -69,7 +69,7 @@ pub mod space_judgement {
     /// Weight of the squared distance of a plan's end from the wanted height [1/m^2]. Source: S.
     pub const END_HEIGHT: f64 = 0.2;
     /// Cost of the squared lack of airspeed at each knot of a plan over terrain [s^2/m^2]. With less, plans climb by their airspeed
-    /// and not by thrust, and stall on the slope. Source: D73.
+    /// and not by thrust, and stall on the slope. Source: D72.
     pub const SLOW: f64 = 0.3;
     /// Weight of the squared runaway of the nose at the end of a plan [1/rad^2]. Source: D67.
     pub const RUNAWAY: f64 = 10.0;

@@ -8,6 +8,7 @@
 
 mod asc;
 mod body;
+mod error;
 mod figures;
 mod gap;
 mod generator;
@@ -20,6 +21,7 @@ mod tests;
 
 pub use asc::{GridError, ascii_grid};
 pub use body::{Body, Vector};
+pub use error::{FARTHEST, WorldError};
 pub use generator::{WorldConfig, WorldName};
 pub use hills::ALTITUDE;
 pub use stems::{StemError, stems};
@@ -27,9 +29,6 @@ pub use terrain::Terrain;
 
 use body::plus;
 use grid::Grid;
-
-/// Greatest coordinate of a body \[m\]: that of field files.
-pub const FARTHEST: f64 = 1e5;
 
 /// Distance within which the nearest body is looked for first \[m\]; then within twice as much, and so on. More looks at bodies
 /// in vain, less looks more often. Source: chosen, half of a cell.
@@ -59,32 +58,6 @@ impl Extent {
         half_width: 30.0,
         ceiling: 15.0,
     };
-}
-
-/// The reason why there is no world.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum WorldError {
-    /// A body is unsound.
-    #[error("body {number}, {key}: {advice}")]
-    Body {
-        /// Its number, from 1.
-        number: usize,
-        /// The value at fault.
-        key: &'static str,
-        /// What to do.
-        advice: String,
-    },
-    /// A parameter of a generator or of the extent is unsound.
-    #[error("{key}: {advice}")]
-    Value {
-        /// The parameter.
-        key: &'static str,
-        /// What to do.
-        advice: String,
-    },
-    /// The aircraft would start in a body.
-    #[error("the aircraft touches a body or the ground at its start: move the bodies or the start")]
-    Start,
 }
 
 /// The ground, bodies, and where to fly among them.

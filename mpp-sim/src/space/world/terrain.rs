@@ -4,7 +4,7 @@
 //! are exact. Beyond its edges the ground is as high as there.
 
 use super::body::{Vector, by_halving, dot, length, minus, nearest_of_segment, plus};
-use super::{FARTHEST, WorldError};
+use super::error::{FARTHEST, WorldError};
 use serde::{Deserialize, Serialize};
 
 /// Most heights of a map. They take 8 MB.

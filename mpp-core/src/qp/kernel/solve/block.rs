@@ -98,7 +98,7 @@ impl Solver {
             self.drop_from(before);
             return false;
         }
-        // From here on it holds the rows that leave.
+        // From here on it holds the places of the rows that leave.
         self.block.clear();
         self.stands = Stands::Settling(worst);
         true
@@ -107,10 +107,9 @@ impl Solver {
     /// Moves the multipliers of a block to the next event, or drops some of the rows that leave there.
     pub(super) fn settle_block(&mut self, shared: &Condensed) -> Option<Status> {
         if !self.block.is_empty() {
-            for _ in 0..PART_ROWS {
-                let row = self.block.pop();
-                let index = self.active.iter().position(|own| Some(own.row) == row);
-                index.and_then(|index| self.deactivate(index));
+            let left = self.block.len().saturating_sub(PART_ROWS);
+            while self.block.len() > left {
+                self.block.pop().and_then(|index| self.deactivate(index));
             }
             return None;
         }
@@ -221,11 +220,10 @@ impl Solver {
 
     /// Finds the fresh rows whose multipliers would fall below zero at once: the next parts drop them, the last one first.
     fn find_falling(&mut self, first: usize, rises: &[f64; CAPACITY]) {
-        let fresh = self.active.iter().zip(rises).skip(first);
-        for (own, rise) in fresh {
+        for (index, (own, rise)) in self.active.iter().zip(rises).enumerate().skip(first) {
             if own.fresh && !own.yielded && own.multiplier <= 0.0 && *rise < 0.0 {
                 // As many places as rows of inputs, of which each is here once at most.
-                let _ = self.block.push(own.row);
+                let _ = self.block.push(index);
             }
         }
     }
