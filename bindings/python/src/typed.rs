@@ -77,7 +77,7 @@ impl Wrong {
             "a string" => "a text",
             "a sequence" => "a list",
             table if table.starts_with("struct ") => "a dict of its keys",
-            pair if pair.ends_with("of size 2") => "a list of 2",
+            pair if pair.ends_with("of size 2") || pair.ends_with("of length 2") => "a list of 2",
             triple if triple.ends_with("of size 3") || triple.ends_with("of length 3") => {
                 "a list of 3"
             }
