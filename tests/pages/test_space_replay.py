@@ -14,6 +14,16 @@ def forest(tmp_path_factory):
     return page_of(path), log
 
 
+def test_hills_are_below_the_flight_in_all_views(open_page, tmp_path):
+    path, log = fly(tmp_path, "--preset", "space", "--world", "hills", "--density", "0.8", "--airspeed", "12", "--seed", "6200003")
+    page = open_page(page_of(path).as_uri(), viewport=LAPTOP)
+    above = page.evaluate("flight.states.map(([[x, y, z]]) => z - flight.heightAt(x, y))")
+    assert min(above) == pytest.approx(log["summary"]["min_clearance"], abs=0.8) and max(above) > 10
+    views = "['view', 'map', 'side'].map(id => document.getElementById(id).toDataURL())"
+    hills, level = page.evaluate(f"show(); const a = {views}; flight.heightAt = null; show(); [a, {views}]")
+    assert all(one != other for one, other in zip(hills, level))
+
+
 def at(page, tick):
     page.evaluate(f"go({tick}); show()")
     return {name: page.inner_text(f"#v-{name}") for name in ("ahead", "right", "height", "airspeed", "bank", "nearest")}

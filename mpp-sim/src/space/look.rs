@@ -1,6 +1,6 @@
 //! A flight in space as pictures need it: where it was, what each sweep hit, and what each cycle made of it.
 
-use super::world::Body;
+use super::world::{Body, Terrain};
 use super::{Pose, STACK, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
 use crate::file_error::{ScenarioError, ensure};
 use crate::log::{FlightLog, Header};
@@ -68,6 +68,8 @@ fn hundredths(value: f64) -> i32 {
 pub struct Look {
     /// What stood there at the start.
     pub bodies: Vec<Body>,
+    /// The ground, if it is not level.
+    pub terrain: Option<Terrain>,
     /// Span of the wing \[m\].
     pub span: f64,
     /// The start, and the moment after each tick.
@@ -94,6 +96,7 @@ impl Look {
         let mut flight = SpaceFlight::begin(&scenario, &mut link).ok()?;
         let mut look = Self {
             bodies: scenario.world.bodies().to_vec(),
+            terrain: scenario.world.terrain().cloned(),
             span: (scenario.plane.aircraft.file.lateral.as_ref()).map_or(0.0, |it| it.span),
             moments: vec![moment(&flight)],
             cycles: Vec::new(),

@@ -15,8 +15,19 @@ function addTrunk(flight, [x, y, r, top = null], mine = null) {
   return trunk;
 }
 
-function newFlight({ header, trunks, span, state, bodies = [] }) {
-  const flight = { header, span, bodies, trunks: [], cells: new Map(), states: [state], cycles: [], orders: [], planning: [],
+// The height of the ground at a place, from a height map.
+function heightsOf({ corner, cell, rows }) {
+  const place = (value, count) => { const at = Math.max(0, Math.min(count - 1.001, value)), low = Math.floor(at); return [low, at - low]; };
+  return (x, y) => {
+    const [column, a] = place((x - corner[0]) / cell, rows[0].length), [row, b] = place((y - corner[1]) / cell, rows.length);
+    const along = row => rows[row][column] * (1 - a) + rows[row][column + 1] * a;
+    return along(row) * (1 - b) + along(row + 1) * b;
+  };
+}
+
+function newFlight({ header, trunks, span, state, bodies = [], terrain = null }) {
+  const lowest = terrain ? terrain.rows.reduce((least, row) => Math.min(least, ...row), Infinity) : 0;
+  const flight = { header, span, bodies, heightAt: terrain && heightsOf(terrain), lowest, trunks: [], cells: new Map(), states: [state], cycles: [], orders: [], planning: [],
     ended: false, summary: null, hash: null, crash: null, ticks: { t: { length: 0 } } };
   for (const trunk of trunks) addTrunk(flight, trunk);
   return flight;

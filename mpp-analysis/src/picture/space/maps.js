@@ -15,6 +15,12 @@ function drawMap(flight, tick, look) {
     return [at[0] + ahead * cos - right * sin, at[1] + ahead * sin + right * cos];
   };
   pen.fillStyle = paint.earth[0]; pen.fillRect(0, 0, width, height);
+  // Ground is the darker, the nearer it comes to the height of the aircraft.
+  for (let a = -90; flight.heightAt && a < 90; a += 5) for (let b = -90; b < 90; b += 5) {
+    const [x, y] = [Math.floor(at[0] / 5) * 5 + a, Math.floor(at[1] / 5) * 5 + b];
+    pen.globalAlpha = Math.max(0, Math.min(1, (flight.heightAt(x + 2.5, y + 2.5) - at[2] + 15) / 15));
+    fillPath(pen, [[0, 0], [5, 0], [5, 5], [0, 5]].map(([p, q]) => put(x + p, y + q)), paint.bark[0]);
+  }
   pen.globalAlpha = 0.35; pen.strokeStyle = colour.faint; pen.lineWidth = 1;
   pen.beginPath();
   for (let step = -90; step <= 90; step += 10) {
@@ -104,11 +110,15 @@ function caption(pen, text, u, v) {
 function drawSide(flight, tick) {
   if (!$("side").clientHeight) return;
   const [pen, width, height] = canvas("side"), { at } = stateAt(flight, tick), course = courseAt(flight, tick), [cos, sin] = [Math.cos(course), Math.sin(course)];
-  const [, , ceiling] = flight.header.space.extent, scale = width / (STRIP[0] + STRIP[1]), up = (height - 22) / (ceiling + 1), floor = height - 4;
+  const [, , ceiling] = flight.header.space.extent, scale = width / (STRIP[0] + STRIP[1]), { heightAt, lowest } = flight;
+  const up = (height - 22) / (ceiling - lowest + 1), floor = height - 4;
   const along = (x, y) => (x - at[0]) * cos + (y - at[1]) * sin, across = (x, y) => (y - at[1]) * cos - (x - at[0]) * sin;
-  const put = (way, z) => [(STRIP[1] + way) * scale, floor - z * up];
+  const put = (way, z) => [(STRIP[1] + way) * scale, floor - (z - lowest) * up];
   pen.fillStyle = paint.haze[0]; pen.fillRect(0, 0, width, height);
   pen.fillStyle = paint.earth[0]; pen.fillRect(0, floor, width, 4);
+  const profile = [];
+  for (let way = -STRIP[1]; heightAt && way <= STRIP[0]; way++) profile.push(put(way, heightAt(at[0] + way * cos, at[1] + way * sin)));
+  if (heightAt) fillPath(pen, [[0, height], ...profile, [width, height]], paint.earth[0]);
   pen.fillStyle = pen.strokeStyle = paint.pale[0];
   for (const body of flight.bodies) {
     const corners = cornersOf(body), ways = corners.map(([x, y]) => along(x, y)), asides = corners.map(([x, y]) => across(x, y));
@@ -137,5 +147,5 @@ function drawSide(flight, tick) {
   });
   const [u, v] = put(0, at[2]);
   pen.fillStyle = colour.text; pen.beginPath(); pen.arc(u, v, 4, 0, 7); pen.fill();
-  caption(pen, `from the side, 0 to ${ceiling} m`, 8, 14);
+  caption(pen, `from the side, ${Math.round(lowest)} to ${Math.round(ceiling)} m`, 8, 14);
 }

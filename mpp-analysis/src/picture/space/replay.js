@@ -14,7 +14,8 @@ async function unpack(packed) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
   const { header, summary, plans, orders, hash, look: seen, ticks } = JSON.parse(await new Response(stream).text());
   const trunks = seen.bodies.filter(body => body.cylinder).map(({ cylinder: c }) => [c.x, c.y, c.radius, c.height]);
-  flight = newFlight({ header, trunks, span: seen.span, state: seen.moments[0], bodies: seen.bodies.filter(body => !body.cylinder) });
+  flight = newFlight({ header, trunks, span: seen.span, state: seen.moments[0], bodies: seen.bodies.filter(body => !body.cylinder),
+    terrain: seen.terrain });
   const planted = orders.map(({ tick, x, y, radius }) => ({ tick, x, y, radius }));
   takeNews(flight, { states: seen.moments.slice(1), cycles: seen.cycles, orders: planted, planning: [], ended: true });
   for (const [name, [unit, steps]] of Object.entries(ticks)) {

@@ -91,6 +91,24 @@ function drawGrid(pen, { eye, depth, put }) {
   pen.globalAlpha = 1;
 }
 
+// Ground that is not level, in squares: each as bright as the sun stands above it.
+function drawTerrain(pen, items, heightAt, { eye, f, depth, put }) {
+  const step = 5, [x0, y0] = [0, 1].map(axis => Math.floor(eye[axis] / step) * step), sun = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8];
+  for (let a = -FAR; a < FAR; a += step) for (let b = -FAR; b < FAR; b += step) {
+    if (a * f[0] + b * f[1] < -2 * step || Math.hypot(a, b) > FAR) continue;
+    const places = [[0, 0], [step, 0], [step, step], [0, step]].map(([p, q]) => [x0 + a + p, y0 + b + q, heightAt(x0 + a + p, y0 + b + q)]);
+    if (places.some(place => depth(...place) < 0.5)) continue;
+    const [p, q, , r] = places, normal = [(p[2] - q[2]) / step, (p[2] - r[2]) / step, 1];
+    const light = normal.reduce((sum, part, axis) => sum + part * sun[axis], 0) / Math.hypot(...normal);
+    const away = places.reduce((sum, place) => sum + depth(...place), 0) / 4, earth = channelsOf(paint.earth[shadeOf(away)]);
+    items.push([away, () => {
+      const style = mixed(earth, [0, 0, 0], Math.max(0, Math.min(0.6, 0.8 - light)));
+      fillPath(pen, places.map(place => put(...place)), style);
+      pen.strokeStyle = style; pen.lineWidth = 0.7; pen.stroke();
+    }]);
+  }
+}
+
 // Shadows of the trunks near by, all in one path.
 function drawShadows(pen, trunks, { depth, put, focus }) {
   const [x, y] = [-Math.cos(SUN) * SHADOW, -Math.sin(SUN) * SHADOW];
@@ -281,9 +299,11 @@ function drawScene(flight, tick, look) {
   const [pen, width, height] = canvas("view", look.sharpest), state = stateAt(flight, tick), camera = cameraAt(flight, tick, width, height, look.around);
   const { put, depth, eye, f, focus } = camera, own = depth(...state.at), trunks = inSight(flight, tick, camera, own);
   drawGround(pen, camera);
-  drawGrid(pen, camera);
-  drawShadows(pen, trunks, camera);
-  drawUnder(pen, state, flight.span, camera);
+  if (!flight.heightAt) {
+    drawGrid(pen, camera);
+    drawShadows(pen, trunks, camera);
+    drawUnder(pen, state, flight.span, camera);
+  }
   const items = trunks.map(sight => [sight.depth, () => drawTrunk(pen, sight, tick, camera, sight.depth < own - 1, sight.trunk === flight.crash)]);
   const plan = newest(flight.cycles, tick, cycle => cycle.due), scan = newest(flight.cycles, tick, cycle => cycle.tick);
   if (plan?.paths.length) {
@@ -299,6 +319,7 @@ function drawScene(flight, tick, look) {
       pen.fillStyle = colour.scan; pen.fillRect(u - size / 2, v - size / 2, size, size);
     }]);
   }
+  if (flight.heightAt) drawTerrain(pen, items, flight.heightAt, camera);
   for (const body of flight.bodies) drawBody(pen, items, body, camera);
   drawStreaks(pen, items, flight, tick, camera);
   if (look.ghost) {

@@ -1,6 +1,7 @@
 //! Height maps as ESRI ASCII grids, as surveys give them.
 
 use super::terrain::Terrain;
+use std::ops::RangeBounds;
 
 /// Most characters of a word that an error repeats.
 const SHOWN: usize = 40;
@@ -61,112 +62,125 @@ pub enum GridError {
 /// # Errors
 /// [`GridError`] for the first thing that is wrong.
 pub fn ascii_grid(name: &str, text: &str) -> Result<Terrain, GridError> {
-    let wrong = |line: usize, word: &str, advice: &str| GridError::Word {
-        name: name.to_owned(),
-        line,
-        word: word.chars().take(SHOWN).collect(),
-        advice: advice.to_owned(),
+    let mut header = Header {
+        name,
+        values: [None; KEYS.len()],
     };
-    let number = |line: usize, word: &str| {
-        let value = word.parse::<f64>().ok().filter(|it| it.is_finite());
-        value.ok_or_else(|| {
-            wrong(
-                line,
-                word,
-                "give a number, with a point before its decimals",
-            )
-        })
-    };
-    let mut header = [None; KEYS.len()];
     let mut heights: Vec<f64> = Vec::new();
     let (mut last, mut shape) = (1, None);
     for (line, text) in (1..).zip(text.trim_start_matches('\u{feff}').lines()) {
-        let mut words = text.split_whitespace().peekable();
-        let Some(first) = words.peek() else {
+        let Some(first) = text.split_whitespace().next() else {
             continue;
         };
         last = line;
         if shape.is_none() && first.starts_with(|it: char| it.is_ascii_alphabetic()) {
-            let key = first.to_lowercase();
-            let place = KEYS.iter().position(|it| *it == key);
-            let place = place.ok_or_else(|| {
-                wrong(
-                    line,
-                    first,
-                    "give one of the keys of an ESRI ASCII grid with corners",
-                )
-            })?;
-            header[place] = Some((line, number(line, words.nth(1).unwrap_or(""))?));
+            header.take(line, text)?;
             continue;
         }
-        let of = |key: usize| {
-            header[key].ok_or_else(|| GridError::Key {
-                name: name.to_owned(),
-                key: KEYS[key],
-            })
+        let [columns, rows] = match shape {
+            Some(shape) => shape,
+            None => *shape.insert(header.shape()?),
         };
+        for word in text.split_whitespace() {
+            heights.push(header.height(line, word)?);
+        }
+        header.count(line, heights.len(), ..=columns * rows)?;
+    }
+    let [columns, rows] = header.shape()?;
+    header.count(last, heights.len(), columns * rows..=columns * rows)?;
+    let (cell, north) = (header.value(4)?, header.value(3)?);
+    Ok(Terrain {
+        corner: [
+            header.value(2)? + 0.5 * cell,
+            -(north + (rows as f64 - 0.5) * cell),
+        ],
+        cell,
+        rows: heights.chunks(columns).map(<[f64]>::to_vec).collect(),
+    })
+}
+
+/// What stands before the heights: for each key its line and its value.
+struct Header<'a> {
+    name: &'a str,
+    values: [Option<(usize, f64)>; KEYS.len()],
+}
+
+impl Header<'_> {
+    /// Takes a line with a key.
+    fn take(&mut self, line: usize, text: &str) -> Result<(), GridError> {
+        let mut words = text.split_whitespace();
+        let (key, value) = (words.next().unwrap_or(""), words.next().unwrap_or(""));
+        let place = KEYS.iter().position(|it| *it == key.to_lowercase());
+        let advice = "give one of the keys of an ESRI ASCII grid with corners";
+        let place = place.ok_or_else(|| self.wrong(line, key, advice))?;
+        self.values[place] = Some((line, self.number(line, value)?));
+        Ok(())
+    }
+
+    fn value(&self, key: usize) -> Result<f64, GridError> {
+        let missing = || GridError::Key {
+            name: self.name.to_owned(),
+            key: KEYS[key],
+        };
+        self.values[key].map(|(_, value)| value).ok_or_else(missing)
+    }
+
+    /// Numbers of columns and rows, once no key is missing.
+    fn shape(&self) -> Result<[usize; 2], GridError> {
+        for key in 0..5 {
+            self.value(key)?;
+        }
         let count = |key: usize| {
-            let (line, value) = of(key)?;
+            let (line, value) = self.values[key].unwrap_or_default();
             let whole = value.fract() == 0.0 && (2.0..=1e6).contains(&value);
             let advice = "give a whole number from 2 to 1,000,000";
             whole
                 .then_some(value as usize)
-                .ok_or_else(|| wrong(line, KEYS[key], advice))
+                .ok_or_else(|| self.wrong(line, KEYS[key], advice))
         };
-        let (columns, rows) = match shape {
-            Some(shape) => shape,
-            None => {
-                for key in 2..5 {
-                    of(key)?;
-                }
-                *shape.insert((count(0)?, count(1)?))
-            }
-        };
-        for word in words {
-            let height = number(line, word)?;
-            if header[5].is_some_and(|(_, none)| none.total_cmp(&height).is_eq()) {
-                return Err(wrong(
-                    line,
-                    word,
-                    "fill the gaps of the map: a flight needs the ground everywhere",
-                ));
-            }
-            heights.push(height);
+        Ok([count(0)?, count(1)?])
+    }
+
+    fn height(&self, line: usize, word: &str) -> Result<f64, GridError> {
+        let height = self.number(line, word)?;
+        if self.values[5].is_some_and(|(_, none)| none.total_cmp(&height).is_eq()) {
+            let advice = "fill the gaps of the map: a flight needs the ground everywhere";
+            return Err(self.wrong(line, word, advice));
         }
-        let expected = columns * rows;
-        if heights.len() > expected {
-            return Err(GridError::Count {
-                name: name.to_owned(),
-                line,
-                found: heights.len(),
-                expected,
-            });
+        Ok(height)
+    }
+
+    /// Whether so many heights are right at a line.
+    fn count(
+        &self,
+        line: usize,
+        found: usize,
+        right: impl RangeBounds<usize>,
+    ) -> Result<(), GridError> {
+        if right.contains(&found) {
+            return Ok(());
+        }
+        let [columns, rows] = self.shape()?;
+        Err(GridError::Count {
+            name: self.name.to_owned(),
+            line,
+            found,
+            expected: columns * rows,
+        })
+    }
+
+    fn number(&self, line: usize, word: &str) -> Result<f64, GridError> {
+        let value = word.parse::<f64>().ok().filter(|it| it.is_finite());
+        let advice = "give a number, with a point before its decimals";
+        value.ok_or_else(|| self.wrong(line, word, advice))
+    }
+
+    fn wrong(&self, line: usize, word: &str, advice: &str) -> GridError {
+        GridError::Word {
+            name: self.name.to_owned(),
+            line,
+            word: word.chars().take(SHOWN).collect(),
+            advice: advice.to_owned(),
         }
     }
-    let value = |key: usize| {
-        let missing = || GridError::Key {
-            name: name.to_owned(),
-            key: KEYS[key],
-        };
-        header[key].map(|(_, value)| value).ok_or_else(missing)
-    };
-    let [columns, rows, east, north, cell] =
-        [value(0)?, value(1)?, value(2)?, value(3)?, value(4)?];
-    let expected = columns as usize * rows as usize;
-    if heights.len() != expected || heights.is_empty() {
-        return Err(GridError::Count {
-            name: name.to_owned(),
-            line: last,
-            found: heights.len(),
-            expected,
-        });
-    }
-    Ok(Terrain {
-        corner: [east + 0.5 * cell, -(north + (rows - 0.5) * cell)],
-        cell,
-        rows: heights
-            .chunks(columns as usize)
-            .map(<[f64]>::to_vec)
-            .collect(),
-    })
 }
