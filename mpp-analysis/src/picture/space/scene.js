@@ -6,6 +6,7 @@ const COLUMNS = 4096;
 // Direction to the sun [rad, from ahead to the right], the length of a shadow as a share of the height [-], and how much of a trunk's is
 // drawn [m].
 const SUN = 2.9, SHADE = 2.4, SHADOW = 9;
+const SUNWARDS = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8];
 // Height up to which trunks are drawn, and where crowns begin [m]. In the simulation they have no end.
 const TOP = 23, CROWN = 19;
 const EARTH = ["sky", "haze", "earth", "bark", "bark-dark", "pale", "pale-dark", "crown", "crown-pale", "wing", "wing-dark", "placed", "bad",
@@ -93,13 +94,13 @@ function drawGrid(pen, { eye, depth, put }) {
 
 // Ground that is not level, in squares: each as bright as the sun stands above it.
 function drawTerrain(pen, items, heightAt, { eye, f, depth, put }) {
-  const step = 5, [x0, y0] = [0, 1].map(axis => Math.floor(eye[axis] / step) * step), sun = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8];
+  const step = 5, [x0, y0] = [0, 1].map(axis => Math.floor(eye[axis] / step) * step);
   for (let a = -FAR; a < FAR; a += step) for (let b = -FAR; b < FAR; b += step) {
     if (a * f[0] + b * f[1] < -2 * step || Math.hypot(a, b) > FAR) continue;
     const places = [[0, 0], [step, 0], [step, step], [0, step]].map(([p, q]) => [x0 + a + p, y0 + b + q, heightAt(x0 + a + p, y0 + b + q)]);
     if (places.some(place => depth(...place) < 0.5)) continue;
     const [p, q, , r] = places, normal = [(p[2] - q[2]) / step, (p[2] - r[2]) / step, 1];
-    const light = normal.reduce((sum, part, axis) => sum + part * sun[axis], 0) / Math.hypot(...normal);
+    const light = normal.reduce((sum, part, axis) => sum + part * SUNWARDS[axis], 0) / Math.hypot(...normal);
     const away = places.reduce((sum, place) => sum + depth(...place), 0) / 4, earth = channelsOf(paint.earth[shadeOf(away)]);
     items.push([away, () => {
       const style = mixed(earth, [0, 0, 0], Math.max(0, Math.min(0.6, 0.8 - light)));
@@ -250,11 +251,11 @@ function ribbon(pen, items, places, half, name, from, { depth, put }) {
 }
 
 function drawAircraft(pen, state, span, { put }) {
-  const sun = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8], faces = AIRCRAFT.map(([kind, points]) => {
+  const faces = AIRCRAFT.map(([kind, points]) => {
     const places = points.map(point => { const way = turned(state.attitude, point); return way.map((part, axis) => state.at[axis] + span * part); });
     const [a, b, c] = [0, 1, 3].map(i => places[i]), [p, q] = [b, c].map(other => other.map((part, axis) => part - a[axis]));
     const normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]], length = Math.hypot(...normal) || 1;
-    const light = Math.abs(normal.reduce((sum, part, axis) => sum + part * sun[axis], 0)) / length, pixels = places.map(place => put(...place));
+    const light = Math.abs(normal.reduce((sum, part, axis) => sum + part * SUNWARDS[axis], 0)) / length, pixels = places.map(place => put(...place));
     return { kind, light, pixels, depth: pixels.reduce((sum, [, , d]) => sum + d, 0) / pixels.length };
   });
   faces.sort((a, b) => b.depth - a.depth);

@@ -148,6 +148,7 @@ pub struct Solver {
     /// Whether the program has attitude rows.
     attitude_rows: bool,
     stands: Stands,
+    /// While a block is taken up its rows, later the places of those that leave.
     block: heapless::Vec<usize, PAIRED>,
     /// The vector `L^-1 C_A Y Y' c_p` of the entering row, and the rest of its response.
     products: [f64; CAPACITY],
