@@ -16,7 +16,7 @@ mavlink = load()
 
 from pymavlink import mavftp, mavutil
 
-FRAMES = Path(os.environ.get("FRAMES", ROOT / "target" / "release" / "examples" / "frames"))
+FRAMES = Path(os.environ.get("FRAMES", ROOT / "target" / "debug" / "examples" / "frames"))
 
 
 @pytest.fixture

@@ -13,6 +13,8 @@ const SLUGGISH = 40;
 let settings = { ...USUAL }, good = null, flight = null, shown = 0, playing = false, busy = false, turn = 0, until = null;
 let pending = [], kept = null, camera = null, placeOnMap = null, last = null, looked = 0, told = 0, slow = false, done = false, next = null, pace = 1;
 let crossed = 0, crashed = 0, painted = null;
+// How many panels beside the scene are to be painted, one a frame: the map and the instruments take turns.
+let panels = 0, mapNext = false;
 // `sharpest` is the most pixels of the scene in one of the page: fewer where frames take long.
 const look = { around: 0, ghost: null, sharpest: 2 };
 let gaps = 0;
@@ -168,9 +170,13 @@ function show(time) {
   if (picture !== painted) {
     painted = picture;
     camera = drawScene(flight, shown, look).camera;
-    placeOnMap = drawMap(flight, shown, look);
-    drawSide(flight, shown);
-    drawAttitude(flight, shown);
+    panels = 2;
+  }
+  if (panels > 0) {
+    panels--;
+    mapNext = !mapNext;
+    if (mapNext) placeOnMap = drawMap(flight, shown, look);
+    else { drawSide(flight, shown); drawAttitude(flight, shown); }
   }
   if (time - looked < LOOK) return;
   looked = time;

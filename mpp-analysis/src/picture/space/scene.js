@@ -1,14 +1,19 @@
 // The scene behind the aircraft, on a plain canvas: whole things are sorted by their depth and painted from far to near.
 // Farthest trunk that is drawn, where haze begins, and over how many metres it closes [m].
 const FAR = 95, HAZE = [10, 82], SHADES = 32;
-// Columns of the picture of which it is known whether a trunk hides all that is behind.
-const COLUMNS = 4096;
+// Columns of the picture of which it is known whether a trunk hides all that is behind, and how many of them a hidden trunk may still show.
+const COLUMNS = 4096, SLIVER = 3;
+// How deep a slice of lidar returns is [m].
+const SLICE = 0.5;
 // Direction to the sun [rad, from ahead to the right], the length of a shadow as a share of the height [-], and how much of a trunk's is
 // drawn [m].
 const SUN = 2.9, SHADE = 2.4, SHADOW = 9;
 const SUNWARDS = [0.6 * Math.cos(SUN), 0.6 * Math.sin(SUN), 0.8];
-// Height up to which trunks are drawn, and where crowns begin [m]. In the simulation they have no end.
-const TOP = 23, CROWN = 19;
+// Half the width from which a trunk has two tones and a foot, and three tones [pixels]: a strip costs as much as it is long.
+const TONES = [4, 8];
+// Height up to which trunks are drawn, and where crowns begin [m]. In the simulation they have no end. Crowns beyond `FINE` [m] are of one
+// piece, and those of hidden trunks are left out.
+const TOP = 23, CROWN = 19, FINE = 35;
 const EARTH = ["sky", "haze", "earth", "bark", "bark-dark", "pale", "pale-dark", "crown", "crown-pale", "wing", "wing-dark", "placed", "bad",
   "plan", "candidate", "flown"];
 const paint = {};
@@ -62,7 +67,9 @@ function drawGround(pen, camera) {
   sky.addColorStop(0, paint.sky[0]); sky.addColorStop(1, paint.haze[0]);
   earth.addColorStop(0, paint.haze[0]); earth.addColorStop(0.25, paint.earth[SHADES / 2]); earth.addColorStop(1, paint.earth[0]);
   pen.fillStyle = sky; pen.fillRect(-size, -size, 2 * size, size);
-  pen.fillStyle = earth; pen.fillRect(-size, 0, 2 * size, size);
+  // One colour costs less than a gradient.
+  pen.fillStyle = paint.earth[0]; pen.fillRect(-size, 0.29 * height, 2 * size, size);
+  pen.fillStyle = earth; pen.fillRect(-size, 0, 2 * size, 0.3 * height);
   pen.restore();
 }
 
@@ -73,12 +80,12 @@ function drawGrid(pen, { eye, depth, put }) {
   for (const [least, most, alpha] of [[0.5, 25, 0.3], [25, 45, 0.18], [45, 70, 0.09]]) {
     pen.globalAlpha = alpha;
     pen.beginPath();
-    for (let a = -reach; a <= reach; a += step) for (let b = -reach; b < reach; b += step)
-      for (const [xa, ya, xb, yb] of [[a, b, a, b + step], [b, a, b + step, a]]) {
-        const [p, q, s, t] = [x0 + xa, y0 + ya, x0 + xb, y0 + yb], near = depth(p, q, 0), far = depth(s, t, 0), middle = (near + far) / 2;
-        if (middle < least || middle >= most || near < 0.5 || far < 0.5) continue;
-        pen.moveTo(...put(p, q, 0)); pen.lineTo(...put(s, t, 0));
-      }
+    for (let a = -reach; a <= reach; a += step) for (const [xa, ya, xb, yb] of [[a, -reach, a, reach], [-reach, a, reach, a]]) {
+      const [p, q, s, t] = [x0 + xa, y0 + ya, x0 + xb, y0 + yb], first = depth(p, q, 0), rise = depth(s, t, 0) - first;
+      const [from, to] = [least, most].map(away => Math.max(0, Math.min(1, (away - first) / rise)));
+      if (from === to) continue;
+      pen.moveTo(...put(p + from * (s - p), q + from * (t - q), 0)); pen.lineTo(...put(p + to * (s - p), q + to * (t - q), 0));
+    }
     pen.stroke();
   }
   pen.globalAlpha = 0.5;
@@ -136,15 +143,16 @@ function inSight({ trunks }, tick, { eye, f, width, focus }, own) {
   return hide(seen, slope, own - 1);
 }
 
-// Marks the trunks that nearer ones hide from foot to top, of which only crowns are seen. In a dense forest most are. Trunks without an end
-// hide, if they are no glass because they are nearer than `least`; a tilted picture draws them a little thinner than they are.
+// Marks the trunks that nearer ones hide from foot to top but for a pixel, of which only crowns are seen. In a dense forest most are. Trunks
+// without an end hide, if they are no glass because they are nearer than `least`; a tilted picture draws them a little thinner than they are.
 function hide(seen, slope, least) {
   const full = new Uint8Array(COLUMNS), column = (across, depth) => (across / depth / slope + 1) / 2 * COLUMNS;
   seen.sort((a, b) => a.depth - b.depth);
   for (const sight of seen) {
     const { depth, across, trunk: { r, top } } = sight, from = column(across - r, depth), to = column(across + r, depth);
-    sight.hidden = from >= 0 && to <= COLUMNS;
-    for (let at = Math.floor(from); sight.hidden && at < to; at++) sight.hidden = full[at] === 1;
+    let open = from >= 0 && to <= COLUMNS ? 0 : COLUMNS;
+    for (let at = Math.floor(from); open <= SLIVER && at < to; at++) open += 1 - full[at];
+    sight.hidden = open <= SLIVER;
     if (depth > least && (top ?? TOP) >= TOP)
       full.fill(1, Math.max(0, Math.ceil(column(across - 0.9 * r, depth))), Math.max(0, Math.floor(column(across + 0.9 * r, depth))));
   }
@@ -162,28 +170,32 @@ function drawTrunk(pen, { trunk: { x, y, r, top, seen, mine, crown }, depth, hid
   const known = seen !== null && seen <= tick, kind = known ? "bark" : "pale";
   // Between the camera and the aircraft it is glass.
   pen.globalAlpha = nearer ? 0.25 : 1;
-  if (low === 0 && d < 35 && !hidden) {
+  if (low === 0 && w > TONES[0] && !hidden) {
     pen.fillStyle = paint[kind + "-dark"][shade];
     pen.beginPath(); pen.ellipse(u, v, w * 1.5, w * 0.5, 0, 0, 7); pen.fill();
   }
-  const strip = (a, b, style) => fillPath(pen, [[u + a * w, v], [u + b * w, v], [u2 + b * w2, v2], [u2 + a * w2, v2]], style);
+  const strip = (a, b, style) => {
+    pen.fillStyle = style; pen.beginPath();
+    pen.moveTo(u + a * w, v); pen.lineTo(u + b * w, v); pen.lineTo(u2 + b * w2, v2); pen.lineTo(u2 + a * w2, v2);
+    pen.fill();
+  };
   const [sx, sy] = [Math.cos(SUN), Math.sin(SUN)], side = sx * right[0] + sy * right[1] > 0 ? 1 : -1;
   const edge = Math.max(-0.7, Math.min(0.8, sx * f[0] + sy * f[1]));
   const lit = hit ? "bad" : mine !== null ? "placed" : kind, pale = Math.min(SHADES, shade + 3);
-  // Thin ones are of one piece; the strips of others overlap a little, or their seams would show.
-  if (w < 2.5 && !hidden) strip(-1, 1, paint[lit][pale]);
+  // The strips overlap a little, or their seams would show.
+  if (w < TONES[0] && !hidden) strip(-1, 1, paint[lit][pale]);
   else if (!hidden) {
     strip(-side, side * (edge + 0.05), paint[kind + "-dark"][shade]);
-    strip(side * edge, side * (edge + 0.5), paint[lit][pale]);
-    strip(side * (edge + 0.45), side, paint[lit][shade]);
+    if (w > TONES[1]) strip(side * edge, side * (edge + 0.5), paint[lit][pale]);
+    strip(side * (w > TONES[1] ? edge + 0.45 : edge), side, paint[lit][shade]);
   }
-  if (high > CROWN) {
+  if (high > CROWN && !(hidden && depth > FINE)) {
     pen.fillStyle = paint[known ? "crown" : "crown-pale"][shade];
     pen.beginPath();
-    for (let part = 0; part < (depth < 45 ? 3 : 1); part++) {
+    for (let part = 0; part < (depth < FINE ? 3 : 1); part++) {
       const [cu, cv, cd] = put(x + (crown - 0.5) * 2 + part - 1, y + (part === 1 ? 0.8 : -0.6), CROWN + 1.3 * part + 2 * crown), size = focus * (1.9 + crown - 0.3 * part) / cd;
       // Most crowns are above the picture.
-      if (cv < -size) continue;
+      if (cv < -size || cu < -size || cu > camera.width + size) continue;
       pen.moveTo(cu + size, cv); pen.ellipse(cu, cv, size, size * 0.62, 0, 0, 7);
     }
     pen.fill();
@@ -239,14 +251,11 @@ function ribbon(pen, items, places, half, name, from, { depth, put }) {
     return [-half, half].map(width => [x, y, z].map((part, axis) => part + width * side[axis]));
   });
   for (let i = 0; i + 1 < edges.length; i++) {
-    const [[a, b], [c, d]] = [edges[i], edges[i + 1]], away = depth(...places[i].slice(0, 3));
+    const [[a, b], next] = [edges[i], edges[i + 1]], away = depth(...places[i].slice(0, 3));
     if (away < from) continue;
-    items.push([away + 0.1 / half, () => {
-      const style = paint[name][Math.round(0.6 * SHADES * i / edges.length)];
-      fillPath(pen, [a, b, d, c].map(place => put(...place)), style);
-      // Closes the seams.
-      pen.strokeStyle = style; pen.lineWidth = 0.7; pen.stroke();
-    }]);
+    // It reaches a little beneath the next piece, or the seams would show.
+    const [c, d] = next.map((place, side) => place.map((part, axis) => part + 0.4 * (part - edges[i][side][axis])));
+    items.push([away + 0.1 / half, () => fillPath(pen, [a, b, d, c].map(place => put(...place)), paint[name][Math.round(0.6 * SHADES * i / edges.length)])]);
   }
 }
 
@@ -295,10 +304,27 @@ function drawStreaks(pen, items, flight, tick, { put, depth }) {
   }
 }
 
+// Where beams ended, in slices of equal depth: a slice is one path.
+function drawHits(pen, items, hits, { width, height, put, focus }) {
+  const slices = new Map();
+  for (let at = 0; at < hits.length; at += 3) {
+    const [u, v, d] = put(hits[at], hits[at + 1], hits[at + 2]), slice = Math.floor((d - 0.45) / SLICE);
+    if (d < 1 || u < 0 || v < 0 || u > width || v > height) continue;
+    if (!slices.has(slice)) slices.set(slice, []);
+    slices.get(slice).push(u, v);
+  }
+  for (const [slice, places] of slices) items.push([slice * SLICE, () => {
+    const size = Math.max(1.6, Math.min(4, 0.07 * focus / (slice * SLICE + 0.5)));
+    pen.fillStyle = colour.scan; pen.beginPath();
+    for (let at = 0; at < places.length; at += 2) pen.rect(places[at] - size / 2, places[at + 1] - size / 2, size, size);
+    pen.fill();
+  }]);
+}
+
 // Draws the scene. Returns the camera, which knows what is under a pixel.
 function drawScene(flight, tick, look) {
   const [pen, width, height] = canvas("view", look.sharpest), state = stateAt(flight, tick), camera = cameraAt(flight, tick, width, height, look.around);
-  const { put, depth, eye, f, focus } = camera, own = depth(...state.at), trunks = inSight(flight, tick, camera, own);
+  const { depth, eye } = camera, own = depth(...state.at), trunks = inSight(flight, tick, camera, own);
   drawGround(pen, camera);
   if (!flight.heightAt) {
     drawGrid(pen, camera);
@@ -309,17 +335,10 @@ function drawScene(flight, tick, look) {
   const plan = newest(flight.cycles, tick, cycle => cycle.due), scan = newest(flight.cycles, tick, cycle => cycle.tick);
   if (plan?.paths.length) {
     const all = plan.paths.map(path => placesOf(path, plan.due, tick));
-    for (const places of all.slice(0, -1)) ribbon(pen, items, places, 0.02, "candidate", own + 2, camera);
+    for (const places of all.slice(0, -1)) ribbon(pen, items, places.filter((_, i) => i % 2 === 0), 0.03, "candidate", own + 2, camera);
     ribbon(pen, items, all[all.length - 1], 0.22, "plan", own + 0.6, camera);
   }
-  for (let at = 0; at < (scan ? scan.hits.length : 0); at += 3) {
-    const [x, y, z] = scan.hits.subarray(at, at + 3), away = (x - eye[0]) * f[0] + (y - eye[1]) * f[1] + (z - eye[2]) * f[2];
-    if (away < 1) continue;
-    items.push([away - 0.45, () => {
-      const [u, v, d] = put(x, y, z), size = Math.max(1.6, Math.min(4, 0.07 * focus / d));
-      pen.fillStyle = colour.scan; pen.fillRect(u - size / 2, v - size / 2, size, size);
-    }]);
-  }
+  if (scan) drawHits(pen, items, scan.hits, camera);
   if (flight.heightAt) drawTerrain(pen, items, flight.heightAt, camera);
   for (const body of flight.bodies) drawBody(pen, items, body, camera);
   drawStreaks(pen, items, flight, tick, camera);
