@@ -18,11 +18,11 @@ const MOST: i8 = LIMIT / STEP;
 // Sixteen codes hold all steps, and one hit makes any voxel occupied.
 const _: () = assert!(MOST - LEAST < 16 && (LEAST + HIT / STEP) * STEP >= OCCUPIED);
 
-/// What a beam does to the codes of voxels. A code is the number of steps, modulo 16.
-pub(super) type Change = [u8; 16];
-pub(super) const HIT_ONCE: Change = change(HIT);
-pub(super) const PASSED_ONCE: Change = change(-PASSED);
-pub(super) const UNANSWERED_ONCE: Change = change(-PASSED_UNANSWERED);
+/// What a beam does to the codes of the lower and of the upper voxel of a pair, by the byte of the pair. A code is the number of
+/// steps, modulo 16.
+pub(super) type Change = [[u8; 256]; 2];
+pub(super) static PASSED_ONCE: Change = change(-PASSED);
+pub(super) static UNANSWERED_ONCE: Change = change(-PASSED_UNANSWERED);
 
 /// Steps of a code.
 const fn steps(code: usize) -> i8 {
@@ -33,25 +33,31 @@ const fn steps(code: usize) -> i8 {
     }
 }
 
-/// The codes after a change of the log-odds, within the limits. They are never 0, because 0 means that no beam has seen the voxel.
+/// The code after a change of the log-odds, within the limits. It is never 0, because 0 means that no beam has seen the voxel.
+const fn changed(code: usize, log_odds: i8) -> usize {
+    let sum = steps(code) + log_odds / STEP;
+    let sum = if sum > MOST {
+        MOST
+    } else if sum < LEAST {
+        LEAST
+    } else if sum == 0 {
+        -1
+    } else {
+        sum
+    };
+    (sum & 15) as usize
+}
+
 const fn change(log_odds: i8) -> Change {
-    let mut codes = [0; 16];
-    let mut code = 0;
-    while code < codes.len() {
-        let sum = steps(code) + log_odds / STEP;
-        let sum = if sum > MOST {
-            MOST
-        } else if sum < LEAST {
-            LEAST
-        } else if sum == 0 {
-            -1
-        } else {
-            sum
-        };
-        codes[code] = (sum & 15) as u8;
-        code += 1;
+    let mut pairs = [[0; 256]; 2];
+    let mut byte = 0;
+    while byte < 256 {
+        let [low, high] = [byte & 15, byte >> 4];
+        pairs[0][byte] = (changed(low, log_odds) | high << 4) as u8;
+        pairs[1][byte] = (low | changed(high, log_odds) << 4) as u8;
+        byte += 1;
     }
-    codes
+    pairs
 }
 
 /// For two codes in a byte: which of them are occupied, and from the third bit on which are unknown.
@@ -80,13 +86,19 @@ impl Evidence {
     /// No beam has seen a voxel.
     pub(super) const NONE: Self = Self([0; LAYERS / 2]);
 
-    /// Changes the voxel at a height.
-    pub(super) fn add(&mut self, z: usize, change: &Change) {
-        if let Some(pair) = self.0.get_mut(z / 2) {
+    /// Adds a hit to the voxel at a height.
+    pub(super) fn hit(&mut self, z: usize) {
+        if let Some(codes) = self.0.get_mut(z / 2) {
             let shift = z % 2 * 4;
-            let code = *pair >> shift & 15;
-            let new = change[usize::from(code)];
-            *pair ^= (code ^ new) << shift;
+            let code = *codes >> shift & 15;
+            *codes ^= (code ^ changed(code.into(), HIT) as u8) << shift;
+        }
+    }
+
+    /// Changes a voxel, by its pair and the part of the change for its place there.
+    pub(super) fn pass(&mut self, pair: usize, change: &[u8; 256]) {
+        if let Some(codes) = self.0.get_mut(pair) {
+            *codes = change[usize::from(*codes)];
         }
     }
 
@@ -115,12 +127,16 @@ impl Evidence {
 
 #[cfg(test)]
 mod tests {
-    use super::{Evidence, HIT_ONCE, PASSED_ONCE, UNANSWERED_ONCE};
+    use super::{Evidence, PASSED_ONCE, UNANSWERED_ONCE};
 
-    fn after(beams: &[&super::Change]) -> [u32; 2] {
+    /// The voxel at a height after hits, and beams that passed it.
+    fn after(beams: &[Option<&super::Change>]) -> [u32; 2] {
         let mut column = Evidence::NONE;
         for beam in beams {
-            column.add(5, beam);
+            match beam {
+                Some(change) => column.pass(2, &change[1]),
+                None => column.hit(5),
+            }
         }
         let [occupied, unknown] = column.bits();
         // No other voxel changes.
@@ -130,7 +146,7 @@ mod tests {
 
     #[test]
     fn hits_and_passes_add_up_within_the_limits() {
-        let (hit, passed, unanswered) = (&HIT_ONCE, &PASSED_ONCE, &UNANSWERED_ONCE);
+        let (hit, passed, unanswered) = (None, Some(&PASSED_ONCE), Some(&UNANSWERED_ONCE));
         assert_eq!(after(&[]), [0, 1]);
         assert_eq!(after(&[hit]), [1, 0]);
         assert_eq!(after(&[hit, passed]), [1, 0]);

@@ -12,6 +12,7 @@ mod distance_field;
 mod evidence;
 mod extent;
 mod fan;
+mod near_slices;
 mod rolling_grid;
 mod scan_age;
 mod scan_fit;

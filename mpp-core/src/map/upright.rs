@@ -11,11 +11,13 @@ pub(super) const FARTHEST: u8 = (REACH * PARTS) as u8 * UNITS as u8;
 pub(super) const UNIT: f64 = PART / UNITS as f64;
 pub(super) const UNITS: u32 = 2;
 /// Number of voxels above each other.
-const HEIGHT: usize = CELLS[2];
+pub(super) const HEIGHT: usize = CELLS[2];
 /// Distances of the centres of voxels above each other, in units of the field.
 pub(super) type Column = [u8; HEIGHT];
 /// The columns of centres around a point: by x, then by y.
-pub(super) type Around<'a> = [[Option<&'a Column>; 2]; 2];
+pub(super) type Around<'a> = [[&'a Column; 2]; 2];
+/// A column far from all hits.
+pub(super) static FAR_COLUMN: Column = [FARTHEST; HEIGHT];
 
 /// A vertical line, and the distance that counts as clear.
 pub(crate) struct Upright<'a> {
@@ -37,6 +39,12 @@ pub(crate) struct Storey {
 }
 
 impl Storey {
+    pub(crate) const ZERO: Self = Self {
+        centre: 0,
+        share: 0.0,
+        voxel: 0,
+    };
+
     /// Of a height \[m\], in a window that begins at a z, in voxels.
     pub(super) fn of(z: f64, floor: i64) -> Self {
         let (centre, share) = along(z / CELL - 0.5 - floor as f64, HEIGHT);
@@ -52,7 +60,23 @@ impl Upright<'_> {
     /// Whether the point at a height is clear, as far as one voxel tells.
     pub(crate) fn is_clear(&self, at: &Storey) -> bool {
         let [[column, _], _] = self.around;
-        distance(column, at.centre).is_some_and(|distance| distance >= self.needed)
+        (column.get(at.centre)).is_some_and(|distance| *distance >= self.needed)
+    }
+
+    /// Whether all points are clear, as far as twice the unit tells: four centres at once.
+    pub(crate) fn is_all_clear(&self) -> bool {
+        const HIGH: u32 = 0x8080_8080;
+        let [[column, _], _] = self.around;
+        let up_to_high = u32::from_le_bytes([0x80 - self.needed.div_ceil(2); 4]);
+        (column.as_chunks().0.iter()).all(|four| {
+            let halves = u32::from_le_bytes(*four) >> 1 & !HIGH;
+            (halves + up_to_high) & HIGH == HIGH
+        })
+    }
+
+    /// Whether nobody has seen the voxel at some height.
+    pub(crate) fn has_unknown(&self) -> bool {
+        self.unknown != 0
     }
 
     /// Distance of the point at a height \[m\].
@@ -67,17 +91,15 @@ impl Upright<'_> {
     }
 }
 
-pub(super) fn distance(column: Option<&Column>, z: usize) -> Option<u8> {
-    column.and_then(|column| column.get(z)).copied()
-}
-
 /// The distance \[m\] at a place among the eight centres around it, the lower ones at `z`, and its slopes by x, y and z a voxel.
 pub(super) fn mixed(around: &Around<'_>, z: usize, share: [f64; 3]) -> (f64, [f64; 3]) {
     // Value and slopes along z, then y, then x.
     let mix = |a: f64, b: f64, share: f64| a + (b - a) * share;
-    let column = |column: Option<&Column>| {
-        let [below, above] =
-            [z, z + 1].map(|z| UNIT * f64::from(distance(column, z).unwrap_or(FARTHEST)));
+    let column = |column: &Column| {
+        let pair = column.get(z..).and_then(|column| column.first_chunk());
+        let [below, above] = pair
+            .unwrap_or(&[FARTHEST; 2])
+            .map(|at| UNIT * f64::from(at));
         [mix(below, above, share[2]), above - below]
     };
     let [from, to] = around.map(|columns| {

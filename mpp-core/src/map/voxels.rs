@@ -4,7 +4,7 @@
 //! is no part of it, and floor and ceiling are rows of programs. Higher bands are flown over terrain: the window goes with the
 //! aircraft in z, too, and the ground is what hits show of it.
 
-use super::evidence::{Change, Evidence, HIT_ONCE, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
+use super::evidence::{Change, Evidence, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
 use super::extent::Extent;
 use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
 use crate::vehicle::between;
@@ -43,8 +43,9 @@ pub struct VoxelGrid {
     /// First z in the window, in voxels, and whether it goes with the aircraft.
     floor: i64,
     follows: bool,
-    /// Where the beams of this scan begin \[m\].
+    /// Where the beams of this scan begin \[m\]. In the window also the voxel there, by axis: its place and its first side \[m\].
     origin: [f64; 3],
+    begun: Option<[(usize, f64); 3]>,
 }
 
 impl VoxelGrid {
@@ -60,6 +61,7 @@ impl VoxelGrid {
             floor: 0,
             follows: false,
             origin: [0.0; 3],
+            begun: None,
         }
     }
 
@@ -112,6 +114,16 @@ impl VoxelGrid {
         self.climb(*z);
         self.hit.as_flattened_mut().fill(0);
         self.origin = *position;
+        let firsts = [self.first[0], self.first[1], self.floor];
+        let begun: [_; 3] = core::array::from_fn(|axis| {
+            let at = voxel(position[axis]);
+            (at.wrapping_sub(firsts[axis]) as u64, at as f64 * CELL)
+        });
+        let inside = begun
+            .iter()
+            .zip(CELLS)
+            .all(|((at, _), length)| *at < length as u64);
+        self.begun = inside.then_some(begun.map(|(at, side)| (at as usize, side)));
     }
 
     /// Moves the window: in x ahead, in y to both sides. A jump beyond the window clears all of it, and no more than that.
@@ -199,7 +211,7 @@ impl VoxelGrid {
             column(&mut self.hit, x, y),
             column(&mut self.extents, x, y),
         ) {
-            evidence.add(z as usize, &HIT_ONCE);
+            evidence.hit(z as usize);
             *hit |= 1 << z;
             extent.take(&end, range);
         }
@@ -220,52 +232,43 @@ impl VoxelGrid {
     // Not inlined, so that the numbers of its loop stay in registers.
     #[inline(never)]
     fn pass_until(&mut self, direction: &[f64; 3], end: f64, change: &Change) {
-        let from = self.origin;
-        let start @ [x, y, z] = from.map(voxel);
-        let [first, left] = self.first;
-        let height = z - self.floor;
-        let inside = self
-            .place(x, y)
-            .filter(|_| (0..CELLS[2] as i64).contains(&height));
-        if inside.is_none() {
+        let Some(begun) = self.begun else {
             return;
-        }
-        let [corner_x, corner_y] = self.corner;
-        // Small numbers from the corner of the window: the loop runs for every voxel of every beam.
-        let at = [x - first, y - left, height];
+        };
+        let (from, corner) = (self.origin, [self.corner[0], self.corner[1], 0]);
         let [mut x, mut y, mut z] = core::array::from_fn(|axis| {
-            let corner = start[axis] as f64 * CELL;
-            Walk::new(at[axis] as usize, [corner, from[axis]], direction[axis])
+            let (at, side) = begun[axis];
+            Walk::new(
+                [corner[axis], at, CELLS[axis]],
+                [side, from[axis]],
+                direction[axis],
+            )
         });
         let (evidence, hit) = (self.evidence.as_flattened_mut(), self.hit.as_flattened());
-        let place = |x: &Walk, y: &Walk| {
-            let row = wrapped(corner_x + x.at, CELLS[0]);
-            row * CELLS[1] + wrapped(corner_y + y.at, CELLS[1])
-        };
-        let mut column = place(&x, &y);
+        // Steps to the sides that come before this distance need no other test.
+        let past = end.next_up();
+        let (mut bit, mut codes, mut soon) = (1 << z.at, &change[z.at % 2], z.next.min(past));
         for _ in 0..MOST_STEPS {
+            let column = x.at * CELLS[1] + y.at;
             let (Some(evidence), Some(hit)) = (evidence.get_mut(column), hit.get(column)) else {
                 return;
             };
-            if hit >> z.at & 1 == 0 {
-                evidence.add(z.at, change);
+            if hit & bit == 0 {
+                evidence.pass(z.at / 2, codes);
             }
             let ahead = x.next < y.next;
-            if (if ahead { x.next } else { y.next }) >= z.next {
-                if !z.step(end, CELLS[2]) {
-                    return;
-                }
-                continue;
-            }
-            let goes_on = if ahead {
-                x.step(end, CELLS[0])
+            let goes_on = if (if ahead { x.next } else { y.next }) >= soon {
+                let goes_on = soon < past && z.step(CELLS[2]);
+                (bit, codes, soon) = (1 << z.at, &change[z.at % 2], z.next.min(past));
+                goes_on
+            } else if ahead {
+                x.step(CELLS[0])
             } else {
-                y.step(end, CELLS[1])
+                y.step(CELLS[1])
             };
             if !goes_on {
                 return;
             }
-            column = place(&x, &y);
         }
     }
 
@@ -289,35 +292,48 @@ impl VoxelGrid {
 
 /// The way of a beam along an axis.
 struct Walk {
-    /// Number of the voxel.
+    /// Place in the memory, and what a step adds to it, modulo the length: one, or one less than none.
     at: usize,
-    /// What a step adds to it: one, or the number that wraps it around to one less.
     by: usize,
+    /// Steps that stay in the window.
+    left: usize,
     /// Distances along the beam: of the next face, and between faces \[m\].
     next: f64,
     each: f64,
 }
 
 impl Walk {
-    /// From a place in a voxel with a corner \[m\], by a share of the beam [-].
-    fn new(at: usize, [corner, from]: [f64; 2], speed: f64) -> Self {
-        let (next, each, by) = if speed > 1e-12 {
-            ((corner + CELL - from) / speed, CELL / speed, 1)
+    /// From a place in the window, whose memory begins at a corner, in a voxel with a side \[m\], by a share of the beam [-].
+    fn new([corner, at, length]: [usize; 3], [side, from]: [f64; 2], speed: f64) -> Self {
+        let (next, each, by, left) = if speed > 1e-12 {
+            (
+                (side + CELL - from) / speed,
+                CELL / speed,
+                1,
+                length - 1 - at,
+            )
         } else if speed < -1e-12 {
-            ((corner - from) / speed, -CELL / speed, usize::MAX)
+            ((side - from) / speed, -CELL / speed, length - 1, at)
         } else {
-            (f64::INFINITY, f64::INFINITY, usize::MAX)
+            (f64::INFINITY, f64::INFINITY, 0, 0)
         };
-        Self { at, by, next, each }
+        let at = wrapped(corner + at, length);
+        Self {
+            at,
+            by,
+            left,
+            next,
+            each,
+        }
     }
 
-    /// Steps to the next voxel, if its face comes before the end \[m\]. Returns false there, and outside of the window.
-    fn step(&mut self, end: f64, length: usize) -> bool {
-        let ends = self.next > end;
-        self.at = self.at.wrapping_add(self.by);
+    /// Steps to the next voxel. Returns false outside of the window.
+    fn step(&mut self, length: usize) -> bool {
+        let inside = self.left > 0;
+        self.left = self.left.wrapping_sub(1);
+        self.at = wrapped(self.at + self.by, length);
         self.next += self.each;
-        // A number below zero is a very large one here.
-        !ends && self.at < length
+        inside
     }
 }
 

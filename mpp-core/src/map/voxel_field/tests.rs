@@ -2,7 +2,7 @@
 
 extern crate std;
 
-use super::{CELL, LENGTH, MOST_CLEARANCE, NearSlices, UNIT, VoxelField};
+use super::{CELL, HEIGHT, LENGTH, MOST_CLEARANCE, NearSlices, UNIT, VoxelField};
 use crate::map::voxels::{SpaceBeam, VoxelGrid};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
@@ -94,7 +94,7 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
         });
         libm::sqrt(squares.sum())
     };
-    let mut clear = 0;
+    let (mut clear, mut lines) = (0, 0);
     for _ in 0..2000 {
         let point = [draw(0.0, 42.0), draw(-14.0, 14.0), draw(0.5, 15.0)];
         let centre = point.map(|it| (libm::floor(it / CELL) + 0.5) * CELL);
@@ -115,10 +115,16 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
             assert!((by - expected).abs() < 1e-9, "{point:?} {axis}");
         }
         let wanted = draw(0.3, 2.0);
-        if field.is_clear(&point, wanted) {
+        if field.is_clear(&point, super::needed(wanted)) {
             assert!(field.clearance(&point) >= wanted, "{point:?} {wanted}");
             clear += 1;
         }
+        let line = field.upright(point[0], point[1], super::needed(wanted));
+        if line.is_all_clear() {
+            let mut heights = (0..HEIGHT).map(|z| field.storey(z as f64 * CELL));
+            assert!(heights.all(|at| line.is_clear(&at)), "{point:?} {wanted}");
+            lines += 1;
+        }
     }
-    assert!(clear > 500, "{clear}");
+    assert!(clear > 500 && lines > 50, "{clear} {lines}");
 }

@@ -36,6 +36,8 @@ pub(super) struct Tally {
     velocity: [f64; 3],
     /// Runaway of the nose at the knot \[rad\].
     runaway: f64,
+    /// Where the trajectory begins: x \[m\].
+    begun: f64,
     /// Sums of the squared lack of room, and of the part that lies above or below \[m^2\].
     tight: [f64; 2],
 }
@@ -59,6 +61,8 @@ pub(super) struct Judge<'a> {
     pub(super) to_go: &'a CostToGo,
     pub(super) model: &'a SpaceModel,
     pub(super) keep: &'a Keep,
+    /// Distance at which no clearance and no room is missing, by [`needed`](crate::map::voxel_field::needed).
+    pub(super) clear: u8,
     /// Cost of the squared lack of airspeed at a knot [s^2/m^2].
     pub(super) slow: f64,
     /// Runaway of the nose at the first knot \[rad\].
@@ -69,8 +73,10 @@ impl Judge<'_> {
     /// The worth of a trajectory.
     pub(super) fn judge(&self, plan: &SpacePlan) -> SpaceJudgement {
         let mut tally = self.begin(plan);
-        for stage in 0..STAGES {
-            self.add(plan, stage, &mut tally);
+        for (stage, knots) in plan.knots.windows(2).enumerate() {
+            if let [from, to] = knots {
+                self.add([from, to], stage, &mut tally);
+            }
         }
         self.end(plan, &tally)
     }
@@ -84,16 +90,13 @@ impl Judge<'_> {
             to_go: None,
             velocity: first.ground_velocity(&self.model.wind),
             runaway: self.runaway,
+            begun: first.position[0],
             tight: [0.0; 2],
         }
     }
 
     /// Adds the costs of a stage.
-    pub(super) fn add(&self, plan: &SpacePlan, stage: usize, tally: &mut Tally) {
-        let [first, ..] = &plan.knots;
-        let (Some(from), Some(to)) = (plan.knots.get(stage), plan.knots.get(stage + 1)) else {
-            return;
-        };
+    pub(super) fn add(&self, [from, to]: [&SpacePath; 2], stage: usize, tally: &mut Tally) {
         let (field, keep, via) = (self.field, self.keep, self.to_go.via());
         let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
@@ -118,7 +121,7 @@ impl Judge<'_> {
                 tally.to_go = Some(self.to_go.cost(&point, &after));
             }
             let (mut lack, mut room) = (0.0, 0.0);
-            if !field.is_clear(&point, keep.margin + keep.half_span + ROOM) {
+            if !field.is_clear(&point, self.clear) {
                 let (clearance, slope) = field.clearance_and_slope(&point);
                 let margin = keep.margin(clearance, &slope, || wing(from, to, share));
                 lack = (margin - clearance).max(0.0);
@@ -134,9 +137,9 @@ impl Judge<'_> {
             lack += keep.outside(&point);
             tally.price += later * discount * (LACK * lack * lack + ROOM_WEIGHT * room * room);
             tally.missing = tally.missing.max(lack * later);
-            if field.is_unknown(&point) {
-                let near = 1.0 - (point[0] - first.position[0]) / UNKNOWN_AHEAD;
-                tally.price += UNKNOWN_COST * later * (least / points) * near.max(0.0);
+            let near = 1.0 - (point[0] - tally.begun) / UNKNOWN_AHEAD;
+            if near > 0.0 && field.is_unknown(&point) {
+                tally.price += UNKNOWN_COST * later * (least / points) * near;
             }
         }
     }

@@ -8,8 +8,9 @@
 use super::cost_to_go::{ACROSS, CostToGo, STATIONS, State, Station, UP, VIA, within};
 use super::edges::{
     CLIMBS, Choices, LAYERS, Layers, NONE, OPEN, ROWS, SLOPES, across, backward, forward, number,
-    settle, units,
+    settle, sum, units,
 };
+use crate::map::voxel_field::needed;
 use crate::map::{Storey, Upright, VoxelField};
 use crate::tuning::space_lattice::{HEIGHT, LACK, SIDE};
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
@@ -42,6 +43,10 @@ pub(super) struct Lattice {
     choices: [[[Choices; SLOPES]; ROWS]; STATIONS - 1],
     /// Rows and slopes that paths reach, at the last station of the way to the via station.
     reached: [[bool; SLOPES]; ROWS],
+    /// What edges from a row cost at the rows of their ends, from [`SLOPES`] rows before it to as many behind.
+    sums: [[Layers; CLIMBS]; 2 * SLOPES + 1],
+    /// The heights of the layers, and those half a layer above them.
+    levels: [[Level; LAYERS]; 2],
     /// Costs of the places at a station.
     nodes: [Layers; ROWS],
     /// Costs halfway to it: by twice the mean row, then at and between layers.
@@ -54,12 +59,25 @@ impl Lattice {
         costs: [[[[[0; LAYERS]; CLIMBS]; SLOPES]; ROWS]; 2],
         choices: [[[[[0; LAYERS.div_ceil(2)]; CLIMBS]; SLOPES]; ROWS]; STATIONS - 1],
         reached: [[false; SLOPES]; ROWS],
+        sums: [[[0; LAYERS]; CLIMBS]; 2 * SLOPES + 1],
+        levels: [[Level::ZERO; LAYERS]; 2],
         nodes: [[0; LAYERS]; ROWS],
         halfway: [[[0; LAYERS]; 2]; 2 * ROWS - 1],
     };
 
     /// Begins where the costs-to-go begin, with the velocity over ground.
-    pub(super) fn begin(&mut self, to_go: &mut CostToGo, velocity: &[f64; 3]) {
+    pub(super) fn begin(
+        &mut self,
+        to_go: &mut CostToGo,
+        velocity: &[f64; 3],
+        (field, rules): (&VoxelField, &Rules),
+    ) {
+        for (levels, above) in self.levels.iter_mut().zip([0.0, 0.5]) {
+            for (layer, level) in levels.iter_mut().enumerate() {
+                let places = layer as f64 + above - (LAYERS / 2) as f64;
+                *level = Level::new(to_go.origin[2] + places * UP, field, rules);
+            }
+        }
         let [slope, climb] = to_go.slopes(velocity).map(libm::round);
         let (slope, climb) = (within(slope, SLOPES), within(climb, CLIMBS));
         let [first, _] = &mut self.costs;
@@ -83,7 +101,7 @@ impl Lattice {
     }
 
     /// Rows that paths need at the end of the edges from a station.
-    fn needed(&self, station: usize) -> Range<usize> {
+    fn used(&self, station: usize) -> Range<usize> {
         if station >= VIA {
             return 0..ROWS;
         }
@@ -102,19 +120,23 @@ impl Lattice {
         (field, rules): (&VoxelField, &Rules),
         rows: Range<usize>,
     ) {
-        let needed = self.needed(station);
-        let rows = rows.start.max(needed.start)..rows.end.min(needed.end);
+        let used = self.used(station);
+        let rows = rows.start.max(used.start)..rows.end.min(used.end);
         if rows.is_empty() {
             return;
         }
         let half = (station as f64 + 0.5) * to_go.step;
-        let levels = levels(to_go.origin[2], field, rules);
-        let line = |ahead: f64, row: f64| Line::new(&to_go.origin, field, rules, ahead, row);
-        let halves = 2 * rows.start..(2 * rows.end).min(2 * needed.end - 1);
+        let clear = needed(rules.margin);
+        let line = |ahead: f64, row: f64| {
+            let [x, y, _] = to_go.origin;
+            let y = y + (row - (ROWS / 2) as f64) * ACROSS;
+            Line::new([x + ahead, y], field, (rules, clear), ahead)
+        };
+        let halves = 2 * rows.start..(2 * rows.end).min(2 * used.end - 1);
         let parts = self.halfway.get_mut(halves.clone());
         for (row, parts) in halves.zip(parts.unwrap_or(&mut [])) {
             let line = line(half, row as f64 / 2.0);
-            for (layers, levels) in parts.iter_mut().zip(&levels) {
+            for (layers, levels) in parts.iter_mut().zip(&self.levels) {
                 for (cost, level) in layers.iter_mut().zip(levels) {
                     *cost = units(line.cost(level));
                 }
@@ -123,7 +145,7 @@ impl Lattice {
         let nodes = self.nodes.get_mut(rows.clone());
         for (row, layers) in rows.zip(nodes.unwrap_or(&mut [])) {
             let line = line(half + 0.5 * to_go.step, row as f64);
-            for (cost, level) in layers.iter_mut().zip(&levels[0]) {
+            for (cost, level) in layers.iter_mut().zip(&self.levels[0]) {
                 *cost = units(line.cost(level) + (level.off + line.aside));
             }
         }
@@ -142,35 +164,32 @@ impl Lattice {
         };
         for row in rows {
             for next in 0..SLOPES {
-                let (mut contest, mut met) = (OPEN, false);
-                for slope in next.saturating_sub(1)..(next + 2).min(SLOPES) {
-                    let begin = (row + 6).checked_sub(slope + next);
-                    let Some(begin) = begin.filter(|row| *row < ROWS) else {
-                        continue;
-                    };
-                    let is_reached = self.reached.get(begin).and_then(|row| row.get(slope));
-                    let from = from.get(begin).and_then(|row| row.get(slope));
-                    if let (Some(true), Some(from), Some(node), Some(half)) = (
-                        is_reached,
-                        from,
-                        self.nodes.get(row),
-                        self.halfway.get(row + begin),
-                    ) {
-                        let own = (across(slope, next), number(next, slope));
-                        forward(from, &mut contest, node, half, own);
-                        met = true;
-                    }
-                }
-                if let (Some(to), Some(choices)) = (
+                let (Some(to), Some(choices)) = (
                     to.get_mut(row).and_then(|row| row.get_mut(next)),
                     choices.get_mut(row).and_then(|row| row.get_mut(next)),
-                ) {
-                    if met {
-                        settle(&contest, to, choices);
-                    } else {
-                        to.as_flattened_mut().fill(NONE);
+                ) else {
+                    return;
+                };
+                let begins = (next.saturating_sub(1)..(next + 2).min(SLOPES)).filter_map(|slope| {
+                    let begin = (row + 6).checked_sub(slope + next)?;
+                    let is_reached = *self.reached.get(begin)?.get(slope)?;
+                    is_reached.then_some((slope, begin))
+                });
+                if begins.clone().next().is_none() {
+                    to.as_flattened_mut().fill(NONE);
+                    continue;
+                }
+                let mut contest = OPEN;
+                for (slope, begin) in begins {
+                    let from = from.get(begin).and_then(|row| row.get(slope));
+                    if let (Some(from), Some(node), Some(half)) =
+                        (from, self.nodes.get(row), self.halfway.get(row + begin))
+                    {
+                        let own = (across(slope, next), number(next, slope));
+                        forward(from, &mut contest, node, half, own);
                     }
                 }
+                settle(|i| contest.map(|words| words[i]), to, choices);
             }
         }
     }
@@ -198,25 +217,36 @@ impl Lattice {
             return;
         };
         for row in rows {
-            for slope in 0..SLOPES {
-                let mut contest = OPEN;
-                for next in slope.saturating_sub(1)..(slope + 2).min(SLOPES) {
-                    let Some(end) = (row + slope + next).checked_sub(6) else {
-                        continue;
-                    };
-                    let from = from.get(end).and_then(|row| row.get(next));
-                    if let (Some(from), Some(node), Some(half)) =
-                        (from, self.nodes.get(end), self.halfway.get(row + end))
-                    {
-                        let own = (across(slope, next), number(slope, next));
-                        backward(from, &mut contest, node, half, own);
-                    }
+            for (sums, shift) in self.sums.iter_mut().zip(0..) {
+                let end = (row + shift).checked_sub(SLOPES);
+                // A change of the slope beyond the last one leads nowhere.
+                let end = end.filter(|_| (1..2 * SLOPES).contains(&shift));
+                match end.and_then(|end| Some((self.nodes.get(end)?, self.halfway.get(row + end)?)))
+                {
+                    Some((node, half)) => sum(sums, node, half),
+                    None => sums.as_flattened_mut().fill(NONE),
                 }
-                if let (Some(to), Some(choices)) = (
+            }
+            for slope in 0..SLOPES {
+                // Where there is no edge its sums are too large.
+                let from = |other: usize| {
+                    let next = (slope + other).saturating_sub(1).min(SLOPES - 1);
+                    let end = (row + 2 * slope + other)
+                        .saturating_sub(SLOPES)
+                        .min(ROWS - 1);
+                    from.get(end)?.get(next)
+                };
+                if let (Some(a), Some(b), Some(c), Some(sums), Some(to), Some(choices)) = (
+                    from(0),
+                    from(1),
+                    from(2),
+                    self.sums
+                        .get(2 * slope..)
+                        .and_then(|sums| sums.first_chunk()),
                     to.get_mut(row).and_then(|row| row.get_mut(slope)),
                     choices.get_mut(row).and_then(|row| row.get_mut(slope)),
                 ) {
-                    settle(&contest, to, choices);
+                    backward([a, b, c], sums, slope, to, choices);
                 }
             }
         }
@@ -249,29 +279,34 @@ fn fill(station: &mut Station, cost: u16) {
 }
 
 /// A height at which places are priced.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Level {
     storey: Storey,
     /// Distance beyond the band \[m\].
     beyond: f64,
-    /// Cost of the distance from the wanted height [-].
+    /// Cost of that where all is clear and seen, and cost of the distance from the wanted height [-].
+    plain: f64,
     off: f64,
 }
 
-/// The heights of the layers, and those half a layer above them.
-fn levels(origin: f64, field: &VoxelField, rules: &Rules) -> [[Level; LAYERS]; 2] {
-    let [low, high] = rules.heights;
-    [0.0, 0.5].map(|above| {
-        core::array::from_fn(|layer| {
-            let z = origin + (layer as f64 + above - (LAYERS / 2) as f64) * UP;
-            let off = z - rules.altitude;
-            Level {
-                storey: field.storey(z),
-                beyond: (low - z).max(z - high).max(0.0),
-                off: HEIGHT * off * off,
-            }
-        })
-    })
+impl Level {
+    const ZERO: Self = Self {
+        storey: Storey::ZERO,
+        beyond: 0.0,
+        plain: 0.0,
+        off: 0.0,
+    };
+
+    fn new(z: f64, field: &VoxelField, rules: &Rules) -> Self {
+        let ([low, high], off) = (rules.heights, z - rules.altitude);
+        let beyond = (low - z).max(z - high).max(0.0);
+        Self {
+            storey: field.storey(z),
+            beyond,
+            plain: LACK * beyond * beyond,
+            off: HEIGHT * off * off,
+        }
+    }
 }
 
 /// Places above each other.
@@ -285,23 +320,29 @@ struct Line<'a> {
     aside: f64,
     /// Cost of the unknown, where it has one [-].
     unknown: Option<f64>,
+    /// Whether all places lie within the sides, are clear, and seen where that counts.
+    plain: bool,
 }
 
 impl<'a> Line<'a> {
-    /// The places at a distance ahead of the origin \[m\], and at a row.
+    /// The places at an x and y \[m\], `ahead` of the origin by a distance \[m\], with the distance that is clear.
     fn new(
-        [x, y, _]: &[f64; 3],
+        [x, y]: [f64; 2],
         field: &'a VoxelField,
-        rules: &Rules,
+        (rules, clear): (&Rules, u8),
         ahead: f64,
-        row: f64,
     ) -> Self {
-        let y = y + (row - (ROWS / 2) as f64) * ACROSS;
         let near = 1.0 - ahead / UNKNOWN_AHEAD;
+        let (upright, outside) = (
+            field.upright(x, y, clear),
+            (libm::fabs(y) - rules.half_width).max(0.0),
+        );
+        let seen = near <= 0.0 || !upright.has_unknown();
         Self {
-            upright: field.upright(x + ahead, y, rules.margin),
+            plain: outside <= 0.0 && seen && upright.is_all_clear(),
+            upright,
             margin: rules.margin,
-            outside: (libm::fabs(y) - rules.half_width).max(0.0),
+            outside,
             aside: SIDE * y * y,
             unknown: (near > 0.0).then_some(UNKNOWN_COST * near),
         }
@@ -309,6 +350,9 @@ impl<'a> Line<'a> {
 
     /// Cost of the place at a height [-], without that of its distance from the middle.
     fn cost(&self, level: &Level) -> f64 {
+        if self.plain {
+            return level.plain;
+        }
         let near_obstacle = if self.upright.is_clear(&level.storey) {
             0.0
         } else {

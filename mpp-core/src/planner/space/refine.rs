@@ -5,7 +5,7 @@
 
 use super::candidate::{SpacePlan, limited};
 use super::judge::{Judge, SpaceJudgement, Tally};
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::{STAGE_PERIOD, STAGES};
 use crate::tuning::space_refinement::{LIFT, ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
@@ -19,9 +19,16 @@ const ROUNDED: f64 = 1.0 - 1e-12;
 /// Number of moves that a cycle tries.
 pub(super) const TRIALS: usize = ROUNDS * MOVES;
 
-/// A change of bank \[rad\] and lift upwards [m/s^2] at each knot.
+/// A change of bank \[rad\] and lift upwards [m/s^2] at some knots.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Move([[f64; 2]; KNOTS]);
+pub(super) struct Move {
+    side: [f64; 2],
+    /// The first knot that is moved, and for how many knots.
+    first: usize,
+    width: usize,
+    /// Whether as many knots go the other way then.
+    back: bool,
+}
 
 impl Move {
     /// The move of a number: the bank goes to one side for some knots, and where the track shall only be displaced as far to
@@ -45,27 +52,33 @@ impl Move {
         } else {
             [part * SIZE, 0.0]
         };
-        let back = number / 2 % 2 == 1;
-        let width = WIDTHS[number / 4 % WIDTHS.len()];
-        let first = FIRST[number / (4 * WIDTHS.len()) % FIRST.len()];
-        Self(core::array::from_fn(|knot| {
-            if knot >= first && knot < first + width {
-                side
-            } else if back && knot >= first + width && knot < first + 2 * width {
-                side.map(|it| -it)
-            } else {
-                [0.0; 2]
-            }
-        }))
+        Self {
+            side,
+            first: FIRST[number / (4 * WIDTHS.len()) % FIRST.len()],
+            width: WIDTHS[number / 4 % WIDTHS.len()],
+            back: number / 2 % 2 == 1,
+        }
+    }
+
+    /// The change at a knot.
+    fn at(&self, knot: usize) -> [f64; 2] {
+        let turn = self.first + self.width;
+        if (self.first..turn).contains(&knot) {
+            self.side
+        } else if self.back && (turn..turn + self.width).contains(&knot) {
+            self.side.map(|it| -it)
+        } else {
+            [0.0; 2]
+        }
     }
 }
 
-/// The plan that is moved, flown by the rules of moves, with its costs before each stage: a move has them up to its first
-/// stage.
+/// The plan that is moved, flown by the rules of moves, with its costs and the sum of its efforts before each stage: a move has
+/// them up to its first stage.
 #[derive(Clone, Debug)]
 pub(super) struct Unmoved {
     plan: SpacePlan,
-    tallies: heapless::Vec<Tally, STAGES>,
+    tallies: heapless::Vec<(Tally, f64), STAGES>,
     lifts: Lifts,
     /// Whether moves of the lift are tried, too.
     climbs: bool,
@@ -82,14 +95,18 @@ impl Unmoved {
     pub(super) fn of(judge: &Judge<'_>, best: &SpacePlan, since: usize) -> Self {
         let lifts = Lifts::of(judge.model, best);
         let (mut plan, mut tally) = (*best, judge.begin(best));
-        let mut tallies = heapless::Vec::new();
+        let (mut tallies, mut efforts) = (heapless::Vec::new(), 0.0);
         for stage in 0..STAGES {
             // As many stages as places.
-            let _ = tallies.push(tally);
+            let _ = tallies.push((tally, efforts));
             plan.fly_stage(stage, judge.model, |state| {
-                lifts.control(judge.model, best, stage, state, [0.0; 2])
+                let control = lifts.control(judge.model, best, stage, state, [0.0; 2]);
+                efforts += judge.effort(&control);
+                control
             });
-            judge.add(&plan, stage, &mut tally);
+            if let Some([from, to, ..]) = plan.knots.get(stage..) {
+                judge.add([from, to], stage, &mut tally);
+            }
         }
         Self {
             plan,
@@ -117,29 +134,34 @@ impl Unmoved {
         by: &Move,
     ) -> Option<(SpacePlan, SpaceJudgement)> {
         // The first stage that the move changes.
-        let first = (by.0.iter().skip(1)).position(|[bank, lift]| *bank != 0.0 || *lift != 0.0)?;
-        let (mut plan, mut tally) = (self.plan, *self.tallies.get(first)?);
-        let (begun, rest) = plan.controls.split_at_mut_checked(first)?;
-        let mut efforts: f64 = begun.iter().map(|control| judge.effort(control)).sum();
+        let first = by.first - 1;
+        let (mut tally, mut efforts) = *self.tallies.get(first)?;
         let (known, limit) = (tally.least_price(), price / ROUNDED);
         // Bank and angle of attack, and so all controls, do not depend on forces.
-        let mut state = *plan.knots.get(first)?;
-        for (stage, control) in (first..).zip(rest) {
-            let change = by.0.get(stage + 1).copied().unwrap_or([0.0; 2]);
-            *control = (self.lifts).control(judge.model, best, stage, &state, change);
-            state = state.turned(control, STAGE_PERIOD);
-            efforts += judge.effort(control);
+        let start = self.plan.knots.get(first)?;
+        let (mut state, mut controls) = (*start, heapless::Vec::<_, STAGES>::new());
+        for stage in first..STAGES {
+            let control = (self.lifts).control(judge.model, best, stage, &state, by.at(stage + 1));
+            // As many stages as places.
+            let _ = controls.push(control);
+            state = state.turned(&control, STAGE_PERIOD);
+            efforts += judge.effort(&control);
             if known + efforts >= limit {
                 return None;
             }
         }
-        let controls = plan.controls;
-        for (stage, control) in controls.iter().enumerate().skip(first) {
-            plan.fly_stage(stage, judge.model, |_| *control);
-            judge.add(&plan, stage, &mut tally);
+        state = *start;
+        for (stage, control) in (first..).zip(&controls) {
+            let next = state.after(judge.model, control, STAGE_PERIOD);
+            judge.add([&state, &next], stage, &mut tally);
+            state = next;
             if tally.least_price() + efforts >= limit {
                 return None;
             }
+        }
+        let mut plan = self.plan;
+        for (stage, control) in (first..).zip(&controls) {
+            plan.fly_stage(stage, judge.model, |_| *control);
         }
         Some((plan, judge.end(&plan, &tally)))
     }
@@ -236,7 +258,7 @@ mod tests {
             let (moved, worth) = at(f64::INFINITY).unwrap();
             assert_eq!(judge.judge(&moved), worth);
             for (stage, control) in moved.controls.iter().enumerate() {
-                let (knot, change) = (&moved.knots[stage], by.0[stage + 1]);
+                let (knot, change) = (&moved.knots[stage], by.at(stage + 1));
                 let chosen = unmoved.lifts.control(&model, &best, stage, knot, change);
                 assert_eq!(chosen, *control);
             }

@@ -13,8 +13,9 @@ use super::{
 };
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::map::VoxelGrid;
-use crate::map::voxel_field::{LENGTH, NearSlices};
+use crate::map::voxel_field::{LENGTH, NearSlices, needed};
 use crate::qp::Status;
+use crate::tuning::space_judgement::ROOM;
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::SpaceControl;
@@ -57,10 +58,10 @@ impl SpacePlanner {
         if slice + 1 < LENGTH {
             return Phase::Measure(slice + 1);
         }
-        let velocity = self.start.ground_velocity(&self.model.wind);
+        let (rules, velocity) = (self.rules(), self.start.ground_velocity(&self.model.wind));
         self.workspace = Workspace::Search(Lattice::ZEROS);
         if let Workspace::Search(lattice) = &mut self.workspace {
-            lattice.begin(&mut self.to_go, &velocity);
+            lattice.begin(&mut self.to_go, &velocity, (&self.field, &rules));
         }
         Phase::Price(0, 0)
     }
@@ -214,6 +215,7 @@ impl SpacePlanner {
             to_go: &self.to_go,
             model: &self.model,
             keep: &self.keep,
+            clear: needed(self.keep.margin + self.keep.half_span + ROOM),
             slow: self.keep.slow(),
             runaway: self.runaway,
         }
@@ -236,7 +238,7 @@ impl SpacePlanner {
 
     /// Tries the next move of the best plan. A new best plan is flown first as moves begin with it.
     pub(super) fn refine(&mut self, number: usize) -> Phase {
-        let Some(best) = self.best else {
+        let Some(best) = &self.best else {
             return Phase::Idle;
         };
         let Some(unmoved) = &self.unmoved else {
