@@ -56,6 +56,8 @@ pub enum Stream {
     SpaceEstimate = 22,
     /// Bodies of a world in space.
     Bodies = 23,
+    /// Trees of the paper's method in space.
+    Trees = 24,
 }
 
 /// The generator of one subsystem: ChaCha with 8 rounds. It has the bits of `rand_chacha`, which is slower to build.
@@ -103,7 +105,7 @@ pub fn gaussian(generator: &mut Draws) -> f64 {
 mod tests {
     use super::*;
 
-    const ALL: [Stream; 23] = [
+    const ALL: [Stream; 24] = [
         Stream::Field,
         Stream::AirspeedSensor,
         Stream::PitchSensor,
@@ -127,6 +129,7 @@ mod tests {
         Stream::SpaceLidar,
         Stream::SpaceEstimate,
         Stream::Bodies,
+        Stream::Trees,
     ];
 
     #[test]
@@ -158,6 +161,7 @@ mod tests {
                 627_886_748_865_932_386,
                 13_253_704_345_110_291_491,
                 8_756_309_045_004_367_201,
+                2_383_762_860_634_698_027,
             ]
         );
     }

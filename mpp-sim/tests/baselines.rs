@@ -27,7 +27,7 @@ fn every_baseline_crosses_an_empty_world() {
 
 /// A wall of trunks with a gap to either side of the way.
 #[test]
-fn gaps_beside_the_way_are_found_by_the_libraries_alone() {
+fn gaps_beside_the_way_are_found_by_all_but_straight() {
     let places = (-37..=37).map(|place| 0.8 * f64::from(place));
     let closed = places.filter(|y| !(2.5..10.0).contains(&y.abs()));
     let mut bodies: Vec<Body> = closed.map(|y| trunk(60.0, y)).collect();
@@ -36,6 +36,7 @@ fn gaps_beside_the_way_are_found_by_the_libraries_alone() {
         (BaselineName::Straight, Outcome::Collision),
         (BaselineName::Library7, Outcome::Survived),
         (BaselineName::Library105, Outcome::Survived),
+        (BaselineName::Paper, Outcome::Survived),
     ] {
         assert_eq!(outcome(name, &bodies), expected, "{name}");
     }
@@ -54,6 +55,20 @@ fn a_baseline_has_no_settings_of_the_planner() {
         ),
         (
             SpaceFile {
+                candidates: Some(3),
+                ..named("library-7")
+            },
+            "leave candidates and programs out",
+        ),
+        (
+            SpaceFile {
+                programs: Some(true),
+                ..named("paper")
+            },
+            "leave candidates and programs out",
+        ),
+        (
+            SpaceFile {
                 programs: Some(false),
                 ..named("straight")
             },
@@ -66,4 +81,25 @@ fn a_baseline_has_no_settings_of_the_planner() {
             "{error}"
         );
     }
+}
+
+/// The paths are candidates, and the log flies again.
+#[test]
+fn the_method_of_the_paper_draws_as_many_paths_as_wanted() {
+    let paper = |candidates| SpaceFile {
+        baseline: Some("paper".to_owned()),
+        candidates: Some(candidates),
+        ..SpaceFile::default()
+    };
+    let bodies = vec![trunk(30.0, 0.2), trunk(60.0, 30.0)];
+    let fly = |candidates| flown(paper(candidates), Some(bodies.clone())).unwrap();
+    let (one, five) = (fly(1), fly(5));
+    assert_eq!((one.header.paths, five.header.paths), (1, 5));
+    assert_eq!(five.summary.outcome, Outcome::Survived);
+    assert_eq!(five.hash().unwrap(), fly(5).hash().unwrap());
+    assert_ne!(five.hash().unwrap(), one.hash().unwrap());
+    let again = mpp_sim::space::scenario_of(&five.header).unwrap();
+    assert_eq!(again.header(), five.header);
+    let error = flown(paper(51), None).unwrap_err();
+    assert!(error.contains("candidates: give 1 to 50"), "{error}");
 }

@@ -1,6 +1,7 @@
 //! Simple planners beside which the planner in space is measured. They replace only the planner: start state, map, estimate,
 //! regulator and plant are its own, and their plans have its type. They are no flight code.
 
+use super::paper::PaperMethod;
 use crate::names::by_name;
 use hil_protocol::{ConfigureSpace, Message};
 use mpp_core::config::{STAGE_PERIOD, TICK_PERIOD};
@@ -26,11 +27,18 @@ pub enum BaselineName {
     Library7,
     /// 105 primitives, judged by the price of our plans with its cost-to-go.
     Library105,
+    /// The method of the paper, with a third dimension.
+    Paper,
 }
 
 impl BaselineName {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Straight, Self::Library7, Self::Library105];
+    pub const ALL: [Self; 4] = [
+        Self::Straight,
+        Self::Library7,
+        Self::Library105,
+        Self::Paper,
+    ];
 
     /// The name, for scenarios and logs.
     #[must_use]
@@ -39,6 +47,7 @@ impl BaselineName {
             Self::Straight => "straight",
             Self::Library7 => "library-7",
             Self::Library105 => "library-105",
+            Self::Paper => "paper",
         }
     }
 }
@@ -51,6 +60,8 @@ pub(super) struct Baseline {
     altitude: f64,
     band: Band,
     running: Option<Running>,
+    /// With the name of the paper's method.
+    paper: Option<PaperMethod>,
 }
 
 /// Heights and half the width that the centre of mass keeps \[m\].
@@ -60,9 +71,16 @@ struct Band {
 }
 
 impl Baseline {
-    /// A baseline that keeps an altitude \[m\] and limits of plans.
-    pub(super) fn new(name: BaselineName, altitude: f64, limits: &ConfigureSpace) -> Self {
+    /// A baseline that keeps an altitude \[m\] and limits of plans. The method of the paper draws so many paths with a seed.
+    pub(super) fn new(
+        name: BaselineName,
+        altitude: f64,
+        limits: &ConfigureSpace,
+        [paths, seed]: [u64; 2],
+    ) -> Self {
         Self {
+            paper: (name == BaselineName::Paper)
+                .then(|| PaperMethod::new(paths as usize, altitude, limits, seed)),
             name,
             altitude,
             band: Band {
@@ -94,6 +112,11 @@ impl Baseline {
             })],
             BaselineName::Library7 => vec![self.chosen(now, planner, start)],
             BaselineName::Library105 => self.primitives(model, start),
+            BaselineName::Paper => {
+                let paper = self.paper.as_mut();
+                let plan = paper.and_then(|paper| paper.plan(planner, start));
+                plan.into_iter().collect()
+            }
         }
     }
 

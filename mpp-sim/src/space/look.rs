@@ -1,7 +1,7 @@
 //! A flight in space as pictures need it: where it was, what each sweep hit, and what each cycle made of it.
 
 use super::world::{Body, Terrain};
-use super::{Pose, STACK, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
+use super::{BaselineName, Pose, STACK, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
 use crate::file_error::{ScenarioError, ensure};
 use crate::log::{FlightLog, Header};
 use mpp_core::planner::space::SpacePlan;
@@ -124,6 +124,7 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
     let no_space = || ScenarioError::Value("space", advice.to_owned());
     let space = header.space.clone().ok_or_else(no_space)?;
     let planner = space.baseline.is_none();
+    let draws = space.baseline.as_deref() == Some(BaselineName::Paper.name());
     let trunk = |&(x, y, radius, height): &(f64, f64, f64, Option<f64>)| Body::Cylinder {
         x,
         y,
@@ -133,7 +134,7 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
     let stems: Vec<Body> = space.stems.iter().map(trunk).collect();
     let file = SpaceFile {
         aircraft: Some(header.aircraft.clone()),
-        candidates: u8::try_from(header.paths).ok().filter(|_| planner),
+        candidates: u8::try_from(header.paths).ok().filter(|_| planner || draws),
         programs: Some(space.programs).filter(|_| planner),
         world: space.world,
         density: space.density,

@@ -9,6 +9,7 @@ mod instruments;
 pub mod lidar;
 mod look;
 mod motion;
+mod paper;
 mod pipe;
 mod place;
 mod pose;

@@ -13,6 +13,7 @@ use crate::navigation::NavigationConfig;
 use crate::scenario::{Preset, Scenario, TICK_MS, TICKS_PER_SECOND};
 use crate::sensors::AirDataNoise;
 use hil_protocol::{Configure, ConfigureLateral, ConfigureSpace};
+use mpp_core::config::MAX_PATHS;
 use mpp_core::planner::space::SPACE_CANDIDATES;
 use serde::{Deserialize, Serialize};
 
@@ -74,7 +75,7 @@ pub struct SpaceFile {
     pub sphere: Option<f64>,
     /// Measurements without errors; by default `false`.
     pub exact: Option<bool>,
-    /// Candidates of a cycle, the previous plan included; by default 3.
+    /// Candidates of a cycle, the previous plan included; by default 3. Of the baseline `paper` the paths, by default 25.
     pub candidates: Option<u8>,
     /// Whether a program improves each candidate; by default `true`.
     pub programs: Option<bool>,
@@ -127,11 +128,14 @@ impl SpaceFile {
         };
         file.cruise = self.airspeed.unwrap_or(file.cruise);
         let seed = self.seed.unwrap_or(1);
-        let candidates = self.candidates.unwrap_or(3);
-        let advice = format!("give 1 to {SPACE_CANDIDATES}");
-        let sound = (1..=SPACE_CANDIDATES).contains(&usize::from(candidates));
-        ensure(sound, "candidates", advice)?;
         let baseline = self.baseline()?;
+        let (usual, most) = match baseline {
+            Some(BaselineName::Paper) => (25, MAX_PATHS),
+            _ => (3, SPACE_CANDIDATES),
+        };
+        let candidates = self.candidates.unwrap_or(usual);
+        let sound = (1..=most).contains(&usize::from(candidates));
+        ensure(sound, "candidates", format!("give 1 to {most}"))?;
         let sphere = self.sphere.is_none_or(|it| it > 0.0 && it <= 10.0);
         ensure(sphere, "sphere", "give more than 0 and at most 10 m")?;
         let preset = self.preset.as_deref().unwrap_or(SPACE);
@@ -205,12 +209,15 @@ impl SpaceFile {
         let Some(name) = &self.baseline else {
             return Ok(None);
         };
-        let alone = self.candidates.is_none() && self.programs.is_none();
-        let advice = "leave candidates and programs out: they are the planner's";
+        let name = name
+            .parse::<BaselineName>()
+            .map_err(|error| ScenarioError::Value("baseline", error.to_string()))?;
+        let draws = name == BaselineName::Paper;
+        let alone = (self.candidates.is_none() || draws) && self.programs.is_none();
+        let advice =
+            "leave candidates and programs out: they are the planner's; paper takes candidates";
         ensure(alone, "baseline", advice)?;
-        let name = name.parse::<BaselineName>();
-        name.map(Some)
-            .map_err(|error| ScenarioError::Value("baseline", error.to_string()))
+        Ok(Some(name))
     }
 }
 
@@ -300,6 +307,7 @@ impl SpaceScenario {
             name,
             self.altitude(),
             &self.configure_space(),
+            [u64::from(self.candidates), self.plane.seed],
         ))
     }
 

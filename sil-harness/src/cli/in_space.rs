@@ -83,14 +83,14 @@ struct InSpace {
     /// Error of the lidar's clock [ms], -20 to 100: beams seem so much older than they are
     #[arg(long, help_heading = WORLD, value_name = "MS", value_parser = number)]
     lidar_clock: Option<f64>,
-    /// Candidates of a cycle, the previous plan included [default: 3]
+    /// Candidates of a cycle, the previous plan included [default: 3]; of the baseline paper its paths [default: 25]
     #[arg(long, help_heading = PLANNER, value_name = "N", value_parser = within(0, u8::MAX))]
     candidates: Option<u8>,
     /// Fly the best candidate as it is, without a program
     #[arg(long, help_heading = PLANNER)]
     no_programs: bool,
     /// Fly a simple planner in place of ours, on the same map, estimate, regulator and plant
-    #[arg(long, help_heading = PLANNER, value_parser = baseline(), conflicts_with_all = ["candidates", "no_programs"])]
+    #[arg(long, help_heading = PLANNER, value_parser = baseline(), conflicts_with = "no_programs")]
     baseline: Option<BaselineName>,
     /// Replanning rate [Hz], 1 to 10 [default: 10]
     #[arg(long, help_heading = PLANNER, value_parser = number)]

@@ -220,6 +220,7 @@ pub(super) fn baseline() -> impl TypedValueParser<Value = BaselineName> {
         BaselineName::Straight => "Straight on",
         BaselineName::Library7 => "Seven manoeuvres by the rule of Barry, Florence and Tedrake",
         BaselineName::Library105 => "105 primitives with the price and the cost-to-go of our plans",
+        BaselineName::Paper => "The paper's trees, rays and programs, with a third dimension",
     };
     named(BaselineName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }

@@ -129,7 +129,10 @@ fn what_makes_no_sense_is_one_sentence() {
         ("--density 0", "density: give more than 0 and at most 1"),
         ("--world jungle", "jungle"),
         ("--baseline library-8", "invalid value 'library-8'"),
-        ("--baseline straight --candidates 3", "cannot be used with"),
+        (
+            "--baseline straight --candidates 3",
+            "baseline: leave candidates",
+        ),
         ("--aircraft cessna182", "give this table"),
         ("--candidates 8", "candidates: give 1 to 7"),
         ("--sphere=-1", "sphere: give more than 0"),
