@@ -34,6 +34,9 @@ pub struct SpaceHeader {
     pub sphere: Option<f64>,
     /// Whether the measurements had almost no errors.
     pub exact: bool,
+    /// Whether beams went through what they hit; not written where they ended there.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub see_through: bool,
     /// Whether programs improved the candidates.
     pub programs: bool,
     /// Name of the baseline that planned in place of the planner; not written without one.

@@ -8,6 +8,7 @@ use hil_protocol::{
     AirData, InertialFrame, MAX_POINTS, Message, PointPacket, SensorFrame, SpacePosition,
 };
 use mpp_core::config::TICK_PERIOD;
+use mpp_node::MOST_POINTS;
 use std::collections::VecDeque;
 
 /// Length of a beam without return \[m\], as the message has it.
@@ -42,9 +43,13 @@ pub(super) struct Measured {
 impl Instruments {
     pub(super) fn new(scenario: &SpaceScenario) -> Self {
         let plane = &scenario.plane;
+        let mut lidar = SpaceLidar::new(plane.seed, scenario.lidar());
+        if scenario.sees_through() {
+            lidar.see_through(MOST_POINTS);
+        }
         Self {
             sensors: SpaceSensors::new(plane.seed, scenario.errors()),
-            lidar: SpaceLidar::new(plane.seed, scenario.lidar()),
+            lidar,
             deskew: scenario.deskew,
             beams: Vec::new(),
             poses: VecDeque::new(),

@@ -144,6 +144,7 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
         lidar: space.lidar,
         sphere: space.sphere,
         exact: Some(space.exact),
+        see_through: Some(space.see_through),
         baseline: space.baseline,
         wind: space.wind,
         gusts: Some(header.faults.gusts.intensity),

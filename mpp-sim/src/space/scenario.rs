@@ -75,6 +75,8 @@ pub struct SpaceFile {
     pub sphere: Option<f64>,
     /// Measurements without errors; by default `false`.
     pub exact: Option<bool>,
+    /// Beams go through what they hit and return all that is on their way: nothing hides anything; by default `false`.
+    pub see_through: Option<bool>,
     /// Candidates of a cycle, the previous plan included; by default 3. Of the baseline `paper` the paths, by default 25.
     pub candidates: Option<u8>,
     /// Whether a program improves each candidate; by default `true`.
@@ -193,6 +195,7 @@ impl SpaceFile {
                 extent: [length, half_width, ceiling],
                 sphere: self.sphere,
                 exact: self.exact.unwrap_or(false),
+                see_through: self.see_through.unwrap_or(false),
                 programs: self.programs.unwrap_or(true),
                 baseline: self.baseline.clone(),
                 wind: self.wind,
@@ -282,6 +285,11 @@ impl SpaceScenario {
     #[must_use]
     pub fn lidar(&self) -> SpaceLidarConfig {
         self.lidar
+    }
+
+    /// Whether beams go through what they hit.
+    pub(super) fn sees_through(&self) -> bool {
+        self.header.see_through
     }
 
     /// Errors of the sensors.

@@ -70,6 +70,9 @@ struct InSpace {
     /// Measurements without errors
     #[arg(long, help_heading = WORLD)]
     exact: bool,
+    /// Let beams go through what they hit and return all that is on their way: nothing hides anything
+    #[arg(long, help_heading = WORLD)]
+    see_through: bool,
     /// Steady wind ahead, to the right and up [m/s]
     #[arg(long, help_heading = WORLD, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
     wind: Option<[f64; 3]>,
@@ -190,6 +193,7 @@ impl InSpace {
             window: self.window,
             lidar: self.lidar.map(|it| it.name().to_owned()),
             exact: Some(self.exact),
+            see_through: Some(self.see_through),
             candidates: self.candidates,
             programs: self.no_programs.then_some(false),
             baseline: self.baseline.map(|it| it.name().to_owned()),

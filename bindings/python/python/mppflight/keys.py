@@ -53,8 +53,8 @@ TerrainKeys = TypedDict("TerrainKeys", {"corner": Sequence[float], "cell": float
     total=False)
 SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
     Any], "airspeed": float, "world": str, "density": float, "window": float, "terrain": TerrainKeys,
-    "altitude": float, "lidar": str, "sphere": float, "exact": bool, "candidates": int, "programs": bool,
-    "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool, "lidar_clock": float,
+    "altitude": float, "lidar": str, "sphere": float, "exact": bool, "see_through": bool, "candidates": int,
+    "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool, "lidar_clock": float,
     "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 

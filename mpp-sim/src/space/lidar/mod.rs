@@ -18,6 +18,9 @@ const SEQUENCE: [f64; 2] = [0.754_877_666_246_692_7, 0.569_840_290_998_053_2];
 /// Step of the rings from sweep to sweep, as a share of their distance: the golden ratio leaves the least gaps.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
+/// Way behind a return after which a beam that sees through looks for the next one \[m\]: a voxel of the map.
+const BEHIND: f64 = 0.5;
+
 /// One beam of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
@@ -36,6 +39,9 @@ pub struct SpaceLidar {
     draws: Draws,
     /// Where the sequences of directions are, within 1.
     phase: [f64; 2],
+    /// Most returns of a sweep whose beams go through what they hit; by default they end there.
+    through: Option<usize>,
+    sweeps: usize,
 }
 
 impl SpaceLidar {
@@ -47,7 +53,14 @@ impl SpaceLidar {
             config,
             phase: [uniform(&mut draws), uniform(&mut draws)],
             draws,
+            through: None,
+            sweeps: 0,
         }
+    }
+
+    /// Lets beams go through what they hit: nothing hides anything. A sweep has at most so many returns, the first ones among them.
+    pub(super) fn see_through(&mut self, most: usize) {
+        self.through = Some(most);
     }
 
     /// Its data.
@@ -73,7 +86,40 @@ impl SpaceLidar {
                 range: self.range(world, &pose, direction),
             }
         });
-        beams.collect()
+        let beams: Vec<Beam> = beams.collect();
+        let config = self.config;
+        match self.through {
+            Some(most) => self.seen_through(most, beams, |beam| {
+                further(world, &pose(start_time + beam.time), &config, beam)
+            }),
+            None => beams,
+        }
+    }
+
+    /// Beams, and behind each its further returns. Where there is no room for all of them, others are left out in each sweep.
+    fn seen_through(
+        &mut self,
+        most: usize,
+        beams: Vec<Beam>,
+        further: impl Fn(&Beam) -> Vec<Beam>,
+    ) -> Vec<Beam> {
+        let all: Vec<Vec<Beam>> = beams.iter().map(further).collect();
+        let room = most.saturating_sub(beams.len()).max(1);
+        let share = all.iter().map(Vec::len).sum::<usize>().div_ceil(room);
+        self.sweeps += 1;
+        let mut number = self.sweeps;
+        let mut seen = Vec::with_capacity(most);
+        for (beam, further) in beams.into_iter().zip(all) {
+            seen.push(beam);
+            for beam in further {
+                number += 1;
+                if number.is_multiple_of(share) {
+                    seen.push(beam);
+                }
+            }
+        }
+        seen.truncate(most);
+        seen
     }
 
     /// A sweep from one pose, as if the sensor did not move.
@@ -177,4 +223,26 @@ impl SpaceLidar {
 /// A number of at least 0 within 1.
 fn wrapped(value: f64) -> f64 {
     value - value.floor()
+}
+
+/// The returns of a beam behind its first one, without noise.
+fn further(world: &World, pose: &Pose, config: &SpaceLidarConfig, beam: &Beam) -> Vec<Beam> {
+    let (from, direction) = (pose.place(config.offset), pose.direction(beam.direction));
+    let [_, farthest] = config.range;
+    let mut returns = Vec::new();
+    let mut way = beam.range.map_or(farthest, |range| range + BEHIND);
+    while way < farthest {
+        let at = core::array::from_fn(|axis| from[axis] + way * direction[axis]);
+        let Some(next) = world.ray(at, direction, farthest - way) else {
+            break;
+        };
+        way += next;
+        // At once: still inside the same body.
+        if next > 0.0 {
+            let range = Some(way);
+            returns.push(Beam { range, ..*beam });
+        }
+        way += BEHIND;
+    }
+    returns
 }

@@ -295,3 +295,41 @@ fn a_flier_keeps_the_beams_ahead_for_which_the_core_has_room() {
         assert!(refused.contains(advice), "{refused}");
     }
 }
+
+/// A plate before a larger one: the first returns stay, and the farther plate is seen behind the near one. Without room for all
+/// returns each of them comes in some sweep.
+#[test]
+fn beams_that_see_through_return_what_is_hidden() {
+    let two = world(&[plate(10.0, 4.0, 4.0), plate(20.0, 20.0, 20.0)]);
+    let of = |most: Option<usize>, sweeps: usize| {
+        let mut lidar = SpaceLidar::new(4, LidarName::Grid90x16.config());
+        if let Some(most) = most {
+            lidar.see_through(most);
+        }
+        let sweeps = (0..sweeps).map(|_| lidar.sweep_at(&two, &level(HIGH)));
+        sweeps.collect::<Vec<_>>()
+    };
+    let [first] = &of(None, 1)[..] else { panic!() };
+    let [all] = &of(Some(10_000), 1)[..] else {
+        panic!()
+    };
+    let near = |beam: &&Beam| beam.range.is_some_and(|range| range < 15.0);
+    let hidden = first.iter().filter(near).count();
+    assert!(hidden > 50);
+    assert_eq!(all.len(), first.len() + hidden);
+    for beam in first.iter().filter(near) {
+        let behind = all.iter().find(|it| {
+            let same = it.direction.map(f64::to_bits) == beam.direction.map(f64::to_bits);
+            same && it.range.is_some_and(|range| range > 15.0)
+        });
+        let [ahead, ..] = beam.direction;
+        assert!((behind.unwrap().range.unwrap() * ahead - 20.0).abs() < 1e-9);
+    }
+    let most = first.len() + hidden / 3;
+    let mut found = 0;
+    for (sweep, all) in of(Some(most), 4).iter().zip(of(Some(10_000), 4)) {
+        assert!(sweep.len() <= most && sweep.iter().all(|beam| all.contains(beam)));
+        found += sweep.len() - first.len();
+    }
+    assert!(found >= hidden);
+}
