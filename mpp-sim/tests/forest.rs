@@ -210,6 +210,29 @@ fn a_trunk_that_is_planted_in_flight_is_passed_and_planted_again() {
     assert!(Look::again(&other).is_none());
 }
 
+/// A trunk behind another one is hit in the first sweep by beams that see through, and by no others. The log tells of it.
+#[test]
+fn beams_that_see_through_hit_what_is_hidden() {
+    let hits_behind = |see_through: bool| {
+        let file = SpaceFile {
+            see_through: Some(see_through),
+            ..forest(0.01, 1)
+        };
+        let bodies = vec![trunk(20.0, 0.0), trunk(28.0, 0.0), trunk(60.0, 30.0)];
+        let log = flown(file, Some(bodies)).unwrap();
+        assert_eq!(log.summary.outcome, Outcome::Survived);
+        assert_eq!(log.header.space.as_ref().unwrap().see_through, see_through);
+        let look = aside(move || Look::again(&log)).unwrap();
+        // In centimetres.
+        let points = look.cycles.first().unwrap().hits.chunks(3);
+        points
+            .filter(|point| point[0] > 2600 && point[1].abs() < 35)
+            .count()
+    };
+    assert_eq!(hits_behind(false), 0);
+    assert!(hits_behind(true) > 5);
+}
+
 /// A lidar that falls silent leaves the map, in which plans go on.
 #[test]
 fn plans_go_on_in_the_map_without_points() {

@@ -113,6 +113,7 @@ impl VoxelField {
 
     /// Places of the voxel of a point, moved into the window.
     fn place(&self, point: &[f64; 3]) -> [usize; 3] {
+        // Voxels have numbers of 32 bits, which a flight computer subtracts and compares with fewer instructions.
         let within = |axis: usize, length: usize| {
             let at = rounded_down(point[axis] / CELL).saturating_sub(self.first[axis] as i32);
             at.max(0).min(length as i32 - 1) as usize

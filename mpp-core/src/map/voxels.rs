@@ -4,10 +4,10 @@
 //! is no part of it, and floor and ceiling are rows of programs. Higher bands are flown over terrain: the window goes with the
 //! aircraft in z, too, and the ground is what hits show of it.
 
+use super::cell::rounded_down;
 use super::evidence::{Change, Evidence, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
 use super::extent::Extent;
 use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
-use crate::vehicle::between;
 
 /// Number of voxels along x, y and z.
 pub const CELLS: [usize; 3] = [100, 96, LAYERS];
@@ -339,14 +339,7 @@ impl Walk {
 
 /// Number of the voxel that holds a coordinate \[m\]. Coordinates that make no sense are far away.
 pub(crate) fn voxel(coordinate: f64) -> i64 {
-    const FARTHEST: f64 = 1e12;
-    let at = coordinate / CELL;
-    // Small numbers need neither a library nor 64 bits.
-    if libm::fabs(at) < 1e9 {
-        let whole = at as i32;
-        return i64::from(whole - i32::from(at < f64::from(whole)));
-    }
-    between(libm::floor(at), [-FARTHEST, FARTHEST]) as i64
+    rounded_down(coordinate / CELL).into()
 }
 
 /// Bits, and all those that follow below one of them in a row of bits that may be filled.

@@ -76,11 +76,12 @@ impl Baseline {
         name: BaselineName,
         altitude: f64,
         limits: &ConfigureSpace,
-        [paths, seed]: [u64; 2],
+        paths: usize,
+        seed: u64,
     ) -> Self {
         Self {
             paper: (name == BaselineName::Paper)
-                .then(|| PaperMethod::new(paths as usize, altitude, limits, seed)),
+                .then(|| PaperMethod::new(paths, altitude, limits, seed)),
             name,
             altitude,
             band: Band {

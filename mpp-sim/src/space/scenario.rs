@@ -315,7 +315,8 @@ impl SpaceScenario {
             name,
             self.altitude(),
             &self.configure_space(),
-            [u64::from(self.candidates), self.plane.seed],
+            self.candidates.into(),
+            self.plane.seed,
         ))
     }
 

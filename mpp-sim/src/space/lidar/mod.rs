@@ -10,7 +10,7 @@ mod tests;
 pub use config::{LidarName, Pattern, SpaceLidarConfig};
 
 use super::pose::Pose;
-use super::world::World;
+use super::world::{World, plus};
 use crate::random::{self, Draws, Stream, gaussian, uniform};
 
 /// Steps of the low-discrepancy sequence of two dimensions: powers of the root of `x^3 = x + 1`, inverted.
@@ -232,7 +232,7 @@ fn further(world: &World, pose: &Pose, config: &SpaceLidarConfig, beam: &Beam) -
     let mut returns = Vec::new();
     let mut way = beam.range.map_or(farthest, |range| range + BEHIND);
     while way < farthest {
-        let at = core::array::from_fn(|axis| from[axis] + way * direction[axis]);
+        let at = plus(from, direction, way);
         let Some(next) = world.ray(at, direction, farthest - way) else {
             break;
         };

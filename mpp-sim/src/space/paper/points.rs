@@ -1,6 +1,6 @@
 //! Points of a path.
 
-use crate::space::world::Vector;
+use crate::space::world::{Vector, length, minus, plus};
 use mpp_core::config::{KNOTS, STAGES};
 
 /// Points with equal spacing along a path, one for each boundary of a stage: at cruise speed they have equal times.
@@ -21,14 +21,10 @@ pub(super) fn collocation_points(path: &[Vector]) -> [Vector; KNOTS] {
 
 /// Distance of two points \[m\].
 pub(super) fn distance(a: &Vector, b: &Vector) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (a - b) * (a - b))
-        .sum::<f64>()
-        .sqrt()
+    length(minus(*a, *b))
 }
 
 /// The point at a share of the way.
 pub(super) fn mixed(from: &Vector, to: &Vector, share: f64) -> Vector {
-    core::array::from_fn(|axis| from[axis] + share * (to[axis] - from[axis]))
+    plus(*from, minus(*to, *from), share)
 }

@@ -216,12 +216,12 @@ pub(super) fn by_halving(a: Vector, b: Vector, separation: impl Fn(Vector) -> Ve
 }
 
 /// `a + t b`.
-pub(super) fn plus(a: Vector, b: Vector, t: f64) -> Vector {
+pub(in crate::space) fn plus(a: Vector, b: Vector, t: f64) -> Vector {
     [0, 1, 2].map(|axis| a[axis] + t * b[axis])
 }
 
 /// `a - b`.
-pub(super) fn minus(a: Vector, b: Vector) -> Vector {
+pub(in crate::space) fn minus(a: Vector, b: Vector) -> Vector {
     plus(a, b, -1.0)
 }
 
@@ -230,7 +230,7 @@ pub(super) fn dot(a: Vector, b: Vector) -> f64 {
 }
 
 /// Length of a vector.
-pub(super) fn length(a: Vector) -> f64 {
+pub(in crate::space) fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 

@@ -27,7 +27,7 @@ pub use hills::ALTITUDE;
 pub use stems::{StemError, stems};
 pub use terrain::Terrain;
 
-use body::plus;
+pub(super) use body::{length, minus, plus};
 use grid::Grid;
 
 /// Distance within which the nearest body is looked for first \[m\]; then within twice as much, and so on. More looks at bodies
@@ -244,8 +244,8 @@ impl World {
     #[must_use]
     pub fn clearance_of_segment(&self, a: Vector, b: Vector, most: f64) -> f64 {
         let ground = self.clearance_of_ground(a, b, most);
-        let half = 0.5 * body::length(body::minus(b, a));
-        let middle = plus(a, body::minus(b, a), 0.5);
+        let half = 0.5 * length(minus(b, a));
+        let middle = plus(a, minus(b, a), 0.5);
         self.nearest(a, b, ground.min(most), |body| {
             // No point of the segment is nearer than this; most bodies need no more.
             let least = body.clearance(middle) - half;
