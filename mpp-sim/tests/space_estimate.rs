@@ -3,10 +3,11 @@
 use mpp_core::config::TICK_PERIOD;
 use mpp_core::control::{SpaceMotion, SpaceRegulator};
 use mpp_core::estimate::SpaceEstimator;
-use mpp_core::vehicle::{GRAVITY, LateralControl, SpaceControl, SpaceModel, SpacePath};
+use mpp_core::vehicle::{GRAVITY, LateralControl, Quaternion, SpaceControl, SpaceModel, SpacePath};
 use mpp_sim::aircraft_file::{AircraftFile, AircraftModel};
 use mpp_sim::scenario::{Preset, Scenario};
 use mpp_sim::space::{SensorErrors, SpaceAircraft, SpaceSensors, WindConfig, regulator, true_path};
+use std::collections::VecDeque;
 
 /// Time by which bank and angle of attack follow, as flights of the planner use it \[s\].
 const AHEAD: f64 = 0.12;
@@ -61,6 +62,7 @@ struct Tick {
     time: f64,
     estimator: SpaceEstimator,
     truth: SpacePath,
+    attitude: Quaternion,
     sideslip: f64,
     ground: [f64; 3],
 }
@@ -131,6 +133,7 @@ fn fly(
             time,
             estimator: estimator.clone(),
             truth,
+            attitude: state.attitude(),
             sideslip: state.lateral.sideslip,
             ground: truth.ground_velocity(&air),
         });
@@ -176,8 +179,9 @@ const SEEDS: core::ops::Range<u64> = 0..12;
 #[test]
 fn errors_are_as_the_covariance_says_and_the_wind_does_not_matter() {
     let spread = |steady: [f64; 3]| {
-        let mut all: [Spread; 6] = Default::default();
+        let mut all: [Spread; 7] = Default::default();
         for seed in SEEDS {
+            let mut errors = VecDeque::new();
             fly(seed, (steady, 0.0), slalom, 20.0, |tick| {
                 // The first two seconds find the wind.
                 if tick.time < 2.0 {
@@ -197,6 +201,14 @@ fn errors_are_as_the_covariance_says_and_the_wind_does_not_matter() {
                 all[3].take((attack - truth.angle_of_attack).to_degrees());
                 all[4].take((sideslip - tick.sideslip).to_degrees());
                 all[5].take((motion.path.bank - truth.bank).to_degrees());
+                let attitude = estimator.pose(0.0).unwrap().attitude;
+                let error = tick.attitude.in_world(attitude.turn_to(tick.attitude));
+                errors.push_back(error);
+                if errors.len() > 100 {
+                    let before = errors.pop_front().unwrap();
+                    let moved = [0, 1, 2].map(|axis| error[axis] - before[axis]);
+                    moved.iter().for_each(|it| all[6].take(it.to_degrees()));
+                }
             });
         }
         all.map(|it| (it.rms(), it.most))
@@ -204,7 +216,7 @@ fn errors_are_as_the_covariance_says_and_the_wind_does_not_matter() {
     let calm = spread([0.0; 3]);
     let windy = spread([0.0, 5.0, 0.0]);
     for all in [&calm, &windy] {
-        let [position, velocity, wind, attack, sideslip, bank] = *all;
+        let [position, velocity, wind, attack, sideslip, bank, attitude] = *all;
         assert!((0.8..1.2).contains(&position.0), "{all:?}");
         assert!((0.7..1.2).contains(&velocity.0), "{all:?}");
         assert!(position.1 < 6.0 && velocity.1 < 6.0, "{all:?}");
@@ -213,6 +225,8 @@ fn errors_are_as_the_covariance_says_and_the_wind_does_not_matter() {
             attack.0 < 0.6 && sideslip.0 < 0.6 && bank.0 < 0.8,
             "{all:?}"
         );
+        // What is told moves by 0.44 deg within a second.
+        assert!(attitude.0 < 0.3, "{all:?}");
     }
     for (calm, windy) in calm.iter().zip(&windy) {
         assert!(

@@ -6,9 +6,19 @@ use core::f64::consts::PI;
 pub mod space_inertial {
     use super::PI;
 
-    /// Time over which the error of an attitude is correlated \[s\]. With a longer one the filter believes that it knows this error
-    /// longer. Source: D48, as the errors of decision 46.
+    /// Time over which the error of an attitude is correlated \[s\]. With a longer one the filters believe that they know this error
+    /// longer, and gyroscopes count more. Source: D48, as the errors of decision 46.
     pub const ATTITUDE_TIME: f64 = 2.0;
+    /// White noise of gyroscopes [rad/s^(1/2)]. Less believes them longer. Source: D74, 0.05 deg/s^(1/2), a few times what small
+    /// ones have.
+    pub const GYRO_NOISE: f64 = 0.05 * PI / 180.0;
+    /// The same as a share of the rates [s^(1/2)]: errors of scale, axes and time, which are alike over a second. Source: D74.
+    pub const GYRO_SHARE: f64 = 0.01;
+    /// Standard deviation of the bias of gyroscopes at first [rad/s], and of its change in a second [rad/s^(3/2)]. Less finds biases
+    /// late. Source: D74; 0.2 and 0.01 deg/s, after an autopilot's own calibration.
+    pub const FIRST_DRIFT: f64 = 0.2 * PI / 180.0;
+    /// See [`FIRST_DRIFT`]. Source: as there.
+    pub const GYRO_DRIFT: f64 = 0.01 * PI / 180.0;
     /// Standard deviation of the acceleration's error that is not the attitude's [m/s^2]. Source: chosen; an accelerometer's bias.
     pub const FORCE_BIAS: f64 = 0.05;
     /// Variance that white errors of the acceleration add to the velocity in a second [(m/s)^2]. It covers a specific force that is

@@ -65,6 +65,15 @@ impl Quaternion {
         2.0 * libm::acos(cosine.abs().min(1.0))
     }
 
+    /// The turn about the body's axes that leads to another attitude \[rad\], where it is small: of half a turn it tells 2 rad.
+    #[must_use]
+    pub fn turn_to(self, other: Self) -> [f64; 3] {
+        let [w, x, y, z] = self.0;
+        let Self([scalar, about @ ..]) = Self([w, -x, -y, -z]).times(other);
+        let twice = if scalar < 0.0 { -2.0 } else { 2.0 };
+        about.map(|it| twice * it)
+    }
+
     /// The attitude at a share of the way to another one.
     #[must_use]
     pub fn towards(self, other: Self, share: f64) -> Self {

@@ -18,6 +18,8 @@ pub struct SensorErrors {
     pub airspeed: f64,
     /// Rates of the body [rad/s], white.
     pub rates: f64,
+    /// A constant part of the rates [rad/s], and an error of their scale [-].
+    pub drift: [f64; 2],
     /// Specific force along an axis [m/s^2]: a constant part, and as much white.
     pub force: f64,
     /// Position along an axis in fixes \[m\], white. There are ten fixes a second, 50 ms late.
@@ -32,6 +34,7 @@ impl SensorErrors {
         velocity: 0.1,
         airspeed: 0.3,
         rates: 0.3 * core::f64::consts::PI / 180.0,
+        drift: [0.1 * core::f64::consts::PI / 180.0, 0.005],
         force: 0.05,
         position: 0.02,
     };
@@ -42,6 +45,7 @@ impl SensorErrors {
         velocity: 1e-3,
         airspeed: 1e-3,
         rates: 1e-4,
+        drift: [0.0; 2],
         force: 1e-3,
         position: 1e-3,
     };
@@ -97,6 +101,8 @@ pub struct SpaceSensors {
     velocity: [Wander; 3],
     airspeed: Wander,
     force_bias: [f64; 3],
+    /// Bias [rad/s] and error of the scale [-] of each gyroscope.
+    drift: [[f64; 2]; 3],
     /// Velocity over ground at the last tick [m/s].
     before: Option<[f64; 3]>,
     /// What has been measured and has not arrived.
@@ -117,6 +123,7 @@ impl SpaceSensors {
         Self {
             errors,
             force_bias: [(); 3].map(|()| errors.force * gaussian(&mut draws)),
+            drift: [(); 3].map(|()| errors.drift.map(|sigma| sigma * gaussian(&mut draws))),
             draws,
             attitude,
             velocity,
@@ -148,7 +155,10 @@ impl SpaceSensors {
             age: ATTITUDE_LATE,
             attitude: [about_x, about_y, about_z + heading],
             sigma: errors.attitude,
-            rates: rates(state).map(|rate| rate + errors.rates * gaussian(draws)),
+            rates: core::array::from_fn(|axis| {
+                let (rate, [bias, scale]) = (rates(state)[axis], self.drift[axis]);
+                rate + bias + scale * rate + errors.rates * gaussian(draws)
+            }),
             force: [0, 1, 2]
                 .map(|axis| force[axis] + self.force_bias[axis] + errors.force * gaussian(draws)),
         });

@@ -1,4 +1,10 @@
-//! The attitude as a reference gives it, tested by the rates, and its slow error of the bank.
+//! The attitude: that of a reference, carried on by the gyroscopes, and its slow error of the bank.
+//!
+//! The error of a told attitude wanders within seconds; gyroscopes tell turns of seconds well, and drift over minutes. A Kalman
+//! filter on the turn to the true attitude and on the bias of the gyroscopes takes from both what is good. All axes have the same
+//! errors, so one covariance serves all. It lives at the time of the last sample, because rates that come late would turn it
+//! late. Source: Markley, Crassidis, "Fundamentals of Spacecraft Attitude Determination and Control", 6.2 (multiplicative filter);
+//! errors that are alike over a time count as white ones of the same spectral density.
 
 use crate::config::TICK_PERIOD;
 use crate::estimate::history::MOST_AGE;
@@ -6,7 +12,8 @@ use crate::estimate::{MeasurementStatus, StuckDetector};
 use crate::tuning::navigation::GATE;
 use crate::tuning::sensors::EXCLUDED_AFTER;
 use crate::tuning::space_inertial::{
-    BIAS_TIME, LEAST_SIGMA, MOST_BIAS, MOST_CHANGE, MOST_FORCE, MOST_RATE,
+    ATTITUDE_TIME, BIAS_TIME, FIRST_DRIFT, GYRO_DRIFT, GYRO_NOISE, GYRO_SHARE, LEAST_SIGMA,
+    MOST_BIAS, MOST_CHANGE, MOST_FORCE, MOST_RATE,
 };
 use crate::vehicle::{Quaternion, within};
 
@@ -38,16 +45,78 @@ impl InertialSample {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct AttitudeFilter {
     attitude: Quaternion,
+    /// Rates without their bias [rad/s].
     rates: [f64; 3],
     force: [f64; 3],
     sigma: f64,
-    /// Whether there was a sample.
-    started: bool,
-    /// Ticks since the last sample that agreed.
+    /// The estimate at the time of the last sample; `None` before the first one.
+    fused: Option<Fused>,
+    /// Ticks since before the oldest sample that may come, and ticks since the last one that agreed.
+    ticks: u32,
     silent: u32,
     /// Bias of the bank \[rad\].
     bank_bias: f64,
     stuck: StuckDetector,
+}
+
+/// The filter's state at the time of a sample.
+#[derive(Clone, Copy, Debug)]
+struct Fused {
+    /// Tick of the sample, and its rates [rad/s].
+    tick: u32,
+    rates: [f64; 3],
+    attitude: Quaternion,
+    /// Bias of the rates [rad/s].
+    drift: [f64; 3],
+    /// Variances of attitude and drift about an axis, and their covariance between.
+    covariance: [f64; 3],
+}
+
+impl Fused {
+    /// Believes a told attitude, and knows nothing of the drift.
+    fn start(tick: u32, told: Quaternion, rates: [f64; 3], sigma: f64) -> Self {
+        Self {
+            tick,
+            rates,
+            attitude: told,
+            drift: [0.0; 3],
+            covariance: [sigma * sigma, 0.0, FIRST_DRIFT * FIRST_DRIFT],
+        }
+    }
+
+    /// Moves on to the tick of the next sample, by the mean of the rates of both.
+    fn predict(&mut self, tick: u32, rates: [f64; 3]) {
+        let dt = f64::from(tick.saturating_sub(self.tick)) * TICK_PERIOD;
+        let turn = core::array::from_fn(|axis| {
+            dt * (0.5 * (self.rates[axis] + rates[axis]) - self.drift[axis])
+        });
+        self.attitude = self.attitude.times(Quaternion::about(turn)).normalised();
+        let fast: f64 = rates.iter().map(|it| it * it).sum();
+        let noise = GYRO_NOISE * GYRO_NOISE + GYRO_SHARE * GYRO_SHARE * fast;
+        let [own, both, drift] = self.covariance;
+        self.covariance = [
+            own - 2.0 * dt * both + dt * dt * drift + noise * dt,
+            both - dt * drift,
+            drift + GYRO_DRIFT * GYRO_DRIFT * dt,
+        ];
+        (self.tick, self.rates) = (tick, rates);
+    }
+
+    /// Takes up a told attitude of this tick.
+    fn correct(&mut self, told: Quaternion, sigma: f64) {
+        let off = self.attitude.turn_to(told);
+        let white = sigma * sigma * 2.0 * ATTITUDE_TIME / TICK_PERIOD;
+        let [own, both, drift] = self.covariance;
+        let gain = [own, both].map(|it| it / (own + white));
+        self.covariance = [
+            own - gain[0] * own,
+            both - gain[0] * both,
+            drift - gain[1] * both,
+        ];
+        let turn = Quaternion::about(off.map(|it| gain[0] * it));
+        self.attitude = self.attitude.times(turn).normalised();
+        self.drift = core::array::from_fn(|axis| self.drift[axis] + gain[1] * off[axis]);
+    }
 }
 
 impl AttitudeFilter {
@@ -57,7 +126,8 @@ impl AttitudeFilter {
             rates: [0.0; 3],
             force: [0.0; 3],
             sigma: 0.0,
-            started: false,
+            fused: None,
+            ticks: MOST_AGE,
             silent: 0,
             bank_bias: 0.0,
             stuck: StuckDetector::new(),
@@ -66,7 +136,7 @@ impl AttitudeFilter {
 
     /// The attitude; `None` before the first sample, and when none has agreed for the greatest age of a measurement.
     pub(super) fn attitude(&self) -> Option<Quaternion> {
-        (self.started && self.silent <= MOST_AGE).then_some(self.attitude)
+        (self.fused.is_some() && self.silent <= MOST_AGE).then_some(self.attitude)
     }
 
     pub(super) fn rates(&self) -> [f64; 3] {
@@ -87,14 +157,22 @@ impl AttitudeFilter {
         self.bank_bias
     }
 
-    /// Learns the bias of the bank from the part of it that the acceleration's error shows \[rad\].
+    /// Learns the bias of the bank from the part of it that the acceleration's error shows \[rad\]. The estimate, which is a mean of
+    /// told attitudes, has had the same bias.
     pub(super) fn learn(&mut self, bank_error: f64) {
+        let before = self.bank_bias;
         let by = bank_error * (TICK_PERIOD / BIAS_TIME);
-        self.bank_bias = within(self.bank_bias + by, MOST_BIAS);
+        self.bank_bias = within(before + by, MOST_BIAS);
+        let turn = Quaternion::roll(before - self.bank_bias);
+        self.attitude = self.attitude.times(turn);
+        if let Some(fused) = &mut self.fused {
+            fused.attitude = fused.attitude.times(turn);
+        }
     }
 
     /// Moves on by a tick, and takes its sample.
     pub(super) fn step(&mut self, sample: Option<&InertialSample>) -> MeasurementStatus {
+        self.ticks = self.ticks.saturating_add(1);
         self.silent = self.silent.saturating_add(1);
         let turned = Quaternion::about(self.rates.map(|it| it * TICK_PERIOD));
         self.attitude = self.attitude.times(turned).normalised();
@@ -111,18 +189,30 @@ impl AttitudeFilter {
         if self.stuck.take(all).is_nan() {
             return MeasurementStatus::Frozen;
         }
-        (self.rates, self.force, self.sigma) = (sample.rates, sample.force, sample.sigma);
+        (self.force, self.sigma) = (sample.force, sample.sigma);
         let since = f64::from(sample.age) * TICK_PERIOD;
-        let told = Quaternion::attitude(sample.attitude)
-            .times(Quaternion::roll(-self.bank_bias))
-            .times(Quaternion::about(sample.rates.map(|it| it * since)));
-        let change = self.attitude.angle_to(told);
-        let most = GATE * self.sigma() + MOST_CHANGE * f64::from(self.silent);
+        let told = Quaternion::attitude(sample.attitude).times(Quaternion::roll(-self.bank_bias));
+        let tick = self.ticks.saturating_sub(sample.age);
         // An attitude that goes on to differ is believed: nothing else tells another one.
-        if self.started && self.silent <= u32::from(EXCLUDED_AFTER) && change > most {
-            return MeasurementStatus::Gated;
-        }
-        (self.attitude, self.started, self.silent) = (told, true, 0);
+        let known = self.silent <= u32::from(EXCLUDED_AFTER);
+        let fused = match self.fused.filter(|_| known) {
+            Some(fused) if tick <= fused.tick => return MeasurementStatus::Late,
+            Some(mut fused) => {
+                let now = told.times(Quaternion::about(sample.rates.map(|it| it * since)));
+                let most = GATE * self.sigma() + MOST_CHANGE * f64::from(self.silent);
+                if self.attitude.angle_to(now) > most {
+                    return MeasurementStatus::Gated;
+                }
+                fused.predict(tick, sample.rates);
+                fused.correct(told, self.sigma());
+                fused
+            }
+            None => Fused::start(tick, told, sample.rates, self.sigma()),
+        };
+        self.rates = core::array::from_fn(|axis| sample.rates[axis] - fused.drift[axis]);
+        let turned = Quaternion::about(self.rates.map(|it| it * since));
+        self.attitude = fused.attitude.times(turned);
+        (self.fused, self.silent) = (Some(fused), 0);
         MeasurementStatus::Accepted
     }
 }
