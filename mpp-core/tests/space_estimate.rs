@@ -282,6 +282,26 @@ fn outliers_are_refused_and_counted_and_what_stays_is_believed() {
 }
 
 #[test]
+fn while_the_attitude_is_refused_the_rates_carry_it_on() {
+    let turn = Turn {
+        bank: 0.0,
+        wind: [0.0; 3],
+    };
+    let mut estimator = flown(turn, 200);
+    let bank = |estimator: &SpaceEstimator| estimator.pose(0.0).unwrap().attitude.angles()[0];
+    for tick in 210..220 {
+        let status = estimator.predict(Some(&InertialSample {
+            attitude: [0.7, 0.1, 1e-9 * f64::from(tick)],
+            rates: [1.0, 0.0, 0.0],
+            ..turn.sample(time(tick), 0)
+        }));
+        assert_eq!(status, MeasurementStatus::Gated);
+    }
+    // Nine ticks, and half of the rate in the three since the sample before.
+    assert!((bank(&estimator) - 0.105).abs() < 0.002);
+}
+
+#[test]
 fn silent_and_frozen_sensors_are_told() {
     let turn = Turn {
         bank: 0.4,

@@ -195,24 +195,29 @@ impl AttitudeFilter {
         let tick = self.ticks.saturating_sub(sample.age);
         // An attitude that goes on to differ is believed: nothing else tells another one.
         let known = self.silent <= u32::from(EXCLUDED_AFTER);
-        let fused = match self.fused.filter(|_| known) {
+        let (fused, agrees) = match self.fused.filter(|_| known) {
             Some(fused) if tick <= fused.tick => return MeasurementStatus::Late,
             Some(mut fused) => {
                 let now = told.times(Quaternion::about(sample.rates.map(|it| it * since)));
                 let most = GATE * self.sigma() + MOST_CHANGE * f64::from(self.silent);
-                if self.attitude.angle_to(now) > most {
-                    return MeasurementStatus::Gated;
-                }
+                let agrees = self.attitude.angle_to(now) <= most;
+                // The rates of an attitude that jumps still tell how the aircraft turns.
                 fused.predict(tick, sample.rates);
-                fused.correct(told, self.sigma());
-                fused
+                if agrees {
+                    fused.correct(told, self.sigma());
+                }
+                (fused, agrees)
             }
-            None => Fused::start(tick, told, sample.rates, self.sigma()),
+            None => (Fused::start(tick, told, sample.rates, self.sigma()), true),
         };
         self.rates = core::array::from_fn(|axis| sample.rates[axis] - fused.drift[axis]);
         let turned = Quaternion::about(self.rates.map(|it| it * since));
         self.attitude = fused.attitude.times(turned);
-        (self.fused, self.silent) = (Some(fused), 0);
+        self.fused = Some(fused);
+        if !agrees {
+            return MeasurementStatus::Gated;
+        }
+        self.silent = 0;
         MeasurementStatus::Accepted
     }
 }
