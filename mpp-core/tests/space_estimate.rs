@@ -301,6 +301,28 @@ fn while_the_attitude_is_refused_the_rates_carry_it_on() {
     assert!((bank(&estimator) - 0.105).abs() < 0.002);
 }
 
+/// Told attitudes of a second weigh the same, however many they are: a heading that is off from some time on is followed as fast.
+#[test]
+fn fewer_samples_tell_as_much() {
+    let turn = Turn {
+        bank: 0.0,
+        wind: [0.0; 3],
+    };
+    let heading = |each: u32| {
+        let mut estimator = estimator();
+        for tick in 10..310 {
+            let mut sample = turn.sample(time(tick), 0);
+            sample.attitude[2] += if tick < 110 { 0.0 } else { 0.01 };
+            estimator.predict((tick % each == 0).then_some(&sample));
+            estimator.observe_fix((tick % 10 == 0).then_some(&turn.fix(time(tick), 0)));
+        }
+        estimator.pose(0.0).unwrap().attitude.angles()[2]
+    };
+    let often = heading(1);
+    assert!((0.002..0.009).contains(&often), "{often}");
+    assert!((heading(5) - often).abs() < 0.05 * often, "{often}");
+}
+
 #[test]
 fn silent_and_frozen_sensors_are_told() {
     let turn = Turn {

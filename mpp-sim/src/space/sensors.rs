@@ -151,13 +151,14 @@ impl SpaceSensors {
             .times(Quaternion::roll(bank))
             .times(Quaternion::pitch(pitch))
             .angles();
+        let rates = rates(state);
         self.samples.push_back(InertialSample {
             age: ATTITUDE_LATE,
             attitude: [about_x, about_y, about_z + heading],
             sigma: errors.attitude,
             rates: core::array::from_fn(|axis| {
-                let (rate, [bias, scale]) = (rates(state)[axis], self.drift[axis]);
-                rate + bias + scale * rate + errors.rates * gaussian(draws)
+                let [bias, scale] = self.drift[axis];
+                rates[axis] + bias + scale * rates[axis] + errors.rates * gaussian(draws)
             }),
             force: [0, 1, 2]
                 .map(|axis| force[axis] + self.force_bias[axis] + errors.force * gaussian(draws)),

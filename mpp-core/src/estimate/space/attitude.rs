@@ -84,9 +84,8 @@ impl Fused {
         }
     }
 
-    /// Moves on to the tick of the next sample, by the mean of the rates of both.
-    fn predict(&mut self, tick: u32, rates: [f64; 3]) {
-        let dt = f64::from(tick.saturating_sub(self.tick)) * TICK_PERIOD;
+    /// Moves on to the tick of the next sample, `dt` \[s\] later, by the mean of the rates of both.
+    fn predict(&mut self, tick: u32, dt: f64, rates: [f64; 3]) {
         let turn = core::array::from_fn(|axis| {
             dt * (0.5 * (self.rates[axis] + rates[axis]) - self.drift[axis])
         });
@@ -102,10 +101,10 @@ impl Fused {
         (self.tick, self.rates) = (tick, rates);
     }
 
-    /// Takes up a told attitude of this tick.
-    fn correct(&mut self, told: Quaternion, sigma: f64) {
+    /// Takes up a told attitude of this tick, `dt` \[s\] after the one before: fewer of them tell as much in a second.
+    fn correct(&mut self, told: Quaternion, dt: f64, sigma: f64) {
         let off = self.attitude.turn_to(told);
-        let white = sigma * sigma * 2.0 * ATTITUDE_TIME / TICK_PERIOD;
+        let white = sigma * sigma * 2.0 * ATTITUDE_TIME / dt;
         let [own, both, drift] = self.covariance;
         let gain = [own, both].map(|it| it / (own + white));
         self.covariance = [
@@ -174,11 +173,16 @@ impl AttitudeFilter {
     pub(super) fn step(&mut self, sample: Option<&InertialSample>) -> MeasurementStatus {
         self.ticks = self.ticks.saturating_add(1);
         self.silent = self.silent.saturating_add(1);
-        let turned = Quaternion::about(self.rates.map(|it| it * TICK_PERIOD));
-        self.attitude = self.attitude.times(turned).normalised();
-        let Some(sample) = sample else {
-            return MeasurementStatus::Missing;
-        };
+        let status = sample.map_or(MeasurementStatus::Missing, |it| self.take(it));
+        if let Some(fused) = &self.fused {
+            let since = f64::from(self.ticks.saturating_sub(fused.tick)) * TICK_PERIOD;
+            let turned = Quaternion::about(self.rates.map(|it| it * since));
+            self.attitude = fused.attitude.times(turned);
+        }
+        status
+    }
+
+    fn take(&mut self, sample: &InertialSample) -> MeasurementStatus {
         if !sample.is_sound() {
             return MeasurementStatus::NotFinite;
         }
@@ -190,7 +194,6 @@ impl AttitudeFilter {
             return MeasurementStatus::Frozen;
         }
         (self.force, self.sigma) = (sample.force, sample.sigma);
-        let since = f64::from(sample.age) * TICK_PERIOD;
         let told = Quaternion::attitude(sample.attitude).times(Quaternion::roll(-self.bank_bias));
         let tick = self.ticks.saturating_sub(sample.age);
         // An attitude that goes on to differ is believed: nothing else tells another one.
@@ -198,21 +201,19 @@ impl AttitudeFilter {
         let (fused, agrees) = match self.fused.filter(|_| known) {
             Some(fused) if tick <= fused.tick => return MeasurementStatus::Late,
             Some(mut fused) => {
-                let now = told.times(Quaternion::about(sample.rates.map(|it| it * since)));
-                let most = GATE * self.sigma() + MOST_CHANGE * f64::from(self.silent);
-                let agrees = self.attitude.angle_to(now) <= most;
+                let dt = f64::from(tick - fused.tick) * TICK_PERIOD;
                 // The rates of an attitude that jumps still tell how the aircraft turns.
-                fused.predict(tick, sample.rates);
+                fused.predict(tick, dt, sample.rates);
+                let most = GATE * self.sigma() + MOST_CHANGE * f64::from(self.silent);
+                let agrees = fused.attitude.angle_to(told) <= most;
                 if agrees {
-                    fused.correct(told, self.sigma());
+                    fused.correct(told, dt, self.sigma());
                 }
                 (fused, agrees)
             }
             None => (Fused::start(tick, told, sample.rates, self.sigma()), true),
         };
         self.rates = core::array::from_fn(|axis| sample.rates[axis] - fused.drift[axis]);
-        let turned = Quaternion::about(self.rates.map(|it| it * since));
-        self.attitude = fused.attitude.times(turned);
         self.fused = Some(fused);
         if !agrees {
             return MeasurementStatus::Gated;
