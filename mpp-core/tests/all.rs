@@ -40,6 +40,7 @@ mod resampling;
 mod rolling_grid;
 mod scan_monitor;
 mod settings_at_random;
+mod space_attitude;
 mod space_estimate;
 mod space_least_squares;
 mod thrust_lag;

@@ -14,7 +14,7 @@ from PIL import Image
 # The flight of docs/forest.png: six seconds that end in its turn, at 8 frames a second of real time.
 FLIGHT = ["--preset", "space", "--seed", "6", "--density", "0.04", "--airspeed", "12"]
 TICKS = range(1100, 1700, 12)
-WIDTH, QUALITY, MOST = 560, 26, 500_000
+WIDTH, QUALITY, MOST = 560, 24, 500_000
 HIDDEN = "#head, #legend { display: none; } #now dd { font-size: 1rem !important; }"
 
 

@@ -10,8 +10,8 @@ from flown import ROOT
 from PIL import Image
 from test_forest import LAPTOP, PAGE, stands
 
-# A turn around two trunks, with a bank of 41 degrees.
-MOMENT = "#seed=4&t=1900"
+# A turn between trunks, with a bank of 48 degrees.
+MOMENT = "#seed=6&t=1550"
 # Without the row of buttons [pixels].
 SHOWN = {"x": 0, "y": 0, "width": LAPTOP["width"], "height": 717}
 
