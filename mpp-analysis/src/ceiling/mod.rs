@@ -28,7 +28,7 @@ pub use avoidable::{BEFORE, avoidable};
 pub use envelope::Envelope;
 pub use error::CeilingError;
 pub use report::{CeilingCell, CeilingReport, Counts, SpaceCeilingCell, SpaceCeilingReport};
-pub use space::{SpaceEnvelope, check_in_space, decide_in_space};
+pub use space::{SpaceEnvelope, check_in_space, decide_in_space, fly_with_sight};
 
 use free::Interval;
 use guide::{Guide, Way};

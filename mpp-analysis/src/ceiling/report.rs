@@ -27,7 +27,7 @@ pub struct Counts {
     pub fields: u32,
     /// Fields that are proven to be blocked.
     pub blocked: u32,
-    /// Fields that a witness passes.
+    /// Fields that a witness passes, or an oracle.
     pub passable: u32,
     /// The other fields.
     pub undecided: u32,
@@ -42,6 +42,8 @@ pub struct SpaceCeilingCell {
     pub world: String,
     /// Density in the unit of the generator.
     pub density: f64,
+    /// Sight of the oracle that flies \[m\]; null for witnesses, which know everything.
+    pub sight: Option<f64>,
     /// The verdicts.
     #[serde(flatten)]
     pub counts: Counts,
@@ -50,7 +52,7 @@ pub struct SpaceCeilingCell {
 /// Verdicts of a command in space.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SpaceCeilingReport {
-    /// One entry for each density.
+    /// One entry for each density and sight.
     pub cells: Vec<SpaceCeilingCell>,
 }
 
@@ -77,15 +79,21 @@ impl CeilingCell {
 impl SpaceCeilingCell {
     /// The verdicts about worlds that differ from that of a scenario in their seeds.
     #[must_use]
-    pub fn new(scenario: &SpaceScenario, verdicts: &[Feasibility]) -> Self {
+    pub fn new(scenario: &SpaceScenario, sight: Option<f64>, verdicts: &[Feasibility]) -> Self {
         let space = scenario.header().space;
         let (world, density) = space
             .map(|space| (space.world, space.density))
             .unwrap_or_default();
+        let mut counts = Counts::of(verdicts);
+        if sight.is_some() {
+            // What an oracle does not pass it loses.
+            counts.passable_interval = wilson(counts.passable, counts.fields);
+        }
         Self {
             world: world.unwrap_or_default(),
             density: density.unwrap_or_default(),
-            counts: Counts::of(verdicts),
+            sight,
+            counts,
         }
     }
 }
@@ -131,9 +139,16 @@ impl fmt::Display for Counts {
 
 impl fmt::Display for SpaceCeilingReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:<8} {:>8} {HEADS}", "world", "density")?;
+        writeln!(f, "{:<8} {:>8} {:>7} {HEADS}", "world", "density", "sight")?;
         (self.cells.iter()).try_for_each(|cell| {
-            writeln!(f, "{:<8} {:>8} {}", cell.world, cell.density, cell.counts)
+            let sight = cell.sight.map_or("all".to_owned(), |it| format!("{it} m"));
+            let SpaceCeilingCell {
+                world,
+                density,
+                counts,
+                ..
+            } = cell;
+            writeln!(f, "{world:<8} {density:>8} {sight:>7} {counts}")
         })
     }
 }

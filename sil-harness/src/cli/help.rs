@@ -92,6 +92,7 @@ Exit codes: 0 flown, 2 usage, 130 and 143 interrupted, 1 anything else";
 pub(super) const CEILING_IN_SPACE: &str = "\
 Examples:
   sil-harness ceiling --preset space --aircraft x8 --airspeed 16 --density 0.04,0.1 --seed 900000
+  sil-harness ceiling --preset space --density 0.0625 --sight 12,20,30
   sil-harness ceiling --preset space --density 0.1 --sphere 0.4 --trials 500 --json";
 
 pub(super) const FIGURES: &str = "\

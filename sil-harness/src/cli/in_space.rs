@@ -8,7 +8,7 @@ use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, W
 use super::signals::Signals;
 use super::space_cell::{SpaceCell, SpaceRow};
 use super::stage::Stage;
-use super::values::{Item, baseline, densities, lidar, number, seed, threads, whole, wind, within};
+use super::values::{Item, baseline, lidar, number, or_usual, seed, threads, whole, wind, within};
 use crate::campaign::pool;
 use crate::files::{read_log, read_stems, read_terrain, try_directory};
 use clap::{Parser, Subcommand};
@@ -276,7 +276,7 @@ fn fly(args: &FlyInSpace) -> Result<u8, Failure> {
 
 fn campaign(args: &CampaignInSpace) -> Result<u8, Failure> {
     let first = args.flown.seed.unwrap_or(1);
-    let densities = densities(&args.density);
+    let densities = or_usual(&args.density);
     let signals = Signals::heed()?;
     // What cannot be flown is refused before the file is made.
     for density in &densities {

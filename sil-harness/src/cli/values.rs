@@ -45,8 +45,8 @@ impl<P: TypedValueParser> TypedValueParser for Item<P> {
     }
 }
 
-/// The densities of the cells: those given, or the usual one.
-pub(super) fn densities(given: &[f64]) -> Vec<Option<f64>> {
+/// The values of the cells: those given, or the usual one.
+pub(super) fn or_usual(given: &[f64]) -> Vec<Option<f64>> {
     if given.is_empty() {
         return vec![None];
     }
@@ -123,6 +123,12 @@ pub(super) fn seed(text: &str) -> Result<u64, String> {
 pub(super) fn width(text: &str) -> Result<f64, String> {
     let found = text.parse().ok().filter(|it| *it > 0.0 && *it <= 100.0);
     found.ok_or_else(|| "give a width of more than 0 and at most 100 percentage points".to_owned())
+}
+
+/// Reads a sight \[m\].
+pub(super) fn sight(text: &str) -> Result<f64, String> {
+    let found = text.parse().ok().filter(|it| *it > 0.0 && *it <= 1000.0);
+    found.ok_or_else(|| "give a sight of more than 0 and at most 1000 m".to_owned())
 }
 
 /// Reads a bank \[deg\].

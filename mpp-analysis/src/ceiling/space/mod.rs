@@ -4,11 +4,13 @@
 //! SpaceScenario -> Envelope --------> Reach -----------> Blocked
 //!      |               | reach.rs
 //!      +-> Woods -> Search -> way -> Pilot: flights ---> Passable
-//!          trunks.rs  way.rs         witness.rs
+//!          trunks.rs  way.rs   |     witness.rs
+//!                   sight.rs: from look to look
 //! ```
 
 mod envelope;
 mod reach;
+mod sight;
 #[cfg(test)]
 mod tests;
 mod trunks;
@@ -16,6 +18,7 @@ mod way;
 mod witness;
 
 pub use envelope::SpaceEnvelope;
+pub use sight::fly_with_sight;
 
 use super::{CeilingError, Feasibility};
 use core::f64::consts::PI;
@@ -26,7 +29,7 @@ use mpp_sim::outcome::Outcome;
 use mpp_sim::space::{STRAY, SpaceAircraft, SpaceScenario, WindConfig, regulator, true_path};
 use reach::Reach;
 use trunks::{Place, Trunk, Woods, trunks};
-use way::{Effort, Search};
+use way::{Effort, Search, Way};
 use witness::{Flight, Moment, Pilot};
 
 /// Greatest bank of a way, and of the regulator that follows it \[rad\]: 62 deg, where plans have 60, and 5 deg to correct.
@@ -171,6 +174,11 @@ impl Question {
 
     /// A flight along a way, or how far the search for a way comes \[m\].
     fn attempt(&self, effort: &Effort, from: &Moment) -> Result<Flight, f64> {
+        self.way(effort, from).map(|way| self.fly(from, &way))
+    }
+
+    /// A way, or how far the search for it comes \[m\].
+    fn way(&self, effort: &Effort, from: &Moment) -> Result<Way, f64> {
         let model = &self.model;
         let airspeed = model.trim.state.airspeed;
         let [_, most] = model.angle_of_attack;
@@ -184,18 +192,22 @@ impl Question {
             bank: effort.share * BANK.min(libm::acos((1.0 / load).min(1.0))),
             effort,
         };
-        let way = search.run(Place {
+        search.run(Place {
             at: [x, y],
             course: path.course,
             bank: path.bank,
-        })?;
+        })
+    }
+
+    /// The flight along a way.
+    fn fly(&self, from: &Moment, way: &Way) -> Flight {
         let pilot = Pilot {
             scenario: &self.scenario,
             envelope: &self.envelope,
-            model,
+            model: &self.model,
             regulator: &self.regulator,
         };
-        Ok(pilot.fly(from, &way, airspeed))
+        pilot.fly(from, way, self.model.trim.state.airspeed)
     }
 
     /// The place, up to `most`, that no flight of the envelope reaches \[m\].

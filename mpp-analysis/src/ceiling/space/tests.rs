@@ -100,6 +100,25 @@ fn forests_have_witnesses_and_no_proof_against_them() {
     }
 }
 
+/// A gap aside can be reached from as far as the oracle sees it, and from no nearer place. With a long sight it flies as a witness.
+#[test]
+fn an_oracle_passes_what_it_sees_in_time() {
+    let gap = among(
+        &scenario("ultrastick", None, "forest", 1),
+        &row(30.0, 6.0, 4.0),
+        EXTENT,
+    );
+    let wood = scenario("ultrastick", None, "forest", 3);
+    for (scenario, sight, verdict) in [
+        (&gap, 29.0, Feasibility::Passable),
+        (&gap, 9.0, Feasibility::Undecided),
+        (&wood, 60.0, Feasibility::Passable),
+        (&wood, 5.0, Feasibility::Undecided),
+    ] {
+        assert_eq!(fly_with_sight(scenario, sight), Ok(verdict), "{sight}");
+    }
+}
+
 #[test]
 fn what_cannot_be_judged_is_refused() {
     let spheres = SpaceFile {

@@ -49,6 +49,11 @@ impl Tally {
         upright > STEEP * all
     }
 
+    /// The sum of the costs of stages.
+    pub(super) fn price(&self) -> f64 {
+        self.price
+    }
+
     /// A price that the trajectory exceeds or has, whatever comes: no cost is negative, and rounded sums grow with their terms.
     pub(super) fn least_price(&self) -> f64 {
         self.price + self.to_go.unwrap_or(0.0)
@@ -95,31 +100,60 @@ impl Judge<'_> {
         }
     }
 
-    /// Adds the costs of a stage.
-    pub(super) fn add(&self, [from, to]: [&SpacePath; 2], stage: usize, tally: &mut Tally) {
-        let (field, keep, via) = (self.field, self.keep, self.to_go.via());
-        let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
+    /// Adds the costs of a stage. Copies of it would cost flash.
+    #[inline(never)]
+    pub(super) fn add(&self, knots: [&SpacePath; 2], stage: usize, tally: &mut Tally) {
+        let velocities = self.pass(knots, tally);
+        self.charge(knots, &velocities, stage, tally);
+    }
+
+    /// What a stage hands on to the next ones, and the cost-to-go if it passes the via station. Returns the velocities over ground
+    /// at its knots [m/s].
+    pub(super) fn pass(&self, [from, to]: [&SpacePath; 2], tally: &mut Tally) -> [[f64; 3]; 2] {
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
         let [_, after] = velocities;
         tally.velocity = after;
         if let Some(nose) = &self.model.nose {
             tally.runaway = nose.after_stage(tally.runaway, 0.5 * (from.bank + to.bank));
         }
+        let via = self.to_go.via();
+        if tally.to_go.is_none() && to.position[0] >= via {
+            let points = self.points();
+            let crossed = (1..=points as usize)
+                .map(|index| between(from, to, &velocities, index as f64 / points))
+                .find(|point| point[0] >= via);
+            tally.to_go = crossed.map(|point| self.to_go.cost(&point, &after));
+        }
+        velocities
+    }
+
+    /// Number of the points at which a stage is judged.
+    fn points(&self) -> f64 {
+        let points = libm::round(self.model.trim.state.airspeed * STAGE_PERIOD / APART);
+        limit(points, POINTS)
+    }
+
+    /// Adds the costs of a stage that do not depend on those before.
+    pub(super) fn charge(
+        &self,
+        [from, to]: [&SpacePath; 2],
+        velocities: &[[f64; 3]; 2],
+        stage: usize,
+        tally: &mut Tally,
+    ) {
+        let (field, keep, via) = (self.field, self.keep, self.to_go.via());
+        let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
         if self.slow > 0.0 {
             let lack = (self.model.trim.state.airspeed - to.airspeed).max(0.0);
             tally.price += self.slow * lack * lack;
         }
         let [least, _] = POINTS;
-        let points = libm::round(self.model.trim.state.airspeed * STAGE_PERIOD / APART);
-        let points = limit(points, POINTS);
+        let points = self.points();
         let discount = discount * (least / points);
         for index in 1..=points as usize {
             let share = index as f64 / points;
-            let point = between(from, to, &velocities, share);
+            let point = between(from, to, velocities, share);
             let later = if point[0] <= via { 1.0 } else { LATER };
-            if tally.to_go.is_none() && point[0] >= via {
-                tally.to_go = Some(self.to_go.cost(&point, &after));
-            }
             let (mut lack, mut room) = (0.0, 0.0);
             if !field.is_clear(&point, self.clear) {
                 let (clearance, slope) = field.clearance_and_slope(&point);
@@ -155,18 +189,12 @@ impl Judge<'_> {
 
     /// Adds effort, end and cost-to-go.
     pub(super) fn end(&self, plan: &SpacePlan, tally: &Tally) -> SpaceJudgement {
-        let (trim, [.., last]) = (&self.model.trim, &plan.knots);
         let mut price = tally.price;
         for control in &plan.controls {
             price += self.effort(control);
         }
-        let off = last.position[2] - self.keep.altitude;
-        let fast = last.airspeed - trim.state.airspeed;
-        let turned =
-            last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
-        let turned = turned + RUNAWAY * tally.runaway * tally.runaway;
-        let to_go = tally.to_go.unwrap_or(SHORT);
-        price += 0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go;
+        let [.., last] = &plan.knots;
+        price += self.end_cost(last, tally);
         SpaceJudgement {
             price: if price.is_finite() {
                 price
@@ -175,6 +203,18 @@ impl Judge<'_> {
             },
             missing: tally.missing,
         }
+    }
+
+    /// Cost of the last knot, and cost-to-go.
+    pub(super) fn end_cost(&self, last: &SpacePath, tally: &Tally) -> f64 {
+        let trim = &self.model.trim;
+        let off = last.position[2] - self.keep.altitude;
+        let fast = last.airspeed - trim.state.airspeed;
+        let turned =
+            last.flight_path * last.flight_path + last.course * last.course + last.bank * last.bank;
+        let turned = turned + RUNAWAY * tally.runaway * tally.runaway;
+        let to_go = tally.to_go.unwrap_or(SHORT);
+        0.5 * (END_HEIGHT * off * off + fast * fast + turned) + to_go
     }
 }
 

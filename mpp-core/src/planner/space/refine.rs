@@ -79,6 +79,8 @@ impl Move {
 pub(super) struct Unmoved {
     plan: SpacePlan,
     tallies: heapless::Vec<(Tally, f64), STAGES>,
+    /// The costs of all stages.
+    total: f64,
     lifts: Lifts,
     /// Whether moves of the lift are tried, too.
     climbs: bool,
@@ -111,6 +113,7 @@ impl Unmoved {
         Self {
             plan,
             tallies,
+            total: tally.price(),
             lifts,
             climbs: tally.climbs(),
             since,
@@ -138,8 +141,8 @@ impl Unmoved {
         let (mut tally, mut efforts) = *self.tallies.get(first)?;
         let (known, limit) = (tally.least_price(), price / ROUNDED);
         // Bank and angle of attack, and so all controls, do not depend on forces.
-        let start = self.plan.knots.get(first)?;
-        let (mut state, mut controls) = (*start, heapless::Vec::<_, STAGES>::new());
+        let mut state = *self.plan.knots.get(first)?;
+        let mut controls = heapless::Vec::<_, STAGES>::new();
         for stage in first..STAGES {
             let control = (self.lifts).control(judge.model, best, stage, &state, by.at(stage + 1));
             // As many stages as places.
@@ -150,20 +153,65 @@ impl Unmoved {
                 return None;
             }
         }
-        state = *start;
-        for (stage, control) in (first..).zip(&controls) {
-            let next = state.after(judge.model, control, STAGE_PERIOD);
-            judge.add([&state, &next], stage, &mut tally);
-            state = next;
-            if tally.least_price() + efforts >= limit {
-                return None;
-            }
+        if !self.may_cost_less(judge, first, &controls, efforts, limit) {
+            return None;
         }
         let mut plan = self.plan;
         for (stage, control) in (first..).zip(&controls) {
             plan.fly_stage(stage, judge.model, |_| *control);
+            if let Some([from, to, ..]) = plan.knots.get(stage..) {
+                judge.add([from, to], stage, &mut tally);
+            }
         }
         Some((plan, judge.end(&plan, &tally)))
+    }
+
+    /// Whether controls from a stage on cost less than a limit but for rounding: terms are added in another order than that of
+    /// stages. Those that are free in the best plan are judged last, because the others and the end reject most moves.
+    fn may_cost_less(
+        &self,
+        judge: &Judge<'_>,
+        first: usize,
+        controls: &[SpaceControl],
+        efforts: f64,
+        limit: f64,
+    ) -> bool {
+        let (Some(&(mut tally, _)), Some(start)) =
+            (self.tallies.get(first), self.plan.knots.get(first))
+        else {
+            return false;
+        };
+        let mut state = *start;
+        let mut free = heapless::Vec::<_, STAGES>::new();
+        for (stage, control) in (first..).zip(controls) {
+            let knots = [state, state.after(judge.model, control, STAGE_PERIOD)];
+            let [from, to] = &knots;
+            let velocities = judge.pass([from, to], &mut tally);
+            if self.is_free(stage) {
+                // As many stages as places.
+                let _ = free.push((stage, knots, velocities));
+            } else {
+                judge.charge([from, to], &velocities, stage, &mut tally);
+            }
+            if tally.least_price() + efforts >= limit {
+                return false;
+            }
+            state = *to;
+        }
+        let fixed = judge.end_cost(&state, &tally) + efforts;
+        for (stage, [from, to], velocities) in &free {
+            if tally.price() + fixed >= limit {
+                return false;
+            }
+            judge.charge([from, to], velocities, *stage, &mut tally);
+        }
+        tally.price() + fixed < limit
+    }
+
+    /// Whether a stage of the best plan costs nothing but its control.
+    fn is_free(&self, stage: usize) -> bool {
+        let until = |stage: usize| self.tallies.get(stage).map(|(tally, _)| tally.price());
+        until(stage) == until(stage + 1).or(Some(self.total))
     }
 }
 
