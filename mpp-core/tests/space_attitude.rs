@@ -9,6 +9,19 @@ const LEVEL: Turn = Turn {
     wind: [0.0; 3],
 };
 
+/// Flies level for some ticks, with a sample of each so many, whose attitude is off by so much at a tick \[rad\].
+fn told(ticks: u32, each: u32, off: impl Fn(u32) -> [f64; 3]) -> SpaceEstimator {
+    let mut estimator = estimator();
+    for tick in 10..10 + ticks {
+        let mut sample = LEVEL.sample(time(tick), 0);
+        sample.attitude = core::array::from_fn(|axis| sample.attitude[axis] + off(tick)[axis]);
+        estimator.predict(tick.is_multiple_of(each).then_some(&sample));
+        let fix = LEVEL.fix(time(tick), 0);
+        estimator.observe_fix(tick.is_multiple_of(10).then_some(&fix));
+    }
+    estimator
+}
+
 #[test]
 fn while_the_attitude_is_refused_the_rates_carry_it_on() {
     let mut estimator = flown(LEVEL, 200);
@@ -29,14 +42,9 @@ fn while_the_attitude_is_refused_the_rates_carry_it_on() {
 #[test]
 fn fewer_samples_tell_as_much() {
     let heading = |each: u32| {
-        let mut estimator = estimator();
-        for tick in 10..310 {
-            let mut sample = LEVEL.sample(time(tick), 0);
-            sample.attitude[2] += if tick < 110 { 0.0 } else { 0.01 };
-            estimator.predict((tick % each == 0).then_some(&sample));
-            estimator.observe_fix((tick % 10 == 0).then_some(&LEVEL.fix(time(tick), 0)));
-        }
-        estimator.pose(0.0).unwrap().attitude.angles()[2]
+        let off = |tick| [0.0, 0.0, if tick < 110 { 0.0 } else { 0.01 }];
+        let pose = told(300, each, off).pose(0.0).unwrap();
+        pose.attitude.angles()[2]
     };
     let often = heading(1);
     assert!((0.002..0.009).contains(&often), "{often}");
@@ -45,15 +53,9 @@ fn fewer_samples_tell_as_much() {
 
 #[test]
 fn a_bias_of_the_bank_is_found_and_told() {
-    let told = |bias: f64| {
-        let mut estimator = estimator();
-        for tick in 10..2010 {
-            let mut sample = LEVEL.sample(time(tick), 0);
-            sample.attitude[0] += bias + 1e-6 * f64::from(tick % 7);
-            estimator.predict(Some(&sample));
-            let fix = LEVEL.fix(time(tick), 0);
-            estimator.observe_fix((tick % 10 == 0).then_some(&fix));
-        }
+    let biased = |bias: f64| {
+        let off = |tick| [bias + 1e-6 * f64::from(tick % 7), 0.0, 0.0];
+        let estimator = told(2000, 1, off);
         (
             estimator.bank_bias(),
             estimator.trust().pitch,
@@ -61,10 +63,10 @@ fn a_bias_of_the_bank_is_found_and_told() {
         )
     };
     let bias = 3_f64.to_radians();
-    let (found, trust, motion) = told(bias);
+    let (found, trust, motion) = biased(bias);
     assert!((found - bias).abs() < 0.3_f64.to_radians(), "{found}");
     assert_eq!(trust, Trust::Suspected);
     assert!(motion.path.bank.abs() < 0.3_f64.to_radians());
-    let (found, trust, _) = told(0.0);
+    let (found, trust, _) = biased(0.0);
     assert!(found.abs() < 1e-3 && trust == Trust::Healthy);
 }

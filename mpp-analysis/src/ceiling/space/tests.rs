@@ -3,8 +3,9 @@ use mpp_core::config::TICK_PERIOD;
 use mpp_core::vehicle::Control;
 use mpp_sim::aircraft_file::AircraftFile;
 use mpp_sim::space::SpaceFile;
-use mpp_sim::space::world::{Body, Extent, World, WorldConfig, WorldName};
+use mpp_sim::space::world::{Extent, WorldConfig, WorldName};
 use proptest::prelude::*;
+use trunks::forest;
 
 fn scenario(aircraft: &str, sphere: Option<f64>, world: &str, seed: u64) -> SpaceScenario {
     let file = SpaceFile {
@@ -20,15 +21,8 @@ fn scenario(aircraft: &str, sphere: Option<f64>, world: &str, seed: u64) -> Spac
 }
 
 fn among(from: &SpaceScenario, trunks: &[Trunk], extent: Extent) -> SpaceScenario {
-    let body = |trunk: &Trunk| Body::Cylinder {
-        x: trunk.at[0],
-        y: trunk.at[1],
-        radius: trunk.radius,
-        height: f64::INFINITY,
-    };
-    let bodies = trunks.iter().map(body).collect();
     let mut scenario = from.clone();
-    scenario.world = World::new(bodies, extent).unwrap();
+    scenario.world = forest(trunks, extent).unwrap();
     scenario
 }
 

@@ -3,7 +3,7 @@
 use crate::ceiling::CeilingError;
 use mpp_core::vehicle::GRAVITY;
 use mpp_sim::space::Hull;
-use mpp_sim::space::world::{Body, Extent, World};
+use mpp_sim::space::world::{Body, Extent, World, WorldError};
 
 /// Side of a cell of the lists of near trunks \[m\].
 const CELL: f64 = 1.0;
@@ -61,6 +61,17 @@ pub(super) fn trunks(world: &World) -> Result<Vec<Trunk>, CeilingError> {
         _ => Err(CeilingError::NoTrunk),
     };
     world.bodies().iter().map(trunk).collect()
+}
+
+/// The world of these trunks.
+pub(super) fn forest(trunks: &[Trunk], extent: Extent) -> Result<World, WorldError> {
+    let body = |trunk: &Trunk| Body::Cylinder {
+        x: trunk.at[0],
+        y: trunk.at[1],
+        radius: trunk.radius,
+        height: f64::INFINITY,
+    };
+    World::new(trunks.iter().map(body).collect(), extent)
 }
 
 /// Trunks by the cells that they are near to.

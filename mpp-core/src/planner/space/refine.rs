@@ -5,7 +5,7 @@
 
 use super::candidate::{SpacePlan, limited};
 use super::judge::{Judge, SpaceJudgement, Tally};
-use crate::config::{STAGE_PERIOD, STAGES};
+use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::tuning::space_refinement::{LIFT, ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
@@ -73,14 +73,12 @@ impl Move {
     }
 }
 
-/// The plan that is moved, flown by the rules of moves, with its costs and the sum of its efforts before each stage: a move has
+/// The plan that is moved, flown by the rules of moves, with its costs and the sum of its efforts up to each knot: a move has
 /// them up to its first stage.
 #[derive(Clone, Debug)]
 pub(super) struct Unmoved {
     plan: SpacePlan,
-    tallies: heapless::Vec<(Tally, f64), STAGES>,
-    /// The costs of all stages.
-    total: f64,
+    tallies: heapless::Vec<(Tally, f64), KNOTS>,
     lifts: Lifts,
     /// Whether moves of the lift are tried, too.
     climbs: bool,
@@ -99,7 +97,7 @@ impl Unmoved {
         let (mut plan, mut tally) = (*best, judge.begin(best));
         let (mut tallies, mut efforts) = (heapless::Vec::new(), 0.0);
         for stage in 0..STAGES {
-            // As many stages as places.
+            // As many knots as places.
             let _ = tallies.push((tally, efforts));
             plan.fly_stage(stage, judge.model, |state| {
                 let control = lifts.control(judge.model, best, stage, state, [0.0; 2]);
@@ -110,10 +108,10 @@ impl Unmoved {
                 judge.add([from, to], stage, &mut tally);
             }
         }
+        let _ = tallies.push((tally, efforts));
         Self {
             plan,
             tallies,
-            total: tally.price(),
             lifts,
             climbs: tally.climbs(),
             since,
@@ -210,8 +208,8 @@ impl Unmoved {
 
     /// Whether a stage of the best plan costs nothing but its control.
     fn is_free(&self, stage: usize) -> bool {
-        let until = |stage: usize| self.tallies.get(stage).map(|(tally, _)| tally.price());
-        until(stage) == until(stage + 1).or(Some(self.total))
+        let until = |knot: usize| self.tallies.get(knot).map(|(tally, _)| tally.price());
+        until(stage) == until(stage + 1)
     }
 }
 
