@@ -31,6 +31,7 @@ mod planner_flight;
 mod planner_limits;
 mod planner_setup;
 mod planner_space;
+mod planner_space_again;
 mod planner_space_offers;
 mod point_mass;
 mod qp;

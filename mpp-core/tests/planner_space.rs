@@ -35,7 +35,7 @@ pub(crate) fn level(model: &SpaceModel) -> SpacePath {
     }
 }
 
-struct Draw(Pcg64Mcg);
+pub(crate) struct Draw(pub(crate) Pcg64Mcg);
 
 impl Draw {
     fn between(&mut self, low: f64, high: f64) -> f64 {
@@ -104,7 +104,7 @@ pub(crate) fn plan(
 
 /// Ends a cycle. Returns the number of its slices, which is bounded as that of the parts of each is: a step of the solver takes
 /// up rows, settles them, and drops some.
-fn finish(planner: &mut SpacePlanner, map: &VoxelGrid) -> usize {
+pub(crate) fn finish(planner: &mut SpacePlanner, map: &VoxelGrid) -> usize {
     let (mut slices, mut parts) = (1, 1);
     while !planner.advance(map) {
         parts += 1;
@@ -115,6 +115,20 @@ fn finish(planner: &mut SpacePlanner, map: &VoxelGrid) -> usize {
         assert!(parts <= MAX_ITERATIONS + 3 * INPUTS * STAGES, "{parts}");
     }
     slices
+}
+
+/// A map of 40 trunks ahead, seen from its start: their x, y and radius \[m\].
+pub(crate) fn see_forest(map: &mut VoxelGrid, draw: &mut Draw) -> Vec<[f64; 3]> {
+    map.clear(0.0);
+    let trunks: Vec<[f64; 3]> = (0..40)
+        .map(|_| {
+            let radius = draw.between(0.15, 0.4);
+            [draw.between(9.0, 45.0), draw.between(-20.0, 20.0), radius]
+        })
+        .collect();
+    let beams = sweep(|direction| to_trunks(&trunks, direction));
+    map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
+    trunks
 }
 
 fn in_bounds(plan: &SpacePlan, model: &SpaceModel) {
@@ -136,15 +150,7 @@ fn plans_in_forests_keep_clear_of_the_trunks_and_within_the_limits() {
         let (mut draw, model) = (Draw(Pcg64Mcg::seed_from_u64(3)), model());
         let mut clear = 0;
         for _ in 0..12 {
-            map.clear(0.0);
-            let trunks: Vec<[f64; 3]> = (0..40)
-                .map(|_| {
-                    let radius = draw.between(0.15, 0.4);
-                    [draw.between(9.0, 45.0), draw.between(-20.0, 20.0), radius]
-                })
-                .collect();
-            let beams = sweep(|direction| to_trunks(&trunks, direction));
-            map.insert(&[0.0, 0.0, 7.5], beams.iter().copied(), 45.0);
+            let trunks = see_forest(map, &mut draw);
             let (plan, _) = plan(planner, map, &level(&model), 0.0);
             in_bounds(&plan, &model);
             let mut least = f64::INFINITY;
@@ -222,34 +228,6 @@ fn a_wing_banks_or_goes_around_where_a_sphere_passes() {
             );
         });
     }
-}
-
-/// The next plan begins where this one will be, moved by a part of the deviation; along the track by all of it.
-#[test]
-fn the_next_plan_begins_between_the_last_plan_and_the_aircraft() {
-    with_planner(KEEP, |map, planner| {
-        let model = model();
-        let (plan, _) = plan(planner, map, &level(&model), 0.0);
-        let (now, then) = (plan.at(&model, 0.3).0, plan.at(&model, 0.4).0);
-        assert_eq!(plan.next_start(&model, &now, 0.3, 0.1), then);
-        let aside = SpacePath {
-            position: [
-                now.position[0] - 0.4,
-                now.position[1] + 0.2,
-                now.position[2],
-            ],
-            airspeed: now.airspeed + 1.0,
-            bank: now.bank - 0.1,
-            ..now
-        };
-        let start = plan.next_start(&model, &aside, 0.3, 0.1);
-        assert!((start.position[0] - then.position[0] + 0.4).abs() < 1e-9);
-        assert!((start.airspeed - then.airspeed - 1.0).abs() < 1e-9);
-        let share = (start.position[1] - then.position[1]) / 0.2;
-        assert!(share > 0.0 && share < 1.0, "{share}");
-        let bank = (start.bank - then.bank) / -0.1;
-        assert!((bank - share).abs() < 1e-9, "{bank}");
-    });
 }
 
 /// The slices after the programs never make the plan dearer, and where it lacks room they make it cheaper by a fifth.

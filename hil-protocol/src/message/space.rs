@@ -174,7 +174,8 @@ impl SpaceReport {
 pub struct SpaceTrajectory {
     /// The tick of the scan from which the plan was made.
     pub scan_tick: u32,
-    /// Time from each knot to the next \[s\].
+    /// Time from each knot to the next \[s\]; from the first to the second it may be another one, because a plan keeps the knots of
+    /// the one before.
     pub period: f32,
     /// Position \[m\], bank and course \[rad\] at each knot.
     pub knots: Vec<[f32; 5], MAX_KNOTS>,

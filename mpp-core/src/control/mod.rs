@@ -10,6 +10,7 @@ pub use lateral::{LateralMotion, LateralRegulator, NoLateralGain};
 use nalgebra::{Matrix4, RowVector4, Vector4};
 pub use riccati::{RiccatiError, solve_riccati};
 pub(crate) use sampled::holds;
+pub(crate) use space::follow;
 pub use space::{SpaceMotion, SpaceRegulator};
 
 /// Weights of the regulator: `Q` on `(v, theta, theta', gamma)` and `R` on the elevator.

@@ -104,15 +104,8 @@ impl SpaceRegulator {
         ahead: (&SpacePath, &SpaceControl),
     ) -> (Control, LateralControl) {
         let path = &motion.path;
-        let wanted = lift(model, path, now, ahead);
-        let [_, up, right] = path.axes();
-        let along = |axis: [f64; 3]| wanted.iter().zip(&axis).map(|(a, b)| a * b).sum::<f64>();
-        let (up, right) = (along(up), along(right));
-        let bank = within(libm::atan2(right, up.max(LEAST_UP)), model.bank);
-        let pull = (up / libm::cos(bank).max(0.3)).max(0.0);
-        let pull = pull.min(libm::hypot(up, right));
+        let [bank, attack] = follow(model, path, now, ahead);
         let [low, high] = model.angle_of_attack;
-        let attack = model.angle_for(path.airspeed, pull);
         let attack = attack.max(low - BEYOND).min(high + BEYOND);
         let [bank_lag, attack_lag] = self.lags;
         let attack = attack + attack_lag * ahead.1.angle_of_attack_rate;
@@ -163,6 +156,24 @@ impl SpaceRegulator {
             wanted
         }
     }
+}
+
+/// Bank and angle of attack \[rad\] that follow a plan. `now` is the plan's state at this time, `ahead` state and control of
+/// the plan when they will be reached.
+pub(crate) fn follow(
+    model: &SpaceModel,
+    path: &SpacePath,
+    now: &SpacePath,
+    ahead: (&SpacePath, &SpaceControl),
+) -> [f64; 2] {
+    let wanted = lift(model, path, now, ahead);
+    let [_, up, right] = path.axes();
+    let along = |axis: [f64; 3]| wanted.iter().zip(&axis).map(|(a, b)| a * b).sum::<f64>();
+    let (up, right) = (along(up), along(right));
+    let bank = within(libm::atan2(right, up.max(LEAST_UP)), model.bank);
+    let pull = (up / libm::cos(bank).max(0.3)).max(0.0);
+    let pull = pull.min(libm::hypot(up, right));
+    [bank, model.angle_for(path.airspeed, pull)]
 }
 
 /// The wanted acceleration across the flight path [m/s^2]: the lift of the plan, and what brings the aircraft back to it.

@@ -121,9 +121,9 @@ mod tests {
         // The column begins at (-2, 5) voxels.
         extent.take(&at(-1.5, 5.25), 20.0);
         assert_eq!(extent.sides(), [[8, 9], [4, 5]]);
-        extent.take(&at(-1.25, 5.01), 18.0);
+        extent.take(&at(-1.25, 5.01), 19.5);
         assert_eq!(extent.sides(), [[8, 13], [0, 5]]);
-        // From much farther, and from much closer.
+        // From farther, and from closer.
         extent.take(&at(-1.99, 5.99), 40.0);
         assert_eq!(extent.sides(), [[8, 13], [0, 5]]);
         extent.take(&at(-1.1, 5.5), 10.0);

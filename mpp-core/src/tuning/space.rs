@@ -4,8 +4,8 @@
 /// The map in space.
 pub mod space_map {
     /// Share of the range of earlier hits below which a hit begins the box of its column anew, and above the inverse of which it
-    /// does not count [-]. More keeps the errors of far hits, less forgets flanks. Source: S.
-    pub const CLOSER: f64 = 0.7;
+    /// does not count [-]. Less keeps the errors of many hits, more forgets flanks. Source: D75.
+    pub const CLOSER: f64 = 0.96;
 }
 
 /// The state in which a plan begins.
@@ -75,8 +75,9 @@ pub mod space_judgement {
     pub const RUNAWAY: f64 = 10.0;
     /// Cost of a plan that does not reach the line from which the cost-to-go counts [-]. Source: S.
     pub const SHORT: f64 = 100.0;
-    /// Weight of a point beyond that line [-]: it will be planned again. Source: S.
-    pub const LATER: f64 = 0.5;
+    /// Weight of a point beyond that line [-]: it will be planned again. With more, plans hit what is near to avoid what is far.
+    /// Source: D75.
+    pub const LATER: f64 = 0.1;
 }
 
 /// Programs in space.

@@ -8,7 +8,7 @@ use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
 use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner};
-use mpp_core::vehicle::{Nose, SpaceControl};
+use mpp_core::vehicle::{Nose, SPACE_STATES, SpaceControl};
 
 /// Points that go into the map in one slice.
 const SLICE_POINTS: usize = 24;
@@ -117,23 +117,33 @@ impl SpaceTask {
 }
 
 impl Session {
-    /// Begins a cycle from where the aircraft will be when the plan is taken over.
+    /// Begins a cycle from where the aircraft will be when the plan begins.
     fn begin(&mut self, planner: &mut SpacePlanner, tick: u32, motion: &SpaceMotion) {
         let model = self.model;
-        let latency = duration(self.configure.latency_ticks);
-        let (start, shift) = match &self.flown {
+        let configure = &self.configure;
+        let due = tick.wrapping_add(configure.latency_ticks);
+        // The regulator looks ahead: a plan begins where it will look when the plan is due, and no more than one plan waits.
+        let most = (configure.replan_period_ticks.saturating_mul(2))
+            .saturating_sub(configure.latency_ticks);
+        let lead = (libm::round(self.ahead / duration(1)) as u32).min(most);
+        let begins = due.wrapping_add(lead);
+        let (start, shift, moved) = match &self.flown {
             Some(flown) => {
-                let age = flown.age(tick);
-                let plan = &flown.plan;
-                let start = plan.next_start(&flown.model, &motion.path, age, latency);
-                (start, age + latency)
+                let (time, deviation) = (flown.age(begins), flown.deviation(tick, &motion.path));
+                let start = flown.plan.next_start(&flown.model, time, &deviation);
+                let beside = flown.plan.at(&flown.model, time).0.numbers();
+                let start_at = start.numbers();
+                let moved = core::array::from_fn(|number| start_at[number] - beside[number]);
+                (start, time, moved)
             }
             None => {
                 let level = SpaceControl {
                     thrust: model.trim.control.thrust,
                     ..SpaceControl::default()
                 };
-                (motion.path.after(&model, &level, latency), 0.0)
+                let wait = duration(configure.latency_ticks.saturating_add(lead));
+                let start = motion.path.after(&model, &level, wait);
+                (start, 0.0, [0.0; SPACE_STATES])
             }
         };
         planner.set_wind(model.wind);
@@ -144,7 +154,9 @@ impl Session {
         self.last_cycle = Some(tick);
         self.cycle = Some(Cycle {
             begun: tick,
-            due: tick.wrapping_add(self.configure.latency_ticks),
+            due,
+            start: begins,
+            moved,
             slices: 0,
             complete: false,
         });
@@ -170,8 +182,8 @@ impl Session {
             self.flown = Some(Flown {
                 plan,
                 model: *planner.model(),
-                start: cycle.due,
-                begun: cycle.begun,
+                cycle,
+                before: (self.flown.as_ref()).map(|flown| (flown.plan, flown.cycle.start)),
             });
         }
         self.untold = Some(PlanReport {

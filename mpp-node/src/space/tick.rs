@@ -1,5 +1,6 @@
 //! The step in space, 100 times a second.
 
+use super::cycle::Flown;
 use super::{Session, SpaceMemory, SpaceTask};
 use crate::convert::sensor_states;
 use crate::ticks;
@@ -48,14 +49,14 @@ impl SpaceTask {
         };
         let finite = session.estimate(frame);
         session.model.wind = session.estimator.wind();
-        let told = session
-            .untold
-            .take()
-            .map(|report| (report, session.flown.filter(|_| report.outcome.is_new())));
+        let told = session.untold.take().map(|report| {
+            let new = session.flown.as_ref().filter(|_| report.outcome.is_new());
+            (report, new.map(Flown::told))
+        });
         session.take_over(memory.planner, tick);
         let estimate = session.estimator.motion();
         // A plan is followed in the wind for which it was made, so that a change of the wind is no error of the velocity.
-        let model = session.flown.map_or(session.model, |flown| flown.model);
+        let model = (session.flown.as_ref()).map_or(session.model, |flown| flown.model);
         let answer = match session.estimator.motion_in(&model.wind) {
             Some(motion) => session.step(tick, &motion, &model),
             None => session.level(tick),
@@ -67,10 +68,10 @@ impl SpaceTask {
         if !finite {
             self.reject(RejectionCause::NonFiniteSensor, send);
         }
-        if let Some((report, flown)) = told {
+        if let Some((report, trajectory)) = told {
             self.emit(&report, send);
-            if let Some(flown) = flown {
-                self.emit(&flown.told(), send);
+            if let Some(trajectory) = trajectory {
+                self.emit(&trajectory, send);
             }
         }
         if let Some((lateral, step)) = &answer.reports {
@@ -179,7 +180,7 @@ impl Session {
         if let Some(flown) = &self.flown {
             let (model, age) = (&flown.model, flown.age(tick));
             return (
-                flown.plan.at(model, age).0,
+                flown.reference(tick),
                 flown.plan.at(model, age + self.ahead),
             );
         }
@@ -216,7 +217,8 @@ impl Session {
             wind: wind_y,
             reference: [ref_y, now.bank, now.course],
         };
-        let age = self.flown.map_or(0, |flown| ticks(flown.begun, tick));
+        let flown = self.flown.as_ref();
+        let age = flown.map_or(0, |flown| ticks(flown.cycle.begun, tick));
         let step = StepReport {
             tick,
             estimate: [path.airspeed, pitch(path), pitch_rate, path.flight_path],

@@ -1,9 +1,10 @@
 //! Trajectories in space: as the pursuit of a path flies them, and as the controls of a program do.
 
 use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::control::follow;
 use crate::tuning::space_limits;
 use crate::tuning::space_take_over::TRUST;
-use crate::vehicle::{GRAVITY, SpaceControl, SpaceModel, SpacePath, between, within};
+use crate::vehicle::{GRAVITY, SPACE_STATES, SpaceControl, SpaceModel, SpacePath, between, within};
 
 /// Numbers of a state that no regulator holds to the plan's time.
 const ALONG: usize = 0;
@@ -17,10 +18,60 @@ const LEAST_UP: f64 = 0.5;
 const BEYOND_ATTACK: f64 = 0.03;
 const BANK_BEYOND: f64 = 0.97;
 const RATE_BEYOND: f64 = 0.95;
+/// Least length of the first stage \[s\]. A shorter one is a part of the next.
+const LEAST_STAGE: f64 = 0.03;
+/// What sums of times may lack at a knot, in stages [-].
+const ROUNDED: f64 = 1e-9;
 
-/// A trajectory in space: knots 0.25 s apart, and the controls between them.
+/// When the knots of a plan are: 0.25 s apart, but for the first stage. A cycle keeps the knots of the plan before, so that its
+/// controls stay what they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Grid {
+    /// Length of the first stage \[s\].
+    first: f64,
+}
+
+impl Grid {
+    /// All stages are as long.
+    pub(super) const EVEN: Self = Self {
+        first: STAGE_PERIOD,
+    };
+
+    /// The grid of a plan that begins a time \[s\] after the first knot of this one.
+    pub(super) fn later(&self, time: f64) -> Self {
+        let into = (time - self.first) / STAGE_PERIOD;
+        let left = STAGE_PERIOD * (libm::ceil(into) - into);
+        let more = if left < LEAST_STAGE {
+            STAGE_PERIOD
+        } else {
+            0.0
+        };
+        Self { first: left + more }
+    }
+
+    /// Length of a stage \[s\].
+    pub(super) fn period(&self, stage: usize) -> f64 {
+        if stage == 0 { self.first } else { STAGE_PERIOD }
+    }
+
+    /// Time of a knot since the first one \[s\].
+    pub(super) fn time(&self, knot: usize) -> f64 {
+        match knot.checked_sub(1) {
+            Some(more) => self.first + STAGE_PERIOD * more as f64,
+            None => 0.0,
+        }
+    }
+
+    /// The stage of a time since the first knot \[s\].
+    fn stage(&self, time: f64) -> usize {
+        ((time - self.first) / STAGE_PERIOD + (1.0 + ROUNDED)).max(0.0) as usize
+    }
+}
+
+/// A trajectory in space: knots 0.25 s apart, but for the first stage, and the controls between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpacePlan {
+    pub(super) grid: Grid,
     /// States at the knots.
     pub knots: [SpacePath; KNOTS],
     /// Controls of the stages.
@@ -28,10 +79,11 @@ pub struct SpacePlan {
 }
 
 impl SpacePlan {
-    /// A plan of zeros, to be filled.
+    /// A plan of zeros with even stages, to be filled.
     #[must_use]
     pub const fn new() -> Self {
         Self {
+            grid: Grid::EVEN,
             knots: [SpacePath::ORIGIN; KNOTS],
             controls: [SpaceControl {
                 bank_rate: 0.0,
@@ -62,33 +114,32 @@ impl SpacePlan {
         model: &SpaceModel,
         choose: impl FnOnce(&SpacePath) -> SpaceControl,
     ) {
+        let period = self.grid.period(stage);
         let control = self.controls.get_mut(stage);
         let knots = self.knots.get_mut(stage..);
         if let (Some([from, to, ..]), Some(control)) = (knots, control) {
             *control = choose(from);
-            *to = from.after(model, control, STAGE_PERIOD);
+            *to = from.after(model, control, period);
         }
     }
 
-    /// The state in which the next plan begins, `latency` \[s\] after this plan has the age `age` \[s\] and the aircraft is
-    /// `here`. It is this plan's, moved by a [share](TRUST) of the deviation: the regulator takes care of the rest. Along the
+    /// The state in which the next plan begins, a time \[s\] after the first knot, if the aircraft deviates from what it
+    /// follows. It is this plan's, moved by a [share](TRUST) of the deviation: the regulator takes care of the rest. Along the
     /// track it is moved by all of it, because no regulator holds the time of a plan.
     #[must_use]
     pub fn next_start(
         &self,
         model: &SpaceModel,
-        here: &SpacePath,
-        age: f64,
-        latency: f64,
+        time: f64,
+        deviation: &[f64; SPACE_STATES],
     ) -> SpacePath {
-        let (now, then) = (self.at(model, age).0, self.at(model, age + latency).0);
-        let (now, here, start) = (now.numbers(), here.numbers(), then.numbers());
+        let start = self.at(model, time).0.numbers();
         SpacePath::of(core::array::from_fn(|number| {
             let share = match number {
                 ALONG | AIRSPEED => 1.0,
                 _ => TRUST,
             };
-            start[number] + share * (here[number] - now[number])
+            start[number] + share * deviation[number]
         }))
     }
 
@@ -96,15 +147,15 @@ impl SpacePlan {
     #[must_use]
     pub fn at(&self, model: &SpaceModel, time: f64) -> (SpacePath, SpaceControl) {
         let time = time.max(0.0);
-        let stage = (time / STAGE_PERIOD) as usize;
+        let stage = self.grid.stage(time);
         let [.., last] = &self.knots;
         match (self.knots.get(stage), self.controls.get(stage)) {
             (Some(knot), Some(control)) => {
-                let within = time - stage as f64 * STAGE_PERIOD;
+                let within = (time - self.grid.time(stage)).max(0.0);
                 (knot.after(model, control, within), *control)
             }
             _ => {
-                let beyond = time - STAGES as f64 * STAGE_PERIOD;
+                let beyond = time - self.grid.time(STAGES);
                 let level = SpacePath {
                     angle_of_attack: model.trim.state.angle_of_attack(),
                     bank: 0.0,
@@ -131,23 +182,43 @@ impl Default for SpacePlan {
     }
 }
 
-/// Controls within the limits of roll-outs.
+/// Controls within the limits of roll-outs, of a stage of some length \[s\].
 pub(super) fn limited(
     model: &SpaceModel,
     state: &SpacePath,
     wanted: &SpaceControl,
+    period: f64,
 ) -> SpaceControl {
     let rate = within(wanted.bank_rate, RATE_BEYOND * model.bank_rate);
-    let bank = within(state.bank + rate * STAGE_PERIOD, BANK_BEYOND * model.bank);
+    let bank = within(state.bank + rate * period, BANK_BEYOND * model.bank);
     let [low, high] = model.angle_of_attack;
     let rate = within(wanted.angle_of_attack_rate, model.angle_of_attack_rate);
-    let aimed = state.angle_of_attack + rate * STAGE_PERIOD;
+    let aimed = state.angle_of_attack + rate * period;
     let reached = between(aimed, [low - BEYOND_ATTACK, high + BEYOND_ATTACK]);
     SpaceControl {
-        bank_rate: (bank - state.bank) / STAGE_PERIOD,
-        angle_of_attack_rate: (reached - state.angle_of_attack) / STAGE_PERIOD,
+        bank_rate: (bank - state.bank) / period,
+        angle_of_attack_rate: (reached - state.angle_of_attack) / period,
         thrust: wanted.thrust.max(0.0).min(model.thrust_max),
     }
+}
+
+/// The control of a stage of some length \[s\] that tracks a plan: `now` is the plan's state at its beginning, `next` the one at
+/// its end with the control between them. A deviation changes bank and angle of attack as it does by the regulator.
+pub(super) fn tracking(
+    model: &SpaceModel,
+    state: &SpacePath,
+    now: &SpacePath,
+    (next, control): (&SpacePath, &SpaceControl),
+    period: f64,
+) -> SpaceControl {
+    let [from, to] = [now, state].map(|it| follow(model, it, now, (next, control)));
+    let [bank, attack] = core::array::from_fn(|at| to[at] - from[at]);
+    let wanted = SpaceControl {
+        bank_rate: (next.bank + bank - state.bank) / period,
+        angle_of_attack_rate: (next.angle_of_attack + attack - state.angle_of_attack) / period,
+        thrust: control.thrust,
+    };
+    limited(model, state, &wanted, period)
 }
 
 /// Flies along points that lie ahead of each other.
@@ -168,8 +239,13 @@ impl<'a> Pursuit<'a> {
         }
     }
 
-    /// The control of the next stage: towards the point of the path some distance ahead, on a circle.
-    pub(super) fn control(&mut self, model: &SpaceModel, state: &SpacePath) -> SpaceControl {
+    /// The control of the next stage, of some length \[s\]: towards the point of the path some distance ahead, on a circle.
+    pub(super) fn control(
+        &mut self,
+        model: &SpaceModel,
+        state: &SpacePath,
+        period: f64,
+    ) -> SpaceControl {
         let at = state.position;
         let aim = self.point(at[0] + self.aim * model.trim.state.airspeed);
         let way: [f64; 3] = core::array::from_fn(|axis| aim[axis] - at[axis]);
@@ -181,7 +257,7 @@ impl<'a> Pursuit<'a> {
         let [_, up, right] = crate::vehicle::path_axes(libm::asin(climb), course);
         let turn = 2.0 * speed_squared / square;
         let up = turn * dot(&way, &up) + GRAVITY * libm::cos(state.flight_path);
-        towards(model, state, [up, turn * dot(&way, &right)], STAGE_PERIOD)
+        towards(model, state, [up, turn * dot(&way, &right)], period)
     }
 
     /// The point of the path at an x; beyond the end its last point, moved to this x.

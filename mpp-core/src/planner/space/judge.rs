@@ -1,10 +1,10 @@
 //! What a trajectory in space is worth.
 
-use super::candidate::{SpacePlan, dot};
+use super::candidate::{Grid, SpacePlan, dot};
 use super::cost_to_go::CostToGo;
 use super::keep::Keep;
 use crate::config::{STAGE_PERIOD, STAGES};
-use crate::map::VoxelField;
+use crate::map::{MOST_CLEARANCE, VoxelField};
 use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT, RUNAWAY, SHORT};
 use crate::tuning::space_program::CONTROL;
 use crate::tuning::space_refinement::STEEP;
@@ -21,7 +21,7 @@ const POINTS: [f64; 2] = [4.0, 16.0];
 pub struct SpaceJudgement {
     /// The sum of all costs; less is better.
     pub price: f64,
-    /// Greatest clearance that is missing up to the via station \[m\]; beyond it counts half.
+    /// Greatest clearance that is missing up to the via station \[m\]; beyond it a [part](LATER) counts.
     pub missing: f64,
 }
 
@@ -66,6 +66,7 @@ pub(super) struct Judge<'a> {
     pub(super) to_go: &'a CostToGo,
     pub(super) model: &'a SpaceModel,
     pub(super) keep: &'a Keep,
+    pub(super) grid: Grid,
     /// Distance at which no clearance and no room is missing, by [`needed`](crate::map::voxel_field::needed).
     pub(super) clear: u8,
     /// Cost of the squared lack of airspeed at a knot [s^2/m^2].
@@ -103,24 +104,30 @@ impl Judge<'_> {
     /// Adds the costs of a stage. Copies of it would cost flash.
     #[inline(never)]
     pub(super) fn add(&self, knots: [&SpacePath; 2], stage: usize, tally: &mut Tally) {
-        let velocities = self.pass(knots, tally);
+        let velocities = self.pass(knots, stage, tally);
         self.charge(knots, &velocities, stage, tally);
     }
 
     /// What a stage hands on to the next ones, and the cost-to-go if it passes the via station. Returns the velocities over ground
     /// at its knots [m/s].
-    pub(super) fn pass(&self, [from, to]: [&SpacePath; 2], tally: &mut Tally) -> [[f64; 3]; 2] {
+    pub(super) fn pass(
+        &self,
+        [from, to]: [&SpacePath; 2],
+        stage: usize,
+        tally: &mut Tally,
+    ) -> [[f64; 3]; 2] {
         let velocities = [tally.velocity, to.ground_velocity(&self.model.wind)];
         let [_, after] = velocities;
         tally.velocity = after;
         if let Some(nose) = &self.model.nose {
-            tally.runaway = nose.after_stage(tally.runaway, 0.5 * (from.bank + to.bank));
+            let share = self.grid.period(stage) / STAGE_PERIOD;
+            let after = nose.after_stage(tally.runaway, 0.5 * (from.bank + to.bank));
+            tally.runaway += share * (after - tally.runaway);
         }
         let via = self.to_go.via();
         if tally.to_go.is_none() && to.position[0] >= via {
-            let points = self.points();
-            let crossed = (1..=points as usize)
-                .map(|index| between(from, to, &velocities, index as f64 / points))
+            let crossed = (self.shares(stage))
+                .map(|share| between([from, to], &velocities, share, self.grid.period(stage)))
                 .find(|point| point[0] >= via);
             tally.to_go = crossed.map(|point| self.to_go.cost(&point, &after));
         }
@@ -133,6 +140,14 @@ impl Judge<'_> {
         limit(points, POINTS)
     }
 
+    /// Shares of a stage at which it is judged. Those of a short one are its last ones.
+    fn shares(&self, stage: usize) -> impl Iterator<Item = f64> {
+        let points = self.points();
+        let all = points * self.grid.period(stage) / STAGE_PERIOD;
+        let count = libm::ceil(all - 1e-6) as usize;
+        (0..count).map(move |index| 1.0 - (count - 1 - index) as f64 / all)
+    }
+
     /// Adds the costs of a stage that do not depend on those before.
     pub(super) fn charge(
         &self,
@@ -142,7 +157,7 @@ impl Judge<'_> {
         tally: &mut Tally,
     ) {
         let (field, keep, via) = (self.field, self.keep, self.to_go.via());
-        let discount = 1.0 - 0.5 * stage as f64 / STAGES as f64;
+        let discount = 1.0 - self.grid.time(stage) / (STAGES as f64 * STAGE_PERIOD);
         if self.slow > 0.0 {
             let lack = (self.model.trim.state.airspeed - to.airspeed).max(0.0);
             tally.price += self.slow * lack * lack;
@@ -150,13 +165,14 @@ impl Judge<'_> {
         let [least, _] = POINTS;
         let points = self.points();
         let discount = discount * (least / points);
-        for index in 1..=points as usize {
-            let share = index as f64 / points;
-            let point = between(from, to, velocities, share);
+        let half = 0.5 * STAGE_PERIOD / points;
+        for share in self.shares(stage) {
+            let point = between([from, to], velocities, share, self.grid.period(stage));
             let later = if point[0] <= via { 1.0 } else { LATER };
             let (mut lack, mut room) = (0.0, 0.0);
             if !field.is_clear(&point, self.clear) {
                 let (clearance, slope) = field.clearance_and_slope(&point);
+                let (clearance, slope) = closest(clearance, &slope, velocities, half);
                 let margin = keep.margin(clearance, &slope, || wing(from, to, share));
                 lack = (margin - clearance).max(0.0);
                 room = (margin + ROOM - clearance).max(0.0);
@@ -227,16 +243,70 @@ fn wing(from: &SpacePath, to: &SpacePath, share: f64) -> [f64; 3] {
 
 /// The position at a share of the way between two knots: a cubic with the velocities of both.
 fn between(
-    from: &SpacePath,
-    to: &SpacePath,
+    [from, to]: [&SpacePath; 2],
     [before, after]: &[[f64; 3]; 2],
     share: f64,
+    period: f64,
 ) -> [f64; 3] {
     let (s2, s3) = (share * share, share * share * share);
     core::array::from_fn(|axis| {
         let ends = (2.0 * s3 - 3.0 * s2 + 1.0) * from.position[axis]
             + (3.0 * s2 - 2.0 * s3) * to.position[axis];
         let turns = (s3 - 2.0 * s2 + share) * before[axis] + (s3 - s2) * after[axis];
-        ends + STAGE_PERIOD * turns
+        ends + period * turns
     })
+}
+
+/// The clearance and its slope where the body comes closest to what is nearest, within some time \[s\] before and after.
+fn closest(
+    clearance: f64,
+    slope: &[f64; 3],
+    [before, after]: &[[f64; 3]; 2],
+    half: f64,
+) -> (f64, [f64; 3]) {
+    let steep = libm::sqrt(dot(slope, slope));
+    if steep < 1e-6 || clearance >= MOST_CLEARANCE {
+        return (clearance, *slope);
+    }
+    let velocity: [f64; 3] = core::array::from_fn(|axis| 0.5 * (before[axis] + after[axis]));
+    let away = slope.map(|it| it * clearance / steep);
+    let time = limit(
+        -dot(&away, &velocity) / dot(&velocity, &velocity).max(1.0),
+        [-half, half],
+    );
+    let away = core::array::from_fn(|axis| away[axis] + time * velocity[axis]);
+    (libm::sqrt(dot(&away, &away)), away)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand_core::{Rng, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    /// Of an obstacle that is a point: the clearance is the least one on the way, whatever the velocity.
+    #[test]
+    fn between_two_points_the_closest_one_counts() {
+        let mut random = Pcg64Mcg::seed_from_u64(5);
+        let mut draw =
+            |most: f64| most * (f64::from(random.next_u32()) / f64::from(u32::MAX) - 0.5);
+        for _ in 0..1000 {
+            let away = [draw(3.0), draw(3.0), draw(3.0)];
+            let velocity = [12.0 + draw(4.0), draw(12.0), draw(6.0)];
+            let clearance = libm::sqrt(dot(&away, &away));
+            let (least, slope) = closest(clearance, &away, &[velocity; 2], 0.03);
+            let on_the_way = (-30..=30).map(|at| {
+                let time = 0.001 * f64::from(at);
+                let moved: [f64; 3] =
+                    core::array::from_fn(|axis| away[axis] + time * velocity[axis]);
+                libm::sqrt(dot(&moved, &moved))
+            });
+            let found = on_the_way.fold(f64::INFINITY, f64::min);
+            assert!(
+                least <= found + 1e-9 && least > found - 0.01,
+                "{least} {found}"
+            );
+            assert!((libm::sqrt(dot(&slope, &slope)) - least).abs() < 1e-9);
+        }
+    }
 }

@@ -36,6 +36,7 @@ use crate::map::voxel_field::LENGTH;
 use crate::map::{VoxelField, VoxelGrid};
 use crate::tuning::space_pursuit::AIMS;
 use crate::vehicle::{SpaceModel, SpacePath};
+use candidate::Grid;
 use cost_to_go::{CostToGo, Path, STATIONS};
 use lattice::ROW_SLICES;
 use refine::Unmoved;
@@ -78,7 +79,7 @@ enum Phase {
     Choose(usize, usize),
     /// The lattice is done, and others bring the plans.
     Offers,
-    /// The previous plan by its controls, and as a path.
+    /// The previous plan, tracked and as a path.
     Previous,
     PreviousPath,
     Paths,
@@ -136,6 +137,8 @@ pub struct SpacePlanner {
     /// The best plan as moves begin with it, once one was tried.
     unmoved: Option<Unmoved>,
     start: SpacePath,
+    /// When the knots of plans are.
+    grid: Grid,
     /// Runaway of the nose at the start \[rad\].
     runaway: f64,
     /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
@@ -162,6 +165,7 @@ impl SpacePlanner {
             best: None,
             unmoved: None,
             start: SpacePath::ORIGIN,
+            grid: Grid::EVEN,
             runaway: 0.0,
             previous: None,
             phase: Phase::Idle,
@@ -201,9 +205,14 @@ impl SpacePlanner {
         &self.model
     }
 
-    /// Begins a cycle at the state in which the plan will be taken over, `shift` \[s\] after the first knot of the last plan.
+    /// Begins a cycle at the state in which the plan will begin, `shift` \[s\] after the first knot of the last plan.
     pub fn begin(&mut self, start: &SpacePath, shift: f64) {
         self.previous = self.best.map(|best| (best.plan, shift));
+        // Plans of others have even stages.
+        self.grid = match &self.previous {
+            Some((plan, _)) if self.wanted > 0 => plan.grid.later(shift),
+            _ => Grid::EVEN,
+        };
         (self.tried, self.best, self.unmoved) = (None, None, None);
         self.start = *start;
         self.candidates.clear();

@@ -2,7 +2,7 @@
 
 use super::candidate::SpacePlan;
 use super::keep::Keep;
-use crate::config::{STAGE_PERIOD, STAGES};
+use crate::config::STAGES;
 use crate::qp::Penalty;
 use crate::qp::space::{
     Dynamics, Faces, INPUTS, MOTION, POSITION, Problem, STATES, Solution, StageState, Weights,
@@ -60,9 +60,9 @@ impl Frame<'_> {
     /// Writes the dynamics of each stage about a plan, by differences of the stage's motion.
     pub(super) fn linearise(&self, plan: &SpacePlan, dynamics: &mut [Dynamics; STAGES]) {
         let knots = plan.knots.iter().zip(plan.knots.iter().skip(1));
-        for (dynamics, ((knot, next), control)) in
-            dynamics.iter_mut().zip(knots.zip(&plan.controls))
-        {
+        let stages = knots.zip(&plan.controls).enumerate();
+        for (dynamics, (stage, ((knot, next), control))) in dynamics.iter_mut().zip(stages) {
+            let period = plan.grid.period(stage);
             let base = next.numbers();
             let from = knot.numbers();
             let difference = |moved: &SpacePath| -> SVector<f64, STATES> {
@@ -72,11 +72,11 @@ impl Frame<'_> {
             for column in 0..MOTION {
                 let mut numbers = from;
                 numbers[POSITION + column] += SMALL;
-                let moved = SpacePath::of(numbers).after(self.model, control, STAGE_PERIOD);
+                let moved = SpacePath::of(numbers).after(self.model, control, period);
                 dynamics.motion.set_column(column, &difference(&moved));
             }
             for (column, pushed) in pushed(control).into_iter().enumerate() {
-                let moved = knot.after(self.model, &pushed, STAGE_PERIOD);
+                let moved = knot.after(self.model, &pushed, period);
                 dynamics.b.set_column(column, &difference(&moved));
             }
             dynamics.offset = SVector::zeros();

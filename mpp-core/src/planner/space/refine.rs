@@ -5,7 +5,7 @@
 
 use super::candidate::{SpacePlan, limited};
 use super::judge::{Judge, SpaceJudgement, Tally};
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::{KNOTS, STAGES};
 use crate::tuning::space_refinement::{LIFT, ROUNDS, SIZE, SIZES};
 use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
@@ -145,7 +145,7 @@ impl Unmoved {
             let control = (self.lifts).control(judge.model, best, stage, &state, by.at(stage + 1));
             // As many stages as places.
             let _ = controls.push(control);
-            state = state.turned(&control, STAGE_PERIOD);
+            state = state.turned(&control, self.plan.grid.period(stage));
             efforts += judge.effort(&control);
             if known + efforts >= limit {
                 return None;
@@ -182,9 +182,10 @@ impl Unmoved {
         let mut state = *start;
         let mut free = heapless::Vec::<_, STAGES>::new();
         for (stage, control) in (first..).zip(controls) {
-            let knots = [state, state.after(judge.model, control, STAGE_PERIOD)];
+            let period = self.plan.grid.period(stage);
+            let knots = [state, state.after(judge.model, control, period)];
             let [from, to] = &knots;
-            let velocities = judge.pass([from, to], &mut tally);
+            let velocities = judge.pass([from, to], stage, &mut tally);
             if self.is_free(stage) {
                 // As many stages as places.
                 let _ = free.push((stage, knots, velocities));
@@ -244,19 +245,20 @@ impl Lifts {
         ) else {
             return SpaceControl::default();
         };
+        let period = best.grid.period(stage);
         let wanted = SpaceControl {
-            bank_rate: (next.bank + change - state.bank) / STAGE_PERIOD,
+            bank_rate: (next.bank + change - state.bank) / period,
             ..*control
         };
-        let banked = limited(model, state, &wanted);
-        let bank = state.bank + banked.bank_rate * STAGE_PERIOD;
+        let banked = limited(model, state, &wanted, period);
+        let bank = state.bank + banked.bank_rate * period;
         let now = model.angle_for(next.airspeed, (lift + more) / upwards(bank));
         let attack = between(next.angle_of_attack + now - whole, model.angle_of_attack);
         let wanted = SpaceControl {
-            angle_of_attack_rate: (attack - state.angle_of_attack) / STAGE_PERIOD,
+            angle_of_attack_rate: (attack - state.angle_of_attack) / period,
             ..wanted
         };
-        limited(model, state, &wanted)
+        limited(model, state, &wanted, period)
     }
 }
 
@@ -271,6 +273,7 @@ mod tests {
 
     use super::super::SpacePlanner;
     use super::*;
+    use crate::config::STAGE_PERIOD;
     use crate::planner::space::Keep;
     use crate::vehicle::Airframe;
     use std::boxed::Box;
@@ -295,7 +298,7 @@ mod tests {
                 angle_of_attack_rate: 0.2 * libm::cos(2.0 * stage as f64),
                 thrust: model.trim.control.thrust,
             };
-            limited(&model, state, &wanted)
+            limited(&model, state, &wanted, STAGE_PERIOD)
         });
         let unmoved = Unmoved::of(&judge, &best, 0);
         let all = |climbs| (0..MOVES * SIZES * 2).map(move |number| Move::of(number, climbs));

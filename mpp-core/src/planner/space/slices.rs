@@ -1,6 +1,6 @@
 //! What each slice of a cycle does, and which phase comes next.
 
-use super::candidate::{Pursuit, SpacePlan, limited, towards};
+use super::candidate::{Pursuit, SpacePlan, limited, towards, tracking};
 use super::cost_to_go::{STATIONS, VIA};
 use super::faces;
 use super::judge::Judge;
@@ -11,14 +11,13 @@ use super::{
     APART, Candidate, FACE_STAGES, LEVEL_SPAN, LOOK_SLICES, MOST_STEPS, Phase, Program,
     SpacePlanner, Workspace,
 };
-use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
+use crate::config::{KNOTS, STAGES};
 use crate::map::VoxelGrid;
 use crate::map::voxel_field::{LENGTH, NearSlices, needed};
 use crate::qp::Status;
 use crate::tuning::space_judgement::ROOM;
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
-use crate::vehicle::SpaceControl;
 
 impl SpacePlanner {
     pub(super) fn rules(&self) -> Rules {
@@ -112,22 +111,19 @@ impl SpacePlanner {
         }
     }
 
-    /// The previous plan is flown twice from where the aircraft is: by its controls, and as a path. The better one counts.
+    /// The previous plan is flown twice from where the aircraft is: tracked as the regulator does, and as a path. The better one
+    /// counts.
     pub(super) fn propose_previous(&mut self) -> Phase {
         let Some((plan, shift)) = self.previous.filter(|_| self.wanted > 1) else {
             return Phase::Paths;
         };
         let model = self.model;
-        let at = |stage: usize| plan.at(&model, shift + stage as f64 * STAGE_PERIOD);
-        let mut flown = SpacePlan::new();
+        let at = |knot: usize| plan.at(&model, shift + self.grid.time(knot));
+        let mut flown = self.new_plan();
         flown.fly(&model, &self.start, |stage, state| {
             let ((now, control), (next, _)) = (at(stage), at(stage + 1));
-            let wanted = SpaceControl {
-                bank_rate: (next.bank - now.bank) / STAGE_PERIOD,
-                angle_of_attack_rate: (next.angle_of_attack - now.angle_of_attack) / STAGE_PERIOD,
-                thrust: control.thrust,
-            };
-            limited(&model, state, &wanted)
+            let period = self.grid.period(stage);
+            tracking(&model, state, &now, (&next, &control), period)
         });
         self.attempt(flown);
         Phase::PreviousPath
@@ -136,7 +132,7 @@ impl SpacePlanner {
     pub(super) fn propose_previous_path(&mut self) -> Phase {
         if let Some((plan, shift)) = self.previous {
             let points: [[f64; 3]; KNOTS] = core::array::from_fn(|stage| {
-                let time = shift + stage as f64 * STAGE_PERIOD;
+                let time = shift + self.grid.time(stage);
                 plan.at(&self.model, time).0.position
             });
             let [aim, ..] = AIMS;
@@ -167,10 +163,10 @@ impl SpacePlanner {
         }
         if self.candidates.is_empty() {
             // No way through the lattice: straight on and level is something to start from.
-            let (model, mut plan) = (self.model, SpacePlan::new());
-            plan.fly(&model, &self.start, |_, state| {
+            let (model, grid, mut plan) = (self.model, self.grid, self.new_plan());
+            plan.fly(&model, &self.start, |stage, state| {
                 let up = crate::vehicle::GRAVITY - state.flight_path * state.airspeed;
-                towards(&model, state, [up, 0.0], STAGE_PERIOD)
+                towards(&model, state, [up, 0.0], grid.period(stage))
             });
             self.attempt(plan);
             self.take_tried();
@@ -201,16 +197,25 @@ impl SpacePlanner {
 
     /// The pursuit of a path.
     fn pursuit(&self, points: &[[f64; 3]], aim: f64) -> SpacePlan {
-        let (model, mut plan) = (self.model, SpacePlan::new());
+        let (model, grid, mut plan) = (self.model, self.grid, self.new_plan());
         let mut pursuit = Pursuit::new(points, aim);
-        plan.fly(&model, &self.start, |_, state| {
-            pursuit.control(&model, state)
+        plan.fly(&model, &self.start, |stage, state| {
+            pursuit.control(&model, state, grid.period(stage))
         });
         plan
     }
 
+    /// A plan of this cycle, to be filled.
+    fn new_plan(&self) -> SpacePlan {
+        SpacePlan {
+            grid: self.grid,
+            ..SpacePlan::new()
+        }
+    }
+
     pub(super) fn judge(&self) -> Judge<'_> {
         Judge {
+            grid: self.grid,
             field: &self.field,
             to_go: &self.to_go,
             model: &self.model,
@@ -346,10 +351,10 @@ impl SpacePlanner {
             };
             let controls = frame.controls(solution);
             let model = self.model;
-            let mut plan = SpacePlan::new();
+            let (grid, mut plan) = (self.grid, self.new_plan());
             plan.fly(&model, &self.start, |stage, state| {
                 let wanted = controls.get(stage).copied().unwrap_or_default();
-                limited(&model, state, &wanted)
+                limited(&model, state, &wanted, grid.period(stage))
             });
             let candidate = self.judged(plan);
             self.consider(candidate);
