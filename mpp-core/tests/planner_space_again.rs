@@ -1,6 +1,7 @@
 //! The planner in space goes on from cycle to cycle.
 
 use super::planner_space::{Draw, KEEP, finish, level, model, plan, see_forest, with_planner};
+use mpp_core::planner::space::next_start;
 use mpp_core::vehicle::SPACE_STATES;
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -12,9 +13,9 @@ fn the_next_plan_begins_between_the_last_plan_and_the_aircraft() {
         let model = model();
         let (plan, _) = plan(planner, map, &level(&model), 0.0);
         let then = plan.at(&model, 0.4).0;
-        assert_eq!(plan.next_start(&model, 0.4, &[0.0; SPACE_STATES]), then);
+        assert_eq!(next_start(&then, &[0.0; SPACE_STATES]), then);
         let deviation = [-0.4, 0.2, 0.0, 1.0, 0.0, -0.1, 0.0, 0.0];
-        let start = plan.next_start(&model, 0.4, &deviation);
+        let start = next_start(&then, &deviation);
         assert!((start.position[0] - then.position[0] + 0.4).abs() < 1e-9);
         assert!((start.airspeed - then.airspeed - 1.0).abs() < 1e-9);
         let share = (start.position[1] - then.position[1]) / 0.2;

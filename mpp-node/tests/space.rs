@@ -280,10 +280,11 @@ fn without_a_fix_the_surfaces_are_neutral_and_old_ticks_get_no_command() {
 fn a_plan_is_due_after_its_latency_and_told_in_the_next_tick() {
     aside(|| {
         let mut node = ready(CONFIGURE);
-        let mut reports = Vec::new();
+        let (mut reports, mut followed) = (Vec::new(), Vec::new());
         for tick in 0..60 {
             for message in fly(&mut node, tick, tick % 25 == 3) {
                 match message {
+                    Message::StepReport(step) => followed.push((tick, step.reference[0])),
                     Message::PlanReport(report) => reports.push((tick, report)),
                     Message::SpaceTrajectory(it) => {
                         assert!(it.knots.len() == 19 && reports.len() < 3);
@@ -296,6 +297,11 @@ fn a_plan_is_due_after_its_latency_and_told_in_the_next_tick() {
                     _ => {}
                 }
             }
+        }
+        // The second plan is due at 38 and begins 12 ticks later: what is followed goes on through both.
+        for pair in followed.windows(2).filter(|pair| pair[0].0 >= 14) {
+            let moved = pair[1].1 - pair[0].1;
+            assert!((0.10..0.14).contains(&moved), "{moved} at {}", pair[1].0);
         }
         let ticks: Vec<_> = reports
             .iter()

@@ -205,6 +205,21 @@ fn a_trunk_that_is_planted_in_flight_is_passed_and_planted_again() {
     let planted =
         |cycle: &SpaceCycle| cycle.tick > 300 && !cycle.hits.is_empty() && cycle.paths.len() > 1;
     assert!(look.cycles.iter().any(planted));
+    // Plans begin where the flight comes to.
+    for cycle in &look.cycles {
+        if let (Some([x, y, z, _]), Some((at, ..))) = (
+            cycle.paths.last().and_then(|path| path.first()),
+            look.moments.get(cycle.begins as usize),
+        ) {
+            let off = [x, y, z].map(|it| 0.01 * f64::from(*it));
+            let off = off
+                .iter()
+                .zip(at)
+                .map(|(a, b)| (a - b).powi(2))
+                .sum::<f64>();
+            assert!(off.sqrt() < 0.3, "{off} at {}", cycle.tick);
+        }
+    }
     let mut other = log;
     other.orders.clear();
     assert!(Look::again(&other).is_none());

@@ -37,7 +37,7 @@ impl Extent {
         heights: [LAST << 4 | LAST; STOREYS / 2],
     };
 
-    /// Takes up a hit from a range \[m\]. One from much closer begins anew, and one from much farther does not count: it
+    /// Takes up a hit from a range \[m\]. One from closer begins anew, and one from farther does not count: it
     /// carries the error of the attitude over a longer arm.
     pub(crate) fn take(&mut self, point: &[f64; 3], range: f64) {
         let range = (range / RANGE).min(f64::from(NEVER - 1)) as u8;
@@ -144,7 +144,7 @@ mod tests {
         // Another voxel has no hit. Those that are six apart share, and the topmost one has none above.
         assert_eq!(extent.height(8, u32::MAX), [0, PARTS]);
         assert_eq!(extent.height(31, u32::MAX), [4, PARTS]);
-        // A hit from much closer begins anew.
+        // A hit from closer begins anew.
         extent.take(&hit(13.9), 20.0);
         assert_eq!(extent.height(7, u32::MAX), [4, 16]);
         extent.take(&hit(8.1), 10.0);

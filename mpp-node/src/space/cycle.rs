@@ -12,9 +12,8 @@ pub(super) struct Cycle {
     /// The tick at which it began, and that at which its plan is due.
     pub(super) begun: u32,
     pub(super) due: u32,
-    /// The tick of the first knot, and by how much this knot lies beside the plan before.
+    /// The tick of the first knot.
     pub(super) start: u32,
-    pub(super) moved: [f64; SPACE_STATES],
     pub(super) slices: u32,
     pub(super) complete: bool,
 }
@@ -25,8 +24,9 @@ pub(super) struct Flown {
     pub(super) plan: SpacePlan,
     /// The aircraft with the wind for which the plan was made.
     pub(super) model: SpaceModel,
-    /// The cycle that made it.
-    pub(super) cycle: Cycle,
+    /// The tick of its first knot, and that at which its cycle began.
+    pub(super) start: u32,
+    pub(super) begun: u32,
     /// The plan before it and the tick of its first knot: what is followed until this plan begins.
     pub(super) before: Option<(SpacePlan, u32)>,
 }
@@ -34,31 +34,38 @@ pub(super) struct Flown {
 impl Flown {
     /// Time since the first knot \[s\].
     pub(super) fn age(&self, tick: u32) -> f64 {
-        age(self.cycle.start, tick)
+        age(self.start, tick)
+    }
+
+    /// The plan before, as long as it is followed at a tick.
+    fn before(&self, tick: u32) -> Option<&(SpacePlan, u32)> {
+        self.before.as_ref().filter(|_| self.age(tick) < 0.0)
     }
 
     /// State that is followed at a tick.
     pub(super) fn reference(&self, tick: u32) -> SpacePath {
-        let (plan, age) = match &self.before {
-            Some((plan, start)) if self.age(tick) < 0.0 => (plan, age(*start, tick)),
-            _ => (&self.plan, self.age(tick)),
+        let (plan, start) = match self.before(tick) {
+            Some((plan, start)) => (plan, *start),
+            None => (&self.plan, self.start),
         };
-        plan.at(&self.model, age).0
+        plan.at(&self.model, age(start, tick)).0
     }
 
-    /// Deviation of the aircraft from the plan of which the next one is a part: from what is followed, and what this plan takes
-    /// up of it once it begins.
+    /// Deviation of the aircraft from the plan of which the next one is a part: from what is followed, without what this plan
+    /// takes up of it once it begins.
     pub(super) fn deviation(&self, tick: u32, here: &SpacePath) -> [f64; SPACE_STATES] {
-        let (here, now) = (here.numbers(), self.reference(tick).numbers());
-        let begins = self.age(tick) < 0.0;
-        core::array::from_fn(|number| {
-            let taken = if begins {
-                self.cycle.moved[number]
-            } else {
-                0.0
-            };
-            here[number] - now[number] - taken
-        })
+        let off = |from: &SpacePath, to: &SpacePath| {
+            let (from, to) = (from.numbers(), to.numbers());
+            core::array::from_fn(|number| to[number] - from[number])
+        };
+        let all: [f64; SPACE_STATES] = off(&self.reference(tick), here);
+        let [first, ..] = &self.plan.knots;
+        let taken = self
+            .before(tick)
+            .map_or([0.0; SPACE_STATES], |(plan, start)| {
+                off(&plan.at(&self.model, age(*start, self.start)).0, first)
+            });
+        core::array::from_fn(|number| all[number] - taken[number])
     }
 
     /// The message of the plan.
@@ -68,7 +75,7 @@ impl Flown {
             [x, y, z, it.bank, it.course].map(|number| number as f32)
         };
         SpaceTrajectory {
-            scan_tick: self.cycle.begun,
+            scan_tick: self.begun,
             period: STAGE_PERIOD as f32,
             knots: self.plan.knots.iter().map(knot).collect(),
         }

@@ -40,6 +40,12 @@ impl SpaceNode {
         (self.task.is_configured()).then_some((&self.planner, &self.map))
     }
 
+    /// The tick of the first knot of the plan that is under way, for inspection between ticks.
+    #[must_use]
+    pub fn begins(&self) -> Option<u32> {
+        self.task.begins()
+    }
+
     /// The planner, for a host that compares it with others.
     pub fn planner_mut(&mut self) -> Option<&mut SpacePlanner> {
         (self.task.is_configured()).then_some(&mut self.planner)

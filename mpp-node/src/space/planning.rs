@@ -7,8 +7,8 @@ use crate::{duration, ticks};
 use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
 use mpp_core::map::VoxelGrid;
-use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner};
-use mpp_core::vehicle::{Nose, SPACE_STATES, SpaceControl};
+use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner, next_start};
+use mpp_core::vehicle::{Nose, SpaceControl};
 
 /// Points that go into the map in one slice.
 const SLICE_POINTS: usize = 24;
@@ -78,6 +78,11 @@ impl SpaceTask {
         true
     }
 
+    /// The tick of the first knot of the plan that is under way.
+    pub(super) fn begins(&self) -> Option<u32> {
+        Some(self.session.as_ref()?.cycle?.start)
+    }
+
     /// Takes some points into the map: first all hits, then what the beams passed.
     fn take_in(&mut self, intake: Intake, map: &mut VoxelGrid) {
         let Some(session) = &self.session else {
@@ -122,41 +127,37 @@ impl Session {
         let model = self.model;
         let configure = &self.configure;
         let due = tick.wrapping_add(configure.latency_ticks);
-        // The regulator looks ahead: a plan begins where it will look when the plan is due, and no more than one plan waits.
-        let most = (configure.replan_period_ticks.saturating_mul(2))
-            .saturating_sub(configure.latency_ticks);
-        let lead = (libm::round(self.ahead / duration(1)) as u32).min(most);
-        let begins = due.wrapping_add(lead);
-        let (start, shift, moved) = match &self.flown {
+        let (start, state, shift) = match &self.flown {
             Some(flown) => {
-                let (time, deviation) = (flown.age(begins), flown.deviation(tick, &motion.path));
-                let start = flown.plan.next_start(&flown.model, time, &deviation);
-                let beside = flown.plan.at(&flown.model, time).0.numbers();
-                let start_at = start.numbers();
-                let moved = core::array::from_fn(|number| start_at[number] - beside[number]);
-                (start, time, moved)
+                // The regulator looks ahead: a plan begins where it will look when the plan is due, and no more than one waits.
+                let most = (configure.replan_period_ticks.saturating_mul(2))
+                    .saturating_sub(configure.latency_ticks);
+                let lead = (libm::round(self.ahead / duration(1)) as u32).min(most);
+                let start = due.wrapping_add(lead);
+                let time = flown.age(start);
+                let (planned, _) = flown.plan.at(&flown.model, time);
+                let deviation = flown.deviation(tick, &motion.path);
+                (start, next_start(&planned, &deviation), time)
             }
             None => {
                 let level = SpaceControl {
                     thrust: model.trim.control.thrust,
                     ..SpaceControl::default()
                 };
-                let wait = duration(configure.latency_ticks.saturating_add(lead));
-                let start = motion.path.after(&model, &level, wait);
-                (start, 0.0, [0.0; SPACE_STATES])
+                let latency = duration(configure.latency_ticks);
+                (due, motion.path.after(&model, &level, latency), 0.0)
             }
         };
         planner.set_wind(model.wind);
         let [roll, _, yaw] = motion.rates;
         let runaway = |nose: &Nose| nose.runaway(motion.sideslip, [roll, yaw], motion.path.bank);
         planner.set_runaway(model.nose.as_ref().map_or(0.0, runaway));
-        planner.begin(&start, shift);
+        planner.begin(&state, shift);
         self.last_cycle = Some(tick);
         self.cycle = Some(Cycle {
             begun: tick,
             due,
-            start: begins,
-            moved,
+            start,
             slices: 0,
             complete: false,
         });
@@ -182,8 +183,9 @@ impl Session {
             self.flown = Some(Flown {
                 plan,
                 model: *planner.model(),
-                cycle,
-                before: (self.flown.as_ref()).map(|flown| (flown.plan, flown.cycle.start)),
+                start: cycle.start,
+                begun: cycle.begun,
+                before: (self.flown.as_ref()).map(|flown| (flown.plan, flown.start)),
             });
         }
         self.untold = Some(PlanReport {

@@ -218,7 +218,7 @@ impl Session {
             reference: [ref_y, now.bank, now.course],
         };
         let flown = self.flown.as_ref();
-        let age = flown.map_or(0, |flown| ticks(flown.cycle.begun, tick));
+        let age = flown.map_or(0, |flown| ticks(flown.begun, tick));
         let step = StepReport {
             tick,
             estimate: [path.airspeed, pitch(path), pitch_rate, path.flight_path],

@@ -4,7 +4,9 @@ use super::world::{Body, Terrain};
 use super::{BaselineName, Pose, STACK, SpaceFile, SpaceFlight, SpacePipe, SpaceScenario};
 use crate::file_error::{ScenarioError, ensure};
 use crate::log::{FlightLog, Header};
+use mpp_core::config::{KNOTS, STAGE_PERIOD};
 use mpp_core::planner::space::SpacePlan;
+use mpp_core::vehicle::SpaceModel;
 use serde::Serialize;
 
 /// Place \[m\], attitude, airspeed [m/s], and distance from the nearest thing \[m\], at most 5 m.
@@ -25,9 +27,11 @@ pub struct SpaceCycle {
     pub tick: u32,
     /// Tick from which its plan is flown.
     pub due: u32,
+    /// Tick of the first place of its paths.
+    pub begins: u32,
     /// Where beams have ended: ahead, right, up, ahead, ..
     pub hits: Vec<i32>,
-    /// The candidates, and last the plan: ahead, right, up of each knot, and its bank [0.01 rad].
+    /// The candidates, and last the plan: ahead, right, up each 0.25 s, and the bank [0.01 rad].
     pub paths: Vec<Vec<[i32; 4]>>,
 }
 
@@ -40,23 +44,29 @@ impl SpaceCycle {
         let mut paths = Vec::new();
         if let Some((planner, _)) = link.node().planner() {
             let best = planner.best().map(|(plan, _)| plan);
-            paths.extend(planner.candidates().chain(best).map(knots));
+            let path = |plan| places(plan, planner.model());
+            paths.extend(planner.candidates().chain(best).map(path));
         }
+        let due = tick + scenario.plane.latency_ticks;
         Some(Self {
             tick,
-            due: tick + scenario.plane.latency_ticks,
+            due,
+            // Without a plan under way there are no paths.
+            begins: link.node().begins().unwrap_or(due),
             hits: hits.iter().flatten().copied().map(hundredths).collect(),
             paths,
         })
     }
 }
 
-fn knots(plan: &SpacePlan) -> Vec<[i32; 4]> {
-    let knots = plan.knots.iter().map(|knot| {
-        let [x, y, z] = knot.position;
-        [x, y, z, knot.bank].map(hundredths)
+/// Knots of a plan are not evenly spaced, places are.
+fn places(plan: &SpacePlan, model: &SpaceModel) -> Vec<[i32; 4]> {
+    let places = (0..KNOTS).map(|at| {
+        let (state, _) = plan.at(model, at as f64 * STAGE_PERIOD);
+        let [x, y, z] = state.position;
+        [x, y, z, state.bank].map(hundredths)
     });
-    knots.collect()
+    places.collect()
 }
 
 fn hundredths(value: f64) -> i32 {

@@ -226,7 +226,7 @@ function plant([x, y]) {
 function plantAhead() {
   if (!flight || flight.ended) return;
   const plan = newest(flight.cycles, shown, cycle => cycle.due), { at, airspeed } = stateAt(flight, shown), course = courseAt(flight, shown);
-  const places = plan?.paths.length ? placesOf(plan.paths[plan.paths.length - 1], plan.due, shown) : [];
+  const places = plan?.paths.length ? placesOf(plan.paths[plan.paths.length - 1], plan.begins, shown) : [];
   const place = places.find(([x, y]) => Math.hypot(x - at[0], y - at[1]) > SOON * airspeed);
   plant(place || [at[0] + SOON * airspeed * Math.cos(course), at[1] + SOON * airspeed * Math.sin(course)]);
 }

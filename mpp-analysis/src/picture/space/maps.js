@@ -49,7 +49,7 @@ function drawMap(flight, tick, look) {
   line(pen, trail, colour.flown, 2);
   if (plan?.paths.length) plan.paths.forEach((path, i) => {
     const last = i === plan.paths.length - 1;
-    line(pen, placesOf(path, plan.due, tick).map(([x, y]) => put(x, y)), last ? colour.plan : colour.candidate, last ? 3 : 1.2);
+    line(pen, placesOf(path, plan.begins, tick).map(([x, y]) => put(x, y)), last ? colour.plan : colour.candidate, last ? 3 : 1.2);
   });
   if (look.ghost) {
     const [u, v] = put(look.ghost.x, look.ghost.y);
@@ -143,7 +143,7 @@ function drawSide(flight, tick) {
   const plan = newest(flight.cycles, tick, cycle => cycle.due);
   if (plan?.paths.length) plan.paths.forEach((path, i) => {
     const last = i === plan.paths.length - 1;
-    line(pen, placesOf(path, plan.due, tick).map(([x, y, z]) => put(along(x, y), z)), last ? colour.plan : colour.candidate, last ? 3 : 1.2);
+    line(pen, placesOf(path, plan.begins, tick).map(([x, y, z]) => put(along(x, y), z)), last ? colour.plan : colour.candidate, last ? 3 : 1.2);
   });
   const [u, v] = put(0, at[2]);
   pen.fillStyle = colour.text; pen.beginPath(); pen.arc(u, v, 4, 0, 7); pen.fill();

@@ -233,10 +233,10 @@ function drawBody(pen, items, body, { eye, depth, put, focus }) {
   }
 }
 
-// The places of a path from a tick on, a quarter of a knot apart: ahead, right, up, bank.
-function placesOf(path, due, tick) {
+// The places of a path from a tick on, a quarter of its own apart: ahead, right, up, bank.
+function placesOf(path, begins, tick) {
   const places = [], last = path.length - 1;
-  for (let at = Math.max(0, (tick - due) / 25); at <= last; at += 0.25) {
+  for (let at = Math.max(0, (tick - begins) / 25); at <= last; at += 0.25) {
     const i = Math.min(last - 1, Math.floor(at)), t = at - i, [a, b, c, d] = [-1, 0, 1, 2].map(step => path[Math.max(0, Math.min(last, i + step))]);
     places.push([0, 1, 2, 3].map(k => b[k] + 0.5 * t * (c[k] - a[k] + t * (2 * a[k] - 5 * b[k] + 4 * c[k] - d[k] + t * (3 * (b[k] - c[k]) + d[k] - a[k])))));
   }
@@ -334,7 +334,7 @@ function drawScene(flight, tick, look) {
   const items = trunks.map(sight => [sight.depth, () => drawTrunk(pen, sight, tick, camera, sight.depth < own - 1, sight.trunk === flight.crash)]);
   const plan = newest(flight.cycles, tick, cycle => cycle.due), scan = newest(flight.cycles, tick, cycle => cycle.tick);
   if (plan?.paths.length) {
-    const all = plan.paths.map(path => placesOf(path, plan.due, tick));
+    const all = plan.paths.map(path => placesOf(path, plan.begins, tick));
     for (const places of all.slice(0, -1)) ribbon(pen, items, places.filter((_, i) => i % 2 === 0), 0.03, "candidate", own + 2, camera);
     ribbon(pen, items, all[all.length - 1], 0.22, "plan", own + 0.6, camera);
   }

@@ -123,26 +123,6 @@ impl SpacePlan {
         }
     }
 
-    /// The state in which the next plan begins, a time \[s\] after the first knot, if the aircraft deviates from what it
-    /// follows. It is this plan's, moved by a [share](TRUST) of the deviation: the regulator takes care of the rest. Along the
-    /// track it is moved by all of it, because no regulator holds the time of a plan.
-    #[must_use]
-    pub fn next_start(
-        &self,
-        model: &SpaceModel,
-        time: f64,
-        deviation: &[f64; SPACE_STATES],
-    ) -> SpacePath {
-        let start = self.at(model, time).0.numbers();
-        SpacePath::of(core::array::from_fn(|number| {
-            let share = match number {
-                ALONG | AIRSPEED => 1.0,
-                _ => TRUST,
-            };
-            start[number] + share * deviation[number]
-        }))
-    }
-
     /// State and control at a time \[s\] after the first knot. Beyond the last knot the flight is straight and level.
     #[must_use]
     pub fn at(&self, model: &SpaceModel, time: f64) -> (SpacePath, SpaceControl) {
@@ -174,6 +154,21 @@ impl SpacePlan {
             }
         }
     }
+}
+
+/// The state in which the next plan begins, if the aircraft deviates from what it follows: `planned`, moved by a
+/// [share](TRUST) of the deviation; the regulator takes care of the rest. Along the track it is moved by all of it, because no
+/// regulator holds the time of a plan.
+#[must_use]
+pub fn next_start(planned: &SpacePath, deviation: &[f64; SPACE_STATES]) -> SpacePath {
+    let planned = planned.numbers();
+    SpacePath::of(core::array::from_fn(|number| {
+        let share = match number {
+            ALONG | AIRSPEED => 1.0,
+            _ => TRUST,
+        };
+        planned[number] + share * deviation[number]
+    }))
 }
 
 impl Default for SpacePlan {

@@ -27,7 +27,7 @@ mod refine;
 mod slices;
 mod workspace;
 
-pub use candidate::{SpacePlan, towards};
+pub use candidate::{SpacePlan, next_start, towards};
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
 
