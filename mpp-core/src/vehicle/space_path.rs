@@ -63,11 +63,11 @@ pub struct SpaceModel {
     pub nose: Option<Nose>,
 }
 
-/// Angle of attack beyond that of level flight that a plan may use \[rad\], and its distance from the stall. More lift turns more
-/// tightly; less distance stalls in gusts, which change the angle of attack by their velocity over the airspeed. Source: the
-/// limits of the plane, 0.2 rad, and 0.7 m/s of gust at 13 m/s.
+/// Angle of attack beyond that of level flight that a plan may use \[rad\]. More turns more tightly. Source: the limits of the plane.
 const MOST_ABOVE_LEVEL: f64 = 0.2;
-const FROM_STALL: f64 = 0.05;
+/// Distance of that angle from the stall \[rad\]: a wing carries most before it stalls, and roll-outs and regulator may go 0.03 rad
+/// beyond the angle. Less plans lift that is not there, more turns less tightly. Source: D64.
+const FROM_STALL: f64 = 0.08;
 
 impl SpacePath {
     /// At rest in the origin.
