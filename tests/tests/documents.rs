@@ -172,7 +172,6 @@ fn the_elevator_of_level_trim_is_what_the_pages_say() {
     let [reference, paper, authors] = told.map(|elevator| format!("{elevator:.3}"));
     for page in [
         "docs/notation.md",
-        "docs/planner.md",
         "docs/scenarios/example.toml",
         "mpp-data/src/airframe.rs",
     ] {
