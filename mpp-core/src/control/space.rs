@@ -18,8 +18,6 @@ const FREQUENCY: f64 = 10.0;
 const DAMPING: f64 = 0.8;
 /// Least upward lift that gives a bank its direction [m/s^2].
 const LEAST_UP: f64 = 1.0;
-/// How far beyond the limits of a plan the command of the angle of attack may go \[rad\].
-const BEYOND: f64 = 0.03;
 
 /// What the regulator is told of the motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -105,8 +103,8 @@ impl SpaceRegulator {
     ) -> (Control, LateralControl) {
         let path = &motion.path;
         let [bank, attack] = follow(model, path, now, ahead);
-        let [low, high] = model.angle_of_attack;
-        let attack = attack.max(low - BEYOND).min(high + BEYOND);
+        let [low, high] = model.reachable_angles();
+        let attack = attack.max(low).min(high);
         let [bank_lag, attack_lag] = self.lags;
         let attack = attack + attack_lag * ahead.1.angle_of_attack_rate;
         let thrust =
@@ -147,9 +145,8 @@ impl SpaceRegulator {
         let [by_attack, by_rate] = self.gain.map(|it| it * ratio * ratio);
         let (off, pitch_rate) = (path.angle_of_attack - attack, motion.rates[1]);
         let wanted = -moment / a.moment_elevator + by_attack * off + by_rate * (pitch_rate - turn);
-        let [_, high] = model.angle_of_attack;
-        let most =
-            -(a.moment_zero + a.moment_alpha * (high + BEYOND) + a.moment_pitch_rate * pitch_rate);
+        let [_, high] = model.reachable_angles();
+        let most = -(a.moment_zero + a.moment_alpha * high + a.moment_pitch_rate * pitch_rate);
         if a.moment_elevator * wanted > most {
             most / a.moment_elevator
         } else {

@@ -65,9 +65,12 @@ pub struct SpaceModel {
 
 /// Angle of attack beyond that of level flight that a plan may use \[rad\]. More turns more tightly. Source: the limits of the plane.
 const MOST_ABOVE_LEVEL: f64 = 0.2;
-/// Distance of that angle from the stall \[rad\]: a wing carries most before it stalls, and roll-outs and regulator may go 0.03 rad
-/// beyond the angle. Less plans lift that is not there, more turns less tightly. Source: D64.
-const FROM_STALL: f64 = 0.08;
+/// How far beyond the angles of plans roll-outs and regulator may go \[rad\]: programs break soft rows by a little. Source: the
+/// trial of a prototype that decision 46 names.
+const BEYOND: f64 = 0.03;
+/// Distance of what they may reach from the stall \[rad\]: from there on the lift does not grow. Less counts on lift that is not
+/// there, more turns less tightly. Source: D64.
+const FROM_STALL: f64 = 0.05;
 
 impl SpacePath {
     /// At rest in the origin.
@@ -117,7 +120,7 @@ impl SpaceModel {
             thrust_max,
             angle_of_attack: [
                 (level - MOST_ABOVE_LEVEL).max(no_lift),
-                (level + MOST_ABOVE_LEVEL).min(stall - FROM_STALL),
+                (level + MOST_ABOVE_LEVEL).min(stall - (FROM_STALL + BEYOND)),
             ],
             angle_of_attack_rate: 1.0,
             bank,
@@ -125,6 +128,13 @@ impl SpaceModel {
             wind: [0.0; 3],
             nose: None,
         })
+    }
+
+    /// Angles of attack that roll-outs and regulator may reach \[rad\]: a little beyond those of plans.
+    #[must_use]
+    pub fn reachable_angles(&self) -> [f64; 2] {
+        let [low, high] = self.angle_of_attack;
+        [low - BEYOND, high + BEYOND]
     }
 
     fn pressure_area(&self, airspeed: f64) -> f64 {

@@ -13,9 +13,7 @@ const AIRSPEED: usize = 3;
 const LEAST_AIM: f64 = 9.0;
 /// Least upward pull that the pursuit asks for [m/s^2]: the direction of the lift needs it.
 const LEAST_UP: f64 = 0.5;
-/// How far beyond the limits of a plan a roll-out may go: angle of attack \[rad\], bank and its rate [-]. Programs break soft rows
-/// by a little.
-const BEYOND_ATTACK: f64 = 0.03;
+/// Shares of the greatest bank and of its rate that a roll-out may use [-]. Programs break soft rows by a little.
 const BANK_BEYOND: f64 = 0.97;
 const RATE_BEYOND: f64 = 0.95;
 /// Least length of the first stage \[s\]. A shorter one is a part of the next.
@@ -186,10 +184,9 @@ pub(super) fn limited(
 ) -> SpaceControl {
     let rate = within(wanted.bank_rate, RATE_BEYOND * model.bank_rate);
     let bank = within(state.bank + rate * period, BANK_BEYOND * model.bank);
-    let [low, high] = model.angle_of_attack;
     let rate = within(wanted.angle_of_attack_rate, model.angle_of_attack_rate);
     let aimed = state.angle_of_attack + rate * period;
-    let reached = between(aimed, [low - BEYOND_ATTACK, high + BEYOND_ATTACK]);
+    let reached = between(aimed, model.reachable_angles());
     SpaceControl {
         bank_rate: (bank - state.bank) / period,
         angle_of_attack_rate: (reached - state.angle_of_attack) / period,
