@@ -50,10 +50,11 @@ def test_it_is_small_and_flies_by_itself(open_page):
 
 
 @pytest.mark.parametrize(("link", "settings", "outcome", "said"), [
-    ("seed=5&density=0.01&speed=12", {"seed": 5, "density": 0.01, "airspeed": 12}, "survived", "Through."),
+    ("seed=5&density=0.01", {"seed": 5, "density": 0.01, "airspeed": 12}, "survived", "Through."),
     ("seed=3&density=0.02&speed=13&wind=-3&gusts=0.5",
      {"seed": 3, "density": 0.02, "airspeed": 13, "wind": "0,-3,0", "gusts": 0.5}, None, None),
     ("lidar=mid-360", {"seed": 2, "density": 0.04, "airspeed": 12, "lidar": "mid-360"}, None, None),
+    ("seed=6&density=0.02&sight=20", {"seed": 6, "density": 0.02, "airspeed": 12, "sight": 20}, None, None),
     ("seed=4&density=0.08", {"seed": 4, "density": 0.08, "airspeed": 12}, "collision", "It hit a tree.")])
 def test_the_hash_is_the_command_lines(open_page, tmp_path, link, settings, outcome, said):
     page = open_page(PAGE.as_uri() + f"#{link}&t=4000")
@@ -67,7 +68,7 @@ def test_the_hash_is_the_command_lines(open_page, tmp_path, link, settings, outc
     again = fly(tmp_path / "again", *command[2:])
     assert again["log_hash"] == flown["log_hash"]
     # The link is that of the whole flight.
-    assert "t=" not in page.get_attribute("#link", "href")
+    assert page.get_attribute("#link", "href") == f"#{link}"
 
 
 def test_trees_change_the_flight_and_are_in_its_link_and_its_log(open_page, tmp_path, shot):

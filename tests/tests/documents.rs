@@ -171,6 +171,7 @@ fn the_elevator_of_level_trim_is_what_the_pages_say() {
     ];
     let [reference, paper, authors] = told.map(|elevator| format!("{elevator:.3}"));
     for page in [
+        "docs/planner.md",
         "docs/notation.md",
         "docs/scenarios/example.toml",
         "mpp-data/src/airframe.rs",

@@ -41,11 +41,11 @@ function unpackOrders(text) {
   });
 }
 
-// The settings, the orders and the moment as the end of a link.
-function fragment() {
+// The settings, the orders and the moment as the end of a link; of a whole flight without its moment.
+function fragment(whole = false) {
   const link = new URLSearchParams();
   for (const [name, value] of Object.entries(settings)) if (value !== USUAL[name]) link.set(name, value);
-  link.set("t", flight.ticks.t.length);
+  if (!whole) link.set("t", flight.ticks.t.length);
   const given = flight.orders.filter(order => !pending.includes(order));
   const short = packOrders(given, flight.header.world_scale);
   if (given.length) link.set(short ? "o" : "orders", short || JSON.stringify(given));

@@ -71,6 +71,8 @@ pub struct SpaceFile {
     pub altitude: Option<f64>,
     /// Name of the lidar; by default `grid-90x16`.
     pub lidar: Option<String>,
+    /// Greatest range of the lidar \[m\], as in haze or before dark bark; by default what the lidar has.
+    pub sight: Option<f64>,
     /// Radius of a sphere that stands for wing and fuselage \[m\].
     pub sphere: Option<f64>,
     /// Measurements without errors; by default `false`.
@@ -156,6 +158,7 @@ impl SpaceFile {
         let clock = self.lidar_clock.unwrap_or(0.0);
         let sound = (-20.0..=100.0).contains(&clock);
         ensure(sound, "lidar_clock", "give -20 to 100 ms")?;
+        let lidar = SpaceLidarConfig::kept(self.lidar.as_deref().unwrap_or("grid-90x16"))?;
         let (world, name, density) = self.world(seed, stems)?;
         let Extent {
             length,
@@ -183,7 +186,7 @@ impl SpaceFile {
                 clock: 0.001 * clock,
             },
             baseline,
-            lidar: SpaceLidarConfig::kept(self.lidar.as_deref().unwrap_or("grid-90x16"))?,
+            lidar: lidar.seeing(self.sight)?,
             header: SpaceHeader {
                 world: name.map(|name| name.name().to_owned()),
                 density,
@@ -191,6 +194,7 @@ impl SpaceFile {
                 terrain: self.terrain.clone(),
                 altitude: self.altitude,
                 lidar: self.lidar.clone(),
+                sight: self.sight,
                 stems: stems.unwrap_or_default().iter().filter_map(stem).collect(),
                 extent: [length, half_width, ceiling],
                 sphere: self.sphere,

@@ -67,6 +67,9 @@ struct InSpace {
     /// Lidar; of scattered beams those ahead, at most 2,000 a sweep [default: grid-90x16]
     #[arg(long, help_heading = WORLD, value_parser = lidar())]
     lidar: Option<LidarName>,
+    /// Greatest range of the lidar [m], as in haze or before dark bark; 5 or more [default: what the lidar has]
+    #[arg(long, help_heading = WORLD, value_name = "M", value_parser = number)]
+    sight: Option<f64>,
     /// Measurements without errors
     #[arg(long, help_heading = WORLD)]
     exact: bool,
@@ -192,6 +195,7 @@ impl InSpace {
             altitude: self.altitude,
             window: self.window,
             lidar: self.lidar.map(|it| it.name().to_owned()),
+            sight: self.sight,
             exact: Some(self.exact),
             see_through: Some(self.see_through),
             candidates: self.candidates,

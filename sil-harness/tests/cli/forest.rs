@@ -136,6 +136,8 @@ fn what_makes_no_sense_is_one_sentence() {
         ("--aircraft cessna182", "give this table"),
         ("--candidates 8", "candidates: give 1 to 7"),
         ("--sphere=-1", "sphere: give more than 0"),
+        ("--sight 4", "sight: give 5 m or more"),
+        ("--lidar pushbroom --sight 9", "least range of 9.5 m"),
         ("--latency-ms 7", "latency_ms: give a multiple of 10"),
         ("--latency-ms 0", "latency_ms: give a multiple of 10"),
         ("--world walls --sphere 3", "wider than every gap"),

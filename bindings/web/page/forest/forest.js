@@ -1,6 +1,6 @@
 // The page that flies through forests: the worker flies a little ahead of the picture, and each forest is followed by the next.
-// The settings of a flight, and what a link without them means: trunks/m^2, m/s, m/s from the left, m/s, a name.
-const USUAL = { seed: 2, density: 0.04, speed: 12, wind: 0, gusts: 0, lidar: "grid-90x16" };
+// The settings of a flight, and what a link without them means: trunks/m^2, m/s, m/s from the left, m/s, a name, m.
+const USUAL = { seed: 2, density: 0.04, speed: 12, wind: 0, gusts: 0, lidar: "grid-90x16", sight: 45 };
 // Ticks that the worker is ahead of the picture, ticks of a question, and of one in a hurry to the moment of a link.
 const LEAD = 25, STEP = 10, HURRY = 100;
 // What a click plants is so far away at most [m], and the button's tree so far ahead of the aircraft [s].
@@ -23,12 +23,14 @@ const still = matchMedia("(prefers-reduced-motion: reduce)");
 // As a scenario file has them. What is not there is left out, as on the command line.
 const scenario = () => ({ seed: settings.seed, density: settings.density, airspeed: settings.speed,
   wind: settings.wind ? [0, settings.wind, 0] : undefined, gusts: settings.gusts || undefined,
-  lidar: settings.lidar === USUAL.lidar ? undefined : settings.lidar });
+  lidar: settings.lidar === USUAL.lidar ? undefined : settings.lidar,
+  sight: settings.sight === USUAL.sight ? undefined : settings.sight });
 
 function command() {
-  const { seed, density, speed, wind, gusts, lidar } = settings;
+  const { seed, density, speed, wind, gusts, lidar, sight } = settings;
   return `sil-harness fly --preset space --seed ${seed} --density ${density} --airspeed ${speed}` + (wind ? ` --wind 0,${wind},0` : "") +
-    (gusts ? ` --gusts ${gusts}` : "") + (lidar === USUAL.lidar ? "" : ` --lidar ${lidar}`) + (flight.orders.length ? " --orders LOG" : "");
+    (gusts ? ` --gusts ${gusts}` : "") + (lidar === USUAL.lidar ? "" : ` --lidar ${lidar}`) +
+    (sight === USUAL.sight ? "" : ` --sight ${sight}`) + (flight.orders.length ? " --orders LOG" : "");
 }
 
 // Begins a flight with these orders, and stands at a tick if one is given.
@@ -105,7 +107,7 @@ async function stand(own) {
 
 function showLog() {
   flight.ticks.t.length = flight.states.length - 1;
-  history.replaceState(null, "", flight.ended ? fragment().replace(/&?t=\d+/, "") : fragment());
+  history.replaceState(null, "", fragment(flight.ended));
   $("link").href = location.hash || "#";
   $("hash").textContent = flight.hash || "-";
   $("command").textContent = command();
@@ -200,7 +202,7 @@ function showSettings() {
 function showRanges() {
   const text = { density: `${$("density").value} /m²`, speed: `${$("speed").value} m/s`, gusts: `${$("gusts").value} m/s`,
     wind: Number($("wind").value) ? `${Math.abs($("wind").value)} m/s from ${$("wind").value > 0 ? "left" : "right"}` : "none",
-    lidar: flight ? `sees ${flight.header.lidar.range_max} m` : "" };
+    sight: Number($("sight").value) < USUAL.sight ? `${$("sight").value} m` : flight ? `all of ${flight.header.lidar.range_max} m` : "" };
   for (const [name, words] of Object.entries(text)) document.querySelector(`output[for=${name}]`).value = words;
 }
 
@@ -257,7 +259,7 @@ function hear(id, place) {
 hear("view", ([u, v]) => camera && camera.ground(u, v, REACH));
 hear("map", ([u, v]) => placeOnMap && placeOnMap(u, v));
 for (const name of Object.keys(USUAL)) $(name).onchange = ({ target: { value } }) => { settings[name] = typeof USUAL[name] === "number" ? Number(value) : value; begin(); };
-for (const name of ["density", "speed", "wind", "gusts"]) $(name).oninput = showRanges;
+for (const name of ["density", "speed", "wind", "gusts", "sight"]) $(name).oninput = showRanges;
 $("play").onclick = () => done && !playing && !slow ? begin() : setPlaying(!playing);
 $("ahead").onclick = plantAhead;
 $("other").onclick = $("next").onclick = nextForest;

@@ -1,6 +1,6 @@
 //! Lidars that people own, as data.
 
-use crate::file_error::ScenarioError;
+use crate::file_error::{ScenarioError, ensure};
 use crate::names::{self, UnknownName};
 use crate::space::Quaternion;
 use core::fmt;
@@ -193,6 +193,8 @@ impl LidarName {
 /// room for 2,048 points; the view is about that of `grid-90x16`.
 const MOST_KEPT: u32 = 2000;
 const KEPT: [f64; 2] = [45.0, 20.0];
+/// Least sight that may be asked for \[m\].
+const LEAST_SIGHT: f64 = 5.0;
 
 impl SpaceLidarConfig {
     /// The lidar of a flight, by its name.
@@ -213,6 +215,24 @@ impl SpaceLidarConfig {
             return Err(refused(advice));
         }
         Ok(kept)
+    }
+
+    /// The same lidar with at most this range \[m\], as in haze or before dark bark.
+    ///
+    /// # Errors
+    /// [`ScenarioError::Value`] for a sight with which nothing can be flown or seen.
+    pub fn seeing(self, sight: Option<f64>) -> Result<Self, ScenarioError> {
+        let [near, far] = self.range;
+        let sight = sight.unwrap_or(far);
+        let advice = format!(
+            "give {LEAST_SIGHT} m or more, and more than the lidar's least range of {near} m"
+        );
+        let enough = sight.is_finite() && sight >= LEAST_SIGHT && sight > near;
+        ensure(enough, "sight", advice)?;
+        Ok(Self {
+            range: [near, far.min(sight)],
+            ..self
+        })
     }
 
     /// The beams that a flier keeps of a sweep: of scattered ones those ahead, and of these as many as the core has room for. The

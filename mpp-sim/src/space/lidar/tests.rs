@@ -347,3 +347,19 @@ fn beams_that_see_through_return_what_is_hidden() {
     }
     assert_eq!(numbers.len(), 4);
 }
+
+/// What stands beyond the sight returns nothing, what stands before it is measured as without.
+#[test]
+fn beams_end_at_the_sight_that_is_asked_for() {
+    let two = world(&[plate(10.0, 2.0, 2.0), plate(20.0, 20.0, 20.0)]);
+    let returns = |sight| {
+        let config = LidarName::Grid90x16.config().seeing(sight).unwrap();
+        let sweep = SpaceLidar::new(4, config).sweep_at(&two, &level(HIGH));
+        (sweep.iter().filter_map(|beam| beam.range)).collect::<Vec<_>>()
+    };
+    let all = returns(None);
+    let near: Vec<f64> = all.iter().copied().filter(|it| *it < 15.0).collect();
+    assert!(!near.is_empty() && near.len() < all.len());
+    assert_eq!(returns(Some(15.0)), near);
+    assert_eq!(returns(Some(300.0)), all);
+}
