@@ -225,12 +225,14 @@ fn a_trunk_that_is_planted_in_flight_is_passed_and_planted_again() {
     assert!(Look::again(&other).is_none());
 }
 
-/// A trunk behind another one is hit in the first sweep by beams that see through, and by no others. The log tells of it.
+/// A trunk behind another one is hit in the first sweep by beams that see through, as far as they see, and by no others. The log
+/// tells of it.
 #[test]
 fn beams_that_see_through_hit_what_is_hidden() {
-    let hits_behind = |see_through: bool| {
+    let hits_behind = |see_through: bool, sight: Option<f64>| {
         let file = SpaceFile {
             see_through: Some(see_through),
+            sight,
             ..forest(0.01, 1)
         };
         let bodies = vec![trunk(20.0, 0.0), trunk(28.0, 0.0), trunk(60.0, 30.0)];
@@ -244,8 +246,9 @@ fn beams_that_see_through_hit_what_is_hidden() {
             .filter(|point| point[0] > 2600 && point[1].abs() < 35)
             .count()
     };
-    assert_eq!(hits_behind(false), 0);
-    assert!(hits_behind(true) > 5);
+    assert_eq!(hits_behind(false, None), 0);
+    assert!(hits_behind(true, None) > 5);
+    assert_eq!(hits_behind(true, Some(25.0)), 0);
 }
 
 /// A lidar that falls silent leaves the map, in which plans go on.

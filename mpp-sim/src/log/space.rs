@@ -24,9 +24,6 @@ pub struct SpaceHeader {
     /// Name of the lidar, if one was given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lidar: Option<String>,
-    /// Greatest range of the lidar \[m\], if one was given.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sight: Option<f64>,
     /// Trunks of a stem map: x, y, radius, and height unless it is infinite \[m\].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stems: Vec<(f64, f64, f64, Option<f64>)>,

@@ -152,7 +152,7 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
         terrain: space.terrain,
         altitude: space.altitude,
         lidar: space.lidar,
-        sight: space.sight,
+        sight: Some(header.lidar.range_max),
         sphere: space.sphere,
         exact: Some(space.exact),
         see_through: Some(space.see_through),

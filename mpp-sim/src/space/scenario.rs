@@ -194,7 +194,6 @@ impl SpaceFile {
                 terrain: self.terrain.clone(),
                 altitude: self.altitude,
                 lidar: self.lidar.clone(),
-                sight: self.sight,
                 stems: stems.unwrap_or_default().iter().filter_map(stem).collect(),
                 extent: [length, half_width, ceiling],
                 sphere: self.sphere,
