@@ -88,12 +88,12 @@ fn release() -> Result<PathBuf> {
     Ok(work("")?.join(THUMB).join("release"))
 }
 
-/// Builds all images and the libraries for a bare 64-bit ARM.
+/// Builds all images. Checks the libraries for a bare 64-bit ARM: what the compiler makes of them there flies under Linux.
 pub(crate) fn build_all() -> Result<()> {
     build(&ALL)?;
     let toolchain = Toolchain::find("aarch64-unknown-none")?;
-    let all = "--release --locked -p mpp-core -p hil-protocol -p mpp-node";
-    succeed(toolchain.cargo("build", "")?.args(all.split(' ')))
+    let all = "--locked -p mpp-core -p hil-protocol -p mpp-node";
+    succeed(toolchain.cargo("check", "")?.args(all.split(' ')))
 }
 
 /// Builds images. An image links only if nothing in it can panic.
