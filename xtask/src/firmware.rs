@@ -88,7 +88,7 @@ fn release() -> Result<PathBuf> {
     Ok(work("")?.join(THUMB).join("release"))
 }
 
-/// Builds all images. Checks the libraries for a bare 64-bit ARM: what the compiler makes of them there flies under Linux.
+/// Builds all images, and checks the libraries for a bare 64-bit ARM, whose code the flights under Linux test.
 pub(crate) fn build_all() -> Result<()> {
     build(&ALL)?;
     let toolchain = Toolchain::find("aarch64-unknown-none")?;

@@ -45,7 +45,7 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Build the firmware and the bare-metal libraries; linking proves that nothing can panic
+    /// Build the firmware, whose linking proves that nothing can panic; check the libraries for a bare 64-bit ARM
     Build,
     /// Processor in the loop: fly the firmware in the emulator and compare the log hashes with the
     /// host

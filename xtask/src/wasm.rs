@@ -5,7 +5,6 @@ use crate::toolchain::{Toolchain, install, output, succeed};
 use anyhow::{Context, Result, ensure};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -77,28 +76,17 @@ pub(crate) fn build(in_space: bool) -> Result<PathBuf> {
         let level = format!("profile.release.package.{package}.opt-level=3");
         cargo.args(["--config", &level]);
     }
-    if in_space {
-        cargo.args(["--features", "space"]);
-    }
+    let module = if in_space { "space" } else { "plane" };
     cargo
-        .args(["--locked", "--release", "-p", "mpp-web", "--lib"])
-        .args(["--crate-type", "cdylib", "--", "-C", "strip=symbols"]);
+        .args(["--locked", "--release", "-p", "mpp-web", "--example"])
+        .args([module, "--", "-C", "strip=symbols"]);
     if in_space {
         // The core in space is built on the stack before it moves to its box.
         cargo.args(["-C", "link-arg=-zstack-size=33554432"]);
     }
-    // Both modules are built in one place: another build must not replace this one before it is copied.
-    let folder = work("web")?;
-    let lock = File::create(folder.join("lock"))?;
-    lock.lock()?;
     succeed(&mut cargo)?;
-    let built = work("")?.join(TARGET).join("release/mpp_web.wasm");
-    let module = folder.join(if in_space { "space.wasm" } else { "plane.wasm" });
-    // Put there in one piece, because others may read the last one.
-    let fresh = module.with_extension("new");
-    std::fs::copy(&built, &fresh)?;
-    std::fs::rename(&fresh, &module)?;
-    Ok(module)
+    let built = work("")?.join(TARGET).join("release/examples");
+    Ok(built.join(format!("{module}.wasm")))
 }
 
 /// Builds the pages. Returns their files.

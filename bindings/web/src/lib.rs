@@ -1,6 +1,6 @@
 //! Flights in the browser.
 //!
-//! The module has one door: a question as JSON goes in, an answer as JSON comes out. Both are bytes in
+//! A module has one door: a question as JSON goes in, an answer as JSON comes out. Both are bytes in
 //! the module's memory.
 //!
 //! ```text
@@ -9,12 +9,9 @@
 //! at = answer()             where the answer stands until the next question
 //! ```
 //!
-//! [`desk::Question`] lists the questions of the page in the plane, [`space::Question`] those of the page in space: the cargo feature `space`
-//! chooses.  The module needs one function, `env.clock`: any clock in
+//! [`desk::Question`] lists the questions of the module `plane`, [`space::Question`] those of `space`: each page has its own, because
+//! both would be too large. A module needs one function, `env.clock`: any clock in
 //! milliseconds. It measures the planner's cycles; nothing that is flown depends on it.
 
 pub mod desk;
 pub mod space;
-
-#[cfg(target_arch = "wasm32")]
-mod door;

@@ -18,9 +18,7 @@ impl ScenarioFile {
             |error: serde_json::Error| toml(<toml::de::Error as serde::de::Error>::custom(error));
         let mut both = serde_json::to_value(self).map_err(json)?;
         lay(over, &mut both);
-        // As logs are read: one more kind of reader would be compiled for every type of a file.
-        let both = serde_json::to_vec(&both).map_err(json)?;
-        serde_json::from_slice(&both).map_err(json)
+        serde_json::from_value(both).map_err(json)
     }
 }
 

@@ -1,14 +1,11 @@
-//! What the module exports.
+//! What a module exports.
 
 #![expect(
     unsafe_code,
     reason = "the names of exports and the clock are outside of the compiler's sight"
 )]
 
-#[cfg(not(feature = "space"))]
-use crate::desk::Desk;
-#[cfg(feature = "space")]
-use crate::space::Desk;
+use super::Desk;
 use std::cell::RefCell;
 
 #[link(wasm_import_module = "env")]
