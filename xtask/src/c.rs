@@ -75,7 +75,10 @@ impl Example {
 
 /// Builds the archive of core and simulated aircraft.
 fn plant(host: &Harness) -> Result<PathBuf> {
-    succeed(&mut cargo("build --quiet --locked -p mpp-c-plant"))?;
+    // With an example, features are those of the workspace's tests, whose builds are used again.
+    succeed(&mut cargo(
+        "build --quiet --locked --workspace --lib --example frames",
+    ))?;
     // The harness stands in the folder beside.
     let built = host
         .program()

@@ -43,7 +43,7 @@ pub(crate) fn run(args: &ReleaseArgs) -> Result<()> {
         println!("{part} ..");
         match part {
             "harness" => harness(&static_harness()?, "x86_64-linux", &place)?,
-            "aarch64" => harness(&aarch64::program()?, "aarch64-linux", &place)?,
+            "aarch64" => harness(&aarch64::program("thin")?, "aarch64-linux", &place)?,
             "c" => library(&place)?,
             "deb" => take(&deb::package(&static_harness()?)?, &place)?,
             "wheel" => wheel(&place)?,
