@@ -4,6 +4,7 @@
 //! pass sums them up: in a step of the core it looks at each byte that is sent once.
 
 use super::sum::{self, CHECKSUM};
+use core::cell::Cell;
 
 /// The longest piece \[bytes\]. It is cut after so many bytes, without a zero.
 pub(super) const LONGEST_PIECE: usize = 254;
@@ -21,18 +22,30 @@ pub(super) fn stuff(bytes: &mut [u8], from: usize) -> Option<usize> {
         stuff_short(bytes)?;
         return Some(bytes.len());
     }
-    let (checked, checksum) = bytes.get_mut(from..)?.split_last_chunk_mut()?;
-    *checksum = sum::checksum(
-        checked
-            .iter()
-            .fold(sum::START, |sum, byte| sum::next(sum, *byte)),
-    );
-    let (mut code, mut end) = (0, 1);
-    for at in from..bytes.len() {
+    let checked = bytes.len().checked_sub(CHECKSUM)?;
+    let (mut sum, mut code, mut end, mut at) = (sum::START, 0, 1, from);
+    while at < checked {
+        let rest = bytes.get(at..checked)?;
+        let longest = rest.get(..LONGEST_PIECE).unwrap_or(rest);
+        let zero = sum_to_zero(longest, &mut sum);
+        let piece = zero.unwrap_or(longest.len());
+        let cells = Cell::from_mut(bytes.get_mut(end..at + piece)?).as_slice_of_cells();
+        for (to, from) in cells.iter().zip(cells.get(at - end..)?) {
+            to.set(from.get());
+        }
+        (at, end) = (at + piece, end + piece);
+        if zero.is_some() {
+            at += 1;
+        }
+        if zero.is_some() || piece == LONGEST_PIECE {
+            close(bytes, &mut code, &mut end);
+        }
+    }
+    for byte in sum::checksum(sum) {
         if end - code > LONGEST_PIECE {
             close(bytes, &mut code, &mut end);
         }
-        match bytes.get(at).copied().unwrap_or_default() {
+        match byte {
             0 => close(bytes, &mut code, &mut end),
             byte => {
                 write(bytes, end, byte);
@@ -45,16 +58,13 @@ pub(super) fn stuff(bytes: &mut [u8], from: usize) -> Option<usize> {
 }
 
 /// Does the work of [`stuff`] for plain bytes that no piece is too long for: the place of each zero takes a code. Whatever a
-/// core sends is so short.
+/// core sends in each tick is so short.
 fn stuff_short(mut bytes: &mut [u8]) -> Option<()> {
     let mut sum = sum::START;
     loop {
         let (code, rest) = bytes.split_first_mut()?;
         let (checked, checksum) = rest.split_last_chunk_mut::<CHECKSUM>()?;
-        let zero = checked.iter().position(|byte| {
-            sum = sum::next(sum, *byte);
-            *byte == 0
-        });
+        let zero = sum_to_zero(checked, &mut sum);
         let Some(piece) = zero else {
             *checksum = sum::checksum(sum);
             *code = checked.len() as u8 + cut(checksum);
@@ -63,6 +73,28 @@ fn stuff_short(mut bytes: &mut [u8]) -> Option<()> {
         *code = (piece + 1) as u8;
         bytes = rest.get_mut(piece..)?;
     }
+}
+
+/// Sums bytes up to the first zero, it included, and gives its place.
+fn sum_to_zero(bytes: &[u8], sum: &mut u32) -> Option<usize> {
+    let (words, _) = bytes.as_chunks::<4>();
+    let mut at = 0;
+    for word in words.iter().map(|word| u32::from_le_bytes(*word)) {
+        // A borrow reaches the highest bit of a byte that has none only from zeros.
+        if word.wrapping_sub(0x0101_0101) & !word & 0x8080_8080 != 0 {
+            break;
+        }
+        *sum = sum::next_word(*sum, word);
+        at += 4;
+    }
+    for byte in bytes.get(at..)? {
+        *sum = sum::next(*sum, *byte);
+        if *byte == 0 {
+            return Some(at);
+        }
+        at += 1;
+    }
+    None
 }
 
 /// Cuts the checksum at its zeros: the place of each takes a code. Gives the code in front of the checksum.

@@ -38,6 +38,12 @@ pub(super) fn next(sum: u32, byte: u8) -> u32 {
     (sum >> 8) ^ TABLE[usize::from(low ^ byte)]
 }
 
+/// The register after four more bytes, as a little-endian number.
+#[inline]
+pub(super) fn next_word(sum: u32, word: u32) -> u32 {
+    (0..4).fold(sum ^ word, |sum, _| next(sum, 0))
+}
+
 /// The checksum of the bytes after which the register is `sum`.
 pub(super) const fn checksum(sum: u32) -> [u8; CHECKSUM] {
     (!sum).to_le_bytes()

@@ -163,8 +163,10 @@ pub(crate) fn follow(
     now: &SpacePath,
     ahead: (&SpacePath, &SpaceControl),
 ) -> [f64; 2] {
-    let wanted = lift(model, path, now, ahead);
-    let [_, up, right] = path.axes();
+    let [forwards, up, right] = path.axes();
+    // As `ground_velocity` has it, by the same axes.
+    let flown = core::array::from_fn(|axis| forwards[axis] * path.airspeed + model.wind[axis]);
+    let wanted = lift(model, (path, &flown), now, ahead);
     let along = |axis: [f64; 3]| wanted.iter().zip(&axis).map(|(a, b)| a * b).sum::<f64>();
     let (up, right) = (along(up), along(right));
     let bank = within(libm::atan2(right, up.max(LEAST_UP)), model.bank);
@@ -173,20 +175,18 @@ pub(crate) fn follow(
     [bank, model.angle_for(path.airspeed, pull)]
 }
 
-/// The wanted acceleration across the flight path [m/s^2]: the lift of the plan, and what brings the aircraft back to it.
+/// The wanted acceleration across the flight path [m/s^2]: the lift of the plan, and what brings the aircraft, at a velocity over
+/// ground [m/s], back to it.
 fn lift(
     model: &SpaceModel,
-    path: &SpacePath,
+    (path, flown): (&SpacePath, &[f64; 3]),
     now: &SpacePath,
     (ahead, control): (&SpacePath, &SpaceControl),
 ) -> [f64; 3] {
     let pull = model.pull(ahead.airspeed, ahead.angle_of_attack, control.thrust);
     let (sin_bank, cos_bank) = libm::sincos(ahead.bank);
     let [_, up, right] = ahead.axes();
-    let (flown, planned) = (
-        path.ground_velocity(&model.wind),
-        now.ground_velocity(&model.wind),
-    );
+    let planned = now.ground_velocity(&model.wind);
     core::array::from_fn(|axis| {
         pull * (cos_bank * up[axis] + sin_bank * right[axis])
             + BY_POSITION * (now.position[axis] - path.position[axis])

@@ -6,7 +6,7 @@
 //! [InertialFrame]     attitude, rates and specific force
 //! [SpacePosition]     a fix
 //! [PointPacket ..]    kept until the sensor frame
-//! SensorFrame k       1. a plan that tick k - 1 has taken over is told -> PlanReport, SpaceTrajectory
+//! SensorFrame k       1. a plan that tick k - 1 has taken over is told -> PlanReport, and one tick later SpaceTrajectory
 //!                     2. a plan that is due is taken over
 //!                     3. estimate, reference, control -> SpaceReport, StepReport, SurfaceCommand, ActuatorCommand
 //!                     4. the points go into the map, each by the pose of its time; a period after the last cycle the next
@@ -67,9 +67,11 @@ struct Session {
     last_cycle: Option<u32>,
     cycle: Option<Cycle>,
     /// The plan that is flown.
-    flown: Option<Flown>,
+    flown: Flown,
     /// The report of a plan that the last tick has taken over.
     untold: Option<PlanReport>,
+    /// Whether the trajectory of the plan is to be told.
+    unshown: bool,
 }
 
 /// The core in space and its side of the link, without the memory of map and planner: a flight computer has no one memory that

@@ -1,6 +1,6 @@
 //! The work of the planner in space: where cycles begin, what they may use, and when their plan is taken over.
 
-use super::cycle::{Cycle, Flown};
+use super::cycle::Cycle;
 use super::intake::{Intake, IntakeStage};
 use super::{Session, SpaceMemory, SpaceSlice, SpaceTask};
 use crate::{duration, ticks};
@@ -8,14 +8,20 @@ use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
 use mpp_core::map::VoxelGrid;
 use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner, next_start};
-use mpp_core::vehicle::{Nose, SpaceControl};
+use mpp_core::vehicle::{Nose, SpaceControl, SpacePath};
 
 /// Points that go into the map in one slice.
 const SLICE_POINTS: usize = 24;
 
 impl SpaceTask {
-    /// After the step: points wait for the map, a cycle begins when its time has come, and slices are granted.
-    pub(super) fn plan(&mut self, tick: u32, motion: &SpaceMotion, planner: &mut SpacePlanner) {
+    /// After the step at a place and with what it followed: points wait for the map, a cycle begins when its time has come, and
+    /// slices are granted.
+    pub(super) fn plan(
+        &mut self,
+        tick: u32,
+        (position, followed): ([f64; 3], SpacePath),
+        planner: &mut SpacePlanner,
+    ) {
         let Some(session) = &mut self.session else {
             return;
         };
@@ -23,7 +29,7 @@ impl SpaceTask {
         if seen {
             self.intake = Some(Intake {
                 tick,
-                position: motion.path.position,
+                position,
                 stage: IntakeStage::Begin,
             });
         }
@@ -38,8 +44,8 @@ impl SpaceTask {
             Some(last) => ticks(last, tick).unsigned_abs() >= patience,
             None => seen,
         };
-        if due {
-            session.begin(planner, tick, motion);
+        if due && let Some(motion) = session.estimator.motion() {
+            session.begin(planner, tick, (&motion, &followed));
         }
         self.granted = session
             .configure
@@ -123,11 +129,16 @@ impl SpaceTask {
 
 impl Session {
     /// Begins a cycle from where the aircraft will be when the plan begins.
-    fn begin(&mut self, planner: &mut SpacePlanner, tick: u32, motion: &SpaceMotion) {
+    fn begin(
+        &mut self,
+        planner: &mut SpacePlanner,
+        tick: u32,
+        (motion, followed): (&SpaceMotion, &SpacePath),
+    ) {
         let model = self.model;
         let configure = &self.configure;
         let due = tick.wrapping_add(configure.latency_ticks);
-        let (start, state, shift) = match &self.flown {
+        let (start, state, shift) = match self.flown.some() {
             Some(flown) => {
                 // The regulator looks ahead: a plan begins where it will look when the plan is due, and no more than one waits.
                 let most = (configure.replan_period_ticks.saturating_mul(2))
@@ -135,8 +146,8 @@ impl Session {
                 let lead = (libm::round(self.ahead / duration(1)) as u32).min(most);
                 let start = due.wrapping_add(lead);
                 let time = flown.age(start);
-                let (planned, _) = flown.plan.at(&flown.model, time);
-                let deviation = flown.deviation(tick, &motion.path);
+                let (planned, _) = flown.at(time);
+                let deviation = flown.deviation(tick, followed, &motion.path);
                 (start, next_start(&planned, &deviation), time)
             }
             None => {
@@ -169,24 +180,18 @@ impl Session {
             return;
         };
         self.cycle = None;
-        let best = planner.best().map(|(plan, judged)| (*plan, *judged));
+        let best = planner.best();
         let (cost, violation) = best.map_or((f64::INFINITY, f64::INFINITY), |(_, judged)| {
             (judged.price, judged.missing)
         });
         let outcome = match best {
             Some(_) if violation <= 0.0 => PlanOutcome::Adopted,
             Some(_) => PlanOutcome::LeastViolating,
-            None if self.flown.is_some() => PlanOutcome::KeptPrevious,
+            None if self.flown.some().is_some() => PlanOutcome::KeptPrevious,
             None => PlanOutcome::TrimHold,
         };
         if let Some((plan, _)) = best {
-            self.flown = Some(Flown {
-                plan,
-                model: *planner.model(),
-                start: cycle.start,
-                begun: cycle.begun,
-                before: (self.flown.as_ref()).map(|flown| (flown.plan, flown.start)),
-            });
+            self.flown.follow(plan, planner.model(), &cycle);
         }
         self.untold = Some(PlanReport {
             scan_tick: cycle.begun,

@@ -1,5 +1,6 @@
 //! The set-up of a flight in space: what comes before the configuration, the configuration, and what follows from it.
 
+use super::cycle::Flown;
 use super::{Session, SpaceMemory, SpaceTask};
 use crate::convert::{check, trim_verdict};
 use hil_protocol::{
@@ -141,8 +142,9 @@ impl SpaceTask {
             last_tick: None,
             last_cycle: None,
             cycle: None,
-            flown: None,
+            flown: Flown::none(&model),
             untold: None,
+            unshown: false,
         });
         Ok(())
     }

@@ -49,17 +49,18 @@ impl SpaceTask {
         };
         let finite = session.estimate(frame);
         session.model.wind = session.estimator.wind();
-        let told = session.untold.take().map(|report| {
-            let new = session.flown.as_ref().filter(|_| report.outcome.is_new());
-            (report, new.map(Flown::told))
-        });
+        // A tick tells the report of a plan, the next one its trajectory: both in one would be its longest by far.
+        let report = session.untold.take();
+        let shown = core::mem::take(&mut session.unshown);
+        let trajectory = session.flown.some().filter(|_| shown).map(Flown::told);
+        session.unshown = report.as_ref().is_some_and(|it| it.outcome.is_new());
         session.take_over(memory.planner, tick);
-        let estimate = session.estimator.motion();
         // A plan is followed in the wind for which it was made, so that a change of the wind is no error of the velocity.
-        let model = (session.flown.as_ref()).map_or(session.model, |flown| flown.model);
-        let answer = match session.estimator.motion_in(&model.wind) {
-            Some(motion) => session.step(tick, &motion, &model),
-            None => session.level(tick),
+        let model = (session.flown.some()).map_or(&session.model, |flown| &flown.model);
+        let motion = session.estimator.motion_in(&model.wind);
+        let (answer, followed) = match &motion {
+            Some(motion) => session.step(tick, motion, model),
+            None => (session.level(tick), SpacePath::default()),
         };
         session.surfaces = LateralControl {
             aileron: answer.surfaces.aileron,
@@ -68,11 +69,11 @@ impl SpaceTask {
         if !finite {
             self.reject(RejectionCause::NonFiniteSensor, send);
         }
-        if let Some((report, trajectory)) = told {
+        if let Some(report) = report {
             self.emit(&report, send);
-            if let Some(trajectory) = trajectory {
-                self.emit(&trajectory, send);
-            }
+        }
+        if let Some(trajectory) = trajectory {
+            self.emit(&trajectory, send);
         }
         if let Some((lateral, step)) = &answer.reports {
             self.emit(lateral, send);
@@ -80,8 +81,10 @@ impl SpaceTask {
         }
         self.emit(&answer.surfaces, send);
         self.emit(&answer.command, send);
-        match &estimate {
-            Some(motion) => self.plan(tick, motion, memory.planner),
+        match motion {
+            Some(motion) => {
+                self.plan(tick, (motion.path.position, followed), memory.planner);
+            }
             // Points without a place show nothing.
             None => self.sweep.clear(),
         }
@@ -142,7 +145,8 @@ impl Session {
         }
     }
 
-    fn step(&self, tick: u32, motion: &SpaceMotion, model: &SpaceModel) -> Answer {
+    /// The answer, and the state of the plan that is followed in this tick.
+    fn step(&self, tick: u32, motion: &SpaceMotion, model: &SpaceModel) -> (Answer, SpacePath) {
         let (now, ahead) = self.reference(tick, motion);
         let (Control { thrust, elevator }, LateralControl { aileron, rudder }) = self
             .regulator
@@ -153,13 +157,13 @@ impl Session {
             .iter()
             .all(|command| command.is_finite())
         {
-            return Answer { reports, ..level };
+            return (Answer { reports, ..level }, now);
         }
-        let mode = match self.flown {
+        let mode = match self.flown.some() {
             Some(_) => ControlMode::Tracking,
             None => ControlMode::TrimHold,
         };
-        Answer {
+        let answer = Answer {
             reports,
             surfaces: SurfaceCommand {
                 tick,
@@ -172,16 +176,16 @@ impl Session {
                 elevator,
                 mode,
             },
-        }
+        };
+        (answer, now)
     }
 
     /// The plan's state now, and state and control ahead. Without a plan: straight and level.
     fn reference(&self, tick: u32, motion: &SpaceMotion) -> (SpacePath, (SpacePath, SpaceControl)) {
-        if let Some(flown) = &self.flown {
-            let (model, age) = (&flown.model, flown.age(tick));
+        if let Some(flown) = self.flown.some() {
             return (
                 flown.reference(tick),
-                flown.plan.at(model, age + self.ahead),
+                flown.at(flown.age(tick) + self.ahead),
             );
         }
         let model = &self.model;
@@ -209,15 +213,14 @@ impl Session {
         let [roll_rate, pitch_rate, yaw_rate] = motion.rates;
         let ([x, y, z], [wind_x, wind_y, wind_z]) = (path.position, self.model.wind);
         let [ref_x, ref_y, ref_z] = now.position;
-        let [_, sideslip] = self.estimator.flow_angles().unwrap_or_default();
         let lateral = SpaceReport {
             tick,
-            estimate: [sideslip, path.bank, roll_rate, yaw_rate, path.course],
+            estimate: [motion.sideslip, path.bank, roll_rate, yaw_rate, path.course],
             y,
             wind: wind_y,
             reference: [ref_y, now.bank, now.course],
         };
-        let flown = self.flown.as_ref();
+        let flown = self.flown.some();
         let age = flown.map_or(0, |flown| ticks(flown.begun, tick));
         let step = StepReport {
             tick,

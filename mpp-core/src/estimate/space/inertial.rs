@@ -22,6 +22,13 @@ pub(super) struct Correction {
     pub(super) bias: [f64; 3],
 }
 
+impl Correction {
+    /// The change of the velocity along an axis some time ago [m/s].
+    pub(super) fn velocity_then(&self, axis: usize, since: f64) -> f64 {
+        self.velocity[axis] + since * self.bias[axis]
+    }
+}
+
 /// The filter of three axes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct InertialFilter {

@@ -211,14 +211,17 @@ impl SpaceEstimator {
             self.silent = 0;
             return PositionVerdict::Restarted;
         };
-        self.poses.correct(&by);
         self.silent = 0;
-        if let Some((told, sigma)) = fix.velocity {
-            let then = self.poses.then(fix.age).map_or(velocity, |it| it.1);
-            let off = [0, 1, 2].map(|axis| told[axis] - then[axis]);
-            match filter.observe_velocity(off, age, VELOCITY_DOUBT * sigma) {
-                Some(by) => self.poses.correct(&by),
-                None => self.refused.velocity = self.refused.velocity.saturating_add(1),
+        let Some((told, sigma)) = fix.velocity else {
+            self.poses.correct(&[by]);
+            return PositionVerdict::Accepted;
+        };
+        let off = [0, 1, 2].map(|axis| told[axis] - (velocity[axis] + by.velocity_then(axis, age)));
+        match filter.observe_velocity(off, age, VELOCITY_DOUBT * sigma) {
+            Some(more) => self.poses.correct(&[by, more]),
+            None => {
+                self.poses.correct(&[by]);
+                self.refused.velocity = self.refused.velocity.saturating_add(1);
             }
         }
         PositionVerdict::Accepted

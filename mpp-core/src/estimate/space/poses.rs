@@ -115,16 +115,19 @@ impl Poses {
     }
 
     /// Corrects all entries as the last one was: with a constant error of the acceleration the past has this error too.
-    pub(super) fn correct(&mut self, by: &Correction) {
+    pub(super) fn correct(&mut self, corrections: &[Correction]) {
         for age in 0..TICKS as u32 {
             let since = f64::from(age) * TICK_PERIOD;
             let Some(entry) = self.entry_mut(age) else {
                 return;
             };
-            for axis in 0..3 {
-                let (velocity, bias) = (by.velocity[axis], by.bias[axis]);
-                entry.position[axis] += by.position[axis] - since * (velocity + 0.5 * since * bias);
-                entry.velocity[axis] += velocity + since * bias;
+            for by in corrections {
+                for axis in 0..3 {
+                    let (velocity, bias) = (by.velocity[axis], by.bias[axis]);
+                    let moved = by.position[axis] - since * (velocity + 0.5 * since * bias);
+                    entry.position[axis] += moved;
+                    entry.velocity[axis] += by.velocity_then(axis, since);
+                }
             }
         }
     }
