@@ -6,6 +6,8 @@ use proptest::prelude::*;
 
 /// Number of samples along a motion or a ray.
 const SAMPLES: usize = 4000;
+/// Error of what they tell \[m\].
+const TOLERANCE: f64 = 2e-3;
 
 fn uniform(generator: &mut Draws, low: f64, high: f64) -> f64 {
     low + (high - low) * random::uniform(generator)
@@ -132,9 +134,9 @@ proptest! {
             let inside = evenly_spaced(0.0, 1.0, COARSE + 1)
                 .any(|share| holds(&shape, along(from, to, share)));
             // A sample is at most so far from the point where the motion is deepest.
-            let between = libm::hypot(step.0, step.1) / COARSE as f64 + 2e-3;
+            let between = libm::hypot(step.0, step.1) / COARSE as f64 + TOLERANCE;
             if inside {
-                prop_assert!(clearance < 2e-3, "{shape:?}: {clearance}");
+                prop_assert!(clearance < TOLERANCE, "{shape:?}: {clearance}");
             } else {
                 prop_assert!(clearance > -between, "{shape:?}: {clearance}");
             }
@@ -153,7 +155,7 @@ proptest! {
         let to = (point.0 + step.0, point.1 + step.1);
         for shape in shapes(seed) {
             let clearance = shape.clearance_of_segment(point, point);
-            if clearance > 0.0 {
+            if clearance > TOLERANCE {
                 let at = |k: usize, distance: f64| {
                     let angle = core::f64::consts::TAU * k as f64 / DIRECTIONS as f64;
                     let (sin, cos) = libm::sincos(angle);
@@ -162,7 +164,7 @@ proptest! {
                 let hits = |distance: f64| {
                     (0..DIRECTIONS).any(|k| holds(&shape, at(k, distance)))
                 };
-                prop_assert!(!hits(clearance - 2e-3), "{shape:?}: {clearance}");
+                prop_assert!(!hits(clearance - TOLERANCE), "{shape:?}: {clearance}");
             }
             let least = evenly_spaced(0.0, 1.0, 201)
                 .map(|share| along(point, to, share))
