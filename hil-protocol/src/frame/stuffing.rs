@@ -80,7 +80,7 @@ fn sum_to_zero(bytes: &[u8], sum: &mut u32) -> Option<usize> {
     let (words, _) = bytes.as_chunks::<4>();
     let mut at = 0;
     for word in words.iter().map(|word| u32::from_le_bytes(*word)) {
-        // A borrow reaches the highest bit of a byte that has none only from zeros.
+        // This is not zero exactly if one of the four bytes is.
         if word.wrapping_sub(0x0101_0101) & !word & 0x8080_8080 != 0 {
             break;
         }

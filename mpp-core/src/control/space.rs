@@ -164,8 +164,7 @@ pub(crate) fn follow(
     ahead: (&SpacePath, &SpaceControl),
 ) -> [f64; 2] {
     let [forwards, up, right] = path.axes();
-    // As `ground_velocity` has it, by the same axes.
-    let flown = core::array::from_fn(|axis| forwards[axis] * path.airspeed + model.wind[axis]);
+    let flown = path.ground_velocity_along(&forwards, &model.wind);
     let wanted = lift(model, (path, &flown), now, ahead);
     let along = |axis: [f64; 3]| wanted.iter().zip(&axis).map(|(a, b)| a * b).sum::<f64>();
     let (up, right) = (along(up), along(right));

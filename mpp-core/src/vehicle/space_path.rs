@@ -231,6 +231,11 @@ impl SpacePath {
     #[must_use]
     pub fn ground_velocity(&self, wind: &[f64; 3]) -> [f64; 3] {
         let [along, ..] = self.axes();
+        self.ground_velocity_along(&along, wind)
+    }
+
+    /// The same where the first of the [axes](Self::axes) is known.
+    pub(crate) fn ground_velocity_along(&self, along: &[f64; 3], wind: &[f64; 3]) -> [f64; 3] {
         core::array::from_fn(|axis| along[axis] * self.airspeed + wind[axis])
     }
 

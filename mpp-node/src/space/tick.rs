@@ -57,10 +57,12 @@ impl SpaceTask {
         session.take_over(memory.planner, tick);
         // A plan is followed in the wind for which it was made, so that a change of the wind is no error of the velocity.
         let model = (session.flown.some()).map_or(&session.model, |flown| &flown.model);
-        let motion = session.estimator.motion_in(&model.wind);
-        let (answer, followed) = match &motion {
-            Some(motion) => session.step(tick, motion, model),
-            None => (session.level(tick), SpacePath::default()),
+        let (answer, place) = match session.estimator.motion_in(&model.wind) {
+            Some(motion) => {
+                let (answer, followed) = session.step(tick, &motion, model);
+                (answer, Some((motion.path.position, followed)))
+            }
+            None => (session.level(tick), None),
         };
         session.surfaces = LateralControl {
             aileron: answer.surfaces.aileron,
@@ -81,10 +83,8 @@ impl SpaceTask {
         }
         self.emit(&answer.surfaces, send);
         self.emit(&answer.command, send);
-        match motion {
-            Some(motion) => {
-                self.plan(tick, (motion.path.position, followed), memory.planner);
-            }
+        match place {
+            Some(place) => self.plan(tick, place, memory.planner),
             // Points without a place show nothing.
             None => self.sweep.clear(),
         }
