@@ -198,6 +198,7 @@ fn of_an_aircraft_in_space() {
         heights: [FLOAT; 2],
         half_width: FLOAT,
         programs: true,
+        open: true,
     };
     assert_eq!(payload(&limits), ConfigureSpace::MAX_SIZE);
     let inertial = InertialFrame {
@@ -234,6 +235,7 @@ fn of_an_aircraft_in_space() {
         y: FLOAT,
         wind: FLOAT,
         reference: [FLOAT; 3],
+        way_out: value,
     };
     assert_eq!(payload(&report), SpaceReport::MAX_SIZE);
     let trajectory = SpaceTrajectory {

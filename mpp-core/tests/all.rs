@@ -33,6 +33,7 @@ mod planner_setup;
 mod planner_space;
 mod planner_space_again;
 mod planner_space_offers;
+mod planner_space_way_out;
 mod point_mass;
 mod qp;
 mod rays;

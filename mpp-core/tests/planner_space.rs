@@ -38,7 +38,7 @@ pub(crate) fn level(model: &SpaceModel) -> SpacePath {
 pub(crate) struct Draw(pub(crate) Pcg64Mcg);
 
 impl Draw {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 }

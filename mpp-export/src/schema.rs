@@ -138,6 +138,7 @@ pub const PLANS: Schema = Schema {
         column("slices", Kind::Whole, "1", "", "slices of planning work"),
         column("cost", Kind::Real, "1", "", "cost of the chosen trajectory; null without one"),
         column("violation", Kind::Real, "m", "", "worst constraint violation of the chosen trajectory; null without one"),
+        column("way_out", Kind::Real, "s", "", "time for which a plan in space has a way out, 4.5 s on it; null in the plane"),
     ],
 };
 

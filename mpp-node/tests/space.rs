@@ -62,6 +62,7 @@ const LIMITS: ConfigureSpace = ConfigureSpace {
     heights: [0.5, 14.5],
     half_width: 29.0,
     programs: true,
+    open: false,
 };
 
 /// A wing that rolls, damps its yaw and holds its nose into the wind.

@@ -245,6 +245,9 @@ pub struct PlanEntry {
     pub cost: Option<f64>,
     /// Worst constraint violation of the chosen trajectory \[m\]; null if none was chosen.
     pub violation: Option<f64>,
+    /// Time for which a plan in space has a way out \[s\]; not written in the plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub way_out: Option<f64>,
 }
 
 impl PlanEntry {

@@ -9,6 +9,7 @@ mod common;
 mod faults;
 mod forest;
 mod loops;
+mod open;
 mod orders;
 mod own_world;
 mod space;

@@ -58,21 +58,21 @@ fn a_baseline_has_no_settings_of_the_planner() {
                 candidates: Some(3),
                 ..named("library-7")
             },
-            "leave candidates and programs out",
+            "leave candidates, programs and mode out",
         ),
         (
             SpaceFile {
                 programs: Some(true),
                 ..named("paper")
             },
-            "leave candidates and programs out",
+            "leave candidates, programs and mode out",
         ),
         (
             SpaceFile {
                 programs: Some(false),
                 ..named("straight")
             },
-            "leave candidates and programs out",
+            "leave candidates, programs and mode out",
         ),
     ] {
         let error = flown(file, None).unwrap_err();

@@ -83,7 +83,7 @@ fn advance(task: &mut SpaceTask, slice: SpaceSlice, memory: &mut SpaceMemory<'_>
             SpaceStage::Candidate => Region::Corridor,
             SpaceStage::Program => Region::Linearise,
             SpaceStage::Solve => Region::Program,
-            SpaceStage::Refine => Region::Improve,
+            SpaceStage::Refine | SpaceStage::WayOut => Region::Improve,
         },
     });
     let last = matches!(slice, SpaceSlice::Planner(SpaceStage::Refine));

@@ -66,11 +66,13 @@ pub struct ConfigureSpace {
     pub half_width: f64,
     /// Whether a program improves each candidate.
     pub programs: bool,
+    /// Whether only plans with a way out are flown, as long as one is known.
+    pub open: bool,
 }
 
 impl ConfigureSpace {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = 7 * size::F64 + size::BYTE;
+    pub const MAX_SIZE: usize = 7 * size::F64 + 2 * size::BYTE;
 }
 
 /// Harness to core: what an attitude reference and its gyroscopes and accelerometers tell, sent before the
@@ -162,11 +164,13 @@ pub struct SpaceReport {
     pub wind: f64,
     /// Reference: position to the right \[m\], bank \[rad\], course \[rad\].
     pub reference: [f64; 3],
+    /// Time for which the plan has a way out \[s\]: after it the plan turns to a circle in space that was seen free. 0 without one.
+    pub way_out: f32,
 }
 
 impl SpaceReport {
     /// Size of the longest payload \[bytes\].
-    pub const MAX_SIZE: usize = size::U32 + 10 * size::F64;
+    pub const MAX_SIZE: usize = size::U32 + 10 * size::F64 + size::F32;
 }
 
 /// Core to harness: the trajectory in space that a planning cycle chose.

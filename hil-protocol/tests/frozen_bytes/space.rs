@@ -50,10 +50,11 @@ fn limits_of_plans_in_space() {
         heights: [0.5, 16.0],
         half_width: 32.0,
         programs: true,
+        open: true,
     };
     check(&[(
         Message::ConfigureSpace(message),
-        "054d500216010101010103f03f0101010101010240010101010103e03f010101010103f03f010101010103e03f0101010101033040010101010108404001af5edba700",
+        "054d500216010101010103f03f0101010101010240010101010103e03f010101010103f03f010101010103e03f0101010101033040010101010109404001013cbacbe300",
     )]);
 }
 
@@ -117,6 +118,7 @@ fn command_report_and_trajectory() {
         y: -2.0,
         wind: 0.5,
         reference: [1.0, 0.25, 0.125],
+        way_out: 1.5,
     };
     let trajectory = SpaceTrajectory {
         scan_tick: 200,
@@ -130,7 +132,7 @@ fn command_report_and_trajectory() {
         ),
         (
             Message::SpaceReport(report),
-            "074d500214c801010101010103c03f010101010103e03f010101010103f03f010101010103f0bf010101010103d03f01010101010102c0010101010103e03f010101010103f03f010101010103d03f010101010107c03f33be91ef00",
+            "074d500214c801010101010103c03f010101010103e03f010101010103f03f010101010103f0bf010101010103d03f01010101010102c0010101010103e03f010101010103f03f010101010103d03f010101010103c03f0107c03f88e5692900",
         ),
         (
             Message::SpaceTrajectory(trajectory),

@@ -36,13 +36,13 @@ pub(crate) fn message() -> impl Strategy<Value = Message> {
 fn space() -> impl Strategy<Value = Message> {
     let lateral = uniform::<_, { LateralAirframe::COUNT }>(f64::ANY);
     let lateral = (lateral, uniform3(option::of(f64::ANY)));
-    let limits = (uniform2(f64::ANY), uniform5(f64::ANY), any::<bool>());
+    let limits = (uniform2(f64::ANY), uniform5(f64::ANY), any::<[bool; 2]>());
     let inertial = (any::<u32>(), uniform::<_, 10>(f32::ANY));
     let velocity = option::of(uniform4(f32::ANY));
     let position = (any::<u32>(), uniform3(f64::ANY), f32::ANY, velocity);
     let points = list::<_, MAX_POINTS>(uniform3(f32::ANY));
     let packet = (any::<(u32, u32, u16)>(), points);
-    let report = (any::<u32>(), uniform::<_, 10>(f64::ANY));
+    let report = (any::<u32>(), uniform::<_, 10>(f64::ANY), f32::ANY);
     let knots = list::<_, MAX_KNOTS>(uniform5(f32::ANY));
     prop_oneof![
         of(lateral).prop_map(Message::ConfigureLateral),

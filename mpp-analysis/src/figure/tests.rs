@@ -60,6 +60,7 @@ fn example(count: usize, obstacles: usize) -> FlightLog {
         score.update(&field, &before, &plant.state);
     }
     let plan = |tick| PlanEntry {
+        way_out: None,
         tick,
         used_from_tick: Some(tick),
         outcome: "optimal".into(),

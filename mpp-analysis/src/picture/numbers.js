@@ -11,7 +11,7 @@ function showValues(flight, now, more = []) {
     ["plan", plan ? `${number + 1} of ${flight.plans.length}` : "none"],
     ["outcome", plan ? OUTCOMES[plan.outcome] || plan.outcome : "-"],
     ["candidates", plan ? plan.candidates : "-"], ["feasible", plan ? plan.feasible : "-"],
-    ["trees", plan ? plan.tree_runs : "-"],
+    plan && "way_out" in plan ? ["way out", plan.way_out.toFixed(2) + " s"] : ["trees", plan ? plan.tree_runs : "-"],
     ["cost", plan && plan.cost !== null ? plan.cost.toFixed(2) : "-"],
     ["violation", plan && plan.violation !== null ? plan.violation.toFixed(3) + " m" : "-"], ...more];
   $("values" + flight.id).replaceChildren(...values.map(([name, value]) => {

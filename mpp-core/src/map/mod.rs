@@ -12,6 +12,7 @@ mod distance_field;
 mod evidence;
 mod extent;
 mod fan;
+mod level_grid;
 mod near_slices;
 mod rolling_grid;
 mod scan_age;
@@ -20,6 +21,7 @@ mod scan_monitor;
 mod upright;
 pub(crate) mod voxel_field;
 pub(crate) mod voxels;
+mod walk;
 
 pub use distance_field::{DistanceField, FAR};
 pub(crate) use distance_field::{Height, split};
@@ -30,7 +32,8 @@ pub use scan_fit::{Prediction, Predictions};
 pub use scan_monitor::{ScanMonitor, ScanVerdict};
 pub(crate) use upright::{Storey, Upright};
 pub use voxel_field::{MOST_CLEARANCE, VoxelField};
-pub use voxels::{CELLS, SpaceBeam, VoxelGrid};
+pub use voxels::{CELLS, VoxelGrid};
+pub use walk::SpaceBeam;
 
 #[cfg(test)]
 mod tests {

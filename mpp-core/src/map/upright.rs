@@ -1,7 +1,8 @@
 //! A vertical line through the distance field in space, to ask at many heights.
 
 use super::extent::{PART, PARTS};
-use super::voxels::{CELLS, voxel};
+use super::voxels::CELLS;
+use super::walk::voxel;
 use crate::tuning::grid::CELL;
 
 /// Greatest distance that the field tells, in voxels: 3 m. In units it is the distance of what is farther, too.

@@ -7,7 +7,8 @@ pub(crate) use super::near_slices::{LENGTH, NearSlices};
 use super::upright::{
     Around, FAR_COLUMN, FARTHEST, HEIGHT, REACH, Storey, UNIT, Upright, along, mixed,
 };
-use super::voxels::{VoxelGrid, voxel};
+use super::voxels::VoxelGrid;
+use super::walk::voxel;
 use crate::tuning::grid::CELL;
 use core::ops::Range;
 

@@ -4,9 +4,10 @@
 //! is no part of it, and floor and ceiling are rows of programs. Higher bands are flown over terrain: the window goes with the
 //! aircraft in z, too, and the ground is what hits show of it.
 
-use super::cell::rounded_down;
 use super::evidence::{Change, Evidence, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
 use super::extent::Extent;
+use super::level_grid::LevelGrid;
+use super::walk::{SpaceBeam, Walk, entered, voxel, wrapped};
 use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
 
 /// Number of voxels along x, y and z.
@@ -18,15 +19,6 @@ const BEHIND: [i64; 2] = [8, CELLS[1] as i64 / 2];
 const OFF_MIDDLE: i64 = 4;
 /// Most voxels that one beam passes: the window's extent along all axes.
 const MOST_STEPS: usize = CELLS[0] + CELLS[1] + CELLS[2];
-
-/// One beam of a lidar in world axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SpaceBeam {
-    /// Unit direction.
-    pub direction: [f64; 3],
-    /// Range of the return \[m\]; `None` if nothing came back.
-    pub range: Option<f64>,
-}
 
 /// Occupancy log-odds of the voxels around the aircraft.
 #[derive(Clone, Debug)]
@@ -46,6 +38,7 @@ pub struct VoxelGrid {
     /// Where the beams of this scan begin \[m\]. In the window also the voxel there, by axis: its place and its first side \[m\].
     origin: [f64; 3],
     begun: Option<[(usize, f64); 3]>,
+    level: LevelGrid,
 }
 
 impl VoxelGrid {
@@ -62,6 +55,7 @@ impl VoxelGrid {
             follows: false,
             origin: [0.0; 3],
             begun: None,
+            level: LevelGrid::new(),
         }
     }
 
@@ -70,6 +64,7 @@ impl VoxelGrid {
         (self.floor, self.follows) = (0, false);
         self.evidence.as_flattened_mut().fill(Evidence::NONE);
         self.extents.as_flattened_mut().fill(Extent::FULL);
+        self.level.clear(x);
         self.place_window([voxel(x) - BEHIND[0], -BEHIND[1]]);
     }
 
@@ -79,8 +74,9 @@ impl VoxelGrid {
     }
 
     /// After [`clear`](Self::clear): takes the heights of plans \[m\], beyond which nothing need be known.
-    pub fn cover(&mut self, heights: &[f64; 2]) {
+    pub fn cover(&mut self, heights: &[f64; 2], altitude: f64) {
         self.follows = Self::follows(heights);
+        self.level.set_height(altitude);
     }
 
     /// First z in the window, in voxels.
@@ -113,6 +109,7 @@ impl VoxelGrid {
         let [_, _, z] = position;
         self.climb(*z);
         self.hit.as_flattened_mut().fill(0);
+        self.level.begin(position);
         self.origin = *position;
         let firsts = [self.first[0], self.first[1], self.floor];
         let begun: [_; 3] = core::array::from_fn(|axis| {
@@ -126,12 +123,12 @@ impl VoxelGrid {
         self.begun = inside.then_some(begun.map(|(at, side)| (at as usize, side)));
     }
 
-    /// Moves the window: in x ahead, in y to both sides. A jump beyond the window clears all of it, and no more than that.
+    /// Moves the window in x and y. A jump beyond the window clears all of it, and no more than that.
     fn roll(&mut self, [x, y, _]: &[f64; 3]) {
         let [length, width] = [CELLS[0] as i64, CELLS[1] as i64];
         let [old, side] = self.first;
-        let first = (voxel(*x) - BEHIND[0]).max(old);
-        for x in (old + length).max(first)..first + length {
+        let first = voxel(*x) - BEHIND[0];
+        for x in entered(old, first, CELLS[0]) {
             let at = x.rem_euclid(length) as usize;
             if let (Some(evidence), Some(extents)) =
                 (self.evidence.get_mut(at), self.extents.get_mut(at))
@@ -141,12 +138,7 @@ impl VoxelGrid {
             }
         }
         let left = voxel(*y) - BEHIND[1];
-        let entered = if left > side {
-            (side + width).max(left)..left + width
-        } else {
-            left..side.min(left + width)
-        };
-        for y in entered {
+        for y in entered(side, left, CELLS[1]) {
             let at = y.rem_euclid(width) as usize;
             for (evidence, extents) in self.evidence.iter_mut().zip(&mut self.extents) {
                 if let (Some(evidence), Some(extent)) = (evidence.get_mut(at), extents.get_mut(at))
@@ -197,6 +189,7 @@ impl VoxelGrid {
             return;
         };
         let end = core::array::from_fn(|axis| self.origin[axis] + range * beam.direction[axis]);
+        self.level.mark(&end);
         let [x, y, z] = end.map(voxel);
         // Of level ground the lowest layer is the ground's.
         let (z, least) = (z - self.floor, i64::from(!self.follows));
@@ -225,6 +218,7 @@ impl VoxelGrid {
             None => (UNANSWERED_SHARE * sight, &UNANSWERED_ONCE),
         };
         self.pass_until(&beam.direction, end, change);
+        self.level.pass(&self.origin, beam, sight);
     }
 
     /// Changes the voxels on the first `end` metres of a beam, by steps from face to face (Amanatides, Woo: "A fast voxel
@@ -272,6 +266,31 @@ impl VoxelGrid {
         }
     }
 
+    /// Whether something on the level of flight is known within a distance \[m\] along x and y.
+    #[must_use]
+    pub fn is_met(&self, point: &[f64; 3], reach: f64) -> bool {
+        self.level.is_met(point, reach)
+    }
+
+    /// Whether a point on the level of flight has been seen, and nothing is known within a distance \[m\] along x and y.
+    #[must_use]
+    pub fn is_free(&self, point: &[f64; 3], reach: f64) -> bool {
+        self.level.is_free(point, reach)
+    }
+
+    /// Whether beams have passed a point, or half a metre above or below it.
+    #[must_use]
+    pub fn has_seen(&self, point: &[f64; 3]) -> bool {
+        let [x, y, z] = point.map(voxel);
+        let layer = z - self.floor;
+        if !(0..LAYERS as i64).contains(&layer) {
+            return false;
+        }
+        let near = (7_u64 << layer >> 1) as u32;
+        let ([_, unknown], _) = self.column(x, y);
+        unknown & near != near
+    }
+
     /// Occupied and unknown voxels of the column at an x and y in voxels, a bit for each z, and what hits show of it. Outside of
     /// the window nothing is known. Over terrain what is below a hit counts as occupied as far as nobody has seen it.
     pub(super) fn column(&self, x: i64, y: i64) -> ([u32; 2], Extent) {
@@ -290,58 +309,6 @@ impl VoxelGrid {
     }
 }
 
-/// The way of a beam along an axis.
-struct Walk {
-    /// Place in the memory, and what a step adds to it, modulo the length: one, or one less than none.
-    at: usize,
-    by: usize,
-    /// Steps that stay in the window.
-    left: usize,
-    /// Distances along the beam: of the next face, and between faces \[m\].
-    next: f64,
-    each: f64,
-}
-
-impl Walk {
-    /// From a place in the window, whose memory begins at a corner, in a voxel with a side \[m\], by a share of the beam [-].
-    fn new([corner, at, length]: [usize; 3], [side, from]: [f64; 2], speed: f64) -> Self {
-        let (next, each, by, left) = if speed > 1e-12 {
-            (
-                (side + CELL - from) / speed,
-                CELL / speed,
-                1,
-                length - 1 - at,
-            )
-        } else if speed < -1e-12 {
-            ((side - from) / speed, -CELL / speed, length - 1, at)
-        } else {
-            (f64::INFINITY, f64::INFINITY, 0, 0)
-        };
-        let at = wrapped(corner + at, length);
-        Self {
-            at,
-            by,
-            left,
-            next,
-            each,
-        }
-    }
-
-    /// Steps to the next voxel. Returns false outside of the window.
-    fn step(&mut self, length: usize) -> bool {
-        let inside = self.left > 0;
-        self.left = self.left.wrapping_sub(1);
-        self.at = wrapped(self.at + self.by, length);
-        self.next += self.each;
-        inside
-    }
-}
-
-/// Number of the voxel that holds a coordinate \[m\]. Coordinates that make no sense are far away.
-pub(crate) fn voxel(coordinate: f64) -> i64 {
-    rounded_down(coordinate / CELL).into()
-}
-
 /// Bits, and all those that follow below one of them in a row of bits that may be filled.
 fn filled(bits: u32, may_be: u32) -> u32 {
     let (mut filled, mut may_be) = (bits, may_be);
@@ -350,11 +317,6 @@ fn filled(bits: u32, may_be: u32) -> u32 {
         may_be &= may_be >> by;
     }
     filled
-}
-
-/// The place of a number below twice a length.
-fn wrapped(at: usize, length: usize) -> usize {
-    if at < length { at } else { at - length }
 }
 
 fn column<T, const Y: usize>(all: &mut [[T; Y]], x: usize, y: usize) -> Option<&mut T> {

@@ -4,6 +4,7 @@ mod conditions;
 mod dynamics;
 mod lateral;
 mod linearize;
+mod loiter;
 mod nose;
 mod point_mass;
 mod pose;
@@ -20,6 +21,7 @@ pub(crate) use dynamics::{Directions, air_rate_along};
 pub use lateral::{LateralLinearization, linearize_lateral};
 pub(crate) use linearize::linearize_along;
 pub use linearize::{JacobianForm, Linearization, linearize};
+pub use loiter::{Loiter, within_half_turn};
 pub use mpp_data::{
     ActuatorLimits, Airframe, Control, Derivatives, GRAVITY, LateralAirframe, LateralControl,
 };

@@ -2,9 +2,45 @@
 
 use crate::{duration, ticks};
 use hil_protocol::SpaceTrajectory;
-use mpp_core::config::STAGE_PERIOD;
-use mpp_core::planner::space::SpacePlan;
-use mpp_core::vehicle::{SPACE_STATES, SpaceControl, SpaceModel, SpacePath};
+use mpp_core::config::{STAGE_PERIOD, STAGES};
+use mpp_core::planner::space::{SpacePlan, WayOut};
+use mpp_core::vehicle::{
+    Loiter, SPACE_STATES, SpaceControl, SpaceModel, SpacePath, within_half_turn,
+};
+
+/// Length of a plan with even stages \[s\].
+const END: f64 = STAGES as f64 * STAGE_PERIOD;
+
+/// What is to be flown.
+pub(super) struct Next<'a> {
+    plan: &'a SpacePlan,
+    loiter: Option<Loiter>,
+    /// Time from the first knot for which there is a way out \[s\].
+    holds: f64,
+}
+
+impl<'a> Next<'a> {
+    /// A way out.
+    pub(super) fn on(way_out: &'a WayOut) -> Self {
+        Self {
+            plan: &way_out.plan,
+            loiter: Some(way_out.loiter),
+            holds: way_out.holds,
+        }
+    }
+
+    /// A plan, or where only plans with a way out are flown the one that ends on it.
+    pub(super) fn of(plan: &'a SpacePlan, way_out: Option<&'a WayOut>, open: bool) -> Self {
+        match way_out {
+            Some(way_out) if open => Self::on(way_out),
+            _ => Self {
+                plan,
+                loiter: None,
+                holds: way_out.map_or(f64::NEG_INFINITY, |it| it.holds),
+            },
+        }
+    }
+}
 
 /// A cycle under way.
 #[derive(Clone, Copy)]
@@ -25,6 +61,10 @@ pub(super) struct Flown {
     /// The plan and the one before it, in turn: whether the second is the plan.
     plans: [SpacePlan; 2],
     second: bool,
+    /// The circle on which the plan ends.
+    loiter: Option<Loiter>,
+    /// Time from its first knot for which it has a way out \[s\].
+    holds: f64,
     /// The aircraft with the wind for which the plan was made.
     pub(super) model: SpaceModel,
     /// The tick of its first knot, and that at which its cycle began.
@@ -41,6 +81,8 @@ impl Flown {
             known: false,
             plans: [SpacePlan::new(); 2],
             second: false,
+            loiter: None,
+            holds: f64::NEG_INFINITY,
             model: *model,
             start: 0,
             begun: 0,
@@ -53,13 +95,14 @@ impl Flown {
         self.known.then_some(self)
     }
 
-    /// Takes over the next plan.
-    pub(super) fn follow(&mut self, plan: &SpacePlan, model: &SpaceModel, cycle: &Cycle) {
+    /// Takes over the next plan, or its way out.
+    pub(super) fn follow(&mut self, next: &Next<'_>, model: &SpaceModel, cycle: &Cycle) {
         self.second = !self.second;
         self.before = self.known.then_some(self.start);
         self.known = true;
         let [first, second] = &mut self.plans;
-        *(if self.second { second } else { first }) = *plan;
+        *(if self.second { second } else { first }) = *next.plan;
+        (self.loiter, self.holds) = (next.loiter, next.holds);
         self.model = *model;
         (self.start, self.begun) = (cycle.start, cycle.begun);
     }
@@ -78,6 +121,41 @@ impl Flown {
     pub(super) fn at(&self, time: f64) -> (SpacePath, SpaceControl) {
         let [plan, _] = self.both();
         plan.at(&self.model, time)
+    }
+
+    /// The circle on which the plan ends, if it is flown.
+    pub(super) fn loiter(&self) -> Option<&Loiter> {
+        self.loiter.as_ref()
+    }
+
+    /// The circle and the angle on it \[rad\] that are to be flown at a tick and `lead` \[s\] later by an aircraft at a position
+    /// \[m\]; `None` until the plan has come to its end.
+    pub(super) fn circles(
+        &self,
+        tick: u32,
+        lead: f64,
+        position: &[f64; 3],
+    ) -> Option<(&Loiter, [f64; 2])> {
+        let loiter = self.loiter.as_ref()?;
+        let [plan, _] = self.both();
+        if self.age(tick) + lead < plan.length() {
+            return None;
+        }
+        let angle = loiter.angle(position);
+        Some((loiter, [angle, loiter.later(&self.model, angle, lead)]))
+    }
+
+    /// Time from a tick until the plan turns to its way out \[s\]; below zero on the way out.
+    pub(super) fn turns_in(&self, tick: u32) -> f64 {
+        self.holds - self.age(tick)
+    }
+
+    /// Time for which there is a way out \[s\]. On it this is the length of a plan.
+    pub(super) fn way_out(&self, tick: u32) -> f64 {
+        match (&self.loiter, self.turns_in(tick)) {
+            (Some(_), left) if left <= 0.0 => END,
+            (_, left) => left.max(0.0),
+        }
     }
 
     /// Time since the first knot \[s\].
@@ -109,7 +187,12 @@ impl Flown {
     ) -> [f64; SPACE_STATES] {
         let off = |from: &SpacePath, to: &SpacePath| {
             let (from, to) = (from.numbers(), to.numbers());
-            core::array::from_fn(|number| to[number] - from[number])
+            let mut off: [f64; SPACE_STATES] =
+                core::array::from_fn(|number| to[number] - from[number]);
+            // A circle turns on; the estimate has courses within half a turn.
+            let [.., course] = &mut off;
+            *course = within_half_turn(*course);
+            off
         };
         let all: [f64; SPACE_STATES] = off(followed, here);
         let [plan, _] = self.both();

@@ -52,6 +52,8 @@ pub use sweep::MOST_POINTS;
 /// A flight after its configuration.
 struct Session {
     configure: Configure,
+    /// Whether only plans with a way out are flown, as long as one is known.
+    open: bool,
     /// The aircraft, with the wind of this tick.
     model: SpaceModel,
     /// The last command to the surfaces.

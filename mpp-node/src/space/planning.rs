@@ -1,6 +1,6 @@
 //! The work of the planner in space: where cycles begin, what they may use, and when their plan is taken over.
 
-use super::cycle::Cycle;
+use super::cycle::{Cycle, Next};
 use super::intake::{Intake, IntakeStage};
 use super::{Session, SpaceMemory, SpaceSlice, SpaceTask};
 use crate::{duration, ticks};
@@ -146,7 +146,11 @@ impl Session {
                 let lead = (libm::round(self.ahead / duration(1)) as u32).min(most);
                 let start = due.wrapping_add(lead);
                 let time = flown.age(start);
-                let (planned, _) = flown.at(time);
+                let lead = duration(ticks(tick, start).unsigned_abs());
+                let planned = match flown.circles(tick, lead, &motion.path.position) {
+                    Some((loiter, [_, angle])) => loiter.at(&flown.model, angle),
+                    None => flown.at(time).0,
+                };
                 let deviation = flown.deviation(tick, followed, &motion.path);
                 (start, next_start(&planned, &deviation), time)
             }
@@ -175,7 +179,7 @@ impl Session {
     }
 
     /// Takes over the plan that is due in this tick.
-    pub(super) fn take_over(&mut self, planner: &SpacePlanner, tick: u32) {
+    pub(super) fn take_over(&mut self, planner: &mut SpacePlanner, tick: u32) {
         let Some(cycle) = self.cycle.filter(|cycle| ticks(cycle.due, tick) >= 0) else {
             return;
         };
@@ -184,14 +188,26 @@ impl Session {
         let (cost, violation) = best.map_or((f64::INFINITY, f64::INFINITY), |(_, judged)| {
             (judged.price, judged.missing)
         });
+        let way_out = planner.way_out();
+        let later = way_out.is_some_and(|it| it.holds >= self.flown.turns_in(cycle.start));
+        // Once there is a way out, a plan without a later one is not flown. A cycle that did not come so far leaves what is flown.
+        let held = planner.held();
+        let waits = held.is_some() || !cycle.complete;
+        let kept = self.open && self.flown.loiter().is_some() && waits && !later;
         let outcome = match best {
+            Some(_) if kept => PlanOutcome::KeptPrevious,
             Some(_) if violation <= 0.0 => PlanOutcome::Adopted,
             Some(_) => PlanOutcome::LeastViolating,
             None if self.flown.some().is_some() => PlanOutcome::KeptPrevious,
             None => PlanOutcome::TrimHold,
         };
-        if let Some((plan, _)) = best {
-            self.flown.follow(plan, planner.model(), &cycle);
+        let next = if kept {
+            held.map(Next::on)
+        } else {
+            best.map(|(plan, _)| Next::of(plan, way_out, self.open))
+        };
+        if let Some(next) = next {
+            self.flown.follow(&next, planner.model(), &cycle);
         }
         self.untold = Some(PlanReport {
             scan_tick: cycle.begun,
@@ -205,5 +221,10 @@ impl Session {
             violation,
             complete: cycle.complete,
         });
+        if kept {
+            planner.refuse();
+        } else if self.open {
+            planner.hold();
+        }
     }
 }

@@ -129,9 +129,10 @@ impl SpaceTask {
             .choose(usize::from(told.paths), limits.programs);
         self.sweep.clear();
         memory.map.clear(0.0);
-        memory.map.cover(&limits.heights);
+        memory.map.cover(&limits.heights, told.altitude);
         self.session = Some(Session {
             configure: *told,
+            open: limits.open,
             model,
             regulator,
             ahead,

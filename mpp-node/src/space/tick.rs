@@ -183,6 +183,11 @@ impl Session {
     /// The plan's state now, and state and control ahead. Without a plan: straight and level.
     fn reference(&self, tick: u32, motion: &SpaceMotion) -> (SpacePath, (SpacePath, SpaceControl)) {
         if let Some(flown) = self.flown.some() {
+            let here = &motion.path.position;
+            if let Some((loiter, angles)) = flown.circles(tick, self.ahead, here) {
+                let [now, ahead] = angles.map(|angle| loiter.at(&flown.model, angle));
+                return (now, (ahead, loiter.control(&flown.model, &ahead)));
+            }
             return (
                 flown.reference(tick),
                 flown.at(flown.age(tick) + self.ahead),
@@ -219,6 +224,7 @@ impl Session {
             y,
             wind: wind_y,
             reference: [ref_y, now.bank, now.course],
+            way_out: self.flown.some().map_or(0.0, |flown| flown.way_out(tick)) as f32,
         };
         let flown = self.flown.some();
         let age = flown.map_or(0, |flown| ticks(flown.begun, tick));

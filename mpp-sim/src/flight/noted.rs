@@ -29,6 +29,7 @@ pub(crate) fn plan_entry(report: &PlanReport) -> PlanEntry {
         slices: report.slices,
         cost: finite(Some(report.cost)),
         violation: finite(Some(report.violation)),
+        way_out: None,
     }
 }
 

@@ -212,6 +212,13 @@ impl Header {
 }
 
 impl FlightLog {
+    /// Share of the cycles that know a way out [-].
+    #[must_use]
+    pub fn knows_way_out(&self) -> f64 {
+        let known = (self.plans.iter()).filter(|plan| plan.way_out.is_some_and(|time| time > 0.0));
+        known.count() as f64 / self.plans.len().max(1) as f64
+    }
+
     /// Notes each sensor that the core trusts otherwise than in the tick before.
     pub(crate) fn note_sensors(&mut self, before: &SensorStates, now: &SensorStates, tick: u32) {
         for ((sensor, before), (_, now)) in before.named().into_iter().zip(now.named()) {

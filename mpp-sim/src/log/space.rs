@@ -42,6 +42,9 @@ pub struct SpaceHeader {
     /// Name of the baseline that planned in place of the planner; not written without one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub baseline: Option<String>,
+    /// `open` where only plans with a way out were flown; not written otherwise.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode: Option<String>,
     /// Steady wind ahead, to the right and up [m/s]; not written in still air.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wind: Option<[f64; 3]>,

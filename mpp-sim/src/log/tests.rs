@@ -90,6 +90,7 @@ fn example() -> FlightLog {
         ticks,
         lateral: LateralColumns::default(),
         plans: vec![PlanEntry {
+            way_out: None,
             tick: 0,
             used_from_tick: Some(1),
             outcome: "optimal".into(),

@@ -246,7 +246,11 @@ impl SpaceFlight {
             aileron: reply.surfaces.aileron,
             rudder: reply.surfaces.rudder,
         };
-        let plan = reply.plan.as_ref().map(plan_entry);
+        let way_out = reply.space.map(|told| f64::from(told.way_out));
+        let plan = (reply.plan.as_ref()).map(|plan| PlanEntry {
+            way_out,
+            ..plan_entry(plan)
+        });
         self.log.plans.extend(plan);
         let Ok((applied, surfaces)) = self.aircraft.step(command, lateral) else {
             self.end = Some(Outcome::FlightPathLimit);

@@ -157,6 +157,7 @@ pub fn scenario(header: &Header) -> Result<SpaceScenario, ScenarioError> {
         exact: Some(space.exact),
         see_through: Some(space.see_through),
         baseline: space.baseline,
+        mode: space.mode,
         wind: space.wind,
         gusts: Some(header.faults.gusts.intensity),
         deskew: space.deskew,

@@ -29,6 +29,7 @@ pub use look::{Look, Moment, SpaceCycle, moment, scenario as scenario_of};
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use mpp_core::vehicle::Quaternion;
 pub use pipe::{STACK, SpacePipe};
+pub use place::ModeName;
 pub use pose::Pose;
 pub use scenario::{Deskew, SPACE, SpaceFile, SpaceScenario};
 pub use sensors::{Sensed, SensorErrors, SpaceSensors, true_path};

@@ -85,6 +85,8 @@ pub struct SpaceFile {
     pub programs: Option<bool>,
     /// Name of a baseline that plans in place of the planner; by default none.
     pub baseline: Option<String>,
+    /// `open` to fly only plans with a way out, in a band of 60 m to either side; by default `forest`.
+    pub mode: Option<String>,
     /// Steady wind ahead, to the right and up [m/s]; by default none.
     pub wind: Option<[f64; 3]>,
     /// Standard deviation of the vertical gusts [m/s]; those along and across are 1.6 times as strong; by default 0.
@@ -201,6 +203,7 @@ impl SpaceFile {
                 see_through: self.see_through.unwrap_or(false),
                 programs: self.programs.unwrap_or(true),
                 baseline: self.baseline.clone(),
+                mode: self.mode()?.written(),
                 wind: self.wind,
                 deskew: self.deskew.filter(|active| !active),
                 lidar_clock: self.lidar_clock,
@@ -219,9 +222,9 @@ impl SpaceFile {
             .parse::<BaselineName>()
             .map_err(|error| ScenarioError::Value("baseline", error.to_string()))?;
         let draws = name == BaselineName::Paper;
-        let alone = (self.candidates.is_none() || draws) && self.programs.is_none();
-        let advice =
-            "leave candidates and programs out: they are the planner's; paper takes candidates";
+        let alone =
+            (self.candidates.is_none() || draws) && self.programs.is_none() && self.mode.is_none();
+        let advice = "leave candidates, programs and mode out: they are the planner's; paper takes candidates";
         ensure(alone, "baseline", advice)?;
         Ok(Some(name))
     }
@@ -351,6 +354,7 @@ impl SpaceScenario {
             heights: [lowest + hull.radius + BELOW, extent.ceiling - ROOM],
             half_width: extent.half_width - SIDE_ROOM,
             programs: self.header.programs,
+            open: self.header.mode.is_some(),
         }
     }
 

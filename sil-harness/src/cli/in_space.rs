@@ -8,7 +8,9 @@ use super::help::{CAMPAIGN_IN_SPACE, CORE, FLY_IN_SPACE, OUTPUT, PLANNER, RUN, W
 use super::signals::Signals;
 use super::space_cell::{SpaceCell, SpaceRow};
 use super::stage::Stage;
-use super::values::{Item, baseline, lidar, number, or_usual, seed, threads, whole, wind, within};
+use super::values::{
+    Item, baseline, lidar, mode, number, or_usual, seed, threads, whole, wind, within,
+};
 use crate::campaign::pool;
 use crate::files::{read_log, read_stems, read_terrain, try_directory};
 use clap::{Parser, Subcommand};
@@ -18,7 +20,7 @@ use mpp_sim::orders::OrderEntry;
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::{
-    BaselineName, SPACE, STACK, SpaceFile, SpacePipe, SpaceScenario, fly_space_again,
+    BaselineName, ModeName, SPACE, STACK, SpaceFile, SpacePipe, SpaceScenario, fly_space_again,
 };
 use rayon::prelude::*;
 use std::ffi::OsString;
@@ -76,6 +78,9 @@ struct InSpace {
     /// Let beams go through what they hit and return all that is on their way: nothing hides anything
     #[arg(long, help_heading = WORLD)]
     see_through: bool,
+    /// What becomes of a plan without a way out, in space that was seen free [default: forest]
+    #[arg(long, help_heading = PLANNER, value_parser = mode())]
+    mode: Option<ModeName>,
     /// Steady wind ahead, to the right and up [m/s]
     #[arg(long, help_heading = WORLD, value_name = "X,Y,Z", value_parser = wind, allow_hyphen_values = true)]
     wind: Option<[f64; 3]>,
@@ -201,6 +206,7 @@ impl InSpace {
             candidates: self.candidates,
             programs: self.no_programs.then_some(false),
             baseline: self.baseline.map(|it| it.name().to_owned()),
+            mode: self.mode.map(|it| it.name().to_owned()),
             wind: self.wind,
             gusts: self.gusts,
             deskew: self.no_deskew.then_some(false),
@@ -341,6 +347,7 @@ fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRo
         x_end: log.summary.x_end,
         min_clearance: log.summary.min_clearance,
         replans: log.summary.replans,
+        way_out: log.knows_way_out(),
         log_hash,
     })
 }

@@ -15,6 +15,8 @@ pub(super) struct SpaceRow {
     pub(super) x_end: f64,
     pub(super) min_clearance: Option<f64>,
     pub(super) replans: u32,
+    /// Share of the cycles that know a way out [-].
+    pub(super) way_out: f64,
     pub(super) log_hash: String,
 }
 
@@ -32,6 +34,8 @@ pub(super) struct SpaceCell {
     extreme: u32,
     /// Median of the least clearance of those that arrived \[m\], where it is less than 5 m.
     median_clearance: Option<f64>,
+    /// Mean share of the cycles that know a way out [-].
+    way_out: f64,
 }
 
 impl SpaceCell {
@@ -57,6 +61,7 @@ impl SpaceCell {
             not_arrived: count(&[Outcome::NotArrived]),
             extreme: count(&[Outcome::FlightPathLimit, Outcome::PitchLimit]),
             median_clearance: clearances.get(clearances.len() / 2).copied(),
+            way_out: rows.iter().map(|row| row.way_out).sum::<f64>() / f64::from(flights.max(1)),
         }
     }
 }
@@ -79,9 +84,13 @@ impl std::fmt::Display for SpaceCell {
             self.not_arrived,
             self.extreme
         )?;
-        match self.median_clearance {
-            Some(clearance) => write!(f, "; median clearance {clearance:.2} m"),
-            None => Ok(()),
+        if let Some(clearance) = self.median_clearance {
+            write!(f, "; median clearance {clearance:.2} m")?;
         }
+        write!(
+            f,
+            "; a way out in {:.0} % of the cycles",
+            100.0 * self.way_out
+        )
     }
 }

@@ -8,7 +8,7 @@ use mpp_sim::scenario::{NavigationSource, Preset};
 use mpp_sim::scene::Scene;
 use mpp_sim::space::lidar::LidarName;
 use mpp_sim::space::world::WorldName;
-use mpp_sim::space::{BaselineName, SPACE};
+use mpp_sim::space::{BaselineName, ModeName, SPACE};
 use std::error::Error;
 use std::ffi::OsStr;
 use std::fmt::Display;
@@ -229,6 +229,15 @@ pub(super) fn baseline() -> impl TypedValueParser<Value = BaselineName> {
         BaselineName::Paper => "The paper's trees, rays and programs, with a third dimension",
     };
     named(BaselineName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
+}
+
+/// Reads a mode.
+pub(super) fn mode() -> impl TypedValueParser<Value = ModeName> {
+    let help = |name| match name {
+        ModeName::Forest => "It is flown",
+        ModeName::Open => "The plan before goes on to a circle; the band is 120 m wide",
+    };
+    named(ModeName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }
 
 /// Reads a challenge scene.

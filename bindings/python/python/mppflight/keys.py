@@ -54,8 +54,8 @@ TerrainKeys = TypedDict("TerrainKeys", {"corner": Sequence[float], "cell": float
 SpaceKeys = TypedDict("SpaceKeys", {"preset": Required[Literal["space"]], "aircraft": Aircraft | Path | Mapping[str,
     Any], "airspeed": float, "world": str, "density": float, "window": float, "terrain": TerrainKeys,
     "altitude": float, "lidar": str, "sight": float, "sphere": float, "exact": bool, "see_through": bool,
-    "candidates": int, "programs": bool, "baseline": str, "wind": Sequence[float], "gusts": float, "deskew": bool,
-    "lidar_clock": float, "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
+    "candidates": int, "programs": bool, "baseline": str, "mode": str, "wind": Sequence[float], "gusts": float,
+    "deskew": bool, "lidar_clock": float, "replan_hz": float, "latency_ms": int, "seed": int}, total=False)
 
 
 class ScenarioKeys(CommonKeys, total=False):

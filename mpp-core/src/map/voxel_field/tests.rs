@@ -3,7 +3,7 @@
 extern crate std;
 
 use super::{CELL, HEIGHT, LENGTH, MOST_CLEARANCE, NearSlices, UNIT, VoxelField};
-use crate::map::voxels::{SpaceBeam, VoxelGrid};
+use crate::map::{SpaceBeam, VoxelGrid};
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::boxed::Box;

@@ -70,7 +70,7 @@ fn the_window_knows_in_every_height_what_it_saw() {
     };
     let mut map = Box::new(VoxelGrid::new());
     map.clear(0.0);
-    map.cover(&[0.0, 100.0]);
+    map.cover(&[0.0, 100.0], 30.0);
     let (mut slow, mut at) = (Slow::new(), [0.0, 0.0, 30.0]);
     let (mut known, mut floors) = (0, BTreeSet::new());
     for scan in 0..120 {

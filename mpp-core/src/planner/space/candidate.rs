@@ -121,6 +121,12 @@ impl SpacePlan {
         }
     }
 
+    /// Time from the first knot to the last one \[s\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.grid.time(STAGES)
+    }
+
     /// State and control at a time \[s\] after the first knot. Beyond the last knot the flight is straight and level.
     #[must_use]
     pub fn at(&self, model: &SpaceModel, time: f64) -> (SpacePath, SpaceControl) {

@@ -49,6 +49,11 @@ impl Tally {
         upright > STEEP * all
     }
 
+    /// Greatest clearance that is missing so far \[m\].
+    pub(super) fn missing(&self) -> f64 {
+        self.missing
+    }
+
     /// The sum of the costs of stages.
     pub(super) fn price(&self) -> f64 {
         self.price
@@ -146,6 +151,16 @@ impl Judge<'_> {
         let all = points * self.grid.period(stage) / STAGE_PERIOD;
         let count = libm::ceil(all - 1e-6) as usize;
         (0..count).map(move |index| 1.0 - (count - 1 - index) as f64 / all)
+    }
+
+    /// The position at a share of a stage.
+    pub(super) fn point(
+        knots: [&SpacePath; 2],
+        velocities: &[[f64; 3]; 2],
+        share: f64,
+        period: f64,
+    ) -> [f64; 3] {
+        between(knots, velocities, share, period)
     }
 
     /// Adds the costs of a stage that do not depend on those before.

@@ -7,6 +7,7 @@
 //! | candidates | `candidate.rs`, `judge.rs` | the previous plan (warm start) and the paths, flown under all limits, with their price |
 //! | programs | `faces.rs`, `program.rs` | each candidate gets a corridor and a QP that improves it; its controls are flown out |
 //! | refinement | `refine.rs` | a direct search moves the bank of the cheapest trajectory |
+//! | ways out | `way_out.rs`, `seek.rs` | where the cheapest trajectory can turn to a circle in space that was seen free |
 //!
 //! The cheapest trajectory is the plan. Any call of [`SpacePlanner::advance`] does a bounded amount of work, and
 //! [`SpacePlanner::best`] is a plan at any time after the first candidate.
@@ -24,22 +25,26 @@ mod offered;
 mod paths;
 mod program;
 mod refine;
+mod seek;
 mod slices;
+mod way_out;
 mod workspace;
 
 pub use candidate::{SpacePlan, next_start, towards};
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
+pub use way_out::WayOut;
 
 use crate::config::STAGES;
 use crate::map::voxel_field::LENGTH;
 use crate::map::{VoxelField, VoxelGrid};
 use crate::tuning::space_pursuit::AIMS;
-use crate::vehicle::{SpaceModel, SpacePath};
+use crate::vehicle::{SpaceModel, SpacePath, within_half_turn};
 use candidate::Grid;
 use cost_to_go::{CostToGo, Path, STATIONS};
 use lattice::ROW_SLICES;
 use refine::Unmoved;
+use way_out::WaysOut;
 use workspace::{Program, Workspace};
 
 /// Most candidates: the previous plan and paths of the lattice.
@@ -63,6 +68,7 @@ pub const MOST_SPACE_SLICES: usize = 1
     + 2
     + SPACE_CANDIDATES * (STAGES.div_ceil(FACE_STAGES) + MOST_STEPS + 3)
     + 2 * refine::TRIALS
+    + way_out::SLICES
     + 1;
 /// Share of half the span that the lattice keeps level [-]: paths do not know the bank. Source: S of `tuning/space.rs`.
 const LEVEL_SPAN: f64 = 0.75;
@@ -92,6 +98,10 @@ enum Phase {
     Solve(usize),
     FlyOut(usize),
     Refine(usize),
+    /// The way out that is flown, the best plan of the cycle, and a circle.
+    LookAgain,
+    WaysOut,
+    WayOut(usize),
 }
 
 /// What the next slice of a cycle does.
@@ -109,6 +119,8 @@ pub enum SpaceStage {
     Solve,
     /// Moves of the best plan.
     Refine,
+    /// Ways out.
+    WayOut,
 }
 
 /// A candidate and its worth.
@@ -143,6 +155,9 @@ pub struct SpacePlanner {
     runaway: f64,
     /// The plan of the last cycle, and the time from its first knot to the start of this one \[s\].
     previous: Option<(SpacePlan, f64)>,
+    /// Time from the first knot of what is flown to the start of this cycle \[s\].
+    since: f64,
+    ways: WaysOut,
     phase: Phase,
     steps: usize,
 }
@@ -168,6 +183,8 @@ impl SpacePlanner {
             grid: Grid::EVEN,
             runaway: 0.0,
             previous: None,
+            since: 0.0,
+            ways: WaysOut::NONE,
             phase: Phase::Idle,
             steps: 0,
         }
@@ -181,6 +198,7 @@ impl SpacePlanner {
         self.phase = Phase::Idle;
         self.candidates.clear();
         (self.best, self.previous) = (None, None);
+        self.ways = WaysOut::NONE;
     }
 
     /// Chooses the number of candidates, from 1 to [`SPACE_CANDIDATES`], and whether a program improves each.
@@ -207,14 +225,23 @@ impl SpacePlanner {
 
     /// Begins a cycle at the state in which the plan will begin, `shift` \[s\] after the first knot of the last plan.
     pub fn begin(&mut self, start: &SpacePath, shift: f64) {
-        self.previous = self.best.map(|best| (best.plan, shift));
+        match (&self.best, &mut self.previous) {
+            (Some(best), previous) => *previous = Some((best.plan, shift)),
+            (None, Some((_, since))) => *since = shift,
+            (None, None) => {}
+        }
         // Plans of others have even stages.
         self.grid = match &self.previous {
             Some((plan, _)) if self.wanted > 0 => plan.grid.later(shift),
             _ => Grid::EVEN,
         };
         (self.tried, self.best, self.unmoved) = (None, None, None);
-        self.start = *start;
+        self.forget_ways_out();
+        self.since = shift;
+        self.start = SpacePath {
+            course: within_half_turn(start.course),
+            ..*start
+        };
         self.candidates.clear();
         self.paths.clear();
         self.phase = Phase::Begin;
@@ -238,6 +265,9 @@ impl SpacePlanner {
             Phase::FlyOut(candidate) => self.fly_out(candidate),
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
+            Phase::LookAgain => self.look_again(map),
+            Phase::WaysOut => self.begin_ways_out(map),
+            Phase::WayOut(number) => self.seek_way_out(map, number),
         };
         matches!(self.phase, Phase::Idle | Phase::Offers)
     }
@@ -267,6 +297,7 @@ impl SpacePlanner {
             Phase::Faces(..) | Phase::Pose(..) => Some(SpaceStage::Program),
             Phase::Solve(_) | Phase::FlyOut(_) => Some(SpaceStage::Solve),
             Phase::Refine(_) => Some(SpaceStage::Refine),
+            Phase::LookAgain | Phase::WaysOut | Phase::WayOut(_) => Some(SpaceStage::WayOut),
         }
     }
 

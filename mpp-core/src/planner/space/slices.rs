@@ -206,7 +206,7 @@ impl SpacePlanner {
     }
 
     /// A plan of this cycle, to be filled.
-    fn new_plan(&self) -> SpacePlan {
+    pub(super) fn new_plan(&self) -> SpacePlan {
         SpacePlan {
             grid: self.grid,
             ..SpacePlan::new()
@@ -259,7 +259,7 @@ impl SpacePlanner {
         if number + 1 < refine::TRIALS {
             Phase::Refine(number + 1)
         } else {
-            Phase::Idle
+            Phase::LookAgain
         }
     }
 

@@ -193,6 +193,8 @@ impl LidarName {
 /// room for 2,048 points; the view is about that of `grid-90x16`.
 const MOST_KEPT: u32 = 2000;
 const KEPT: [f64; 2] = [45.0, 20.0];
+/// How far from straight ahead the columns are that fliers keep of a turning lidar \[deg\]: circles need a view to the side.
+const ASIDE: f64 = 90.0;
 /// Least sight that may be asked for \[m\].
 const LEAST_SIGHT: f64 = 5.0;
 
@@ -238,8 +240,20 @@ impl SpaceLidarConfig {
     /// The beams that a flier keeps of a sweep: of scattered ones those ahead, and of these as many as the core has room for. The
     /// sensor is tilted so that the middle of its view looks ahead.
     fn thinned(self) -> Self {
-        let Pattern::Scattered { beams } = self.pattern else {
-            return self;
+        let beams = match self.pattern {
+            Pattern::Scattered { beams } => beams,
+            Pattern::Rings { rings, .. } if self.beams() > MOST_POINTS => {
+                return Self {
+                    pattern: Pattern::Rings {
+                        rings,
+                        azimuths: MOST_KEPT / rings,
+                        staggered: true,
+                    },
+                    azimuth: self.azimuth.map(|it| it.clamp(-ASIDE, ASIDE)),
+                    ..self
+                };
+            }
+            _ => return self,
         };
         let kept = |[least, most]: [f64; 2], middle: f64, far: f64| {
             let kept = [least.max(middle - far), most.min(middle + far)];

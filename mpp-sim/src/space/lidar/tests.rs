@@ -290,7 +290,10 @@ fn a_flier_keeps_the_beams_ahead_for_which_the_core_has_room() {
     assert!((down.sum::<f64>() / sweep.len() as f64).abs() < 0.05);
     let grid = SpaceLidarConfig::kept("grid-90x16").unwrap();
     assert_eq!(grid, LidarName::Grid90x16.config());
-    for (name, advice) in [("os1-32", "room for 2048 of its"), ("os2", "mid-360")] {
+    // Of rings some columns are kept, to the sides too.
+    let puck = SpaceLidarConfig::kept("puck-hi-res").unwrap();
+    assert_eq!((puck.beams(), puck.azimuth), (2000, [-90.0, 90.0]));
+    for (name, advice) in [("depth", "room for 2048 of its"), ("os2", "mid-360")] {
         let refused = SpaceLidarConfig::kept(name).unwrap_err().to_string();
         assert!(refused.contains(advice), "{refused}");
     }

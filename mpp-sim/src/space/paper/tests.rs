@@ -11,6 +11,7 @@ const LIMITS: ConfigureSpace = ConfigureSpace {
     heights: [0.6, 15.0],
     half_width: 30.0,
     programs: true,
+    open: false,
 };
 
 fn model() -> SpaceModel {

@@ -1,0 +1,180 @@
+//! Ways out of plans in space: circles over one place, in what the map has seen free.
+
+use super::planner_space::{Draw, KEEP, finish, level, model, plan, to_trunks, with_planner};
+use core::f64::consts::TAU;
+use mpp_core::map::{SpaceBeam, VoxelGrid};
+use mpp_core::planner::space::{SpacePlanner, WayOut};
+use mpp_core::vehicle::{Loiter, SpacePath, within_half_turn};
+use rand_core::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+
+const SIGHT: f64 = 90.0;
+
+/// Shows trunks `(x, y, radius)` by level beams all around, from places on the way to the start.
+fn show(map: &mut VoxelGrid, trunks: &[[f64; 3]]) {
+    for back in (0..12).rev() {
+        let from = -2.0 * f64::from(back);
+        let moved: Vec<_> = (trunks.iter().map(|[x, y, r]| [x - from, *y, *r])).collect();
+        let beams: Vec<SpaceBeam> = (0..2160)
+            .map(|at| {
+                let (side, ahead) = libm::sincos(f64::from(at) * TAU / 720.0);
+                let up = 0.01 * f64::from(at / 720 - 1);
+                let flat = libm::sqrt(1.0 - up * up);
+                let direction = [flat * ahead, flat * side, up];
+                let range = Some(to_trunks(&moved, &direction)).filter(|it| *it < SIGHT);
+                SpaceBeam { direction, range }
+            })
+            .collect();
+        map.insert(&[from, 0.0, 7.5], beams.iter().copied(), SIGHT);
+    }
+}
+
+fn least(trunks: &[[f64; 3]], at: &SpacePath) -> f64 {
+    let [x, y, _] = at.position;
+    let gaps = trunks
+        .iter()
+        .map(|[tx, ty, radius]| libm::hypot(tx - x, ty - y) - radius);
+    gaps.fold(f64::INFINITY, f64::min)
+}
+
+fn way_out(map: &mut VoxelGrid, planner: &mut SpacePlanner, trunks: &[[f64; 3]]) -> Option<WayOut> {
+    map.clear(-30.0);
+    map.cover(&KEEP.heights, KEEP.altitude);
+    show(map, trunks);
+    let _ = plan(planner, map, &level(&model()), 0.0);
+    planner.way_out().copied()
+}
+
+/// In winds of up to half of the airspeed: what moves as the circle says stays on it, at the airspeed of level flight, and turns as
+/// its bank and its lift do.
+#[test]
+fn a_circle_stays_over_one_place_in_any_wind() {
+    let mut draw = Draw(Pcg64Mcg::seed_from_u64(21));
+    for round in 0..200 {
+        let mut model = model();
+        let (wind, from) = (draw.between(0.0, 6.0), draw.between(-3.0, 3.0));
+        model.wind = [wind * libm::cos(from), wind * libm::sin(from), 0.0];
+        let start = SpacePath {
+            course: draw.between(-3.0, 3.0),
+            ..level(&model)
+        };
+        let side = if round % 2 == 0 { 1.0 } else { -1.0 };
+        let loiter = Loiter::joined(&model, &start, side, 7.5).unwrap();
+        let (angle, short) = (draw.between(-3.0, 3.0), 1e-4);
+        let [before, at, after] =
+            [-short, 0.0, short].map(|time| loiter.at(&model, loiter.later(&model, angle, time)));
+        let velocity = at.ground_velocity(&model.wind);
+        for axis in 0..3 {
+            let moved = (after.position[axis] - before.position[axis]) / (2.0 * short);
+            assert!(
+                (moved - velocity[axis]).abs() < 1e-3,
+                "{axis}: {moved} {velocity:?}"
+            );
+        }
+        assert!((at.airspeed - model.trim.state.airspeed).abs() < 1e-9);
+        let turned = within_half_turn(after.course - before.course) / (2.0 * short);
+        let rates = at.after(&model, &loiter.control(&model, &at), short);
+        let flown = (rates.course - at.course) / short;
+        // The model has the thrust's part of the lift besides.
+        assert!(
+            (turned - flown).abs() < 0.05 * flown.abs(),
+            "{turned} {flown}"
+        );
+        assert!(turned * side > 0.0 && at.bank.abs() < model.bank);
+    }
+}
+
+/// In country as open as one trunk in 200 m^2: each way out that is found is clear of the trunks, up to its circle and all around.
+#[test]
+fn ways_out_are_clear_of_the_trunks() {
+    with_planner(KEEP, |map, planner| {
+        let mut draw = Draw(Pcg64Mcg::seed_from_u64(22));
+        let (mut found, model) = (0, model());
+        for _ in 0..16 {
+            let trunks: Vec<[f64; 3]> = (0..30)
+                .map(|_| [draw.between(8.0, 70.0), draw.between(-50.0, 50.0), 0.3])
+                .collect();
+            let Some(way_out) = way_out(map, planner, &trunks) else {
+                continue;
+            };
+            found += 1;
+            assert!(way_out.holds > 0.0);
+            let knots = way_out.plan.knots.iter();
+            let ring = (0..120).map(|at| way_out.loiter.at(&model, TAU * f64::from(at) / 120.0));
+            for at in knots.copied().chain(ring) {
+                assert!(least(&trunks, &at) > 0.4, "{at:?}");
+            }
+            let [.., last] = &way_out.plan.knots;
+            let [x, y, _] = way_out.loiter.centre;
+            let off = libm::hypot(last.position[0] - x, last.position[1] - y);
+            assert!((off - way_out.loiter.radius).abs() < 1.0, "{off}");
+        }
+        assert!(found >= 8, "{found}");
+    });
+}
+
+/// Where nobody has looked, and between rows of trunks that leave no room for a circle, there is none.
+#[test]
+fn there_is_no_way_out_of_the_unknown_or_of_a_lane() {
+    with_planner(KEEP, |map, planner| {
+        map.clear(0.0);
+        map.cover(&KEEP.heights, KEEP.altitude);
+        let _ = plan(planner, map, &level(&model()), 0.0);
+        assert_eq!(planner.way_out(), None);
+        let lane = |at: i32| [f64::from(at / 2), if at % 2 == 0 { 6.0 } else { -6.0 }, 0.4];
+        let lane: Vec<_> = (0..160).map(lane).collect();
+        assert_eq!(way_out(map, planner, &lane), None);
+        assert!(way_out(map, planner, &[]).is_some());
+    });
+}
+
+/// A way out that is flown is lost once a trunk is seen on its circle, and not by one beside it.
+#[test]
+fn a_trunk_on_the_circle_ends_a_way_out() {
+    with_planner(KEEP, |map, planner| {
+        let found = way_out(map, planner, &[]).unwrap();
+        planner.hold();
+        let [x, y, _] = found.loiter.centre;
+        for (share, holds) in [(1.6, true), (1.0, false)] {
+            // The side that is seen lies on the circle.
+            let near = x + share * found.loiter.radius;
+            show(map, &[[near + 0.3, y, 0.3]]);
+            planner.begin(&level(&model()), 0.0);
+            finish(planner, map);
+            assert_eq!(planner.held().is_some(), holds, "{share}");
+        }
+    });
+}
+
+/// Beams that pass a thin trunk in its cell do not hide it, and the window keeps what lies 30 m behind the aircraft.
+#[test]
+fn the_level_of_flight_keeps_thin_trunks() {
+    let mut map = Box::new(VoxelGrid::new());
+    map.clear(0.0);
+    map.cover(&KEEP.heights, KEEP.altitude);
+    let trunk = [20.2, 3.3, 7.5];
+    let beam = |to: [f64; 3], hits: bool| {
+        let range = libm::sqrt(to.iter().map(|it| it * it).sum());
+        let direction = to.map(|it| it / range);
+        let range = hits.then_some(range);
+        SpaceBeam { direction, range }
+    };
+    let past: Vec<_> = (0..9)
+        .map(|at| beam([20.2, 3.15 + 0.02 * f64::from(at), 0.0], false))
+        .collect();
+    for scan in 0..10 {
+        let hit = (scan % 2 == 0).then(|| beam([20.2, 3.3, 0.0], true));
+        let beams = past.iter().copied().chain(hit);
+        map.insert(&[0.0, 0.0, 7.5], beams, SIGHT);
+    }
+    assert!(map.is_met(&trunk, 0.1) && !map.is_free(&trunk, 0.1));
+    assert!(map.is_free(&[12.2, 1.8, 7.5], 0.1));
+    assert!(
+        !map.is_free(&[12.2, 1.8, 9.5], 0.1),
+        "it has left the level"
+    );
+    for x in [20.0, 44.0, 20.0, 0.0] {
+        map.insert(&[x, 0.0, 7.5], std::iter::empty(), SIGHT);
+    }
+    assert!(map.is_met(&trunk, 0.1) && map.is_free(&[12.2, 1.8, 7.5], 0.1));
+}
