@@ -140,6 +140,7 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
             let near = x + share * found.loiter.radius;
             show(map, &[[near + 0.3, y, 0.3]]);
             planner.begin(&level(&model()), 0.0);
+            assert_eq!(planner.held(), None, "nobody has looked");
             finish(planner, map);
             assert_eq!(planner.held().is_some(), holds, "{share}");
         }

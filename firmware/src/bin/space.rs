@@ -86,7 +86,7 @@ fn advance(task: &mut SpaceTask, slice: SpaceSlice, memory: &mut SpaceMemory<'_>
             SpaceStage::Refine | SpaceStage::WayOut => Region::Improve,
         },
     });
-    let last = matches!(slice, SpaceSlice::Planner(SpaceStage::Refine));
+    let last = matches!(slice, SpaceSlice::Planner(SpaceStage::WayOut));
     if last && task.slice(memory.planner) != Some(slice) {
         mark::begin();
         mark::end(Region::Answer);

@@ -164,7 +164,8 @@ pub struct SpaceReport {
     pub wind: f64,
     /// Reference: position to the right \[m\], bank \[rad\], course \[rad\].
     pub reference: [f64; 3],
-    /// Time for which the plan has a way out \[s\]: after it the plan turns to a circle in space that was seen free. 0 without one.
+    /// Time for which the plan has a way out \[s\]: after it the plan turns to a circle in space that was seen free. 0 without one, and the length
+    /// of a plan on the circle.
     pub way_out: f32,
 }
 

@@ -3,10 +3,8 @@
 //! A hit up to 2.5 m above or below the level occupies its cell; a beam has seen a cell free where it passes within 1.5 m of the
 //! level. What is shorter, and stands between two rings of the lidar, is not seen.
 
-use super::walk::{SpaceBeam, Walk, entered, voxel, wrapped};
-use crate::tuning::grid::{
-    CELL, FREE, HIT, HIT_DOUBT, LIMIT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
-};
+use super::walk::{Walk, entered, voxel, wrapped};
+use crate::tuning::grid::{CELL, FREE, HIT, LIMIT};
 
 /// Cells along x and y, and those behind the aircraft and to its left.
 const CELLS: [usize; 2] = [192, 160];
@@ -115,13 +113,9 @@ impl LevelGrid {
         }
     }
 
-    /// Lowers the log-odds where a beam from an origin \[m\] passes the level.
-    pub(super) fn pass(&mut self, origin: &[f64; 3], beam: &SpaceBeam, sight: f64) {
-        let (end, less) = match beam.range {
-            Some(range) => (range * (1.0 - RANGE_DOUBT) - HIT_DOUBT, PASSED),
-            None => (UNANSWERED_SHARE * sight, PASSED_UNANSWERED),
-        };
-        let [ahead, right, up] = beam.direction;
+    /// Takes something from the log-odds where the first `end` metres of a beam from an origin \[m\] pass the level.
+    pub(super) fn pass(&mut self, origin: &[f64; 3], direction: &[f64; 3], end: f64, less: i8) {
+        let [ahead, right, up] = *direction;
         let Some([from, to]) = self.crossed(origin[2], up, end) else {
             return;
         };
@@ -134,7 +128,7 @@ impl LevelGrid {
             Walk::new(
                 [self.corner[axis], place[axis], CELLS[axis]],
                 [side, start[axis]],
-                beam.direction[axis],
+                direction[axis],
             )
         });
         for _ in 0..CELLS[0] + CELLS[1] {

@@ -1,4 +1,4 @@
-//! The map in space: voxels of occupancy log-odds, which roll ahead with the aircraft.
+//! The map in space: voxels of occupancy log-odds, which roll with the aircraft.
 //!
 //! The window goes with the aircraft in x and y. In z it covers a fixed band if the heights of plans lie in it: then the ground
 //! is no part of it, and floor and ceiling are rows of programs. Higher bands are flown over terrain: the window goes with the
@@ -8,7 +8,9 @@ use super::evidence::{Change, Evidence, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED
 use super::extent::Extent;
 use super::level_grid::LevelGrid;
 use super::walk::{SpaceBeam, Walk, entered, voxel, wrapped};
-use crate::tuning::grid::{CELL, HIT_DOUBT, RANGE_DOUBT, UNANSWERED_SHARE};
+use crate::tuning::grid::{
+    CELL, HIT_DOUBT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
+};
 
 /// Number of voxels along x, y and z.
 pub const CELLS: [usize; 3] = [100, 96, LAYERS];
@@ -212,13 +214,20 @@ impl VoxelGrid {
 
     /// Lowers the evidence of the voxels that a beam passes.
     pub fn pass(&mut self, beam: &SpaceBeam, sight: f64) {
-        let (end, change) = match beam.range {
+        let (end, change, less) = match beam.range {
             // The last voxels before a hit may hold the obstacle: the attitude is not exact.
-            Some(range) => (range * (1.0 - RANGE_DOUBT) - HIT_DOUBT, &PASSED_ONCE),
-            None => (UNANSWERED_SHARE * sight, &UNANSWERED_ONCE),
+            Some(range) => {
+                let end = range * (1.0 - RANGE_DOUBT) - HIT_DOUBT;
+                (end, &PASSED_ONCE, PASSED)
+            }
+            None => (
+                UNANSWERED_SHARE * sight,
+                &UNANSWERED_ONCE,
+                PASSED_UNANSWERED,
+            ),
         };
         self.pass_until(&beam.direction, end, change);
-        self.level.pass(&self.origin, beam, sight);
+        self.level.pass(&self.origin, &beam.direction, end, less);
     }
 
     /// Changes the voxels on the first `end` metres of a beam, by steps from face to face (Amanatides, Woo: "A fast voxel

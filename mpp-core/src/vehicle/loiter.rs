@@ -64,6 +64,14 @@ impl Loiter {
         libm::atan2(y - self.centre[1], x - self.centre[0])
     }
 
+    /// The place at an angle \[rad\] on the circle \[m\].
+    #[must_use]
+    pub fn place(&self, angle: f64) -> [f64; 3] {
+        let (sin, cos) = libm::sincos(angle);
+        let [x, y, z] = self.centre;
+        [x + self.radius * cos, y + self.radius * sin, z]
+    }
+
     /// Unit vector of the ground velocity at an angle \[rad\], and its length [m/s].
     fn ground(&self, model: &SpaceModel, angle: f64) -> ([f64; 2], f64) {
         let (sin, cos) = libm::sincos(angle + self.side * FRAC_PI_2);
@@ -79,6 +87,21 @@ impl Loiter {
     pub fn later(&self, model: &SpaceModel, angle: f64, time: f64) -> f64 {
         let rate = |angle: f64| self.side * self.ground(model, angle).1 / self.radius;
         angle + time * rate(angle + 0.5 * time * rate(angle))
+    }
+
+    /// State and control on the circle abeam of a position \[m\], and those a time \[s\] later.
+    #[must_use]
+    pub fn ahead(
+        &self,
+        model: &SpaceModel,
+        position: &[f64; 3],
+        time: f64,
+    ) -> [(SpacePath, SpaceControl); 2] {
+        let angle = self.angle(position);
+        [angle, self.later(model, angle, time)].map(|angle| {
+            let at = self.at(model, angle);
+            (at, self.control(model, &at))
+        })
     }
 
     /// The thrust that holds the airspeed on the circle \[N\].
@@ -100,10 +123,8 @@ impl Loiter {
         // The lift is across the flight path through the air, what bends the track is across the track.
         let straight = (air_x * along_x + air_y * along_y) / airspeed;
         let pull = speed * speed / (self.radius * straight.max(0.5));
-        let (sin, cos) = libm::sincos(angle);
-        let [x, y, z] = self.centre;
         SpacePath {
-            position: [x + self.radius * cos, y + self.radius * sin, z],
+            position: self.place(angle),
             airspeed,
             angle_of_attack: model.angle_for(airspeed, libm::hypot(GRAVITY, pull)),
             bank: self.side * libm::atan(pull / GRAVITY),

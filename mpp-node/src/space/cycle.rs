@@ -128,21 +128,20 @@ impl Flown {
         self.loiter.as_ref()
     }
 
-    /// The circle and the angle on it \[rad\] that are to be flown at a tick and `lead` \[s\] later by an aircraft at a position
-    /// \[m\]; `None` until the plan has come to its end.
+    /// State and control on the circle at a tick and `lead` \[s\] later for an aircraft at a position \[m\]; `None` until the plan
+    /// has come to its end.
     pub(super) fn circles(
         &self,
         tick: u32,
         lead: f64,
         position: &[f64; 3],
-    ) -> Option<(&Loiter, [f64; 2])> {
+    ) -> Option<[(SpacePath, SpaceControl); 2]> {
         let loiter = self.loiter.as_ref()?;
         let [plan, _] = self.both();
         if self.age(tick) + lead < plan.length() {
             return None;
         }
-        let angle = loiter.angle(position);
-        Some((loiter, [angle, loiter.later(&self.model, angle, lead)]))
+        Some(loiter.ahead(&self.model, position, lead))
     }
 
     /// Time from a tick until the plan turns to its way out \[s\]; below zero on the way out.

@@ -184,9 +184,8 @@ impl Session {
     fn reference(&self, tick: u32, motion: &SpaceMotion) -> (SpacePath, (SpacePath, SpaceControl)) {
         if let Some(flown) = self.flown.some() {
             let here = &motion.path.position;
-            if let Some((loiter, angles)) = flown.circles(tick, self.ahead, here) {
-                let [now, ahead] = angles.map(|angle| loiter.at(&flown.model, angle));
-                return (now, (ahead, loiter.control(&flown.model, &ahead)));
+            if let Some([(now, _), ahead]) = flown.circles(tick, self.ahead, here) {
+                return (now, ahead);
             }
             return (
                 flown.reference(tick),

@@ -85,7 +85,7 @@ pub struct SpaceFile {
     pub programs: Option<bool>,
     /// Name of a baseline that plans in place of the planner; by default none.
     pub baseline: Option<String>,
-    /// `open` to fly only plans with a way out, in a band of 60 m to either side; by default `forest`.
+    /// `open` to fly only plans with a way out, in a drawn world 120 m wide; by default `forest`.
     pub mode: Option<String>,
     /// Steady wind ahead, to the right and up [m/s]; by default none.
     pub wind: Option<[f64; 3]>,

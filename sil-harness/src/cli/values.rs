@@ -235,7 +235,7 @@ pub(super) fn baseline() -> impl TypedValueParser<Value = BaselineName> {
 pub(super) fn mode() -> impl TypedValueParser<Value = ModeName> {
     let help = |name| match name {
         ModeName::Forest => "It is flown",
-        ModeName::Open => "The plan before goes on to a circle; the band is 120 m wide",
+        ModeName::Open => "The plan before goes on to a circle; a drawn world is 120 m wide",
     };
     named(ModeName::ALL.map(|name| PossibleValue::new(name.name()).help(help(name))))
 }

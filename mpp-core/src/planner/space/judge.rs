@@ -9,7 +9,7 @@ use crate::tuning::space_judgement::{END_HEIGHT, LACK, LATER, ROOM, ROOM_WEIGHT,
 use crate::tuning::space_program::CONTROL;
 use crate::tuning::space_refinement::STEEP;
 use crate::tuning::{UNKNOWN_AHEAD, UNKNOWN_COST};
-use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between as limit};
+use crate::vehicle::{SpaceControl, SpaceModel, SpacePath, between};
 
 /// Distance of the points at which a stage is judged \[m\], their least number and their greatest. A wing is judged abeam of what
 /// it may hit, so points further apart miss it.
@@ -132,7 +132,7 @@ impl Judge<'_> {
         let via = self.to_go.via();
         if tally.to_go.is_none() && to.position[0] >= via {
             let crossed = (self.shares(stage))
-                .map(|share| between([from, to], &velocities, share, self.grid.period(stage)))
+                .map(|share| position([from, to], &velocities, share, self.grid.period(stage)))
                 .find(|point| point[0] >= via);
             tally.to_go = crossed.map(|point| self.to_go.cost(&point, &after));
         }
@@ -142,7 +142,7 @@ impl Judge<'_> {
     /// Number of the points at which a stage is judged.
     fn points(&self) -> f64 {
         let points = libm::round(self.model.trim.state.airspeed * STAGE_PERIOD / APART);
-        limit(points, POINTS)
+        between(points, POINTS)
     }
 
     /// Shares of a stage at which it is judged. Those of a short one are its last ones.
@@ -151,16 +151,6 @@ impl Judge<'_> {
         let all = points * self.grid.period(stage) / STAGE_PERIOD;
         let count = libm::ceil(all - 1e-6) as usize;
         (0..count).map(move |index| 1.0 - (count - 1 - index) as f64 / all)
-    }
-
-    /// The position at a share of a stage.
-    pub(super) fn point(
-        knots: [&SpacePath; 2],
-        velocities: &[[f64; 3]; 2],
-        share: f64,
-        period: f64,
-    ) -> [f64; 3] {
-        between(knots, velocities, share, period)
     }
 
     /// Adds the costs of a stage that do not depend on those before.
@@ -182,7 +172,7 @@ impl Judge<'_> {
         let discount = discount * (least / points);
         let half = 0.5 * STAGE_PERIOD / points;
         for share in self.shares(stage) {
-            let point = between([from, to], velocities, share, self.grid.period(stage));
+            let point = position([from, to], velocities, share, self.grid.period(stage));
             let later = if point[0] <= via { 1.0 } else { LATER };
             let (mut lack, mut room) = (0.0, 0.0);
             if !field.is_clear(&point, self.clear) {
@@ -257,7 +247,7 @@ fn wing(from: &SpacePath, to: &SpacePath, share: f64) -> [f64; 3] {
 }
 
 /// The position at a share of the way between two knots: a cubic with the velocities of both.
-fn between(
+pub(super) fn position(
     [from, to]: [&SpacePath; 2],
     [before, after]: &[[f64; 3]; 2],
     share: f64,
@@ -285,7 +275,7 @@ fn closest(
     }
     let velocity: [f64; 3] = core::array::from_fn(|axis| 0.5 * (before[axis] + after[axis]));
     let away = slope.map(|it| it * clearance / steep);
-    let time = limit(
+    let time = between(
         -dot(&away, &velocity) / dot(&velocity, &velocity).max(1.0),
         [-half, half],
     );

@@ -100,6 +100,7 @@ enum Phase {
     Refine(usize),
     /// The way out that is flown, the best plan of the cycle, and a circle.
     LookAgain,
+    Renew,
     WaysOut,
     WayOut(usize),
 }
@@ -225,8 +226,9 @@ impl SpacePlanner {
 
     /// Begins a cycle at the state in which the plan will begin, `shift` \[s\] after the first knot of the last plan.
     pub fn begin(&mut self, start: &SpacePath, shift: f64) {
-        match (&self.best, &mut self.previous) {
-            (Some(best), previous) => *previous = Some((best.plan, shift)),
+        // Without a new plan the one before is still flown.
+        match (self.taken().copied(), &mut self.previous) {
+            (Some(plan), previous) => *previous = Some((plan, shift)),
             (None, Some((_, since))) => *since = shift,
             (None, None) => {}
         }
@@ -236,7 +238,6 @@ impl SpacePlanner {
             _ => Grid::EVEN,
         };
         (self.tried, self.best, self.unmoved) = (None, None, None);
-        self.forget_ways_out();
         self.since = shift;
         self.start = SpacePath {
             course: within_half_turn(start.course),
@@ -266,6 +267,7 @@ impl SpacePlanner {
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
             Phase::LookAgain => self.look_again(map),
+            Phase::Renew => self.renew(),
             Phase::WaysOut => self.begin_ways_out(map),
             Phase::WayOut(number) => self.seek_way_out(map, number),
         };
@@ -297,7 +299,9 @@ impl SpacePlanner {
             Phase::Faces(..) | Phase::Pose(..) => Some(SpaceStage::Program),
             Phase::Solve(_) | Phase::FlyOut(_) => Some(SpaceStage::Solve),
             Phase::Refine(_) => Some(SpaceStage::Refine),
-            Phase::LookAgain | Phase::WaysOut | Phase::WayOut(_) => Some(SpaceStage::WayOut),
+            Phase::LookAgain | Phase::Renew | Phase::WaysOut | Phase::WayOut(_) => {
+                Some(SpaceStage::WayOut)
+            }
         }
     }
 

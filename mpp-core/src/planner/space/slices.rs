@@ -32,6 +32,7 @@ impl SpacePlanner {
 
     /// Begins the field.
     pub(super) fn begin_search(&mut self, map: &VoxelGrid) -> Phase {
+        self.settle_ways_out();
         self.field.begin(map, &self.start.position);
         self.to_go.origin = self.start.position;
         self.workspace = Workspace::Field(NearSlices::ZEROS);
@@ -259,7 +260,7 @@ impl SpacePlanner {
         if number + 1 < refine::TRIALS {
             Phase::Refine(number + 1)
         } else {
-            Phase::LookAgain
+            Phase::Renew
         }
     }
 

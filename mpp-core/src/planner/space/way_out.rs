@@ -12,7 +12,8 @@ pub(super) const TURNS: usize = 2 * LEAVES.len();
 pub(super) const SLICE_STAGES: usize = 6;
 pub(super) const MOST_STAGES: usize = 72;
 /// Most slices of the search.
-pub(super) const SLICES: usize = TURNS * MOST_STAGES.div_ceil(SLICE_STAGES) + 2;
+pub(super) const SLICES: usize = TURNS * MOST_STAGES.div_ceil(SLICE_STAGES) + 3;
+
 /// A plan that ends on a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WayOut {
@@ -34,6 +35,8 @@ pub(super) struct WaysOut {
     /// The one that is flown. Once the cycle has looked at it, it goes on from the start of the cycle, or is lost.
     pub(super) held: Option<WayOut>,
     pub(super) looked: bool,
+    /// Whether what was found is flown from now on.
+    pub(super) holds: bool,
 }
 
 /// A circle that is tried.
@@ -54,6 +57,7 @@ impl WaysOut {
         found: None,
         held: None,
         looked: false,
+        holds: false,
     };
 }
 
