@@ -147,6 +147,36 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
     });
 }
 
+/// A cycle that is cut short leaves the time until the turn as it was, wherever it ends.
+#[test]
+fn a_cycle_that_is_cut_short_moves_no_way_out() {
+    with_planner(KEEP, |map, planner| {
+        let (step, model) = (0.1, model());
+        // Calls of the search until the way out that is flown has been looked at.
+        let mut calls = 0;
+        for cut in 0..4 {
+            let found = way_out(map, planner, &[]).unwrap();
+            planner.hold();
+            planner.begin(&found.plan.at(&model, step).0, step);
+            let mut made = 0;
+            while planner.held().is_none() && (cut == 0 || made < calls - cut) {
+                assert!(!planner.advance(map));
+                made += 1;
+            }
+            calls = calls.max(made);
+            assert_eq!(planner.held().is_some(), cut == 0);
+            let since = if cut == 0 { step } else { 2.0 * step };
+            assert_eq!(planner.way_out(), None, "{cut}");
+            planner.refuse();
+            planner.begin(&found.plan.at(&model, 2.0 * step).0, since);
+            finish(planner, map);
+            let held = planner.held().unwrap();
+            let off = held.holds - (found.holds - 2.0 * step);
+            assert!(off.abs() < 1e-9, "{cut}: {off}");
+        }
+    });
+}
+
 /// Beams that pass a thin trunk in its cell do not hide it, and the window keeps what lies 30 m behind the aircraft.
 #[test]
 fn the_level_of_flight_keeps_thin_trunks() {

@@ -36,10 +36,8 @@ impl SpacePlanner {
     /// The way out of the best plan, if the cycle has found one.
     #[must_use]
     pub fn way_out(&self) -> Option<&WayOut> {
-        self.ways
-            .found
-            .as_ref()
-            .filter(|_| self.phase != Phase::Begin)
+        let settled = !matches!(self.phase, Phase::Begin | Phase::LookAgain);
+        self.ways.found.as_ref().filter(|_| settled)
     }
 
     /// The way out that is flown, as it goes on from the start of the cycle; `None` if something is known on it, or the cycle has not
@@ -66,16 +64,18 @@ impl SpacePlanner {
         self.best.as_ref().map(|best| &best.plan).or_else(kept)
     }
 
-    /// Lets the way out that is flown begin where the aircraft is.
+    /// Lets the way out that is flown begin where the aircraft is. Until it was looked at it is kept aside: a cycle that ends before
+    /// leaves what is flown as it was.
     pub(super) fn renew(&mut self) -> Phase {
-        self.ways.held = self.ways.held.map(|held| self.renewed(&held));
+        self.ways.found = self.ways.held.map(|held| self.renewed(&held));
         Phase::LookAgain
     }
 
     /// Looks again at the way out that is flown.
     pub(super) fn look_again(&mut self, map: &VoxelGrid) -> Phase {
         let is_free = |held: &WayOut| self.is_clear(held) && self.is_passable(held, map);
-        self.ways.held = self.ways.held.filter(is_free);
+        let held = self.ways.found.filter(is_free);
+        (self.ways.held, self.ways.found) = (held, None);
         self.ways.looked = true;
         Phase::WaysOut
     }
