@@ -147,7 +147,27 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
     });
 }
 
-/// A cycle that is cut short leaves the time until the turn as it was, wherever it ends.
+/// On the circle a trunk 60 deg ahead ends it, and one that is nearly half a turn ahead does not yet.
+#[test]
+fn a_circle_is_left_for_what_is_near_ahead() {
+    with_planner(KEEP, |map, planner| {
+        for (ahead, holds) in [(170.0_f64, true), (60.0, false)] {
+            let found = way_out(map, planner, &[]).unwrap();
+            planner.hold();
+            let since = found.plan.length() - 0.1;
+            let start = found.plan.at(&model(), since).0;
+            let loiter = &found.loiter;
+            let angle = loiter.angle(&start.position) + loiter.side * ahead.to_radians();
+            let [x, y, _] = loiter.place(angle);
+            show(map, &[[x, y, 0.3]]);
+            planner.begin(&start, since);
+            finish(planner, map);
+            assert_eq!(planner.held().is_some(), holds, "{ahead}");
+        }
+    });
+}
+
+/// A cycle that is cut short before it has looked at what is flown leaves the time until the turn as it was.
 #[test]
 fn a_cycle_that_is_cut_short_moves_no_way_out() {
     with_planner(KEEP, |map, planner| {

@@ -89,19 +89,11 @@ impl Loiter {
         angle + time * rate(angle + 0.5 * time * rate(angle))
     }
 
-    /// State and control on the circle abeam of a position \[m\], and those a time \[s\] later.
+    /// States on the circle abeam of a position \[m\], and a time \[s\] later.
     #[must_use]
-    pub fn ahead(
-        &self,
-        model: &SpaceModel,
-        position: &[f64; 3],
-        time: f64,
-    ) -> [(SpacePath, SpaceControl); 2] {
+    pub fn ahead(&self, model: &SpaceModel, position: &[f64; 3], time: f64) -> [SpacePath; 2] {
         let angle = self.angle(position);
-        [angle, self.later(model, angle, time)].map(|angle| {
-            let at = self.at(model, angle);
-            (at, self.control(model, &at))
-        })
+        [angle, self.later(model, angle, time)].map(|angle| self.at(model, angle))
     }
 
     /// The thrust that holds the airspeed on the circle \[N\].

@@ -128,20 +128,20 @@ impl Flown {
         self.loiter.as_ref()
     }
 
-    /// State and control on the circle at a tick and `lead` \[s\] later for an aircraft at a position \[m\]; `None` until the plan
+    /// The circle, and the states on it at a tick and `lead` \[s\] later for an aircraft at a position \[m\]; `None` until the plan
     /// has come to its end.
     pub(super) fn circles(
         &self,
         tick: u32,
         lead: f64,
         position: &[f64; 3],
-    ) -> Option<[(SpacePath, SpaceControl); 2]> {
+    ) -> Option<(&Loiter, [SpacePath; 2])> {
         let loiter = self.loiter.as_ref()?;
         let [plan, _] = self.both();
         if self.age(tick) + lead < plan.length() {
             return None;
         }
-        Some(loiter.ahead(&self.model, position, lead))
+        Some((loiter, loiter.ahead(&self.model, position, lead)))
     }
 
     /// Time from a tick until the plan turns to its way out \[s\]; below zero on the way out.

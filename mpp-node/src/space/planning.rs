@@ -147,9 +147,9 @@ impl Session {
                 let start = due.wrapping_add(lead);
                 let time = flown.age(start);
                 let lead = duration(ticks(tick, start).unsigned_abs());
-                let (planned, _) = match flown.circles(tick, lead, &motion.path.position) {
-                    Some([_, then]) => then,
-                    None => flown.at(time),
+                let planned = match flown.circles(tick, lead, &motion.path.position) {
+                    Some((_, [_, then])) => then,
+                    None => flown.at(time).0,
                 };
                 let deviation = flown.deviation(tick, followed, &motion.path);
                 (start, next_start(&planned, &deviation), time)

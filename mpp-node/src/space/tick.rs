@@ -184,8 +184,8 @@ impl Session {
     fn reference(&self, tick: u32, motion: &SpaceMotion) -> (SpacePath, (SpacePath, SpaceControl)) {
         if let Some(flown) = self.flown.some() {
             let here = &motion.path.position;
-            if let Some([(now, _), ahead]) = flown.circles(tick, self.ahead, here) {
-                return (now, ahead);
+            if let Some((loiter, [now, ahead])) = flown.circles(tick, self.ahead, here) {
+                return (now, (ahead, loiter.control(&flown.model, &ahead)));
             }
             return (
                 flown.reference(tick),

@@ -99,8 +99,8 @@ enum Phase {
     FlyOut(usize),
     Refine(usize),
     /// The way out that is flown, the best plan of the cycle, and a circle.
-    LookAgain,
     Renew,
+    LookAgain,
     WaysOut,
     WayOut(usize),
 }
@@ -266,8 +266,8 @@ impl SpacePlanner {
             Phase::FlyOut(candidate) => self.fly_out(candidate),
             Phase::Solve(candidate) => self.solve(candidate),
             Phase::Refine(number) => self.refine(number),
-            Phase::LookAgain => self.look_again(map),
             Phase::Renew => self.renew(),
+            Phase::LookAgain => self.look_again(map),
             Phase::WaysOut => self.begin_ways_out(map),
             Phase::WayOut(number) => self.seek_way_out(map, number),
         };
@@ -299,7 +299,7 @@ impl SpacePlanner {
             Phase::Faces(..) | Phase::Pose(..) => Some(SpaceStage::Program),
             Phase::Solve(_) | Phase::FlyOut(_) => Some(SpaceStage::Solve),
             Phase::Refine(_) => Some(SpaceStage::Refine),
-            Phase::LookAgain | Phase::Renew | Phase::WaysOut | Phase::WayOut(_) => {
+            Phase::Renew | Phase::LookAgain | Phase::WaysOut | Phase::WayOut(_) => {
                 Some(SpaceStage::WayOut)
             }
         }

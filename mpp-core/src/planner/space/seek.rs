@@ -88,12 +88,13 @@ impl SpacePlanner {
             let period = self.grid.period(stage);
             let times = [0, 1].map(|more| since + self.grid.time(stage + more));
             // At its end a plan is level; that is not the circle.
-            let [now, next] = if times[1] < held.plan.length() - SHORT {
-                times.map(|time| held.plan.at(model, time))
+            let ((now, control), next) = if times[1] < held.plan.length() - SHORT {
+                let [now, (next, _)] = times.map(|time| held.plan.at(model, time));
+                (now, next)
             } else {
-                loiter.ahead(model, &state.position, period)
+                let [now, next] = loiter.ahead(model, &state.position, period);
+                ((now, loiter.control(model, &now)), next)
             };
-            let ((now, control), (next, _)) = (now, next);
             tracking(model, state, &now, (&next, &control), period)
         });
         WayOut {
@@ -221,7 +222,8 @@ impl SpacePlanner {
             0 => self.grid.period(0),
             _ => STAGE_PERIOD,
         };
-        let [(now, control), (next, _)] = loiter.ahead(model, &from.position, period);
+        let [now, next] = loiter.ahead(model, &from.position, period);
+        let control = loiter.control(model, &now);
         let control = tracking(model, &from, &now, (&next, &control), period);
         let to = from.after(model, &control, period);
         let plan = &mut turn.plan;

@@ -31,6 +31,7 @@ pub(super) struct WaysOut {
     /// First stages of the best plan that are clear, in voxels that have been seen.
     pub(super) clear: usize,
     pub(super) turn: Option<Turn>,
+    /// That of the best plan. Before the search it has what is flown, renewed, until that has been looked at.
     pub(super) found: Option<WayOut>,
     /// The one that is flown. Once the cycle has looked at it, it goes on from the start of the cycle, or is lost.
     pub(super) held: Option<WayOut>,
