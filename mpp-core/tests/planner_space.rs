@@ -4,6 +4,7 @@ use mpp_core::config::STAGES;
 use mpp_core::map::{SpaceBeam, VoxelGrid};
 use mpp_core::planner::space::{Keep, MOST_SPACE_SLICES, SpacePlan, SpacePlanner};
 use mpp_core::qp::space::{INPUTS, MAX_ITERATIONS};
+use mpp_core::tuning::space_refinement::MOST_WORK;
 use mpp_core::vehicle::{
     Airframe, GRAVITY, PathControl, PathState, SpaceControl, SpaceModel, SpacePath,
 };
@@ -259,6 +260,28 @@ fn the_refinement_makes_plans_cheaper_within_the_limits() {
             }
         }
         assert!(cheaper >= 3, "{cheaper}");
+    });
+}
+
+/// A plan that begins by leading back is moved for long before a move is found dear; the bound ends that.
+#[test]
+fn moves_of_plans_that_lead_back_end_at_the_bound() {
+    with_planner(KEEP, |map, planner| {
+        let (mut draw, model) = (Draw(Pcg64Mcg::seed_from_u64(6)), model());
+        let mut ended = 0;
+        for round in 0..12 {
+            let _ = see_forest(map, &mut draw);
+            let start = SpacePath {
+                course: 1.5 + 0.14 * f64::from(round),
+                ..level(&model)
+            };
+            let _ = plan(planner, map, &start, 0.0);
+            // The last move, judged twice.
+            let work = planner.work();
+            assert!(work < MOST_WORK + 6 * STAGES, "{work}");
+            ended += usize::from(work >= MOST_WORK);
+        }
+        assert!(ended > 0);
     });
 }
 

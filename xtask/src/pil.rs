@@ -34,9 +34,6 @@ pub(crate) struct PilArgs {
     /// Preset, which is a set of parameters and rules
     #[arg(long, default_value = "flight")]
     preset: String,
-    /// Aircraft, a name or a file [default: the preset's]
-    #[arg(long)]
-    aircraft: Option<String>,
     /// Length of each flight, in seconds
     #[arg(long, default_value_t = 20)]
     duration: u32,
@@ -46,6 +43,9 @@ pub(crate) struct PilArgs {
     /// Print one JSON object per flight
     #[arg(long)]
     json: bool,
+    /// More flags of `sil-harness fly`, such as `-- --aircraft aerosonde`
+    #[arg(last = true)]
+    more: Vec<String>,
 }
 
 pub(crate) fn run(args: &PilArgs) -> Result<()> {
@@ -102,7 +102,6 @@ fn scenario(args: &PilArgs, seed: u64) -> Vec<String> {
         obstacles,
         preset,
         duration,
-        aircraft,
         density,
         ..
     } = args;
@@ -112,9 +111,7 @@ fn scenario(args: &PilArgs, seed: u64) -> Vec<String> {
             "--seed {seed} --obstacles {obstacles} --preset {preset} --duration {duration}"
         )),
     };
-    if let Some(aircraft) = aircraft {
-        arguments.extend(["--aircraft".to_owned(), aircraft.clone()]);
-    }
+    arguments.extend_from_slice(&args.more);
     arguments
 }
 

@@ -33,6 +33,9 @@ pub mod space_refinement {
     pub const STEEP: f64 = 0.2;
     /// Rounds of 96 moves [-]. More find cheaper plans and cost roll-outs. Source: decision 58.
     pub const ROUNDS: usize = 8;
+    /// Work after which a cycle tries no more moves [-]: a stage that is flown counts 1 and takes about 1,900 instructions on a
+    /// Cortex-M7, one that is judged 2. Less ends searches early, at first those of plans that lead back. Source: D65.
+    pub const MOST_WORK: usize = 20_000;
     /// Number of sizes of moves [-]. More polish, fewer find other ways. Source: decision 58.
     pub const SIZES: usize = 4;
 }

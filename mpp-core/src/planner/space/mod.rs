@@ -53,8 +53,6 @@ pub const SPACE_CANDIDATES: usize = 7;
 const APART: usize = 2;
 /// Slices of the map that a slice of the cycle looks at.
 const LOOK_SLICES: usize = 8;
-/// Stages of a candidate that get faces in a slice.
-const FACE_STAGES: usize = 3;
 /// Steps of the solver in a program, each a slice.
 const MOST_STEPS: usize = 120;
 /// Most slices of a cycle: field, lattice with its paths, candidates with the previous plan and the
@@ -66,7 +64,7 @@ pub const MOST_SPACE_SLICES: usize = 1
     + 3
     + SPACE_CANDIDATES * AIMS.len()
     + 2
-    + SPACE_CANDIDATES * (STAGES.div_ceil(FACE_STAGES) + MOST_STEPS + 3)
+    + SPACE_CANDIDATES * (STAGES + MOST_STEPS + 3)
     + 2 * refine::TRIALS
     + way_out::SLICES
     + 1;
@@ -149,6 +147,8 @@ pub struct SpacePlanner {
     best: Option<Candidate>,
     /// The best plan as moves begin with it, once one was tried.
     unmoved: Option<Unmoved>,
+    /// Work of this cycle's moves.
+    work: usize,
     start: SpacePath,
     /// When the knots of plans are.
     grid: Grid,
@@ -180,6 +180,7 @@ impl SpacePlanner {
             tried: None,
             best: None,
             unmoved: None,
+            work: 0,
             start: SpacePath::ORIGIN,
             grid: Grid::EVEN,
             runaway: 0.0,
@@ -238,7 +239,7 @@ impl SpacePlanner {
             _ => Grid::EVEN,
         };
         (self.tried, self.best, self.unmoved) = (None, None, None);
-        self.since = shift;
+        (self.work, self.since) = (0, shift);
         self.start = SpacePath {
             course: within_half_turn(start.course),
             ..*start
@@ -321,6 +322,12 @@ impl SpacePlanner {
     #[must_use]
     pub fn proposed(&self) -> usize {
         self.candidates.len()
+    }
+
+    /// Work of this cycle's moves: less than [`MOST_WORK`](crate::tuning::space_refinement::MOST_WORK) and that of one move more.
+    #[must_use]
+    pub fn work(&self) -> usize {
+        self.work
     }
 
     /// The distances of this cycle.

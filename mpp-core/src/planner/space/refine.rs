@@ -126,13 +126,14 @@ impl Unmoved {
     }
 
     /// The best plan with its bank moved, and its worth; `None` where it is found before its end that it costs the `price` of
-    /// the best plan.
+    /// the best plan. It counts its `work` as `MOST_WORK` does.
     pub(super) fn moved(
         &self,
         judge: &Judge<'_>,
         best: &SpacePlan,
         price: f64,
         by: &Move,
+        work: &mut usize,
     ) -> Option<(SpacePlan, SpaceJudgement)> {
         // The first stage that the move changes.
         let first = by.first - 1;
@@ -151,12 +152,13 @@ impl Unmoved {
                 return None;
             }
         }
-        if !self.may_cost_less(judge, first, &controls, efforts, limit) {
+        if !self.may_cost_less(judge, first, &controls, (efforts, limit), work) {
             return None;
         }
         let mut plan = self.plan;
         for (stage, control) in (first..).zip(&controls) {
             plan.fly_stage(stage, judge.model, |_| *control);
+            *work += 3;
             if let Some([from, to, ..]) = plan.knots.get(stage..) {
                 judge.add([from, to], stage, &mut tally);
             }
@@ -171,8 +173,8 @@ impl Unmoved {
         judge: &Judge<'_>,
         first: usize,
         controls: &[SpaceControl],
-        efforts: f64,
-        limit: f64,
+        (efforts, limit): (f64, f64),
+        work: &mut usize,
     ) -> bool {
         let (Some(&(mut tally, _)), Some(start)) =
             (self.tallies.get(first), self.plan.knots.get(first))
@@ -186,11 +188,13 @@ impl Unmoved {
             let knots = [state, state.after(judge.model, control, period)];
             let [from, to] = &knots;
             let velocities = judge.pass([from, to], stage, &mut tally);
+            *work += 1;
             if self.is_free(stage) {
                 // As many stages as places.
                 let _ = free.push((stage, knots, velocities));
             } else {
                 judge.charge([from, to], &velocities, stage, &mut tally);
+                *work += 2;
             }
             if tally.least_price() + efforts >= limit {
                 return false;
@@ -203,6 +207,7 @@ impl Unmoved {
                 return false;
             }
             judge.charge([from, to], velocities, *stage, &mut tally);
+            *work += 2;
         }
         tally.price() + fixed < limit
     }
@@ -303,7 +308,7 @@ mod tests {
         let unmoved = Unmoved::of(&judge, &best, 0);
         let all = |climbs| (0..MOVES * SIZES * 2).map(move |number| Move::of(number, climbs));
         for by in all(false).take(MOVES * SIZES).chain(all(true)) {
-            let at = |price: f64| unmoved.moved(&judge, &best, price, &by);
+            let at = |price: f64| unmoved.moved(&judge, &best, price, &by, &mut 0);
             let (moved, worth) = at(f64::INFINITY).unwrap();
             assert_eq!(judge.judge(&moved), worth);
             for (stage, control) in moved.controls.iter().enumerate() {

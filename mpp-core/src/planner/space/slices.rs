@@ -8,8 +8,7 @@ use super::lattice::{Lattice, ROW_SLICES, Rules};
 use super::program::{Frame, WEIGHTS};
 use super::refine::{self, Unmoved};
 use super::{
-    APART, Candidate, FACE_STAGES, LEVEL_SPAN, LOOK_SLICES, MOST_STEPS, Phase, Program,
-    SpacePlanner, Workspace,
+    APART, Candidate, LEVEL_SPAN, LOOK_SLICES, MOST_STEPS, Phase, Program, SpacePlanner, Workspace,
 };
 use crate::config::{KNOTS, STAGES};
 use crate::map::VoxelGrid;
@@ -18,6 +17,7 @@ use crate::qp::Status;
 use crate::tuning::space_judgement::ROOM;
 use crate::tuning::space_lattice::MORE_MARGIN;
 use crate::tuning::space_pursuit::AIMS;
+use crate::tuning::space_refinement::MOST_WORK;
 
 impl SpacePlanner {
     pub(super) fn rules(&self) -> Rules {
@@ -251,20 +251,21 @@ impl SpacePlanner {
             self.unmoved = Some(Unmoved::of(&self.judge(), &best.plan, number));
             return Phase::Refine(number);
         };
-        let price = best.judgement.price;
+        let (price, mut work) = (best.judgement.price, self.work);
         let moved = (unmoved.next(number))
-            .and_then(|by| unmoved.moved(&self.judge(), &best.plan, price, &by));
+            .and_then(|by| unmoved.moved(&self.judge(), &best.plan, price, &by, &mut work));
+        self.work = work;
         if let Some((plan, judgement)) = moved {
             self.consider(Candidate { plan, judgement });
         }
-        if number + 1 < refine::TRIALS {
+        if number + 1 < refine::TRIALS && self.work < MOST_WORK {
             Phase::Refine(number + 1)
         } else {
             Phase::Renew
         }
     }
 
-    /// Separates some stages of a candidate from what the map knows.
+    /// Separates a stage of a candidate from what the map knows.
     pub(super) fn separate(&mut self, index: usize, stage: usize) -> Phase {
         let (Some(candidate), Workspace::Program(program)) =
             (self.candidates.get(index), &mut self.workspace)
@@ -275,12 +276,9 @@ impl SpacePlanner {
         if stage == 0 {
             faces.clear();
         }
-        let end = (stage + FACE_STAGES).min(STAGES);
-        for stage in stage..end {
-            faces::separate(&self.field, &candidate.plan, &self.keep, stage, faces);
-        }
-        if end < STAGES {
-            Phase::Faces(index, end)
+        faces::separate(&self.field, &candidate.plan, &self.keep, stage, faces);
+        if stage + 1 < STAGES {
+            Phase::Faces(index, stage + 1)
         } else {
             Phase::Pose(index, 0)
         }
