@@ -22,21 +22,23 @@ fn wall() -> Vec<Body> {
     stands.chain([trunk(240.0, 60.0)]).collect()
 }
 
-/// What nobody can pass ahead is not met: the aircraft waits on circles. Of eight flights two end sooner, because a later scan spoils
-/// the circle, and no other one has been seen (decision 76 falls short).
+/// Before what nobody can pass the aircraft waits on circles. Of eight flights one leaves the band, and one meets the wall
+/// (decision 76 falls short).
 #[test]
 fn before_a_wall_the_aircraft_circles() {
-    let waits = |seed| {
-        let log = flown(open(seed), Some(wall())).unwrap();
+    let logs = (1..=8).map(|seed| flown(open(seed), Some(wall())).unwrap());
+    let [mut waited, mut met] = [0, 0];
+    for log in logs {
         let mut last = log.plans.iter().rev().take(30);
         let known = last.all(|plan| plan.way_out.is_some_and(|time| time > 0.0));
         let turned = log.lateral.course.iter().any(|course| course.abs() > 3.0);
         let to_the_end = (log.summary.t_end - 40.0).abs() < 1e-9;
         let waits = to_the_end && known && turned && log.knows_way_out() > 0.8;
-        waits && log.summary.outcome == Outcome::NotArrived
-    };
-    let waited = (1..=8).filter(|seed| waits(*seed)).count();
-    assert!(waited >= 6, "{waited}");
+        let outcome = log.summary.outcome;
+        waited += usize::from(waits && outcome == Outcome::NotArrived);
+        met += usize::from(outcome != Outcome::NotArrived);
+    }
+    assert!(waited >= 6 && met <= 1, "{waited} {met}");
 }
 
 /// Past one trunk in 500 m^2 the aircraft arrives, and most of the time it knows a way out.
