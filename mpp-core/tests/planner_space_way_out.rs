@@ -3,7 +3,7 @@
 use super::planner_space::{Draw, KEEP, finish, level, model, plan, to_trunks, with_planner};
 use core::f64::consts::TAU;
 use mpp_core::map::{SpaceBeam, VoxelGrid};
-use mpp_core::planner::space::{SpacePlanner, WayOut};
+use mpp_core::planner::space::{Keep, SpacePlanner, WayOut};
 use mpp_core::vehicle::{Loiter, SpacePath, within_half_turn};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -147,6 +147,31 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
     });
 }
 
+/// A way out with a trunk on its circle is flown on, and told as lost, where the best plan meets a wall, too.
+#[test]
+fn a_lost_way_out_is_better_than_a_wall() {
+    with_planner(KEEP, |map, planner| {
+        let found = way_out(map, planner, &[]).unwrap();
+        planner.hold();
+        let [x, y, _] = found.loiter.centre;
+        let wall = (0..240).map(|at| [14.0, 0.5 * f64::from(at) - 60.0, 0.3]);
+        let on_it = [x + found.loiter.radius + 0.3, y, 0.3];
+        show(map, &wall.chain([on_it]).collect::<Vec<_>>());
+        planner.begin(&level(&model()), 0.0);
+        finish(planner, map);
+        assert!(planner.is_lost());
+    });
+}
+
+/// A circle does not leave the band.
+#[test]
+fn a_narrow_band_has_no_way_out() {
+    let half_width = 12.0;
+    with_planner(Keep { half_width, ..KEEP }, |map, planner| {
+        assert_eq!(way_out(map, planner, &[]), None);
+    });
+}
+
 /// On the circle a trunk 60 deg ahead ends it, and one that is nearly half a turn ahead does not yet.
 #[test]
 fn a_circle_is_left_for_what_is_near_ahead() {
@@ -218,7 +243,12 @@ fn the_level_of_flight_keeps_thin_trunks() {
         let beams = past.iter().copied().chain(hit);
         map.insert(&[0.0, 0.0, 7.5], beams, SIGHT);
     }
-    assert!(map.is_met(&trunk, 0.1) && !map.is_free(&trunk, 0.1));
+    assert!(map.is_met(&trunk, 0.1) == Some(true) && !map.is_free(&trunk, 0.1));
+    assert_eq!(
+        map.is_met(&[20.2, 45.0, 7.5], 0.1),
+        None,
+        "beyond the window"
+    );
     assert!(map.is_free(&[12.2, 1.8, 7.5], 0.1));
     assert!(
         !map.is_free(&[12.2, 1.8, 9.5], 0.1),
@@ -227,5 +257,5 @@ fn the_level_of_flight_keeps_thin_trunks() {
     for x in [20.0, 44.0, 20.0, 0.0] {
         map.insert(&[x, 0.0, 7.5], std::iter::empty(), SIGHT);
     }
-    assert!(map.is_met(&trunk, 0.1) && map.is_free(&[12.2, 1.8, 7.5], 0.1));
+    assert!(map.is_met(&trunk, 0.1) == Some(true) && map.is_free(&[12.2, 1.8, 7.5], 0.1));
 }

@@ -161,14 +161,14 @@ impl LevelGrid {
         (from < to).then_some([from, to])
     }
 
-    /// Whether all cells within a distance of a point along x and y \[m\] lie in the window and are as wanted.
-    fn all(&self, [x, y, _]: &[f64; 3], reach: f64, wanted: impl Fn(i8) -> bool) -> bool {
+    /// Whether all cells within a distance of a point along x and y \[m\] are as wanted; `None` where they leave the window.
+    fn all(&self, [x, y, _]: &[f64; 3], reach: f64, wanted: impl Fn(i8) -> bool) -> Option<bool> {
         let corners = [-reach, reach].map(|by| self.place([x + by, y + by]));
         let [Some([x0, y0]), Some([x1, y1])] = corners else {
-            return false;
+            return None;
         };
         let [corner_x, corner_y] = self.corner;
-        (x0..=x1).all(|x| {
+        Some((x0..=x1).all(|x| {
             let slice = self.log_odds.get(wrapped(corner_x + x, CELLS[0]));
             slice.is_some_and(|slice| {
                 (y0..=y1).all(|y| {
@@ -176,18 +176,20 @@ impl LevelGrid {
                     cell.is_some_and(|cell| wanted(*cell))
                 })
             })
-        })
+        }))
     }
 
     /// Whether a point lies on the level, and all cells within a distance along x and y \[m\] have been seen free.
     pub(super) fn is_free(&self, point: &[f64; 3], reach: f64) -> bool {
         let [_, _, z] = point;
-        libm::fabs(z - self.height) <= PASSES && self.all(point, reach, |cell| cell < 0)
+        libm::fabs(z - self.height) <= PASSES
+            && self.all(point, reach, |cell| cell < 0) == Some(true)
     }
 
-    /// Whether a cell within a distance along x and y \[m\] was hit by more scans than one. What lies beyond the window counts, too.
-    pub(super) fn is_met(&self, point: &[f64; 3], reach: f64) -> bool {
-        !self.all(point, reach, |cell| cell <= HIT)
+    /// Whether a cell within a distance along x and y \[m\] was hit by more scans than one; `None` beyond the window.
+    pub(super) fn is_met(&self, point: &[f64; 3], reach: f64) -> Option<bool> {
+        self.all(point, reach, |cell| cell <= HIT)
+            .map(|clear| !clear)
     }
 }
 

@@ -275,9 +275,9 @@ impl VoxelGrid {
         }
     }
 
-    /// Whether something on the level of flight is known within a distance \[m\] along x and y.
+    /// Whether something on the level of flight is known within a distance \[m\] along x and y; `None` beyond the window.
     #[must_use]
-    pub fn is_met(&self, point: &[f64; 3], reach: f64) -> bool {
+    pub fn is_met(&self, point: &[f64; 3], reach: f64) -> Option<bool> {
         self.level.is_met(point, reach)
     }
 

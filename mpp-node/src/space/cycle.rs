@@ -15,28 +15,31 @@ const END: f64 = STAGES as f64 * STAGE_PERIOD;
 pub(super) struct Next<'a> {
     plan: &'a SpacePlan,
     loiter: Option<Loiter>,
-    /// Time from the first knot for which there is a way out \[s\].
+    /// Time from the first knot for which there is a way out \[s\], and whether that is lost.
     holds: f64,
+    lost: bool,
 }
 
 impl<'a> Next<'a> {
-    /// A way out.
-    pub(super) fn on(way_out: &'a WayOut) -> Self {
+    /// A way out, lost or not.
+    pub(super) fn on(way_out: &'a WayOut, lost: bool) -> Self {
         Self {
             plan: &way_out.plan,
             loiter: Some(way_out.loiter),
             holds: way_out.holds,
+            lost,
         }
     }
 
     /// A plan, or where only plans with a way out are flown the one that ends on it.
     pub(super) fn of(plan: &'a SpacePlan, way_out: Option<&'a WayOut>, open: bool) -> Self {
         match way_out {
-            Some(way_out) if open => Self::on(way_out),
+            Some(way_out) if open => Self::on(way_out, false),
             _ => Self {
                 plan,
                 loiter: None,
                 holds: way_out.map_or(f64::NEG_INFINITY, |it| it.holds),
+                lost: false,
             },
         }
     }
@@ -63,8 +66,9 @@ pub(super) struct Flown {
     second: bool,
     /// The circle on which the plan ends.
     loiter: Option<Loiter>,
-    /// Time from its first knot for which it has a way out \[s\].
+    /// Time from its first knot for which it has a way out \[s\], and whether that is lost.
     holds: f64,
+    lost: bool,
     /// The aircraft with the wind for which the plan was made.
     pub(super) model: SpaceModel,
     /// The tick of its first knot, and that at which its cycle began.
@@ -83,6 +87,7 @@ impl Flown {
             second: false,
             loiter: None,
             holds: f64::NEG_INFINITY,
+            lost: false,
             model: *model,
             start: 0,
             begun: 0,
@@ -102,7 +107,7 @@ impl Flown {
         self.known = true;
         let [first, second] = &mut self.plans;
         *(if self.second { second } else { first }) = *next.plan;
-        (self.loiter, self.holds) = (next.loiter, next.holds);
+        (self.loiter, self.holds, self.lost) = (next.loiter, next.holds, next.lost);
         self.model = *model;
         (self.start, self.begun) = (cycle.start, cycle.begun);
     }
@@ -149,9 +154,10 @@ impl Flown {
         self.holds - self.age(tick)
     }
 
-    /// Time for which there is a way out \[s\]. On it this is the length of a plan.
+    /// Time for which there is a way out \[s\], 0 once it is lost. On it this is the length of a plan.
     pub(super) fn way_out(&self, tick: u32) -> f64 {
         match (&self.loiter, self.turns_in(tick)) {
+            _ if self.lost => 0.0,
             (Some(_), left) if left <= 0.0 => END,
             (_, left) => left.max(0.0),
         }

@@ -190,9 +190,13 @@ impl Session {
         });
         let way_out = planner.way_out();
         let later = way_out.is_some_and(|it| it.holds >= self.flown.turns_in(cycle.start));
-        // Once there is a way out, a plan without a later one is not flown. A cycle that did not come so far leaves what is flown.
+        // Once there is a way out, a plan without a later one is not flown, and once it is lost a plan without any. A cycle that did
+        // not come so far leaves what is flown.
         let held = planner.held();
-        let waits = held.is_some() || !cycle.complete;
+        let waits = match held {
+            Some(_) => !planner.is_lost() || way_out.is_none(),
+            None => !cycle.complete,
+        };
         let kept = self.open && self.flown.loiter().is_some() && waits && !later;
         let outcome = match best {
             Some(_) if kept => PlanOutcome::KeptPrevious,
@@ -202,7 +206,7 @@ impl Session {
             None => PlanOutcome::TrimHold,
         };
         let next = if kept {
-            held.map(Next::on)
+            held.map(|held| Next::on(held, planner.is_lost()))
         } else {
             best.map(|(plan, _)| Next::of(plan, way_out, self.open))
         };

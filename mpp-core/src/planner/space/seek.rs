@@ -3,11 +3,12 @@
 use super::candidate::{SpacePlan, tracking};
 use super::judge::position;
 use super::way_out::{MOST_STAGES, SLICE_STAGES, TURNS, Turn, WayOut, leaves};
-use super::{Phase, SpacePlanner};
+use super::{Candidate, Phase, SpacePlanner};
 use crate::config::{STAGE_PERIOD, STAGES};
 use crate::map::VoxelGrid;
 use crate::vehicle::{Loiter, SpacePath, between, within_half_turn};
 use core::f64::consts::TAU;
+use core::ops::Range;
 
 /// Distance of the points that are looked at \[m\]: one and a half cells.
 const APART: f64 = 0.75;
@@ -40,12 +41,18 @@ impl SpacePlanner {
         self.ways.found.as_ref().filter(|_| settled)
     }
 
-    /// The way out that is flown, as it goes on from the start of the cycle; `None` if something is known on it, or the cycle has not
-    /// come so far.
+    /// The way out that is flown, as it goes on from the start of the cycle; `None` if it is given up, or the cycle has not come so far.
     #[must_use]
     pub fn held(&self) -> Option<&WayOut> {
         let looked = self.ways.looked && self.phase != Phase::Begin;
         self.ways.held.as_ref().filter(|_| looked)
+    }
+
+    /// Whether something is known on the way out that is [held](Self::held). Such a one is flown as long as the best plan meets
+    /// something, too.
+    #[must_use]
+    pub fn is_lost(&self) -> bool {
+        self.held().is_some() && self.ways.lost
     }
 
     /// Tells that the best plan is flown with its way out, if it has one.
@@ -71,10 +78,15 @@ impl SpacePlanner {
         Phase::LookAgain
     }
 
-    /// Looks again at the way out that is flown.
+    /// Looks again at the way out that is flown. What is lost is given up over terrain, or for a best plan that meets nothing.
     pub(super) fn look_again(&mut self, map: &VoxelGrid) -> Phase {
+        let mut held = self.ways.found;
         let is_free = |held: &WayOut| self.is_clear(held) && self.is_passable(held, map);
-        let held = self.ways.found.filter(is_free);
+        let lost = held.as_ref().is_some_and(|held| !is_free(held));
+        if lost && (VoxelGrid::follows(&self.keep.heights) || self.best_passes(map)) {
+            held = None;
+        }
+        self.ways.lost = lost;
         (self.ways.held, self.ways.found) = (held, None);
         self.ways.looked = true;
         Phase::WaysOut
@@ -118,28 +130,56 @@ impl SpacePlanner {
         tally.missing() <= LOST * self.keep.margin
     }
 
+    /// Whether the level of flight has something within the wing and a share of the margin, in stages of a plan that begin in a span of
+    /// time \[s\]; `None` if it has not, and they leave the window.
+    fn meets(
+        &self,
+        plan: &SpacePlan,
+        times: Range<f64>,
+        share: f64,
+        map: &VoxelGrid,
+    ) -> Option<bool> {
+        let mut met = Some(false);
+        for (stage, knots) in plan.knots.windows(2).enumerate() {
+            let ([from, to], true) = (knots, times.contains(&plan.grid.time(stage))) else {
+                continue;
+            };
+            let wide = self.reach(from, to, share);
+            for point in self.points(from, to, plan.grid.period(stage)) {
+                match map.is_met(&point, wide) {
+                    Some(true) => return Some(true),
+                    Some(false) => {}
+                    None => met = None,
+                }
+            }
+        }
+        met
+    }
+
     /// Whether the map knows nothing within the wing on the way to the circle and on its next half; on the circle, in what comes next.
     fn is_passable(&self, held: &WayOut, map: &VoxelGrid) -> bool {
         let (plan, loiter) = (&held.plan, &held.loiter);
         let circles = held.holds <= 0.0;
         let until = if circles { AHEAD } else { plan.length() };
-        let mut stages = plan.knots.windows(2).enumerate();
-        let joins = stages.all(|(stage, knots)| match knots {
-            [from, to] if (held.holds..until).contains(&plan.grid.time(stage)) => {
-                let wide = self.reach(from, to, 1.0 - LOST);
-                let mut points = self.points(from, to, plan.grid.period(stage));
-                points.all(|point| !map.is_met(&point, wide))
-            }
-            _ => true,
-        });
+        let met = self.meets(plan, held.holds..until, 1.0 - LOST, map);
         let [.., last] = &plan.knots;
         let from = loiter.angle(&last.position);
         let at = loiter.at(&self.model, from);
         let wide = self.reach(&at, &at, 1.0 - LOST);
         let mut places = (0..RING / 2).map(|place| TAU * place as f64 / RING as f64);
-        joins
-            && (circles
-                || places.all(|by| !map.is_met(&loiter.place(from + loiter.side * by), wide)))
+        let free = |place: &[f64; 3]| map.is_met(place, wide) == Some(false);
+        met == Some(false)
+            && (circles || places.all(|by| free(&loiter.place(from + loiter.side * by))))
+    }
+
+    /// Whether the best plan keeps its distances, and nothing is known within its wing on the level of flight.
+    fn best_passes(&self, map: &VoxelGrid) -> bool {
+        self.best
+            .as_ref()
+            .is_some_and(|Candidate { plan, judgement }| {
+                let met = self.meets(plan, 0.0..plan.length(), 0.0, map);
+                judgement.missing <= 0.0 && met != Some(true)
+            })
     }
 
     /// Counts the first stages of the best plan that are clear, in voxels that have been seen.
@@ -195,7 +235,8 @@ impl SpacePlanner {
     /// Begins a circle; `None` where its plan is not clear so far, or places on it are not free, or another circle is flown.
     fn begin_turn(&self, map: &VoxelGrid, number: usize) -> Option<Turn> {
         let knot = leaves(number);
-        if knot > self.ways.clear || (knot == 0 && self.ways.held.is_some()) {
+        let holds = self.ways.held.is_some() && !self.ways.lost;
+        if knot > self.ways.clear || (knot == 0 && holds) {
             return None;
         }
         let plan = self.best.as_ref()?.plan;
@@ -204,8 +245,8 @@ impl SpacePlanner {
         let loiter = Loiter::joined(&self.model, &state, side, self.keep.altitude)?;
         let at = loiter.at(&self.model, loiter.angle(&state.position));
         let reach = self.reach(&at, &at, 1.0);
-        let mut places = (0..RING).map(|place| TAU * place as f64 / RING as f64);
-        let free = places.all(|angle| map.is_free(&loiter.place(angle), reach));
+        let mut places = (0..RING).map(|at| loiter.place(TAU * at as f64 / RING as f64));
+        let free = places.all(|place| self.is_free(&place, reach, map));
         free.then_some(Turn {
             plan,
             loiter,
@@ -237,9 +278,14 @@ impl SpacePlanner {
         turn.swept += loiter.side * within_half_turn(after - before);
         turn.state = to;
         turn.stage += 1;
-        let (reach, [low, high]) = (self.reach(&from, &to, 1.0), self.keep.heights);
-        let free = |point: [f64; 3]| (low..=high).contains(&point[2]) && map.is_free(&point, reach);
-        self.points(&from, &to, period).all(free)
+        let reach = self.reach(&from, &to, 1.0);
+        let mut points = self.points(&from, &to, period);
+        points.all(|point| self.is_free(&point, reach, map))
+    }
+
+    /// Whether a point lies in the band, and all within a distance of it \[m\] was seen free.
+    fn is_free(&self, point: &[f64; 3], reach: f64, map: &VoxelGrid) -> bool {
+        self.keep.outside(point) <= 0.0 && map.is_free(point, reach)
     }
 
     /// Distance that the body with its wing, and a share of its margin, take up to either side of a stage \[m\].

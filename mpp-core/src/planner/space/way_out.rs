@@ -33,9 +33,11 @@ pub(super) struct WaysOut {
     pub(super) turn: Option<Turn>,
     /// That of the best plan. Before the search it has what is flown, renewed, until that has been looked at.
     pub(super) found: Option<WayOut>,
-    /// The one that is flown. Once the cycle has looked at it, it goes on from the start of the cycle, or is lost.
+    /// The one that is flown. Once the cycle has looked at it, it goes on from the start of the cycle, or is given up.
     pub(super) held: Option<WayOut>,
     pub(super) looked: bool,
+    /// Whether something is known on it.
+    pub(super) lost: bool,
     /// Whether what was found is flown from now on.
     pub(super) holds: bool,
 }
@@ -58,6 +60,7 @@ impl WaysOut {
         found: None,
         held: None,
         looked: false,
+        lost: false,
         holds: false,
     };
 }
