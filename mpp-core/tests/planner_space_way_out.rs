@@ -143,6 +143,7 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
             assert_eq!(planner.held(), None, "nobody has looked");
             finish(planner, map);
             assert_eq!(planner.held().is_some(), holds, "{share}");
+            assert!(!planner.is_lost(), "{share}");
         }
     });
 }

@@ -16,7 +16,10 @@ fn open(seed: u64) -> SpaceFile {
 }
 
 /// A wall of trunks from side to side 110 m ahead, and one more trunk that makes the world longer. Its only gap lies at the edge,
-/// 50 m aside, where no plan reaches.
+/// 50 m aside, where no plan reaches. Campaigns fly it as a stem map:
+/// `awk 'BEGIN{print "x,y,diameter"; for(i=-60;i<52;i++) print "110," i ",0.8"; print "240,60,0.8"}' >wall.csv`,
+/// `sil-harness campaign --preset space --mode open --airspeed 14 --lidar puck-hi-res --stems wall.csv --trials 24 --seed 1`.
+/// Of these 2 collide, of 96 from seed 101 on 2.
 fn wall() -> Vec<Body> {
     let stands = (0..112).map(|at| trunk(110.0, f64::from(at) - 60.0));
     stands.chain([trunk(240.0, 60.0)]).collect()
@@ -31,7 +34,7 @@ fn before_a_wall_the_aircraft_circles() {
         let to_the_end = (log.summary.t_end - 40.0).abs() < 1e-9;
         assert_eq!(log.summary.outcome, Outcome::NotArrived, "{seed}");
         assert!(to_the_end && turned, "{seed}: {turned}");
-        assert!(log.knows_way_out() > 0.8, "{seed}: {}", log.knows_way_out());
+        assert!(log.knows_way_out() > 0.9, "{seed}: {}", log.knows_way_out());
     }
 }
 

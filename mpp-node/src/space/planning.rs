@@ -193,9 +193,10 @@ impl Session {
         // Once there is a way out, a plan without a later one is not flown, and once it is lost a plan without any. A cycle that did
         // not come so far leaves what is flown.
         let held = planner.held();
-        let waits = match held {
-            Some(_) => !planner.is_lost() || way_out.is_none(),
-            None => !cycle.complete,
+        let waits = if planner.is_lost() {
+            way_out.is_none()
+        } else {
+            held.is_some() || !cycle.complete
         };
         let kept = self.open && self.flown.loiter().is_some() && waits && !later;
         let outcome = match best {
