@@ -1,9 +1,11 @@
 //! Simple planners in the place of the planner in space, on the same sensors, map, regulator and plant.
 
-use crate::forest::{flown, trunk};
+use crate::forest::{aside, flown, trunk};
+use mpp_sim::inquest::Cause;
+use mpp_sim::orders::{Order, OrderEntry};
 use mpp_sim::outcome::Outcome;
 use mpp_sim::space::world::Body;
-use mpp_sim::space::{BaselineName, SpaceFile};
+use mpp_sim::space::{BaselineName, SpaceFile, SpacePipe, fly_space_again};
 
 fn outcome(name: BaselineName, bodies: &[Body]) -> Outcome {
     let file = SpaceFile {
@@ -102,4 +104,40 @@ fn the_method_of_the_paper_draws_as_many_paths_as_wanted() {
     assert_eq!(again.header(), five.header);
     let error = flown(paper(51), None).unwrap_err();
     assert!(error.contains("candidates: give 1 to 50"), "{error}");
+}
+
+/// Who flies straight on hits a trunk that stood there all the time, and one that grows half a second ahead: nobody knew that one.
+#[test]
+fn a_collision_tells_for_how_long_the_obstacle_was_known() {
+    let failure = |stands: Vec<Body>, grows: Option<f64>| {
+        aside(move || {
+            let file = SpaceFile {
+                baseline: Some("straight".to_owned()),
+                ..SpaceFile::default()
+            };
+            let scenario = file.build(Some(&stands)).unwrap();
+            let orders = grows.map(|x| OrderEntry {
+                tick: 400,
+                order: Order::Trunk {
+                    x,
+                    y: 0.0,
+                    radius: 0.4,
+                },
+            });
+            let orders = Vec::from_iter(orders);
+            let mut link = SpacePipe::of(&scenario);
+            let log = fly_space_again(&scenario, &mut link, &orders, || false).unwrap();
+            assert_eq!(log.orders.len(), orders.len());
+            (log.summary.failure.unwrap(), log)
+        })
+    };
+    let (known, log) = failure(vec![trunk(60.0, 0.0), trunk(120.0, 30.0)], None);
+    assert_ne!(known.cause, Cause::Hidden);
+    // The lidar sees 45 m.
+    let since = log.summary.t_end - known.seen_before.unwrap();
+    assert!(since < 2.0, "{since}");
+    let x = log.ticks.x[400] + 6.0;
+    let (hidden, _) = failure(vec![trunk(120.0, 30.0)], Some(x));
+    assert_eq!(hidden.cause, Cause::Hidden);
+    assert!(hidden.seen_before.is_some_and(|time| time < 0.6));
 }

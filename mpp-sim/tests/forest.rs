@@ -12,7 +12,7 @@ use mpp_sim::space::{
 };
 
 /// Does something on a stack on which the core in space can be built.
-fn aside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+pub(crate) fn aside<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
     let thread = std::thread::Builder::new().stack_size(mpp_sim::space::STACK);
     thread.spawn(work).unwrap().join().unwrap()
 }

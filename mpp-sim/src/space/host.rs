@@ -2,12 +2,14 @@
 //! on.
 
 use super::instruments::{Instruments, Measured};
+use super::judge::Inquest;
 use super::world::{Body, Vector, World};
 use super::{SpaceAircraft, SpacePipe, SpaceScenario, SpaceState, true_path};
 use crate::entries::{LateralTick, PlanEntry, Tick};
 use crate::file_error::ScenarioError;
 use crate::flight::noted::{conditions, control, estimate, plan_entry, reference};
 use crate::flight::{FlyError, check, entry, own_hello};
+use crate::inquest::Failure;
 use crate::link::{Link, LinkError};
 use crate::log::{FlightLog, Summary};
 use crate::orders::{Order, OrderEntry, Refused};
@@ -19,8 +21,6 @@ use hil_protocol::{
 };
 use mpp_core::vehicle::{AirState, Conditions, Control, LateralControl, VehicleState};
 
-/// How far beyond the band a flight may stray \[m\].
-pub const STRAY: f64 = 0.5;
 /// Clearance beyond which nobody asks \[m\].
 const MOST: f64 = 5.0;
 
@@ -88,29 +88,8 @@ pub struct SpaceFlight {
     gap: f64,
     clearance: f64,
     deviation: f64,
-}
-
-impl SpaceScenario {
-    /// How a flight ends whose last tick, of those flown, moved it from one state to another; `None` if it goes on.
-    #[must_use]
-    pub fn judge(
-        &self,
-        world: &World,
-        before: &SpaceState,
-        state: &SpaceState,
-        flown: u32,
-    ) -> Option<Outcome> {
-        let extent = world.extent();
-        let sideways = state.lateral.y.abs() > extent.half_width + STRAY;
-        let upwards = state.plane.z > extent.ceiling + STRAY;
-        if self.hull().first_contact(world, before, state).is_some() {
-            Some(Outcome::Collision)
-        } else if state.plane.x >= extent.length {
-            Some(Outcome::Survived)
-        } else {
-            (sideways || upwards || flown >= self.plane.ticks).then_some(Outcome::NotArrived)
-        }
-    }
+    inquest: Inquest,
+    failure: Option<Failure>,
 }
 
 impl SpaceFlight {
@@ -168,6 +147,8 @@ impl SpaceFlight {
             gap: MOST,
             clearance: MOST,
             deviation: 0.0,
+            inquest: Inquest::default(),
+            failure: None,
         })
     }
 
@@ -239,6 +220,9 @@ impl SpaceFlight {
             .measure(self.flown, &self.aircraft, &self.world);
         for message in &measured.messages {
             link.send(message)?;
+        }
+        if let Some(returns) = self.instruments.returns() {
+            self.inquest.watch(Scenario::time(self.flown), &returns);
         }
         let reply = self.answer(link)?;
         let command = control(&reply.command);
@@ -358,7 +342,26 @@ impl SpaceFlight {
         self.end = scenario.judge(world, before, state, self.flown);
         if self.end == Some(Outcome::Collision) {
             self.clearance = self.clearance.min(0.0);
+            let place = scenario.hull().nearest(world, before);
+            let end = Scenario::time(self.flown);
+            let failure = (self.inquest).collision(&self.log.plans, place, self.off(), end);
+            self.failure = Some(failure);
         }
+    }
+
+    /// Distance of the last tick's state from what it followed \[m\].
+    fn off(&self) -> Option<f64> {
+        let (ticks, side) = (&self.log.ticks, &self.log.lateral);
+        let of = |columns: [Option<&f64>; 3]| match columns {
+            [Some(x), Some(y), Some(z)] => Some([*x, *y, *z]),
+            _ => None,
+        };
+        let told = |column: &[Option<f64>]| column.last().copied().flatten();
+        let at = of([ticks.x.last(), side.y.last(), ticks.z.last()])?;
+        let [x, y, z] = [&ticks.ref_x, &side.ref_y, &ticks.ref_z].map(|it| told(it));
+        let followed = [x?, y?, z?];
+        let square = |axis: usize| (at[axis] - followed[axis]).powi(2);
+        Some((0..3).map(square).sum::<f64>().sqrt())
     }
 
     /// The log of what was flown; until the end, of an interrupted flight.
@@ -372,7 +375,7 @@ impl SpaceFlight {
             outcome,
             strict,
             class: Class::of(outcome, strict, planless),
-            failure: None,
+            failure: self.failure,
             t_end: Scenario::time(self.flown),
             x_end: self.aircraft.state().plane.x,
             min_clearance: Some(self.clearance).filter(|it| *it < MOST),

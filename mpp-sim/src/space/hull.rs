@@ -2,11 +2,14 @@
 
 use super::motion::SpaceState;
 use super::pose::Pose;
-use super::world::{World, WorldError};
+use super::world::{Vector, World, WorldError};
 
 /// Distance at which something counts as touched \[m\]. Between two checked attitudes no point of the hull moves by more than
 /// twice this, so that it passes through no wire, however thin.
 const TOUCH: f64 = 0.005;
+/// Pieces of half a wing that are looked at, and how far around them \[m\].
+const PIECES: i32 = 32;
+const FAR: f64 = 5.0;
 
 /// What an aircraft can hit something with, about its centre of mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +63,21 @@ impl Hull {
         shares.find(|share| self.clear(world, &from.towards(&to, *share), 1.0) <= TOUCH)
     }
 
+    /// The place on wing or fuselage that is nearest to a body or the ground, within a few centimetres.
+    #[must_use]
+    pub fn nearest(&self, world: &World, state: &SpaceState) -> Vector {
+        let pose = Pose::of(state);
+        let shares = (-PIECES..=PIECES).map(|at| f64::from(at) / f64::from(PIECES));
+        let places = shares.flat_map(|share| {
+            let wing = pose.place([0.0, share * self.half_span, 0.0]);
+            let fuselage = pose.place([share * self.half_length, 0.0, 0.0]);
+            let gap = |place: Vector, radius: f64| (world.clearance(place, FAR) - radius, place);
+            [gap(wing, 0.0), gap(fuselage, self.radius)]
+        });
+        let least = places.min_by(|(a, _), (b, _)| a.total_cmp(b));
+        least.map_or([0.0; 3], |(_, place)| place)
+    }
+
     /// Refuses a start at which the hull touches something.
     ///
     /// # Errors
@@ -76,7 +94,7 @@ impl Hull {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::space::world::{Body, Extent, Vector};
+    use crate::space::world::{Body, Extent};
     use crate::space::{LateralState, Quaternion};
     use mpp_core::vehicle::{AirState, VehicleState};
 
@@ -126,6 +144,25 @@ mod tests {
                 assert!((hull.clearance(&gap, &banked, 5.0) - clear).abs() < 1e-9);
             }
         }
+    }
+
+    /// Beside the right wing tip, before the nose of a fuselage.
+    #[test]
+    fn the_nearest_place_is_on_the_part_that_is_nearest() {
+        let hull = Hull {
+            half_span: 1.0,
+            half_length: 0.5,
+            radius: 0.1,
+        };
+        let at = |x: f64, y: f64| {
+            let state = state([x, y, 8.0], Quaternion::ONE);
+            hull.nearest(&world(&[trunk(0.0)]), &state)
+        };
+        let off = |[x, y, z]: Vector, place: Vector| {
+            libm::hypot(libm::hypot(x - place[0], y - place[1]), z - place[2])
+        };
+        assert!(off(at(10.0, -1.5), [10.0, -0.5, 8.0]) < 1e-9);
+        assert!(off(at(9.0, 0.0), [9.5, 0.0, 8.0]) < 1e-9);
     }
 
     /// Of a wing that is banked to the right the right end is low.

@@ -6,6 +6,7 @@ mod course;
 mod host;
 mod hull;
 mod instruments;
+mod judge;
 pub mod lidar;
 mod look;
 mod motion;
@@ -23,8 +24,9 @@ pub mod world;
 
 pub use baseline::BaselineName;
 pub use course::CourseHold;
-pub use host::{STRAY, SpaceFlight, fly_space, fly_space_again, fly_space_with};
+pub use host::{SpaceFlight, fly_space, fly_space_again, fly_space_with};
 pub use hull::Hull;
+pub use judge::STRAY;
 pub use look::{Look, Moment, SpaceCycle, moment, scenario as scenario_of};
 pub use motion::{LateralState, MOST_SIDESLIP, SpaceDynamics, SpaceState};
 pub use mpp_core::vehicle::Quaternion;

@@ -343,6 +343,8 @@ fn row(scenario: &SpaceScenario, seed: u64, signals: &Signals) -> Result<SpaceRo
         density: space.and_then(|space| space.density),
         seed,
         outcome: log.summary.outcome,
+        cause: log.summary.failure.map(|it| it.cause),
+        seen_before: log.summary.failure.and_then(|it| it.seen_before),
         t_end: log.summary.t_end,
         x_end: log.summary.x_end,
         min_clearance: log.summary.min_clearance,

@@ -1,8 +1,10 @@
 //! A cell of a campaign in space, from its flights.
 
 use mpp_analysis::campaign::wilson;
+use mpp_sim::inquest::Cause;
 use mpp_sim::outcome::Outcome;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// One flight of a campaign.
 #[derive(Clone, Debug, Serialize)]
@@ -11,6 +13,9 @@ pub(super) struct SpaceRow {
     pub(super) density: Option<f64>,
     pub(super) seed: u64,
     pub(super) outcome: Outcome,
+    /// Of a collision: its cause, and the time for which beams had met what was hit \[s\].
+    pub(super) cause: Option<Cause>,
+    pub(super) seen_before: Option<f64>,
     pub(super) t_end: f64,
     pub(super) x_end: f64,
     pub(super) min_clearance: Option<f64>,
@@ -30,6 +35,8 @@ pub(super) struct SpaceCell {
     /// Wilson's interval of 95 % [-].
     interval: (f64, f64),
     collisions: u32,
+    /// How many of them have each cause.
+    causes: BTreeMap<Cause, u32>,
     not_arrived: u32,
     extreme: u32,
     /// Median of the least clearance of those that arrived \[m\], where it is less than 5 m.
@@ -50,6 +57,10 @@ impl SpaceCell {
         let through = rows.iter().filter(|row| row.outcome == Outcome::Survived);
         let mut clearances: Vec<f64> = through.filter_map(|row| row.min_clearance).collect();
         clearances.sort_by(f64::total_cmp);
+        let mut causes = BTreeMap::new();
+        for cause in rows.iter().filter_map(|row| row.cause) {
+            *causes.entry(cause).or_insert(0) += 1;
+        }
         let first = rows.first();
         Self {
             world: first.map_or_else(String::new, |row| row.world.clone()),
@@ -58,6 +69,7 @@ impl SpaceCell {
             arrived,
             interval: wilson(arrived, flights),
             collisions: count(&[Outcome::Collision]),
+            causes,
             not_arrived: count(&[Outcome::NotArrived]),
             extreme: count(&[Outcome::FlightPathLimit, Outcome::PitchLimit]),
             median_clearance: clearances.get(clearances.len() / 2).copied(),
@@ -75,14 +87,24 @@ impl std::fmt::Display for SpaceCell {
         }
         write!(
             f,
-            ": {} of {} flights arrived [{:.1}, {:.1} %]; {} collisions, {} not arrived, {} extreme",
+            ": {} of {} flights arrived [{:.1}, {:.1} %]; {} collisions",
             self.arrived,
             self.flights,
             100.0 * low,
             100.0 * high,
             self.collisions,
-            self.not_arrived,
-            self.extreme
+        )?;
+        if !self.causes.is_empty() {
+            let causes = self.causes.iter();
+            let told: Vec<_> = causes
+                .map(|(cause, count)| format!("{count} {}", cause.name()))
+                .collect();
+            write!(f, " ({})", told.join(", "))?;
+        }
+        write!(
+            f,
+            ", {} not arrived, {} extreme",
+            self.not_arrived, self.extreme
         )?;
         if let Some(clearance) = self.median_clearance {
             write!(f, "; median clearance {clearance:.2} m")?;
