@@ -132,7 +132,8 @@ fn a_collision_tells_for_how_long_the_obstacle_was_known() {
         })
     };
     let (known, log) = failure(vec![trunk(60.0, 0.0), trunk(120.0, 30.0)], None);
-    assert_ne!(known.cause, Cause::Hidden);
+    assert_eq!(known.cause, Cause::NoWay);
+    assert!(known.off_plan.is_some_and(|off| off < 0.3), "{known:?}");
     // The lidar sees 45 m.
     let since = log.summary.t_end - known.seen_before.unwrap();
     assert!(since < 2.0, "{since}");

@@ -2,7 +2,7 @@
 //! on.
 
 use super::instruments::{Instruments, Measured};
-use super::judge::Inquest;
+use super::judge::{Inquest, off_track};
 use super::world::{Body, Vector, World};
 use super::{SpaceAircraft, SpacePipe, SpaceScenario, SpaceState, true_path};
 use crate::entries::{LateralTick, PlanEntry, Tick};
@@ -344,24 +344,9 @@ impl SpaceFlight {
             self.clearance = self.clearance.min(0.0);
             let place = scenario.hull().nearest(world, before);
             let end = Scenario::time(self.flown);
-            let failure = (self.inquest).collision(&self.log.plans, place, self.off(), end);
-            self.failure = Some(failure);
+            let off = off_track(&self.log, before);
+            self.failure = Some(self.inquest.collision(&self.log.plans, place, off, end));
         }
-    }
-
-    /// Distance of the last tick's state from what it followed \[m\].
-    fn off(&self) -> Option<f64> {
-        let (ticks, side) = (&self.log.ticks, &self.log.lateral);
-        let of = |columns: [Option<&f64>; 3]| match columns {
-            [Some(x), Some(y), Some(z)] => Some([*x, *y, *z]),
-            _ => None,
-        };
-        let told = |column: &[Option<f64>]| column.last().copied().flatten();
-        let at = of([ticks.x.last(), side.y.last(), ticks.z.last()])?;
-        let [x, y, z] = [&ticks.ref_x, &side.ref_y, &ticks.ref_z].map(|it| told(it));
-        let followed = [x?, y?, z?];
-        let square = |axis: usize| (at[axis] - followed[axis]).powi(2);
-        Some((0..3).map(square).sum::<f64>().sqrt())
     }
 
     /// The log of what was flown; until the end, of an interrupted flight.

@@ -2,26 +2,25 @@
 //!
 //! The first rule that applies gives the [`Cause`]:
 //!
-//! 1. no beam had ended [`NEAR`] where the hull touched, [`KNOWN`] before: [`Cause::Hidden`];
-//! 2. of the plan that was flown then, distances were missing in the map: [`Cause::NoWay`];
-//! 3. at the end the aircraft was off what it followed by more than [`OFF`]: [`Cause::Tracking`];
-//! 4. otherwise [`Cause::Misjudged`]: a plan since then led into it.
+//! 1. [`KNOWN`] before, no beam had ended [`NEAR`] where the hull touched: [`Cause::Hidden`];
+//! 2. the plan that was flown then lacked its whole [`MARGIN`], so it touched something in the map: [`Cause::NoWay`];
+//! 3. at the end the aircraft was farther than this margin to a side of what it followed: [`Cause::Tracking`];
+//! 4. otherwise [`Cause::Misjudged`]: map, estimate or a plan since then were wrong by a part of the margin.
 
-use super::world::{Vector, World};
-use super::{SpaceScenario, SpaceState};
+use super::scenario::MARGIN;
+use super::world::{Vector, World, dot, length, minus};
+use super::{SpaceScenario, SpaceState, true_path};
 use crate::entries::PlanEntry;
+use crate::flight_observer::KNOWN;
 use crate::inquest::{Cause, Failure};
+use crate::log::FlightLog;
 use crate::outcome::Outcome;
-use crate::scenario::Scenario;
+use mpp_core::config::TICK_PERIOD;
 
 /// How far beyond the band a flight may stray \[m\].
 pub const STRAY: f64 = 0.5;
-/// Time for which an obstacle must be known to be avoided \[s\], as a known collision in the plane has it.
-const KNOWN: f64 = 1.0;
 /// Distance from where the hull touches up to which the end of a beam shows it \[m\]: two voxels, or rings 2 deg apart at 30 m.
 const NEAR: f64 = 1.0;
-/// Distance from what is followed beyond which it is the regulator that failed \[m\]: the margin of plans.
-const OFF: f64 = 0.3;
 
 impl SpaceScenario {
     /// How a flight ends whose last tick, of those flown, moved it from one state to another; `None` if it goes on.
@@ -62,10 +61,7 @@ impl Inquest {
 
     /// Time from the first sweep with an end near a place until some time \[s\].
     fn seen_before(&self, place: Vector, end: f64) -> Option<f64> {
-        let near = |at: &[f32; 3]| {
-            let square = |axis: usize| (f64::from(at[axis]) - place[axis]).powi(2);
-            (0..3).map(square).sum::<f64>() < NEAR * NEAR
-        };
+        let near = |at: &[f32; 3]| length(minus(at.map(f64::from), place)) < NEAR;
         let met = self.sweeps.iter().find(|(_, ends)| ends.iter().any(near));
         met.map(|(time, _)| end - time)
     }
@@ -80,18 +76,19 @@ impl Inquest {
     ) -> Failure {
         let seen_before = self.seen_before(place, end);
         let flown_then = |plan: &&PlanEntry| {
-            let used = plan.used_from_tick.map_or(f64::INFINITY, |tick| {
-                Scenario::time(u32::try_from(tick).unwrap_or(u32::MAX))
-            });
-            !plan.had_nothing() && used <= end - KNOWN
+            let used = |tick: u64| tick as f64 * TICK_PERIOD;
+            let then = (plan.used_from_tick).is_some_and(|tick| used(tick) <= end - KNOWN);
+            then && !plan.had_nothing()
         };
         let plan = plans.iter().rev().find(flown_then);
-        let tight = plan.is_none_or(|plan| plan.violation.is_none_or(|missing| missing > 0.0));
-        let cause = if seen_before.is_none_or(|time| time < KNOWN) {
+        let touches = plan
+            .and_then(|plan| plan.violation)
+            .is_none_or(|it| it >= MARGIN);
+        let cause = if seen_before.is_none_or(|time| time <= KNOWN) {
             Cause::Hidden
-        } else if tight {
+        } else if touches {
             Cause::NoWay
-        } else if off.is_some_and(|off| off > OFF) {
+        } else if off.is_some_and(|off| off > MARGIN) {
             Cause::Tracking
         } else {
             Cause::Misjudged
@@ -103,6 +100,18 @@ impl Inquest {
             off_plan: off,
         }
     }
+}
+
+/// Distance of a state to the side of what was followed in the last tick of a log, or above or below it \[m\]. No regulator holds the
+/// time of a plan.
+pub(super) fn off_track(log: &FlightLog, state: &SpaceState) -> Option<f64> {
+    let last = |column: &[Option<f64>]| column.last().copied().flatten();
+    let (ticks, side) = (&log.ticks, &log.lateral);
+    let followed = [last(&ticks.ref_x)?, last(&side.ref_y)?, last(&ticks.ref_z)?];
+    let path = true_path(state);
+    let off = minus(path.position, followed);
+    let [_, up, right] = path.axes();
+    Some(dot(off, up).hypot(dot(off, right)))
 }
 
 #[cfg(test)]
@@ -125,8 +134,8 @@ mod tests {
         }
     }
 
-    /// Beams that end 0.8 m aside of the place from 3 s or from 4.5 s on, plans with and without room, near it and off it at the end,
-    /// which comes at 5 s. What lacks room later than a second before the end is no cause: nobody can avoid it then.
+    /// Beams that end 0.8 m aside of the place from 3 s or from 4.5 s on, plans that lack less or more than the margin, near it and off
+    /// it at the end, which comes at 5 s. What a plan lacks later than a second before the end is no cause: nobody can avoid it then.
     #[test]
     fn each_collision_has_the_cause_of_the_first_rule_that_applies() {
         let place = [60.0, 1.0, 8.0];
@@ -141,7 +150,7 @@ mod tests {
             let plans = [plan(300, missing[0]), plan(420, missing[1])];
             inquest.collision(&plans, place, off, 5.0)
         };
-        let (free, tight) = ([0.0, 0.3], [0.2, 0.0]);
+        let (free, tight) = ([0.9 * MARGIN, 2.0 * MARGIN], [1.1 * MARGIN, 0.0]);
         let failure = of(2.95, 0.8, free, Some(0.1));
         assert_eq!(failure.cause, Cause::Misjudged);
         assert!((failure.seen_before.unwrap() - 2.0).abs() < 1e-9);

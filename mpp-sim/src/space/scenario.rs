@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 /// Name of the preset on the command line, in scenario files and in logs.
 pub const SPACE: &str = "space";
 /// Distance of plans from what hits have shown, beyond the radius of a sphere or the half span \[m\]. Source: decision 58.
-const MARGIN: f64 = 0.3;
+pub(super) const MARGIN: f64 = 0.3;
 /// Part of a fuselage that reaches below its wing, and room to ceiling and sides \[m\].
 const BELOW: f64 = 0.5;
 const ROOM: f64 = 0.3;

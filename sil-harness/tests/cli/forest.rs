@@ -117,6 +117,7 @@ fn a_baseline_flies_a_cell_in_place_of_the_planner() {
     let (code, text) = told(flags);
     assert_eq!(code, Some(0), "{text}");
     assert!(text.contains("0 of 2 flights arrived"), "{text}");
+    assert!(text.contains("2 collisions (2 no-way), "), "{text}");
 }
 
 #[test]

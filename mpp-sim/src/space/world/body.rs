@@ -225,7 +225,7 @@ pub(in crate::space) fn minus(a: Vector, b: Vector) -> Vector {
     plus(a, b, -1.0)
 }
 
-pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+pub(in crate::space) fn dot(a: Vector, b: Vector) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

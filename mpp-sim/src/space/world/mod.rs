@@ -27,7 +27,7 @@ pub use hills::ALTITUDE;
 pub use stems::{StemError, stems};
 pub use terrain::Terrain;
 
-pub(super) use body::{length, minus, plus};
+pub(super) use body::{dot, length, minus, plus};
 use grid::Grid;
 
 /// Distance within which the nearest body is looked for first \[m\]; then within twice as much, and so on. More looks at bodies
