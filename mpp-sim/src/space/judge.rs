@@ -111,7 +111,7 @@ pub(super) fn off_track(log: &FlightLog, state: &SpaceState) -> Option<f64> {
     let path = true_path(state);
     let off = minus(path.position, followed);
     let [_, up, right] = path.axes();
-    Some(dot(off, up).hypot(dot(off, right)))
+    Some(libm::hypot(dot(off, up), dot(off, right)))
 }
 
 #[cfg(test)]
