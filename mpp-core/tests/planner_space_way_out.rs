@@ -3,8 +3,8 @@
 use super::planner_space::{Draw, KEEP, finish, level, model, plan, to_trunks, with_planner};
 use core::f64::consts::TAU;
 use mpp_core::map::{SpaceBeam, VoxelGrid};
-use mpp_core::planner::space::{Keep, SpacePlanner, WayOut};
-use mpp_core::vehicle::{Loiter, SpacePath, within_half_turn};
+use mpp_core::planner::space::{Keep, SpacePlanner, WayOut, next_start_on_circle};
+use mpp_core::vehicle::{Loiter, SPACE_STATES, SpacePath, within_half_turn};
 use rand_core::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 
@@ -12,9 +12,16 @@ const SIGHT: f64 = 90.0;
 
 /// Shows trunks `(x, y, radius)` by level beams all around, from places on the way to the start.
 fn show(map: &mut VoxelGrid, trunks: &[[f64; 3]]) {
+    show_to(map, [0.0; 2], trunks);
+}
+
+/// As [`show`], from places up to `(x, y)`.
+fn show_to(map: &mut VoxelGrid, [x, y]: [f64; 2], trunks: &[[f64; 3]]) {
     for back in (0..12).rev() {
-        let from = -2.0 * f64::from(back);
-        let moved: Vec<_> = (trunks.iter().map(|[x, y, r]| [x - from, *y, *r])).collect();
+        let from = x - 2.0 * f64::from(back);
+        let moved: Vec<_> = (trunks.iter())
+            .map(|[x, there, r]| [x - from, there - y, *r])
+            .collect();
         let beams: Vec<SpaceBeam> = (0..2160)
             .map(|at| {
                 let (side, ahead) = libm::sincos(f64::from(at) * TAU / 720.0);
@@ -25,7 +32,7 @@ fn show(map: &mut VoxelGrid, trunks: &[[f64; 3]]) {
                 SpaceBeam { direction, range }
             })
             .collect();
-        map.insert(&[from, 0.0, 7.5], beams.iter().copied(), SIGHT);
+        map.insert(&[from, y, 7.5], beams.iter().copied(), SIGHT);
     }
 }
 
@@ -81,6 +88,38 @@ fn a_circle_stays_over_one_place_in_any_wind() {
             "{turned} {flown}"
         );
         assert!(turned * side > 0.0 && at.bank.abs() < model.bank);
+    }
+}
+
+/// In winds of up to half of the airspeed: the next start on a circle is as far from the centre as what is flown, as far around as the
+/// deviation is along, and turned as far. What is across moves nothing.
+#[test]
+fn the_next_start_stays_on_the_circle() {
+    let mut draw = Draw(Pcg64Mcg::seed_from_u64(23));
+    for _ in 0..200 {
+        let mut model = model();
+        model.wind = [draw.between(-4.0, 4.0), draw.between(-4.0, 4.0), 0.0];
+        let loiter = Loiter::joined(&model, &level(&model), 1.0, 7.5).unwrap();
+        let angle = draw.between(-3.0, 3.0);
+        let (at, (sin, cos)) = (loiter.at(&model, angle), libm::sincos(angle));
+        let [along, across] = [draw.between(-2.0, 2.0), draw.between(-2.0, 2.0)];
+        let mut deviation = [0.0; SPACE_STATES];
+        deviation[..2].copy_from_slice(&[across * cos - along * sin, across * sin + along * cos]);
+        let next = next_start_on_circle(&at, &deviation, &loiter);
+        let turned = along / loiter.radius;
+        let place = loiter.place(angle + turned);
+        let off = (0..3).map(|axis| libm::fabs(next.position[axis] - place[axis]));
+        assert!(off.fold(0.0, f64::max) < 1e-9, "{next:?} {place:?}");
+        assert!(libm::fabs(next.course - at.course - turned) < 1e-9);
+        let (position, course) = (next.position, next.course);
+        assert_eq!(
+            next,
+            SpacePath {
+                position,
+                course,
+                ..at
+            }
+        );
     }
 }
 
@@ -148,19 +187,17 @@ fn a_trunk_on_the_circle_ends_a_way_out() {
     });
 }
 
-/// A way out with a trunk on its circle is flown on, and told as lost, where the best plan meets a wall, too.
+/// Where a trunk comes up close on the way to the circle, the best plan is flown, also if it meets a wall later.
 #[test]
-fn a_lost_way_out_is_better_than_a_wall() {
+fn a_way_out_that_meets_something_first_is_given_up() {
     with_planner(KEEP, |map, planner| {
-        let found = way_out(map, planner, &[]).unwrap();
+        let _ = way_out(map, planner, &[]).unwrap();
         planner.hold();
-        let [x, y, _] = found.loiter.centre;
-        let wall = (0..240).map(|at| [14.0, 0.5 * f64::from(at) - 60.0, 0.3]);
-        let on_it = [x + found.loiter.radius + 0.3, y, 0.3];
-        show(map, &wall.chain([on_it]).collect::<Vec<_>>());
+        let wall = (0..240).map(|at| [30.0, 0.5 * f64::from(at) - 60.0, 0.3]);
+        show(map, &wall.chain([[13.0, 0.2, 0.3]]).collect::<Vec<_>>());
         planner.begin(&level(&model()), 0.0);
         finish(planner, map);
-        assert!(planner.is_lost());
+        assert!(!planner.is_lost() && planner.held().is_none());
     });
 }
 
@@ -173,11 +210,16 @@ fn a_narrow_band_has_no_way_out() {
     });
 }
 
-/// On the circle a trunk 60 deg ahead ends it, and one that is nearly half a turn ahead does not yet.
+/// On the circle a trunk 60 deg ahead ends it, and one that is nearly half a turn ahead does not yet. Where the best plan meets a
+/// wall, it is flown on and told as lost.
 #[test]
 fn a_circle_is_left_for_what_is_near_ahead() {
     with_planner(KEEP, |map, planner| {
-        for (ahead, holds) in [(170.0_f64, true), (60.0, false)] {
+        for (ahead, walled, held) in [
+            (170.0_f64, false, true),
+            (60.0, false, false),
+            (60.0, true, true),
+        ] {
             let found = way_out(map, planner, &[]).unwrap();
             planner.hold();
             let since = found.plan.length() - 0.1;
@@ -185,10 +227,20 @@ fn a_circle_is_left_for_what_is_near_ahead() {
             let loiter = &found.loiter;
             let angle = loiter.angle(&start.position) + loiter.side * ahead.to_radians();
             let [x, y, _] = loiter.place(angle);
-            show(map, &[[x, y, 0.3]]);
+            let wall = (-60..60).filter(|_| walled).map(|at| {
+                let (sin, cos) = libm::sincos(start.course + 0.03 * f64::from(at));
+                let [x, y, _] = start.position;
+                [x + 12.0 * cos, y + 12.0 * sin, 0.3]
+            });
+            let trunks: Vec<_> = wall.chain([[x, y, 0.3]]).collect();
+            show_to(map, [start.position[0], start.position[1]], &trunks);
             planner.begin(&start, since);
             finish(planner, map);
-            assert_eq!(planner.held().is_some(), holds, "{ahead}");
+            assert_eq!(
+                [planner.held().is_some(), planner.is_lost()],
+                [held, walled],
+                "{ahead}"
+            );
         }
     });
 }

@@ -8,13 +8,16 @@ use super::upright::{
     Around, FAR_COLUMN, FARTHEST, HEIGHT, REACH, Storey, UNIT, Upright, along, mixed,
 };
 use super::voxels::VoxelGrid;
-use super::walk::voxel;
+use super::walk::{back, voxel};
 use crate::tuning::grid::CELL;
 use core::ops::Range;
 
 /// Voxels of the window behind the aircraft, and to its left.
 const BEHIND: i64 = 8;
 const LEFT: i64 = WIDTH as i64 / 2;
+/// Voxels by which the window moves back, and to the side to which it flies, where an aircraft flies backwards: a part of what the
+/// [`VoxelGrid`] then holds. Source: decision 76.
+const BACK: [f64; 2] = [40.0, 16.0];
 /// Greatest distance that the field tells \[m\].
 pub const MOST_CLEARANCE: f64 = REACH as f64 * CELL;
 /// Diagonal of a voxel, and a little more against rounding: half a unit at either end \[m\].
@@ -51,9 +54,15 @@ impl VoxelField {
     }
 
     /// Moves the window to a position \[m\]. Then come all slices by [`look`](Self::look), then all by [`measure`](Self::measure).
-    pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3]) {
-        let ahead = (voxel(*x) - BEHIND).max(map.first());
-        self.first = [ahead, voxel(*y) - LEFT, map.floor()];
+    pub(crate) fn begin(&mut self, map: &VoxelGrid, [x, y, _]: &[f64; 3], course: f64) {
+        let [behind, aside] = BACK.map(|it| libm::round(it * back(course)) as i64);
+        let ahead = (voxel(*x) - BEHIND - behind).max(map.first());
+        let side = if libm::sin(course) < 0.0 {
+            aside
+        } else {
+            -aside
+        };
+        self.first = [ahead, voxel(*y) - LEFT - side, map.floor()];
         self.start = self.first.map(|it| it as f64);
     }
 

@@ -7,7 +7,7 @@
 use super::evidence::{Change, Evidence, LAYERS, PASSED_ONCE, STEP_UP, UNANSWERED_ONCE};
 use super::extent::Extent;
 use super::level_grid::LevelGrid;
-use super::walk::{SpaceBeam, Walk, entered, voxel, wrapped};
+use super::walk::{SpaceBeam, Walk, back, entered, voxel, wrapped};
 use crate::tuning::grid::{
     CELL, HIT_DOUBT, PASSED, PASSED_UNANSWERED, RANGE_DOUBT, UNANSWERED_SHARE,
 };
@@ -16,6 +16,9 @@ use crate::tuning::grid::{
 pub const CELLS: [usize; 3] = [100, 96, LAYERS];
 /// Voxels behind the aircraft, and to its left, that the window keeps.
 const BEHIND: [i64; 2] = [8, CELLS[1] as i64 / 2];
+/// Voxels behind an aircraft that flies backwards on top of these. More holds more of what is ahead of it then, and less of the way.
+/// Source: decision 76.
+const BACK: f64 = 60.0;
 /// Voxels by which the aircraft may be off the middle of the window in z before it rolls. Less rolls to and fro, more sees less
 /// of one side.
 const OFF_MIDDLE: i64 = 4;
@@ -100,14 +103,14 @@ impl VoxelGrid {
         beams: impl Iterator<Item = SpaceBeam> + Clone,
         sight: f64,
     ) {
-        self.begin(position);
+        self.begin(position, 0.0);
         beams.clone().for_each(|beam| self.mark(&beam));
         beams.for_each(|beam| self.pass(&beam, sight));
     }
 
-    /// Begins a scan from a position \[m\].
-    pub fn begin(&mut self, position: &[f64; 3]) {
-        self.roll(position);
+    /// Begins a scan from a position \[m\], at a course \[rad\].
+    pub fn begin(&mut self, position: &[f64; 3], course: f64) {
+        self.roll(position, back(course));
         let [_, _, z] = position;
         self.climb(*z);
         self.hit.as_flattened_mut().fill(0);
@@ -126,10 +129,10 @@ impl VoxelGrid {
     }
 
     /// Moves the window in x and y. A jump beyond the window clears all of it, and no more than that.
-    fn roll(&mut self, [x, y, _]: &[f64; 3]) {
+    fn roll(&mut self, [x, y, _]: &[f64; 3], back: f64) {
         let [length, width] = [CELLS[0] as i64, CELLS[1] as i64];
         let [old, side] = self.first;
-        let first = voxel(*x) - BEHIND[0];
+        let first = voxel(*x) - BEHIND[0] - libm::round(BACK * back) as i64;
         for x in entered(old, first, CELLS[0]) {
             let at = x.rem_euclid(length) as usize;
             if let (Some(evidence), Some(extents)) =

@@ -13,6 +13,11 @@ pub struct SpaceBeam {
     pub range: Option<f64>,
 }
 
+/// By how much windows lie behind the aircraft at a course \[rad\]: not at all up to a right angle to the way, 1 against it.
+pub(super) fn back(course: f64) -> f64 {
+    (-libm::cos(course)).max(0.0)
+}
+
 /// The way of a beam along an axis.
 pub(super) struct Walk {
     /// Place in the memory, and what a step adds to it, modulo the length: one, or one less than none.

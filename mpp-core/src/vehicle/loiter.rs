@@ -72,6 +72,22 @@ impl Loiter {
         [x + self.radius * cos, y + self.radius * sin, z]
     }
 
+    /// A state near the circle, moved around the centre as far as a displacement `(x, y)` \[m\] is along the circle.
+    #[must_use]
+    pub fn moved(&self, state: &SpacePath, [by_x, by_y]: [f64; 2]) -> SpacePath {
+        let ([centre_x, centre_y, _], [x, y, z]) = (self.centre, state.position);
+        let (out_x, out_y) = (x - centre_x, y - centre_y);
+        let square = (out_x * out_x + out_y * out_y).max(1.0);
+        let turn = (out_x * by_y - out_y * by_x) / square;
+        let (sin, cos) = libm::sincos(turn);
+        let (x, y) = (out_x * cos - out_y * sin, out_x * sin + out_y * cos);
+        SpacePath {
+            position: [centre_x + x, centre_y + y, z],
+            course: state.course + turn,
+            ..*state
+        }
+    }
+
     /// Unit vector of the ground velocity at an angle \[rad\], and its length [m/s].
     fn ground(&self, model: &SpaceModel, angle: f64) -> ([f64; 2], f64) {
         let (sin, cos) = libm::sincos(angle + self.side * FRAC_PI_2);

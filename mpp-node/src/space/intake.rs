@@ -3,9 +3,10 @@
 /// Points that wait for the map, and how far they have come.
 #[derive(Clone, Copy)]
 pub(super) struct Intake {
-    /// Tick and position \[m\] of their sensor frame.
+    /// Tick, position \[m\] and course \[rad\] of their sensor frame.
     pub(super) tick: u32,
     pub(super) position: [f64; 3],
+    pub(super) course: f64,
     pub(super) stage: IntakeStage,
 }
 

@@ -7,7 +7,7 @@ use crate::{duration, ticks};
 use hil_protocol::{PlanOutcome, PlanReport};
 use mpp_core::control::SpaceMotion;
 use mpp_core::map::VoxelGrid;
-use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner, next_start};
+use mpp_core::planner::space::{MOST_SPACE_SLICES, SpacePlanner, next_start, next_start_on_circle};
 use mpp_core::vehicle::{Nose, SpaceControl, SpacePath};
 
 /// Points that go into the map in one slice.
@@ -30,6 +30,7 @@ impl SpaceTask {
             self.intake = Some(Intake {
                 tick,
                 position,
+                course: followed.course,
                 stage: IntakeStage::Begin,
             });
         }
@@ -102,7 +103,7 @@ impl SpaceTask {
         };
         let stage = match intake.stage {
             IntakeStage::Begin => {
-                map.begin(&intake.position);
+                map.begin(&intake.position, intake.course);
                 IntakeStage::Mark(0)
             }
             IntakeStage::Mark(first) => {
@@ -152,7 +153,12 @@ impl Session {
                     None => flown.at(time).0,
                 };
                 let deviation = flown.deviation(tick, followed, &motion.path);
-                (start, next_start(&planned, &deviation), time)
+                let circles = flown.loiter().filter(|_| flown.turns_in(tick) < 0.0);
+                let next = match circles {
+                    Some(loiter) => next_start_on_circle(&planned, &deviation, loiter),
+                    None => next_start(&planned, &deviation),
+                };
+                (start, next, time)
             }
             None => {
                 let level = SpaceControl {

@@ -4,6 +4,7 @@ extern crate std;
 
 use super::{CELL, HEIGHT, LENGTH, MOST_CLEARANCE, NearSlices, UNIT, VoxelField};
 use crate::map::{SpaceBeam, VoxelGrid};
+use core::f64::consts::PI;
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::boxed::Box;
@@ -56,7 +57,7 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
         });
     }
     map.insert(&from, beams.iter().copied(), 45.0);
-    field.begin(&map, &from);
+    field.begin(&map, &from, 0.0);
     field.look(&map, 0..LENGTH);
     let mut near = NearSlices::ZEROS;
     (0..LENGTH).for_each(|slice| field.measure(slice, &mut near));
@@ -127,4 +128,34 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
         }
     }
     assert!(clear > 500 && lines > 50, "{clear} {lines}");
+}
+
+/// Whatever its course, the aircraft has in map and field what it was shown ahead of it.
+#[test]
+fn the_windows_lie_ahead_of_the_aircraft() {
+    let mut random = Pcg64Mcg::seed_from_u64(6);
+    let mut draw = |low: f64, high: f64| {
+        low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let (mut map, mut field) = (Box::new(VoxelGrid::new()), Box::new(VoxelField::new()));
+    let from = [100.25, -40.25, 8.25];
+    for _ in 0..100 {
+        map.clear(0.0);
+        let course = draw(-PI, PI);
+        let (sin, cos) = libm::sincos(course + draw(-0.2, 0.2));
+        let range = draw(3.0, 14.0);
+        let beam = SpaceBeam {
+            direction: [cos, sin, 0.0],
+            range: Some(range),
+        };
+        map.begin(&from, course);
+        map.mark(&beam);
+        map.pass(&beam, 45.0);
+        field.begin(&map, &from, course);
+        field.look(&map, 0..LENGTH);
+        let mut near = NearSlices::ZEROS;
+        (0..LENGTH).for_each(|slice| field.measure(slice, &mut near));
+        let trunk = [from[0] + range * cos, from[1] + range * sin, from[2]];
+        assert!(field.clearance(&trunk) < CELL, "{course} {range}");
+    }
 }

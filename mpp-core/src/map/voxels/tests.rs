@@ -85,7 +85,10 @@ fn the_window_knows_in_every_height_what_it_saw() {
                 SpaceBeam { direction, range }
             })
             .collect();
-        map.insert(&at, beams.iter().copied(), SIGHT);
+        // It flies to all sides in turn.
+        map.begin(&at, 0.08 * f64::from(scan));
+        beams.iter().for_each(|beam| map.mark(beam));
+        beams.iter().for_each(|beam| map.pass(beam, SIGHT));
         let first = [map.first[0], map.first[1], map.floor()];
         let inside = |place: &[i64; 3]| {
             (0..3).all(|axis| (0..CELLS[axis] as i64).contains(&(place[axis] - first[axis])))

@@ -4,7 +4,9 @@ use crate::config::{KNOTS, STAGE_PERIOD, STAGES};
 use crate::control::follow;
 use crate::tuning::space_limits;
 use crate::tuning::space_take_over::TRUST;
-use crate::vehicle::{GRAVITY, SPACE_STATES, SpaceControl, SpaceModel, SpacePath, between, within};
+use crate::vehicle::{
+    GRAVITY, Loiter, SPACE_STATES, SpaceControl, SpaceModel, SpacePath, between, within,
+};
 
 /// Numbers of a state that no regulator holds to the plan's time.
 const ALONG: usize = 0;
@@ -173,6 +175,22 @@ pub fn next_start(planned: &SpacePath, deviation: &[f64; SPACE_STATES]) -> Space
         };
         planned[number] + share * deviation[number]
     }))
+}
+
+/// As [`next_start`], on a circle: it is moved around the centre alone. A share across would move each plan before it has come back
+/// to the circle, until the aircraft is some times its deviation off. Source: decision 76.
+#[must_use]
+pub fn next_start_on_circle(
+    planned: &SpacePath,
+    deviation: &[f64; SPACE_STATES],
+    loiter: &Loiter,
+) -> SpacePath {
+    let [x, y, ..] = *deviation;
+    let moved = loiter.moved(planned, [x, y]);
+    SpacePath {
+        airspeed: planned.airspeed + TRUST * deviation[AIRSPEED],
+        ..moved
+    }
 }
 
 impl Default for SpacePlan {

@@ -30,7 +30,7 @@ mod slices;
 mod way_out;
 mod workspace;
 
-pub use candidate::{SpacePlan, next_start, towards};
+pub use candidate::{SpacePlan, next_start, next_start_on_circle, towards};
 pub use judge::SpaceJudgement;
 pub use keep::Keep;
 pub use way_out::WayOut;

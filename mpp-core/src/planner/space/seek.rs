@@ -57,7 +57,7 @@ impl SpacePlanner {
 
     /// Tells that the best plan is flown with its way out, if it has one.
     pub fn hold(&mut self) {
-        self.ways.holds = true;
+        (self.ways.holds, self.ways.flown) = (true, true);
     }
 
     /// Drops the best plan: the way out before it is [held](Self::held).
@@ -78,12 +78,16 @@ impl SpacePlanner {
         Phase::LookAgain
     }
 
-    /// Looks again at the way out that is flown. What is lost is given up over terrain, or for a best plan that meets nothing.
+    /// Looks again at the way out that is flown. What is lost is given up over terrain, or for a best plan that meets nothing, or
+    /// that keeps its margin for longer than the plan up to the circle does.
     pub(super) fn look_again(&mut self, map: &VoxelGrid) -> Phase {
         let mut held = self.ways.found;
-        let is_free = |held: &WayOut| self.is_clear(held) && self.is_passable(held, map);
-        let lost = held.as_ref().is_some_and(|held| !is_free(held));
-        if lost && (VoxelGrid::follows(&self.keep.heights) || self.best_passes(map)) {
+        let lacks_at = (held.as_ref()).and_then(|it| self.lacks_at(&it.plan, it.holds));
+        let passable = |held: &WayOut| self.is_passable(held, map);
+        let lost = lacks_at.is_some() || held.as_ref().is_some_and(|held| !passable(held));
+        let later = || lacks_at.is_some_and(|time| self.best_lasts(time));
+        let over_terrain = VoxelGrid::follows(&self.keep.heights);
+        if lost && (over_terrain || self.best_passes(map) || later()) {
             held = None;
         }
         self.ways.lost = lost;
@@ -99,8 +103,8 @@ impl SpacePlanner {
         plan.fly(model, &self.start, |stage, state| {
             let period = self.grid.period(stage);
             let times = [0, 1].map(|more| since + self.grid.time(stage + more));
-            // At its end a plan is level; that is not the circle.
-            let ((now, control), next) = if times[1] < held.plan.length() - SHORT {
+            // On the circle it converges to it, and not to how it was flown so far.
+            let ((now, control), next) = if times[1] < held.holds + SHORT {
                 let [now, (next, _)] = times.map(|time| held.plan.at(model, time));
                 (now, next)
             } else {
@@ -116,18 +120,23 @@ impl SpacePlanner {
         }
     }
 
-    /// Whether the plan up to the circle keeps some of its margin.
-    fn is_clear(&self, held: &WayOut) -> bool {
-        let (plan, judge) = (&held.plan, self.judge());
+    /// Time at which the first stage of a plan begins that lacks a share of the margin \[s\], if one before some time does.
+    fn lacks_at(&self, plan: &SpacePlan, until: f64) -> Option<f64> {
+        let judge = self.judge();
         let mut tally = judge.begin(plan);
         for (stage, knots) in plan.knots.windows(2).enumerate() {
-            let [from, to] = knots else { break };
-            if plan.grid.time(stage) >= held.holds {
+            let ([from, to], time) = (knots, plan.grid.time(stage)) else {
+                break;
+            };
+            if time >= until {
                 break;
             }
             judge.add([from, to], stage, &mut tally);
+            if tally.missing() > LOST * self.keep.margin {
+                return Some(time);
+            }
         }
-        tally.missing() <= LOST * self.keep.margin
+        None
     }
 
     /// Whether the level of flight has something within the wing and a share of the margin, in stages of a plan that begin in a span of
@@ -182,7 +191,14 @@ impl SpacePlanner {
             })
     }
 
-    /// Counts the first stages of the best plan that are clear, in voxels that have been seen.
+    /// Whether the best plan lacks no share of the margin up to the stage of some time \[s\].
+    fn best_lasts(&self, time: f64) -> bool {
+        let lacks = |best: &Candidate| self.lacks_at(&best.plan, time + STAGE_PERIOD);
+        (self.best.as_ref()).is_some_and(|best| lacks(best).is_none())
+    }
+
+    /// Counts the first stages of the best plan that are clear, in voxels that have been seen, and that meet nothing known on the
+    /// level of flight: it remembers what the window of voxels has left behind.
     pub(super) fn begin_ways_out(&mut self, map: &VoxelGrid) -> Phase {
         let Some(best) = &self.best else {
             return Phase::Idle;
@@ -193,9 +209,11 @@ impl SpacePlanner {
         for (stage, knots) in plan.knots.windows(2).enumerate() {
             let [from, to] = knots else { break };
             judge.add([from, to], stage, &mut tally);
+            let wide = self.reach(from, to, 0.0);
             let mut points = self.points(from, to, self.grid.period(stage));
-            let seen = points.all(|point| map.has_seen(&point));
-            if tally.missing() > 0.0 || !seen {
+            let free =
+                points.all(|point| map.has_seen(&point) && map.is_met(&point, wide) != Some(true));
+            if tally.missing() > 0.0 || !free {
                 break;
             }
             clear = stage + 1;

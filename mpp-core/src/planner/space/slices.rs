@@ -33,7 +33,8 @@ impl SpacePlanner {
     /// Begins the field.
     pub(super) fn begin_search(&mut self, map: &VoxelGrid) -> Phase {
         self.settle_ways_out();
-        self.field.begin(map, &self.start.position);
+        self.field
+            .begin(map, &self.start.position, self.start.course);
         self.to_go.origin = self.start.position;
         self.workspace = Workspace::Field(NearSlices::ZEROS);
         Phase::Look(0)
@@ -180,11 +181,10 @@ impl SpacePlanner {
         }
     }
 
-    /// Judges a flight of a path. The cheapest one stays.
+    /// Judges a flight of a path. The best one stays.
     fn attempt(&mut self, plan: SpacePlan) {
         let flown = self.judged(plan);
-        let price = flown.judgement.price;
-        if (self.tried).is_none_or(|tried| price < tried.judgement.price) {
+        if (self.tried).is_none_or(|tried| self.is_better(&flown, &tried)) {
             self.tried = Some(flown);
         }
     }
@@ -232,10 +232,21 @@ impl SpacePlanner {
         Candidate { plan, judgement }
     }
 
+    /// Whether a candidate is worth more than another one: its price is less. Where the way out is lost that was flown, what keeps some
+    /// of its margin is before what does not: before a wall the price of the way through it is less than that of turning back.
+    fn is_better(&self, candidate: &Candidate, than: &Candidate) -> bool {
+        let lost = self.ways.flown && self.ways.held.is_none();
+        let worth = |it: &Candidate| {
+            let hits = it.judgement.missing > self.keep.margin;
+            (lost && hits, it.judgement.price)
+        };
+        worth(candidate) < worth(than)
+    }
+
     pub(super) fn consider(&mut self, candidate: Candidate) {
         let better = self
             .best
-            .is_none_or(|best| candidate.judgement.price < best.judgement.price);
+            .is_none_or(|best| self.is_better(&candidate, &best));
         if better {
             self.best = Some(candidate);
             self.unmoved = None;

@@ -5,7 +5,7 @@ use crate::vehicle::{Loiter, SpacePath};
 
 /// Knots at which circles leave the plan, the latest first, each to both sides. From the first knot they leave only where the way
 /// out is lost that was flown.
-pub(super) const LEAVES: [usize; 7] = [12, 10, 8, 6, 4, 2, 0];
+pub(super) const LEAVES: [usize; 7] = [12, 9, 6, 4, 2, 1, 0];
 /// Circles that a cycle tries.
 pub(super) const TURNS: usize = 2 * LEAVES.len();
 /// Stages of a circle that a slice flies, and the most up to its end, in wind.
@@ -40,6 +40,8 @@ pub(super) struct WaysOut {
     pub(super) lost: bool,
     /// Whether what was found is flown from now on.
     pub(super) holds: bool,
+    /// Whether a way out has ever been flown: that of mode open.
+    pub(super) flown: bool,
 }
 
 /// A circle that is tried.
@@ -62,6 +64,7 @@ impl WaysOut {
         looked: false,
         lost: false,
         holds: false,
+        flown: false,
     };
 }
 
