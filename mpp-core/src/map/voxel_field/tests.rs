@@ -10,14 +10,17 @@ use rand_pcg::Pcg64Mcg;
 use std::boxed::Box;
 use std::vec::Vec;
 
+/// Numbers between two limits.
+fn draws(seed: u64) -> impl FnMut(f64, f64) -> f64 {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    move |low, high| low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
 /// Beams at random points, one a column: the field has the distance to the nearest part of a column that one of them shows,
 /// the surface has them all, and the slope is that of the clearance.
 #[test]
 fn the_field_has_the_distance_to_what_hits_have_shown() {
-    let mut random = Pcg64Mcg::seed_from_u64(5);
-    let mut draw = |low: f64, high: f64| {
-        low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut draw = draws(5);
     let (mut map, mut field) = (Box::new(VoxelGrid::new()), Box::new(VoxelField::new()));
     map.clear(0.0);
     let from = [0.25, 0.25, 8.25];
@@ -133,10 +136,7 @@ fn the_field_has_the_distance_to_what_hits_have_shown() {
 /// Whatever its course, the aircraft has in map and field what it was shown ahead of it.
 #[test]
 fn the_windows_lie_ahead_of_the_aircraft() {
-    let mut random = Pcg64Mcg::seed_from_u64(6);
-    let mut draw = |low: f64, high: f64| {
-        low + (high - low) * (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut draw = draws(6);
     let (mut map, mut field) = (Box::new(VoxelGrid::new()), Box::new(VoxelField::new()));
     let from = [100.25, -40.25, 8.25];
     for _ in 0..100 {

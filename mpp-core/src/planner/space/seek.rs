@@ -49,7 +49,7 @@ impl SpacePlanner {
     }
 
     /// Whether something is known on the way out that is [held](Self::held). Such a one is flown as long as the best plan meets
-    /// something, too.
+    /// something as early.
     #[must_use]
     pub fn is_lost(&self) -> bool {
         self.held().is_some() && self.ways.lost
